@@ -1,0 +1,30 @@
+// The only two exceptions that leave library code.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace photorque {
+
+// Where a value of the user's came from. `line` is 1-based; 0 when a line means nothing (binary
+// files, the command line).
+struct InputLocation {
+  std::string file;
+  int line = 0;
+};
+
+// The input is wrong and the user can mend it. what() is one line:
+//   experiment.toml:12: source[0].power_W: found -3, expected a number > 0
+class InputError : public std::runtime_error {
+ public:
+  InputError(const InputLocation& where, const std::string& key, const std::string& found,
+             const std::string& expected);
+};
+
+// The input is legal and the computation failed (no convergence, loss of precision).
+class NumericalError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace photorque

@@ -1,0 +1,145 @@
+// Typed access to what the user wrote, wherever it was written.
+//
+// A reader (TOML, glTF extras, command line) fills a tree of SettingsNode; the program reads it
+// through Settings. Every value is converted to SI here and nowhere else, from the unit that its
+// key names as a suffix. A key that nobody asked for is an error that suggests the nearest key that
+// somebody did ask for.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/errors.h"
+#include "core/vector.h"
+
+namespace photorque {
+
+// One value as written. Tables keep their keys sorted.
+struct SettingsNode {
+  using Array = std::vector<SettingsNode>;
+  using Table = std::map<std::string, SettingsNode, std::less<>>;
+  std::variant<bool, int64_t, double, std::string, Array, Table> value = Table{};
+  InputLocation where;
+
+  bool is_table() const { return std::holds_alternative<Table>(value); }
+  bool is_array() const { return std::holds_alternative<Array>(value); }
+  bool is_number() const {
+    return std::holds_alternative<int64_t>(value) || std::holds_alternative<double>(value);
+  }
+};
+
+// A short description for error messages: "-3", "\"abc\"", "an array of 2".
+std::string describe(const SettingsNode& node);
+
+// Closed or open bounds on a number, in SI units. The default admits every finite number.
+struct Range {
+  double low = -1e308;
+  double high = 1e308;
+  bool low_open = false;
+  bool high_open = false;
+
+  static Range positive() { return {0.0, 1e308, true, false}; }
+  static Range not_negative() { return {0.0, 1e308, false, false}; }
+  static Range fraction() { return {0.0, 1.0, false, false}; }
+};
+
+// A number with the user's one-sigma uncertainty (0: exact). SI units.
+struct Uncertain {
+  double value = 0.0;
+  double sigma = 0.0;
+};
+struct UncertainVec3 {
+  Vec3 value = Vec3::Zero();
+  Vec3 sigma = Vec3::Zero();
+};
+
+// A view of one table. Copies share the record of which keys were read.
+//
+// Keys carry their unit: `number("radius_m")` also accepts `radius_mm` when the user wrote that,
+// and always returns metres. Known suffixes are those of unit_of_key() below. Angles return
+// radians whatever the key says.
+//
+// Every accessor throws InputError with file, line, key, what was found and what was expected when
+// the key is missing (unless a default is given), of the wrong type, not finite, or out of range.
+class Settings {
+ public:
+  // `name` is how messages call this table; empty for the root of a file.
+  explicit Settings(std::shared_ptr<const SettingsNode> root, std::string name = "");
+
+  bool has(std::string_view key) const;
+
+  double number(std::string_view key, Range range = {}) const;
+  double number_or(std::string_view key, double otherwise_SI, Range range = {}) const;
+  Uncertain uncertain(std::string_view key, Range range = {}) const;
+  UncertainVec3 uncertain_vector(std::string_view key) const;
+  int64_t integer(std::string_view key, int64_t low, int64_t high) const;
+  int64_t integer_or(std::string_view key, int64_t otherwise, int64_t low, int64_t high) const;
+  bool flag_or(std::string_view key, bool otherwise) const;
+  std::string text(std::string_view key) const;
+  std::string text_or(std::string_view key, std::string_view otherwise) const;
+  // One of `choices`, returned as its index; the message lists them.
+  size_t choice(std::string_view key, const std::vector<std::string>& choices) const;
+  size_t choice_or(std::string_view key, const std::vector<std::string>& choices,
+                   size_t otherwise) const;
+  Vec3 vector3(std::string_view key) const;
+  Vec3 vector3_or(std::string_view key, const Vec3& otherwise_SI) const;
+  Mat3 matrix3(std::string_view key) const;
+  std::vector<double> numbers(std::string_view key, Range range = {}) const;
+  std::vector<std::string> texts(std::string_view key) const;
+
+  // A sub-table; throws when absent.
+  Settings table(std::string_view key) const;
+  // The tables of an array of tables, `[[key]]`; empty when absent. A single table counts as one.
+  std::vector<Settings> tables(std::string_view key) const;
+  // The keys of this table as the user wrote them.
+  std::vector<std::string> keys() const;
+  // The value as written, marked as read with everything below it.
+  const SettingsNode& raw(std::string_view key) const;
+
+  InputLocation where() const;
+  const std::string& name() const { return name_; }
+  // The error for a value of this table that is wrong for a reason only the caller knows.
+  InputError error(std::string_view key, const std::string& found,
+                   const std::string& expected) const;
+
+  // Throws InputError for the first key, here or below, that nobody read.
+  void finish() const;
+
+ private:
+  struct Log;
+  Settings(const SettingsNode* node, std::shared_ptr<const SettingsNode> root,
+           std::shared_ptr<Log> log, std::string name);
+  const SettingsNode* find(std::string_view key, double* factor) const;
+  const SettingsNode& require(std::string_view key, double* factor,
+                              const std::string& expected) const;
+  double to_number(const SettingsNode& node, std::string_view key, double factor,
+                   Range range) const;
+  Vec3 to_vector3(const SettingsNode& node, std::string_view key, double factor) const;
+  std::string full_name(std::string_view key) const;
+
+  const SettingsNode* node_;
+  std::shared_ptr<const SettingsNode> root_;
+  std::shared_ptr<Log> log_;
+  std::string name_;
+};
+
+// The unit suffix of a key and its SI factor: "fwhm_deg" → {stem "fwhm", unit "deg",
+// dimension "angle", factor π/180}. A key without a known suffix has factor 1 and no unit.
+struct KeyUnit {
+  std::string stem;
+  std::string unit;
+  std::string dimension;
+  double to_SI = 1.0;
+};
+KeyUnit unit_of_key(std::string_view key);
+
+// The candidate nearest to `word` by edit distance, or empty if none is similar.
+std::string nearest(std::string_view word, const std::set<std::string>& candidates);
+
+}  // namespace photorque

@@ -1,0 +1,56 @@
+// The interface between the tracer and everything that shines.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/sobol.h"
+#include "core/spectrum.h"
+#include "core/transform.h"
+
+namespace photorque {
+
+// Rays in blocks, structure of arrays, so that compilers vectorise the loops of an emitter.
+inline constexpr int ray_block = sobol_block;
+
+// Points of the unit hypercube as 32-bit fixed-point fractions (see sobol_fraction()).
+struct SampleBlock {
+  alignas(64) std::array<std::array<uint32_t, ray_block>, sobol_dimensions> bits;
+};
+
+// Rays in the emitter's frame: origins in metres, directions of unit norm.
+struct RayBlock {
+  alignas(64) std::array<std::array<double, ray_block>, 3> origin_m;
+  alignas(64) std::array<std::array<double, ray_block>, 3> direction;
+};
+
+// A source of light in a frame of its own: z along the axis of the beam, origin at the aperture.
+// Immutable; called from many threads at once.
+class Emitter {
+ public:
+  virtual ~Emitter() = default;
+
+  // Radiant power of all rays together [W], > 0. Every ray carries an equal share.
+  virtual double power_W() const = 0;
+
+  // Turns uniform points into rays. Points that are well distributed must give rays that are: each
+  // dimension enters through a monotone or otherwise area-preserving map. Dimensions 0 and 1 choose
+  // the point of the aperture, 2 and 3 the direction.
+  virtual void emit(const SampleBlock& samples, RayBlock& rays) const = 0;
+
+  // Radiant intensity at `angle_rad` ∈ [0, π] from the axis over its maximum, for beams that are the
+  // same all round the axis; the average around the axis for others. In [0, 1].
+  virtual double relative_intensity(double angle_rad) const = 0;
+};
+
+// An emitter placed in the laboratory.
+struct Beam {
+  std::string name;
+  std::shared_ptr<const Emitter> emitter;
+  RigidTransform lab_from_emitter;
+  Spectrum spectrum;
+};
+
+}  // namespace photorque

@@ -1,0 +1,67 @@
+// The interface between the tracer and everything that is measured.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/estimate.h"
+#include "core/product.h"
+#include "core/spectrum.h"
+
+namespace photorque {
+
+// Interactions of rays with surfaces, structure of arrays, at most `capacity` at a time. Everything
+// is in the body frame.
+struct Hits {
+  static constexpr int capacity = 1024;
+  template <typename T>
+  using Column = std::array<T, capacity>;
+
+  int count = 0;
+  int bands = 1;                     // only this many rows of the band columns are filled
+  Column<uint32_t> instance;         // index into Scene::instances
+  Column<uint32_t> triangle;         // index into that mesh's triangles
+  Column<uint8_t> front;             // 1: hit from the front, 0: from the back
+  Column<uint16_t> depth;            // 0: straight from the emitter
+  std::array<Column<double>, 3> position_m;     // on the triangle's plane to 2e-10 of the scene size
+  std::array<Column<float>, 2> barycentric;     // weights of the triangle's vertices 1 and 2
+  std::array<Column<double>, max_bands> incident_W;   // per band
+  std::array<Column<double>, max_bands> absorbed_W;   // per band
+  std::array<Column<double>, 3> force_N;   // momentum rate in minus out: Σ_bands (P_in d_in − P_out d_out)/c
+};
+
+// What the tracer summed for one receiver: one vector of bins per replicate. Each replicate is an
+// independent, unbiased estimate of the whole.
+struct BinSums {
+  size_t bins = 0;
+  int replicates = 0;
+  std::vector<double> sums;  // replicate-major: sums[replicate · bins + bin]
+
+  std::span<const double> of(int replicate) const {
+    return std::span(sums).subspan(static_cast<size_t>(replicate) * bins, bins);
+  }
+  // Mean and standard error of one bin.
+  Estimate estimate(size_t bin) const;
+  // Mean and standard error of a linear function of the bins (a total, a moment).
+  Estimate estimate(const std::function<double(std::span<const double>)>& linear) const;
+};
+
+// Something with bins that hits add to. Immutable; called from many threads at once.
+class Receiver {
+ public:
+  virtual ~Receiver() = default;
+
+  virtual size_t bins() const = 0;
+
+  // Adds the share of these hits to `sums` (of bins() entries). Only sums over hits, so that
+  // batches can be added in any grouping.
+  virtual void score(const Hits& hits, std::span<double> sums) const = 0;
+
+  // Results with units and standard errors.
+  virtual Product product(const BinSums& sums) const = 0;
+};
+
+}  // namespace photorque

@@ -1,0 +1,49 @@
+// The geometry and surfaces of a platform: plain structs linked by index.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/spectrum.h"
+#include "core/vector.h"
+#include "raytrace/surface.h"
+
+namespace photorque {
+
+// Triangles in a frame of their own. Counter-clockwise seen from the front.
+struct Mesh {
+  std::vector<Vec3> vertices_m;
+  std::vector<std::array<uint32_t, 3>> triangles;  // indices into vertices_m
+  std::vector<Vec2> uv;                            // texture coordinates, per vertex, or empty
+};
+
+// A mesh placed in the body frame, with a surface on each side.
+struct Instance {
+  std::string node;      // name of the node that holds it
+  std::string path;      // names from the root down to the node, joined by "/"
+  std::string material;  // name of its material, may be empty
+  uint32_t mesh = 0;
+  uint32_t front_surface = 0;
+  uint32_t back_surface = 0;
+  // May mirror (negative determinant): the tracer then swaps the winding, so that the front stays
+  // the front.
+  Affine body_from_mesh = Affine::Identity();
+};
+
+// Everything is in the body frame: metres, origin at the centre of rotation, z up at zero tilt.
+struct Scene {
+  std::vector<Mesh> meshes;
+  std::vector<OpticalSurface> surfaces;
+  std::vector<Instance> instances;
+  Bands bands;
+
+  // Largest distance of any vertex from the body origin [m]; 0 for an empty scene.
+  double radius_m() const;
+  // Instances of the node called `name` (its name, or its path or the end of its path) and of all
+  // nodes below it; empty if there is none.
+  std::vector<uint32_t> instances_of(const std::string& name) const;
+};
+
+}  // namespace photorque

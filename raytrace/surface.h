@@ -1,0 +1,28 @@
+// What a surface does with light.
+#pragma once
+
+#include <string>
+
+#include "core/spectrum.h"
+
+namespace photorque {
+
+// Fractions of the incident power, per wavelength band, the same for every angle of incidence:
+//   absorbed    stays in the surface (no re-emission)
+//   specular    leaves mirrored about the normal
+//   diffuse     leaves on the side it came from, by Lambert's law
+//   transmitted goes straight on (a thin sheet, no refraction)
+// They are in [0, 1] and sum to 1 in every band.
+struct OpticalSurface {
+  std::string name;
+  BandValues absorbed{};
+  BandValues specular{};
+  BandValues diffuse{};
+  BandValues transmitted{};
+};
+
+// The same fractions in all bands; `absorbed` is what remains. The caller keeps the sum ≤ 1.
+OpticalSurface grey_surface(std::string name, double specular, double diffuse,
+                            double transmitted = 0.0);
+
+}  // namespace photorque

@@ -1,0 +1,29 @@
+// How a `[[source]]` of an experiment becomes beams.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/settings.h"
+#include "raytrace/emitter.h"
+
+namespace photorque {
+
+// What a source may need to know of the scene that it lights.
+struct SourceContext {
+  double scene_radius_m = 1.0;  // of the sphere about the lab origin that holds the scene
+};
+
+// One kind of source: `kind = "led"`.
+struct SourceKind {
+  std::string name;
+  std::string summary;  // one sentence, no full stop
+  // Beams in the lab frame, at least one. Reads every key it knows; throws InputError.
+  std::function<std::vector<Beam>(const Settings&, const SourceContext&)> make;
+};
+
+// Every kind named in sources/CMakeLists.txt, in that order.
+std::vector<SourceKind> all_source_kinds();
+
+}  // namespace photorque

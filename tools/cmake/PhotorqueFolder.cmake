@@ -1,0 +1,46 @@
+# photorque_folder(NAME FILES ... [USES folder ...] [LINKS library ...])
+#   One static library photorque_NAME for a top-level folder. USES names the folders it may include
+#   (public), LINKS the outside libraries that only this folder may see (private).
+function(photorque_folder name)
+  cmake_parse_arguments(arg "" "" "FILES;USES;LINKS" ${ARGN})
+  set(target photorque_${name})
+  add_library(${target} STATIC ${arg_FILES})
+  target_include_directories(${target} PUBLIC ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+  target_link_libraries(${target} PUBLIC Eigen3::Eigen)
+  foreach(used IN LISTS arg_USES)
+    target_link_libraries(${target} PUBLIC photorque_${used})
+  endforeach()
+  target_link_libraries(${target} PRIVATE ${arg_LINKS})
+  target_precompile_headers(${target} PRIVATE ${CMAKE_SOURCE_DIR}/core/precompiled.h)
+endfunction()
+
+# photorque_kinds(FOLDER TYPE name ...)
+#   The registry of a folder. Each NAME is one file FOLDER/NAME.cpp that defines
+#   `photorque::TYPE photorque::NAME_kind()`; generates FOLDER/registry.cpp with
+#   `std::vector<TYPE> all_TYPE()` in this order. Explicit calls, because objects that register
+#   themselves are dropped by the linker from a static library.
+function(photorque_kinds folder type header)
+  set(declarations "")
+  set(calls "")
+  foreach(kind IN LISTS ARGN)
+    string(APPEND declarations "${type} ${kind}_kind();\n")
+    string(APPEND calls "      ${kind}_kind(),\n")
+    list(APPEND files ${kind}.cpp)
+  endforeach()
+  string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" snake "${type}")
+  string(TOLOWER "${snake}" snake)
+  set(generated ${CMAKE_BINARY_DIR}/generated/${folder}/${snake}_registry.cpp)
+  file(CONFIGURE OUTPUT ${generated} CONTENT
+"// Generated from ${folder}/CMakeLists.txt: one line per kind.
+#include \"${header}\"
+
+namespace photorque {
+${declarations}
+std::vector<${type}> all_${snake}s() {
+  return {
+${calls}  };
+}
+}  // namespace photorque
+" @ONLY)
+  set(${folder}_KINDS ${files} ${generated} PARENT_SCOPE)
+endfunction()

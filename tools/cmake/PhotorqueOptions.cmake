@@ -1,0 +1,61 @@
+# Compiler settings that hold for every target.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug" FORCE)
+endif()
+# NDEBUG switches Eigen's assertions off; our own checks are exceptions and stay.
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g")
+
+option(PHOTORQUE_WERROR "Warnings are errors" ON)
+option(PHOTORQUE_SANITIZE "AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+
+add_compile_options(-Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+if(PHOTORQUE_WERROR)
+  add_compile_options(-Werror)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 reports these inside Eigen's and the standard library's inlined code.
+  add_compile_options(-Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow
+                      -Wno-restrict -Wno-psabi)
+endif()
+
+# One instruction set for everybody (AVX2 and FMA, 2013 and newer), not this machine's own: the
+# same binary gives the same bits on every machine that runs it. Empty means the compiler's default.
+include(CheckCXXSourceRuns)
+set(CMAKE_REQUIRED_FLAGS "-march=x86-64-v3")
+check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") ? 0 : 1; }"
+                      PHOTORQUE_MACHINE_HAS_AVX2)
+unset(CMAKE_REQUIRED_FLAGS)
+if(PHOTORQUE_MACHINE_HAS_AVX2)
+  set(PHOTORQUE_ARCH_DEFAULT "x86-64-v3")
+endif()
+set(PHOTORQUE_ARCH "${PHOTORQUE_ARCH_DEFAULT}" CACHE STRING "Instruction set (-march)")
+if(PHOTORQUE_ARCH)
+  add_compile_options(-march=${PHOTORQUE_ARCH})
+endif()
+# errno and signalling NaN are not used; both block vectorisation and change no result.
+add_compile_options(-fno-math-errno -fno-trapping-math)
+
+if(PHOTORQUE_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
+                      -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+find_program(PHOTORQUE_CCACHE ccache)
+if(PHOTORQUE_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+      CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      ${PHOTORQUE_CCACHE})
+  add_compile_options(-fpch-preprocess)
+endif()
+find_program(PHOTORQUE_MOLD mold)
+if(PHOTORQUE_MOLD)
+  add_link_options(-fuse-ld=mold)
+endif()
