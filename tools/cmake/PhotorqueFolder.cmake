@@ -4,6 +4,12 @@
 function(photorque_folder name)
   cmake_parse_arguments(arg "" "" "FILES;USES;LINKS" ${ARGN})
   set(target photorque_${name})
+  foreach(file IN LISTS arg_FILES)  # bootstrap
+    if(NOT IS_ABSOLUTE ${file} AND NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+      message(WARNING "${name}/${file} does not exist yet")
+      list(REMOVE_ITEM arg_FILES ${file})
+    endif()
+  endforeach()
   add_library(${target} STATIC ${arg_FILES})
   target_include_directories(${target} PUBLIC ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
   target_link_libraries(${target} PUBLIC Eigen3::Eigen)
