@@ -392,6 +392,19 @@ Mat3 Settings::matrix3(std::string_view key) const {
   return m;
 }
 
+std::vector<Vec3> Settings::vectors3(std::string_view key) const {
+  double factor = 1.0;
+  const std::string expected = "an array of arrays of 3 numbers";
+  const SettingsNode& node = require(key, &factor, expected);
+  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  if (array == nullptr || array->empty()) {
+    throw InputError(node.where, full_name(key), describe(node), expected);
+  }
+  std::vector<Vec3> all;
+  for (const auto& item : *array) all.push_back(to_vector3(item, key, factor));
+  return all;
+}
+
 std::vector<double> Settings::numbers(std::string_view key, Range range) const {
   double factor = 1.0;
   const SettingsNode& node = require(key, &factor, "an array of numbers");

@@ -90,6 +90,8 @@ class Settings {
   Vec3 vector3(std::string_view key) const;
   Vec3 vector3_or(std::string_view key, const Vec3& otherwise_SI) const;
   Mat3 matrix3(std::string_view key) const;
+  // An array of points or directions, at least one.
+  std::vector<Vec3> vectors3(std::string_view key) const;
   std::vector<double> numbers(std::string_view key, Range range = {}) const;
   std::vector<std::string> texts(std::string_view key) const;
 
