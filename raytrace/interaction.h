@@ -1,0 +1,55 @@
+// What happens where rays meet surfaces: absorption, the choice of the lobe that goes on, momentum.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "raytrace/launch.h"
+#include "raytrace/receiver.h"
+#include "raytrace/traceable_scene_data.h"
+
+namespace photorque {
+
+// Rays that go on after a hit, with their power per band (ray-major: power_W[ray · bands + band]).
+struct Continuation {
+  std::vector<Ray> rays;
+  std::vector<double> power_W;
+  void clear() {
+    rays.clear();
+    power_W.clear();
+  }
+};
+
+// Power [W] and momentum flow [N, N m about the body origin] of one part of the work; added up in a
+// fixed order.
+struct LedgerSums {
+  double escaped_W = 0.0;
+  double truncated_W = 0.0;
+  std::array<double, 6> momentum_in{};   // of rays at their first hit
+  std::array<double, 6> momentum_out{};  // of rays that escaped after a hit, or were truncated
+  std::vector<double> absorbed_W;        // per instance
+
+  void add(const LedgerSums& other);
+};
+
+// Hits under way to the receivers, with what the receivers need not know.
+struct HitBuffer {
+  Hits hits;
+  Hits::Column<uint32_t> sample;
+  std::array<Hits::Column<float>, 3> direction;
+};
+
+// Settles all hits of the buffer: fills absorbed_W and force_N, adds to the ledger and appends the
+// rays that go on to `next`. The lobe and direction of a ray come from its own Sobol point of group
+// depth + 1.
+struct InteractionContext {
+  const TraceableScene::Data* scene;
+  SobolStream stream;          // of the beam and replicate; group is set per depth
+  double cutoff_W = 0.0;       // rays with less than this are truncated
+};
+void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger,
+              Continuation& next);
+
+}  // namespace photorque

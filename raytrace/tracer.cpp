@@ -1,0 +1,362 @@
+#include "raytrace/tracer.h"
+
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "raytrace/interaction.h"
+#include "raytrace/launch.h"
+
+namespace photorque {
+namespace {
+
+// The share of the work that belongs to one beam.
+struct BeamPlan {
+  const Beam* beam;
+  RigidTransform body_from_emitter;
+  LandingGrid landing;
+  uint32_t rays_per_replicate;  // a power of two, at least ray_block
+  uint32_t batch;               // rays per batch
+  uint64_t first_batch;         // its number among the batches of a replicate
+  BandValues power_per_ray_W;   // so that each replicate carries the full power of the beam
+  double watt_per_ray;
+};
+
+struct Plan {
+  std::vector<BeamPlan> beams;
+  uint64_t batches = 0;  // per replicate
+  uint64_t rays = 0;     // over all replicates
+  double emitted_W = 0.0;
+};
+
+// Rays in proportion to power, rounded up to powers of two: Sobol sequences are best whole.
+Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from_body,
+               std::span<const Beam> beams, const TraceOptions& options) {
+  Plan plan;
+  for (const Beam& beam : beams) plan.emitted_W += beam.emitter->power_W();
+  const RigidTransform body_from_lab = lab_from_body.inverse();
+  for (const Beam& beam : beams) {
+    const double power = beam.emitter->power_W();
+    const double wanted = static_cast<double>(options.rays) / options.replicates * power / plan.emitted_W;
+    const uint64_t capped = static_cast<uint64_t>(std::min(wanted, 0x1p31));
+    const uint32_t rays = std::bit_ceil(std::max<uint32_t>(static_cast<uint32_t>(capped), ray_block));
+    const RigidTransform body_from_emitter = body_from_lab * beam.lab_from_emitter;
+    BeamPlan share{&beam,
+                   body_from_emitter,
+                   landing_grid(*beam.emitter, body_from_emitter, scene),
+                   rays,
+                   std::min(rays, largest_batch),
+                   plan.batches,
+                   band_fractions(beam.spectrum, scene.scene.bands),
+                   power / rays};
+    double fraction = 0.0;
+    for (double& band : share.power_per_ray_W) fraction += band;
+    for (double& band : share.power_per_ray_W) band *= share.watt_per_ray / fraction;
+    plan.batches += rays / share.batch;
+    plan.rays += static_cast<uint64_t>(rays) * static_cast<uint64_t>(options.replicates);
+    plan.beams.push_back(share);
+  }
+  return plan;
+}
+
+// Everything that one part of the work adds up.
+struct Sums {
+  LedgerSums ledger;
+  std::vector<std::vector<double>> receivers;
+  uint64_t segments = 0;
+
+  Sums(size_t instances, std::span<const Receiver* const> all) {
+    ledger.absorbed_W.assign(instances, 0.0);
+    for (const Receiver* receiver : all) receivers.emplace_back(receiver->bins(), 0.0);
+  }
+  void add(const Sums& other) {
+    ledger.add(other.ledger);
+    for (size_t r = 0; r < receivers.size(); ++r) {
+      for (size_t i = 0; i < receivers[r].size(); ++i) receivers[r][i] += other.receivers[r][i];
+    }
+    segments += other.segments;
+  }
+};
+
+// Follows batches of rays to their end. One per thread at a time; owns the scratch memory.
+class BatchTracer {
+ public:
+  BatchTracer(const TraceableScene::Data& scene, std::span<const Receiver* const> receivers,
+              const TraceOptions& options)
+      : scene_(scene), receivers_(receivers), options_(options), hits_(std::make_unique<HitBuffer>()) {
+    hits_->hits.bands = scene.scene.bands.count();
+  }
+
+  void run(const BeamPlan& plan, const SobolStream& stream, uint32_t first, Sums& sums) {
+    sums_ = &sums;
+    context_ = {&scene_, stream, options_.cutoff * plan.watt_per_ray};
+    launch(*plan.beam->emitter, plan.body_from_emitter, scene_, plan.landing, stream, first,
+           plan.batch, launched_);
+    next_.clear();
+    depth_ = 0;
+    trace_wave(launched_.rays, plan.power_per_ray_W.data(), 0, Coherence::coherent);
+    for (depth_ = 1; !next_.rays.empty() && depth_ < options_.max_depth; ++depth_) {
+      std::swap(current_, next_);
+      next_.clear();
+      trace_wave(current_.rays, current_.power_W.data(), bands(), Coherence::incoherent);
+    }
+    truncate();
+  }
+
+ private:
+  int bands() const { return hits_->hits.bands; }
+
+  // Ray i has the powers power_W[i · stride …].
+  void trace_wave(const std::vector<Ray>& rays, const double* power_W, int stride,
+                  Coherence coherence) {
+    sums_->segments += rays.size();
+    if (scene_.packet_width == 16) {
+      trace_packets<16>(rays, power_W, stride, coherence);
+    } else {
+      trace_packets<8>(rays, power_W, stride, coherence);
+    }
+    settle();
+  }
+
+  template <int Width>
+  void trace_packets(const std::vector<Ray>& rays, const double* power_W, int stride,
+                     Coherence coherence) {
+    embree_seam::Query query(coherence);
+    alignas(64) int valid[Width];
+    alignas(64) typename embree_seam::PacketType<Width>::type packet;
+    for (size_t begin = 0; begin < rays.size(); begin += Width) {
+      const int count = static_cast<int>(std::min<size_t>(Width, rays.size() - begin));
+      for (int i = 0; i < Width; ++i) {
+        const Ray& ray = rays[begin + static_cast<size_t>(std::min(i, count - 1))];
+        valid[i] = i < count ? -1 : 0;
+        packet.ray.org_x[i] = ray.origin_m[0];
+        packet.ray.org_y[i] = ray.origin_m[1];
+        packet.ray.org_z[i] = ray.origin_m[2];
+        packet.ray.dir_x[i] = ray.direction[0];
+        packet.ray.dir_y[i] = ray.direction[1];
+        packet.ray.dir_z[i] = ray.direction[2];
+        packet.ray.tnear[i] = 0.0f;
+        packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
+        packet.ray.time[i] = 0.0f;
+        packet.ray.mask[i] = ~0u;
+        packet.ray.id[i] = 0;
+        packet.ray.flags[i] = 0;
+        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+      }
+      query.intersect(scene_.embree, valid, packet);
+      for (int i = 0; i < count; ++i) {
+        const double* power = power_W + (begin + static_cast<size_t>(i)) * static_cast<size_t>(stride);
+        const Ray& ray = rays[begin + static_cast<size_t>(i)];
+        if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+          escape(ray, power);
+        } else {
+          append(ray, power, packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i],
+                 packet.hit.v[i]);
+        }
+      }
+    }
+  }
+
+  void append(const Ray& ray, const double* power_W, uint32_t instance, uint32_t triangle, float u,
+              float v) {
+    Hits& hits = hits_->hits;
+    const int i = hits.count++;
+    const TrianglePlane& plane = scene_.plane(instance, triangle);
+    double distance = plane.offset_m, facing = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      distance -= plane.normal[k] * ray.origin_m[k];
+      facing += plane.normal[k] * ray.direction[k];
+      hits_->direction[k][i] = ray.direction[k];
+    }
+    // The hit in double precision from the triangle's plane: Embree's own distance is off by up to
+    // 5e-7 of the scene's size.
+    const double t = distance / facing;
+    for (int k = 0; k < 3; ++k) hits.position_m[k][i] = ray.origin_m[k] + t * ray.direction[k];
+    hits.instance[i] = instance;
+    hits.triangle[i] = triangle;
+    hits.front[i] = facing < 0.0 ? 1 : 0;
+    hits.depth[i] = static_cast<uint16_t>(depth_);
+    hits.barycentric[0][i] = u;
+    hits.barycentric[1][i] = v;
+    for (int b = 0; b < hits.bands; ++b) hits.incident_W[b][i] = power_W[b];
+    hits_->sample[i] = ray.sample;
+    if (hits.count == Hits::capacity) settle();
+  }
+
+  void settle() {
+    Hits& hits = hits_->hits;
+    if (hits.count == 0) return;
+    interact(context_, *hits_, sums_->ledger, next_);
+    for (size_t r = 0; r < receivers_.size(); ++r) receivers_[r]->score(hits, sums_->receivers[r]);
+    hits.count = 0;
+  }
+
+  double total(const double* power_W) const {
+    double sum = 0.0;
+    for (int b = 0; b < bands(); ++b) sum += power_W[b];
+    return sum;
+  }
+
+  void escape(const Ray& ray, const double* power_W) {
+    const double power = total(power_W);
+    sums_->ledger.escaped_W += power;
+    if (depth_ > 0) leave(ray, power);
+  }
+
+  void leave(const Ray& ray, double power) {
+    const Vec3 force = Vec3(ray.direction[0], ray.direction[1], ray.direction[2]) *
+                       (power / speed_of_light_m_s);
+    const Vec3 torque = Vec3(ray.origin_m[0], ray.origin_m[1], ray.origin_m[2]).cross(force);
+    for (size_t k = 0; k < 3; ++k) {
+      sums_->ledger.momentum_out[k] += force[static_cast<Eigen::Index>(k)];
+      sums_->ledger.momentum_out[3 + k] += torque[static_cast<Eigen::Index>(k)];
+    }
+  }
+
+  // What is still under way at the depth limit.
+  void truncate() {
+    for (size_t i = 0; i < next_.rays.size(); ++i) {
+      const double power = total(&next_.power_W[i * static_cast<size_t>(bands())]);
+      sums_->ledger.truncated_W += power;
+      leave(next_.rays[i], power);
+    }
+  }
+
+  const TraceableScene::Data& scene_;
+  std::span<const Receiver* const> receivers_;
+  const TraceOptions& options_;
+  std::unique_ptr<HitBuffer> hits_;
+  LaunchBuffer launched_;
+  Continuation current_, next_;
+  InteractionContext context_{};
+  Sums* sums_ = nullptr;
+  int depth_ = 0;
+};
+
+// Parts that the batches of one replicate are cut into; fixed, so that sums do not depend on threads.
+constexpr uint64_t most_parts = 4;
+
+Sums trace_part(const TraceableScene::Data& scene, const Plan& plan,
+                std::span<const Receiver* const> receivers, const TraceOptions& options,
+                int replicate, uint64_t first_batch, uint64_t end_batch) {
+  Sums sums(scene.scene.instances.size(), receivers);
+  BatchTracer tracer(scene, receivers, options);
+  for (size_t b = 0; b < plan.beams.size(); ++b) {
+    const BeamPlan& beam = plan.beams[b];
+    const SobolStream stream{options.seed, hash_words(b, static_cast<uint64_t>(replicate)), 0};
+    const uint64_t beam_batches = beam.rays_per_replicate / beam.batch;
+    const uint64_t begin = std::max(first_batch, beam.first_batch);
+    const uint64_t end = std::min(end_batch, beam.first_batch + beam_batches);
+    for (uint64_t batch = begin; batch < end; ++batch) {
+      const auto first = static_cast<uint32_t>((batch - beam.first_batch) * beam.batch);
+      tracer.run(beam, stream, first, sums);
+    }
+  }
+  return sums;
+}
+
+Ledger make_ledger(const std::vector<Sums>& replicates, const Plan& plan) {
+  std::vector<double> values(replicates.size());
+  const auto estimate = [&](const std::function<double(const LedgerSums&)>& pick) {
+    for (size_t r = 0; r < values.size(); ++r) values[r] = pick(replicates[r].ledger);
+    return estimate_from_replicates(values);
+  };
+  const auto absorbed = [](const LedgerSums& s) {
+    double sum = 0.0;
+    for (const double power : s.absorbed_W) sum += power;
+    return sum;
+  };
+  Ledger ledger;
+  ledger.emitted_W = plan.emitted_W;
+  ledger.absorbed_W = estimate(absorbed);
+  ledger.escaped_W = estimate([](const LedgerSums& s) { return s.escaped_W; });
+  ledger.truncated_W = estimate([](const LedgerSums& s) { return s.truncated_W; });
+  for (size_t i = 0; i < replicates[0].ledger.absorbed_W.size(); ++i) {
+    ledger.absorbed_by_instance_W.push_back(
+        estimate([i](const LedgerSums& s) { return s.absorbed_W[i]; }));
+  }
+  for (size_t k = 0; k < 3; ++k) {
+    ledger.force_N[k] = estimate([k](const LedgerSums& s) { return s.momentum_in[k] - s.momentum_out[k]; });
+    ledger.torque_N_m[k] =
+        estimate([k](const LedgerSums& s) { return s.momentum_in[3 + k] - s.momentum_out[3 + k]; });
+  }
+  for (const Sums& replicate : replicates) {
+    const LedgerSums& s = replicate.ledger;
+    const double gap = std::abs(plan.emitted_W - absorbed(s) - s.escaped_W - s.truncated_W);
+    ledger.closure = std::max(ledger.closure, gap / plan.emitted_W);
+  }
+  return ledger;
+}
+
+void check(const TraceOptions& options, std::span<const Beam> beams) {
+  const auto refuse = [](const std::string& key, double found, const std::string& expected) {
+    throw InputError({"trace"}, key, std::to_string(found), expected);
+  };
+  if (beams.empty()) throw InputError({"trace"}, "source", "none", "at least one source");
+  if (options.rays < 1 || options.rays > (1ull << 40)) {
+    refuse("rays", static_cast<double>(options.rays), "1 to 2^40");
+  }
+  if (options.replicates < 8 || options.replicates > 1024) {
+    refuse("replicates", options.replicates, "8 to 1024");
+  }
+  if (options.max_depth < 1 || options.max_depth > 65535) {
+    refuse("max_depth", options.max_depth, "1 to 65535");
+  }
+  if (!(options.cutoff >= 0.0 && options.cutoff < 1.0)) refuse("cutoff", options.cutoff, "0 to 1");
+  for (const Beam& beam : beams) {
+    if (!(beam.emitter->power_W() > 0.0)) {
+      refuse(beam.name + " power_W", beam.emitter->power_W(), "a positive power");
+    }
+  }
+}
+
+}  // namespace
+
+TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_body,
+                  std::span<const Beam> beams, std::span<const Receiver* const> receivers,
+                  const TraceOptions& options) {
+  check(options, beams);
+  const auto start = std::chrono::steady_clock::now();
+  const TraceableScene::Data& data = scene.data();
+  const Plan plan = make_plan(data, lab_from_body, beams, options);
+
+  const uint64_t parts = std::min(most_parts, plan.batches);
+  const size_t replicates = static_cast<size_t>(options.replicates);
+  std::vector<Sums> done(replicates * parts, Sums(0, {}));
+  std::atomic<size_t> finished = 0;
+  parallel_for(done.size(), options.threads, [&](size_t item) {
+    const uint64_t part = item % parts;
+    done[item] = trace_part(data, plan, receivers, options, static_cast<int>(item / parts),
+                            plan.batches * part / parts, plan.batches * (part + 1) / parts);
+    const size_t now = ++finished;
+    if (options.progress) options.progress(static_cast<double>(now) / static_cast<double>(done.size()));
+  });
+
+  std::vector<Sums> by_replicate;
+  TraceResult result;
+  for (size_t r = 0; r < replicates; ++r) {
+    by_replicate.push_back(std::move(done[r * parts]));
+    for (uint64_t part = 1; part < parts; ++part) by_replicate.back().add(done[r * parts + part]);
+    result.segments += by_replicate.back().segments;
+  }
+  for (size_t i = 0; i < receivers.size(); ++i) {
+    BinSums sums{receivers[i]->bins(), options.replicates, {}};
+    for (const Sums& replicate : by_replicate) {
+      sums.sums.insert(sums.sums.end(), replicate.receivers[i].begin(), replicate.receivers[i].end());
+    }
+    result.sums.push_back(std::move(sums));
+  }
+  result.ledger = make_ledger(by_replicate, plan);
+  result.rays = plan.rays;
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace photorque
