@@ -1,0 +1,58 @@
+#include "attitude/environment.h"
+
+#include <cmath>
+
+#include "attitude/igrf.h"
+
+namespace photorque {
+namespace {
+
+// Specific gas constant of dry air, and Sutherland's law: see environment.h.
+double dry_air_density_kg_m3(double pressure_Pa, double temperature_K) {
+  return pressure_Pa / (287.05 * temperature_K);
+}
+double dry_air_viscosity_Pa_s(double temperature_K) {
+  constexpr double reference_K = 273.15, sutherland_K = 110.4;
+  return 1.716e-5 * std::pow(temperature_K / reference_K, 1.5) * (reference_K + sutherland_K) /
+         (temperature_K + sutherland_K);
+}
+
+Vec3 read_field_lab_T(const Settings& settings) {
+  const bool measured = settings.has("magnetic_field_T");
+  if (!settings.has("igrf")) {
+    return settings.vector3_or("magnetic_field_T", Vec3::Zero());
+  }
+  if (measured) throw settings.error("igrf", "a field beside magnetic_field_T", "one of the two");
+  const Settings igrf = settings.table("igrf");
+  const GeomagneticModel model(igrf.number("date_year", {1900.0, 2035.0, false, false}));
+  return model.lab_T(GeodeticPosition{igrf.number("latitude_deg", {-pi / 2, pi / 2, false, false}),
+                                      igrf.number("longitude_deg"),
+                                      igrf.number_or("height_m", 0.0)});
+}
+
+}  // namespace
+
+Environment read_environment(const Settings& settings) {
+  Environment e;
+  const double gravity_m_s2 =
+      settings.number_or("gravity_m_s2", standard_gravity_m_s2, Range::not_negative());
+  e.gravity_lab_m_s2 = {0.0, 0.0, -gravity_m_s2};
+  e.gravity_gradient_1_s2 = gravity_m_s2 / earth_radius_m;
+  e.magnetic_field_lab_T = read_field_lab_T(settings);
+  e.latitude_rad = settings.number_or("latitude_deg", 0.0, {-pi / 2, pi / 2, false, false});
+  e.earth_rate_lab_rad_s =
+      earth_rate_rad_s * Vec3(0.0, std::cos(e.latitude_rad), std::sin(e.latitude_rad));
+
+  e.air_temperature_K =
+      settings.number_or("air_temperature_K", e.air_temperature_K, {100.0, 1000.0, false, false});
+  e.air_pressure_Pa =
+      settings.number_or("air_pressure_Pa", e.air_pressure_Pa, Range::not_negative());
+  e.air_density_kg_m3 = settings.number_or(
+      "air_density_kg_m3", dry_air_density_kg_m3(e.air_pressure_Pa, e.air_temperature_K),
+      Range::not_negative());
+  e.air_viscosity_Pa_s = settings.number_or(
+      "air_viscosity_Pa_s", dry_air_viscosity_Pa_s(e.air_temperature_K), Range::positive());
+  return e;
+}
+
+}  // namespace photorque

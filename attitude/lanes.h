@@ -1,0 +1,103 @@
+// Eight numbers that are worked on as one: the value of a quantity at eight instants.
+//
+// The propagator asks for the torque at the eight Gauss points of a step at once, so a law that is
+// written once for a scalar type runs on whole vector registers.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+namespace photorque {
+
+struct Lanes {
+  static constexpr int count = 8;
+  // The compiler's vectors rather than an array: they stay in registers.
+  using Quad = double __attribute__((vector_size(32)));
+  Quad low;
+  Quad high;
+
+  Lanes() = default;
+  // The same value in every lane; implicit, so that constants mix with lanes in formulas.
+  Lanes(double x) : low{x, x, x, x}, high{x, x, x, x} {}  // NOLINT(google-explicit-constructor)
+  Lanes(Quad a, Quad b) : low(a), high(b) {}
+  explicit Lanes(const std::array<double, count>& x)
+      : low{x[0], x[1], x[2], x[3]}, high{x[4], x[5], x[6], x[7]} {}
+
+  double operator[](int lane) const { return lane < 4 ? low[lane] : high[lane - 4]; }
+  void set(int lane, double x) { (lane < 4 ? low[lane] : high[lane - 4]) = x; }
+
+  Lanes operator-() const { return {-low, -high}; }
+  Lanes& operator+=(const Lanes& b) { return *this = {low + b.low, high + b.high}; }
+  Lanes& operator-=(const Lanes& b) { return *this = {low - b.low, high - b.high}; }
+  Lanes& operator*=(const Lanes& b) { return *this = {low * b.low, high * b.high}; }
+  Lanes& operator/=(const Lanes& b) { return *this = {low / b.low, high / b.high}; }
+
+  friend Lanes operator+(const Lanes& a, const Lanes& b) {
+    return {a.low + b.low, a.high + b.high};
+  }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) {
+    return {a.low - b.low, a.high - b.high};
+  }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) {
+    return {a.low * b.low, a.high * b.high};
+  }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) {
+    return {a.low / b.low, a.high / b.high};
+  }
+  // All lanes equal; Eigen needs it.
+  friend bool operator==(const Lanes& a, const Lanes& b) {
+    for (int i = 0; i < count; ++i) {
+      if (a[i] != b[i]) return false;
+    }
+    return true;
+  }
+};
+
+// `f` of every lane.
+template <class Function>
+Lanes each_lane(const Lanes& x, const Function& f) {
+  return {Lanes::Quad{f(x.low[0]), f(x.low[1]), f(x.low[2]), f(x.low[3])},
+          Lanes::Quad{f(x.high[0]), f(x.high[1]), f(x.high[2]), f(x.high[3])}};
+}
+
+inline Lanes sqrt(const Lanes& x) {
+  return each_lane(x, [](double a) { return std::sqrt(a); });
+}
+inline Lanes sin(const Lanes& x) {
+  return each_lane(x, [](double a) { return std::sin(a); });
+}
+inline Lanes cos(const Lanes& x) {
+  return each_lane(x, [](double a) { return std::cos(a); });
+}
+inline Lanes exp(const Lanes& x) {
+  return each_lane(x, [](double a) { return std::exp(a); });
+}
+inline Lanes log(const Lanes& x) {
+  return each_lane(x, [](double a) { return std::log(a); });
+}
+inline Lanes pow(const Lanes& x, double exponent) {
+  return each_lane(x, [exponent](double a) { return std::pow(a, exponent); });
+}
+inline Lanes atan2(const Lanes& y, const Lanes& x) {
+  Lanes angle;
+  for (int i = 0; i < Lanes::count; ++i) angle.set(i, std::atan2(y[i], x[i]));
+  return angle;
+}
+
+// a where x ≥ bound, b elsewhere; lane by lane.
+inline Lanes where_at_least(const Lanes& x, double bound, const Lanes& a, const Lanes& b) {
+  return {x.low >= bound ? a.low : b.low, x.high >= bound ? a.high : b.high};
+}
+
+// The largest |lane|; NaN if any lane is.
+inline double largest(const Lanes& x) {
+  double most = 0.0;
+  for (int i = 0; i < Lanes::count; ++i) {
+    const double a = std::abs(x[i]);
+    if (!(a <= most)) most = a;
+    if (std::isnan(most)) return most;
+  }
+  return most;
+}
+
+}  // namespace photorque
