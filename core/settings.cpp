@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "core/constants.h"
@@ -311,11 +312,15 @@ int64_t Settings::integer(std::string_view key, int64_t low, int64_t high) const
   const std::string expected =
       "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
   const SettingsNode& node = require(key, &factor, expected);
-  const auto* i = std::get_if<int64_t>(&node.value);
-  if (i == nullptr || *i < low || *i > high) {
+  std::optional<int64_t> whole;
+  if (const auto* i = std::get_if<int64_t>(&node.value)) whole = *i;
+  // 1e8 is a real number in TOML, and the natural way to write a count.
+  const auto* d = std::get_if<double>(&node.value);
+  if (d != nullptr && std::abs(*d) < 0x1p53 && *d == std::floor(*d)) whole = static_cast<int64_t>(*d);
+  if (!whole || *whole < low || *whole > high) {
     throw InputError(node.where, full_name(key), describe(node), expected);
   }
-  return *i;
+  return *whole;
 }
 
 int64_t Settings::integer_or(std::string_view key, int64_t otherwise, int64_t low,

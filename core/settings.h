@@ -78,6 +78,7 @@ class Settings {
   double number_or(std::string_view key, double otherwise_SI, Range range = {}) const;
   Uncertain uncertain(std::string_view key, Range range = {}) const;
   UncertainVec3 uncertain_vector(std::string_view key) const;
+  // A real number without a fraction, 1e8, counts as whole.
   int64_t integer(std::string_view key, int64_t low, int64_t high) const;
   int64_t integer_or(std::string_view key, int64_t otherwise, int64_t low, int64_t high) const;
   bool flag_or(std::string_view key, bool otherwise) const;

@@ -1,0 +1,173 @@
+// The second step of reading an experiment: the scene, beams and receivers that the text names.
+#include "scenes/experiment.h"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "core/constants.h"
+#include "receivers/receiver_kind.h"
+#include "scenes/gltf_reader.h"
+#include "sources/source_kind.h"
+
+namespace photorque {
+namespace {
+
+template <typename Kind>
+std::vector<std::string> names_of(const std::vector<Kind>& kinds) {
+  std::vector<std::string> names;
+  for (const Kind& kind : kinds) names.push_back(kind.name);
+  return names;
+}
+
+// Every node of the scene, those most like `word` first.
+std::string list_of_nodes(const Scene& scene, const std::string& word) {
+  std::set<std::string> names;
+  for (const Instance& instance : scene.instances) {
+    std::istringstream path(instance.path);
+    for (std::string name; std::getline(path, name, '/');) names.insert(name);
+  }
+  std::vector<std::string> ordered;
+  for (std::string best = nearest(word, names); !best.empty(); best = nearest(word, names)) {
+    ordered.push_back(best);
+    names.erase(best);
+  }
+  ordered.insert(ordered.end(), names.begin(), names.end());
+  std::string list;
+  for (const std::string& name : ordered) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+void require_spectrum_inside(const Settings& source, const Beam& beam, const Bands& bands) {
+  // A Gaussian is cut at five standard deviations without complaint.
+  constexpr double negligible = 1e-6;
+  const BandValues fractions = band_fractions(beam.spectrum, bands);
+  double inside = 0.0;
+  for (const double fraction : fractions) inside += fraction;
+  if (inside >= 1.0 - negligible) return;
+  std::ostringstream outside;
+  outside.precision(3);
+  outside << "a spectrum with " << 100.0 * (1.0 - inside) << " % of its power outside the bands";
+  throw source.error("", outside.str(), "[scene] bands_nm that hold all of it");
+}
+
+std::vector<Beam> make_beams(const ExperimentFile& file, const Scene& scene) {
+  if (file.sources.empty())
+    throw file.settings.error("source", "nothing", "at least one [[source]]");
+  const std::vector<SourceKind> kinds = all_source_kinds();
+  const SourceContext context{.scene_radius_m = scene.radius_m()};
+  std::vector<Beam> beams;
+  for (const Settings& source : file.sources) {
+    const SourceKind& kind = kinds[source.choice("kind", names_of(kinds))];
+    for (Beam& beam : kind.make(source, context)) {
+      require_spectrum_inside(source, beam, scene.bands);
+      beams.push_back(std::move(beam));
+    }
+  }
+  return beams;
+}
+
+const ReceiverKind& kind_of(const Settings& receiver, const std::vector<ReceiverKind>& kinds) {
+  const std::vector<std::string> names = names_of(kinds);
+  if (receiver.has("kind") || !receiver.has("node")) return kinds[receiver.choice("kind", names)];
+  return *std::find_if(kinds.begin(), kinds.end(),
+                       [](const ReceiverKind& kind) { return kind.name == "flux_map"; });
+}
+
+NamedReceiver make_receiver(const Settings& settings, const Scene& scene,
+                            const std::vector<ReceiverKind>& kinds) {
+  const ReceiverKind& kind = kind_of(settings, kinds);
+  const std::string node = settings.text_or("node", "");
+  if (settings.has("node") && scene.instances_of(node).empty()) {
+    throw settings.error("node", "\"" + node + "\"", "a node: " + list_of_nodes(scene, node));
+  }
+  std::string name = settings.text_or("name", node.empty() ? kind.name : node);
+  return {std::move(name), kind.name, kind.make(settings, scene)};
+}
+
+std::vector<NamedReceiver> make_receivers(const ExperimentFile& file, const Scene& scene) {
+  const std::vector<ReceiverKind> kinds = all_receiver_kinds();
+  std::vector<NamedReceiver> receivers;
+  std::set<std::pair<std::string, std::string>> taken;  // their files would overwrite each other
+  for (const Settings& settings : file.receivers) {
+    receivers.push_back(make_receiver(settings, scene, kinds));
+    const NamedReceiver& added = receivers.back();
+    if (!taken.emplace(added.kind, added.name).second) {
+      throw settings.error("name", "a second " + added.kind + " called \"" + added.name + "\"",
+                           "a name of its own");
+    }
+  }
+  return receivers;
+}
+
+Camera read_camera(const ExperimentFile& file, double scene_radius_m) {
+  Camera camera = camera_framing(scene_radius_m);
+  if (!file.camera) return camera;
+  const Settings& settings = *file.camera;
+  camera.position_m = settings.vector3_or("position_m", camera.position_m);
+  camera.target_m = settings.vector3_or("target_m", camera.target_m);
+  camera.field_of_view_rad =
+      settings.number_or("field_of_view_deg", camera.field_of_view_rad, {0.0, pi, true, true});
+  camera.width = static_cast<int>(settings.integer_or("width", camera.width, 16, 16384));
+  camera.height = static_cast<int>(settings.integer_or("height", camera.height, 16, 16384));
+  if ((camera.position_m - camera.target_m).norm() < 1e-9) {
+    throw settings.error("position_m", "the target itself", "a point away from target_m");
+  }
+  return camera;
+}
+
+void require_triangles(const Scene& scene, const std::filesystem::path& path) {
+  const bool any = std::any_of(
+      scene.instances.begin(), scene.instances.end(),
+      [&](const Instance& instance) { return !scene.meshes[instance.mesh].triangles.empty(); });
+  if (!any) throw InputError({path.string()}, "", "no triangles", "a scene with at least one mesh");
+}
+
+}  // namespace
+
+Camera camera_framing(double radius_m) {
+  Camera camera;
+  const double half_width = 0.5 * camera.field_of_view_rad;
+  const double half_height = std::atan(std::tan(half_width) * camera.height / camera.width);
+  const double distance_m = std::max(radius_m, 1e-6) / std::sin(std::min(half_width, half_height));
+  camera.position_m = distance_m * Vec3(0.5, -0.7, 0.5).normalized();
+  return camera;
+}
+
+std::vector<const Receiver*> Experiment::receiver_pointers() const {
+  std::vector<const Receiver*> pointers;
+  for (const NamedReceiver& named : receivers) pointers.push_back(named.receiver.get());
+  return pointers;
+}
+
+Experiment resolve_experiment(ExperimentFile file) {
+  if (!file.scene_file)
+    throw file.settings.error("scene", "nothing", "a table [scene] with a file");
+  GltfModel model = read_gltf(*file.scene_file, {.bands = file.bands, .materials = file.materials});
+  require_triangles(model.scene, *file.scene_file);
+
+  std::vector<Beam> beams = make_beams(file, model.scene);
+  std::vector<NamedReceiver> receivers = make_receivers(file, model.scene);
+  const Camera camera = read_camera(file, model.scene.radius_m());
+  file.settings.finish();
+
+  Experiment experiment;
+  experiment.file = std::move(file);
+  experiment.scene = std::move(model.scene);
+  experiment.beams = std::move(beams);
+  experiment.receivers = std::move(receivers);
+  experiment.lab_from_body =
+      lab_from_body_at(experiment.file.attitude.tilt_rad, experiment.file.attitude.heading_rad);
+  experiment.camera = camera;
+  experiment.notices = std::move(model.notices);
+  experiment.inputs = experiment.file.inputs;
+  experiment.inputs.insert(experiment.inputs.end(), model.inputs.begin(), model.inputs.end());
+  return experiment;
+}
+
+Experiment read_experiment(const std::filesystem::path& path,
+                           std::span<const std::string> overrides) {
+  return resolve_experiment(read_experiment_file(path, overrides));
+}
+
+}  // namespace photorque

@@ -1,0 +1,3 @@
+// Compiles tinygltf's own code, with the macros of the seam.
+#define TINYGLTF_IMPLEMENTATION
+#include "scenes/tinygltf_seam.h"
