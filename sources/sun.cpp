@@ -1,0 +1,99 @@
+// The Sun, or a simulator of it: parallel light from every point of a small disc in the sky.
+//
+//   [[source]]
+//   kind = "sun"
+//   name = "sun"                   # default "sun"
+//   irradiance_W_m2 = 1361         # on a plane normal to `direction`; default: mean at 1 au
+//   angular_radius_deg = 0.2665    # of the disc, [0, 45]; 0 is collimated; default: the Sun at 1
+//   au direction = [0, 0, -1]         # in which the light travels, lab frame temperature_K = 5772
+//   # of the blackbody spectrum
+//
+// The disc has the same radiance L all over (no limb darkening): directions are even in solid
+// angle. For each direction the rays fill a disc of radius R normal to THAT direction and centred
+// on the lab origin, so that a sphere of radius R there is lit evenly. The irradiance on a plane
+// normal to the axis is E = L π sin²α, and the power of all rays L · 2π(1 − cos α) · πR² = E πR² /
+// cos²(α/2).
+#include <cmath>
+
+#include "core/constants.h"
+#include "sources/block_maps.h"
+#include "sources/source_settings.h"
+#include "sources/vector_math.h"
+
+namespace photorque {
+namespace {
+
+class Sun : public Emitter {
+ public:
+  // Lights the sphere of radius `radius_m` about (0, 0, radius_m).
+  Sun(double irradiance_W_m2, double angular_radius_rad, double radius_m)
+      : angular_radius_rad_(angular_radius_rad), radius_m_(radius_m) {
+    const double sine = std::sin(0.5 * angular_radius_rad);
+    edge_rise_ = 2.0 * sine * sine;
+    power_W_ = irradiance_W_m2 * pi * radius_m * radius_m / (1.0 - sine * sine);
+  }
+
+  double power_W() const override { return power_W_; }
+
+  void emit(const SampleBlock& samples, RayBlock& rays) const override {
+    ValueBlock rise;
+    for (int i = 0; i < ray_block; ++i) rise[i] = edge_rise_ * fraction_of(samples.bits[2][i]);
+    fill_directions(rise, samples.bits[3], rays.direction);
+    fill_disc(radius_m_, samples.bits[0], samples.bits[1], rays.origin_m);
+    tilt_discs(rays);
+  }
+
+  double relative_intensity(double angle_rad) const override {
+    return angle_rad <= angular_radius_rad_ ? 1.0 : 0.0;
+  }
+
+ private:
+  // Turns each point of the disc by the shortest rotation from z to the direction, moves it to the
+  // centre of the sphere, and back along the ray to the plane z = 0.
+  // Source of the axes: J. R. Frisvad, J. Graphics Tools 16 (2012) 151.
+  void tilt_discs(RayBlock& rays) const {
+    for (int i = 0; i < ray_block; ++i) {
+      const double dx = rays.direction[0][i], dy = rays.direction[1][i], dz = rays.direction[2][i];
+      const double a_m = rays.origin_m[0][i], b_m = rays.origin_m[1][i];
+      const double along_m = a_m * dx + b_m * dy;
+      const double bend_m = along_m / (1.0 + dz);
+      const double back_m = (radius_m_ - along_m) / dz;
+      rays.origin_m[0][i] = a_m - bend_m * dx - back_m * dx;
+      rays.origin_m[1][i] = b_m - bend_m * dy - back_m * dy;
+    }
+  }
+
+  double angular_radius_rad_;
+  double radius_m_;
+  double edge_rise_ = 0.0;
+  double power_W_ = 0.0;
+};
+
+std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
+  // The sphere that holds the scene may only just hold it.
+  constexpr double margin = 1.001;
+  const std::string name = settings.text_or("name", "sun");
+  const Vec3 direction = read_direction_vector(settings);
+  const double irradiance_W_m2 =
+      settings.number_or("irradiance_W_m2", solar_irradiance_W_m2, Range::positive());
+  const double angular_radius_rad = settings.number_or(
+      "angular_radius_deg", solar_angular_radius_rad, {0.0, 0.25 * pi, false, false});
+  Spectrum spectrum;
+  spectrum.shape = Spectrum::Shape::blackbody;
+  spectrum.temperature_K =
+      settings.number_or("temperature_K", solar_temperature_K, {100.0, 1e6, false, false});
+  if (!(context.scene_radius_m > 0.0)) {
+    throw settings.error("kind", "\"sun\" over a scene without extent", "a scene to shine on");
+  }
+  const double radius_m = margin * context.scene_radius_m;
+  return {{name, std::make_shared<Sun>(irradiance_W_m2, angular_radius_rad, radius_m),
+           frame_looking_along(direction, -radius_m * direction), spectrum}};
+}
+
+}  // namespace
+
+SourceKind sun_kind() {
+  return {"sun", "Parallel light from a disc in the sky, of a given irradiance", make};
+}
+
+}  // namespace photorque
