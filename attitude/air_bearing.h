@@ -1,0 +1,53 @@
+// The air film between ball and socket in closed form: what it carries and how it drags.
+//
+// The ball is a sphere of radius R in a concentric socket that reaches from the bottom to the polar
+// angle θ_S. Around the bottom, up to θ_r, may lie a recess: full inlet pressure, no shear. The
+// film is thin (h ≪ R), laminar and isothermal. Source: eq. 4–17 of the paper; docs/physics.md
+// says which of them are implemented as printed.
+#pragma once
+
+namespace photorque {
+
+struct SphericalSocket {
+  double radius_m = 0.0;               // R > 0
+  double half_angle_rad = 0.0;         // θ_S, in (0, π/2] to carry; drag holds up to π
+  double gap_m = 0.0;                  // h > 0, uniform
+  double recess_half_angle_rad = 0.0;  // θ_r, in [0, θ_S)
+  // Share of the film's area that is narrow; grooves take the rest and are taken as free of shear.
+  double sheared_share = 1.0;
+};
+
+// Load capacity [N]: the gauge pressure projected on the vertical (eq. 4), with the pressure
+// falling linearly in θ from `inlet_Pa` at the recess's rim to `ambient_Pa` at the socket's
+// (eq. 6). Pressures are absolute. For a bearing fed at p_t, the inlet pressure is k_p p_t with
+// k_p between 0.8 and 0.9.
+double load_capacity_N(const SphericalSocket& socket, double inlet_Pa, double ambient_Pa);
+
+// Eq. 7 as printed: neither projected nor gauge, no recess. 2.0 to 2.7 times load_capacity_N() for
+// half angles of 90 to 30 deg at 5 bar. For comparison with the paper alone.
+double load_capacity_as_published_N(const SphericalSocket& socket, double inlet_Pa,
+                                    double ambient_Pa);
+// Eq. 8 as printed: eq. 7 for ambient pressure ≪ inlet pressure.
+double load_capacity_high_pressure_as_published_N(const SphericalSocket& socket, double inlet_Pa);
+
+// The drag torque about the centre is −D ω with D = axial s sᵀ + transverse (1 − s sᵀ), s the
+// socket's axis. Both > 0.
+struct FilmDrag {
+  double axial_N_m_s = 0.0;
+  double transverse_N_m_s = 0.0;
+};
+
+// Couette flow across the film (eq. 14–17): D = μ R⁴/h ∫ (1 − n nᵀ) dΩ over the film. Its axial
+// part is the closed form of eq. 17; the transverse part is the same integral for a tilting ball.
+// Relative error of order h/R; see couette_curvature_factor().
+FilmDrag film_drag(const SphericalSocket& socket, double viscosity_Pa_s);
+
+// Torque between concentric spheres R and R + h (eq. 9, exact) over that of the plane film (eq.
+// 15): 3 h (R + h)³ / (R ((R + h)³ − R³)), which is 1 + 2 h/R + …
+double couette_curvature_factor(double radius_m, double gap_m);
+
+// The paper's load-dependent gap: a spring of the catalogue's stiffness about the rated point [m].
+// Real films are much softer than that towards small loads: see air_film.h. At least 0.
+double spring_gap_m(double rated_gap_m, double rated_load_N, double stiffness_N_m, double load_N);
+
+}  // namespace photorque

@@ -1,0 +1,153 @@
+#include "attitude/air_bearing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/constants.h"
+#include "core/vector.h"
+
+namespace photorque {
+namespace {
+
+constexpr double bar = 1e5;
+
+// Sums over small patches of a cap: 2-D midpoint rule, its own geometry.
+struct CapSums {
+  double vertical_force_N = 0.0;
+  Mat3 drag_N_m_s = Mat3::Zero();
+};
+
+CapSums sum_over_cap(const SphericalSocket& socket, double inlet_Pa, double ambient_Pa,
+                     double viscosity_Pa_s) {
+  constexpr int rings = 4000, sectors = 24;
+  CapSums sums;
+  const double step = socket.half_angle_rad / rings;
+  for (int i = 0; i < rings; ++i) {
+    const double theta = (i + 0.5) * step;
+    const bool in_recess = theta < socket.recess_half_angle_rad;
+    const double fallen = in_recess ? 0.0
+                                    : (theta - socket.recess_half_angle_rad) /
+                                          (socket.half_angle_rad - socket.recess_half_angle_rad);
+    const double gauge_Pa = (inlet_Pa - ambient_Pa) * (1.0 - fallen);
+    const double patch_m2 =
+        socket.radius_m * socket.radius_m * std::sin(theta) * step * 2 * pi / sectors;
+    for (int j = 0; j < sectors; ++j) {
+      const double phi = 2 * pi * j / sectors;
+      const Vec3 n(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                   -std::cos(theta));
+      sums.vertical_force_N += gauge_Pa * patch_m2 * -n.z();
+      if (in_recess) continue;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 point_m = socket.radius_m * n;
+        const Vec3 stress_Pa = -viscosity_Pa_s * Vec3::Unit(k).cross(point_m) / socket.gap_m;
+        sums.drag_N_m_s.col(k) -= point_m.cross(stress_Pa) * patch_m2;
+      }
+    }
+  }
+  return sums;
+}
+
+TEST(AirBearing, LoadIsTheProjectedGaugePressureSummedOverTheSocket) {
+  for (const double half_angle_deg : {30.0, 45.0, 90.0}) {
+    for (const double recess_deg : {0.0, 9.0}) {
+      const SphericalSocket socket{0.03, half_angle_deg * degree_rad, 5e-6,
+                                   recess_deg * degree_rad};
+      const double summed_N = sum_over_cap(socket, 5 * bar, 1 * bar, 1.8e-5).vertical_force_N;
+      EXPECT_NEAR(load_capacity_N(socket, 5 * bar, 1 * bar) / summed_N, 1.0, 1e-4);
+    }
+  }
+}
+
+// A recess of nearly the whole socket is a piston: pressure times the socket's opening.
+TEST(AirBearing, AllRecessCarriesLikeAPiston) {
+  const SphericalSocket socket{0.03, 0.7, 5e-6, 0.7 - 1e-7};
+  const double opening_m2 = pi * std::pow(0.03 * std::sin(0.7), 2);
+  EXPECT_NEAR(load_capacity_N(socket, 3 * bar, 1 * bar) / (2 * bar * opening_m2), 1.0, 1e-6);
+}
+
+TEST(AirBearing, CarriesNothingWithoutGaugePressure) {
+  EXPECT_EQ(load_capacity_N({0.03, 0.7, 5e-6}, bar, bar), 0.0);
+}
+
+// The two forms of eq. 7 differ by the factor found by numerical integration, 2.0 to 2.7.
+TEST(AirBearing, PublishedLoadIsTwiceTheProjectedGaugeLoad) {
+  const double inlet_Pa = 0.85 * 5 * bar;
+  const auto ratio = [&](double half_angle_deg) {
+    const SphericalSocket socket{0.03, half_angle_deg * degree_rad, 5e-6};
+    return load_capacity_as_published_N(socket, inlet_Pa, bar) /
+           load_capacity_N(socket, inlet_Pa, bar);
+  };
+  EXPECT_NEAR(ratio(30.0), 2.0, 0.05);
+  EXPECT_NEAR(ratio(90.0), 2.7, 0.05);
+}
+
+// Eq. 8 is eq. 7 when the ambient pressure is negligible.
+TEST(AirBearing, PublishedHighPressureFormIsTheLimitOfThePublishedOne) {
+  const SphericalSocket socket{0.03, 0.8, 5e-6};
+  EXPECT_NEAR(load_capacity_high_pressure_as_published_N(socket, 1e9) /
+                  load_capacity_as_published_N(socket, 1e9, bar),
+              1.0, 1e-3);
+}
+
+// A published Fluent study of a socket of 80 mm diameter at 1 bar gauge with one central and
+// twelve outer holes: 279 N (T. Ahmet, Numerical analysis of a low-cost spherical air bearing for
+// CubeSat ADCS testing). One hole and a linear fall must carry less, and more than half of that.
+TEST(AirBearing, CarriesTheOrderOfAPublishedSimulation) {
+  const SphericalSocket hemisphere{0.04, pi / 2, 100e-6};
+  const double load_N = load_capacity_N(hemisphere, 2.01325 * bar, 1.01325 * bar);
+  EXPECT_LT(load_N, 279.0);
+  EXPECT_GT(load_N, 0.8 * 279.0);
+}
+
+TEST(AirBearing, DragTensorIsTheSumOverTheFilm) {
+  for (const double recess_rad : {0.0, 0.2}) {
+    const SphericalSocket socket{0.0317, 0.9, 5e-6, recess_rad};
+    const Mat3 summed = sum_over_cap(socket, bar, bar, 1.8e-5).drag_N_m_s;
+    const FilmDrag drag = film_drag(socket, 1.8e-5);
+    EXPECT_NEAR(drag.axial_N_m_s / summed(2, 2), 1.0, 1e-3);
+    EXPECT_NEAR(drag.transverse_N_m_s / summed(0, 0), 1.0, 1e-3);
+    EXPECT_NEAR(drag.transverse_N_m_s / summed(1, 1), 1.0, 1e-3);
+  }
+}
+
+// Viscous torque of a cap about its axis: μ ω (2πR⁴/h)(2/3 − cos a + cos³a/3), the textbook form;
+// the paper's eq. 17 writes the same with cos 3a.
+TEST(AirBearing, AxialDragIsTheTextbookCap) {
+  const double a = 0.6, R = 0.03, h = 7e-6, mu = 1.8e-5;
+  const double cap =
+      2 * pi * std::pow(R, 4) / h * mu * (2.0 / 3 - std::cos(a) + std::pow(std::cos(a), 3) / 3);
+  const double eq17 = pi * std::pow(R, 4) * mu / (6 * h) * (std::cos(3 * a) - 9 * std::cos(a) + 8);
+  EXPECT_NEAR(film_drag({R, a, h}, mu).axial_N_m_s / cap, 1.0, 1e-12);
+  EXPECT_NEAR(film_drag({R, a, h}, mu).axial_N_m_s / eq17, 1.0, 1e-12);
+}
+
+// Two whole spheres: no axis is special, and 8π μ R₁³R₂³/(R₂³ − R₁³) is exact (Landau and Lifshitz,
+// Fluid Mechanics, § 20, problem 2, for a resting outer sphere).
+TEST(AirBearing, WholeSphereDragsAsConcentricSpheresDo) {
+  const double R = 0.05, h = 1e-3, mu = 1.8e-5;
+  const FilmDrag drag = film_drag({R, pi, h}, mu);
+  EXPECT_NEAR(drag.axial_N_m_s / drag.transverse_N_m_s, 1.0, 1e-12);
+  const double inner3 = std::pow(R, 3), outer3 = std::pow(R + h, 3);
+  const double exact = 8 * pi * mu * inner3 * outer3 / (outer3 - inner3);
+  EXPECT_NEAR(drag.axial_N_m_s * couette_curvature_factor(R, h) / exact, 1.0, 1e-12);
+  EXPECT_GT(couette_curvature_factor(R, h), 1.0);
+  EXPECT_NEAR(couette_curvature_factor(R, 1e-6), 1.0, 1e-4);
+}
+
+TEST(AirBearing, GroovesTakeTheirShareOfTheDrag) {
+  const SphericalSocket plain{0.03, 0.8, 5e-6};
+  SphericalSocket grooved = plain;
+  grooved.sheared_share = 0.4;
+  EXPECT_DOUBLE_EQ(film_drag(grooved, 1.8e-5).axial_N_m_s,
+                   0.4 * film_drag(plain, 1.8e-5).axial_N_m_s);
+}
+
+TEST(AirBearing, SpringGapOpensAsTheLoadFallsAndNeverCloses) {
+  EXPECT_DOUBLE_EQ(spring_gap_m(5e-6, 300.0, 5e7, 300.0), 5e-6);
+  EXPECT_DOUBLE_EQ(spring_gap_m(5e-6, 300.0, 5e7, 50.0), 10e-6);
+  EXPECT_EQ(spring_gap_m(5e-6, 300.0, 5e7, 900.0), 0.0);
+}
+
+}  // namespace
+}  // namespace photorque
