@@ -1,0 +1,67 @@
+#include "images/write_product.h"
+
+#include <set>
+
+#include "core/errors.h"
+#include "core/settings.h"
+#include "images/writer_kind.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<WriterKind> kinds_named(const std::vector<std::string>& formats) {
+  const std::vector<WriterKind> all = all_writer_kinds();
+  if (formats.empty()) return all;
+  std::vector<WriterKind> chosen;
+  for (const std::string& format : formats) {
+    const auto kind = std::ranges::find(all, format, &WriterKind::name);
+    if (kind == all.end()) {
+      std::string known;
+      for (const WriterKind& each : all) known += (known.empty() ? "" : ", ") + each.name;
+      throw InputError({}, "format", "\"" + format + "\"", "one of " + known);
+    }
+    chosen.push_back(*kind);
+  }
+  return chosen;
+}
+
+// Maps and tables both become CSV, maps and plots both PNG, so a name may stand only once.
+void require_distinct_files(const Product& product) {
+  std::set<std::string> taken = {"summary"};  // of the JSON writer
+  const auto take = [&](const std::string& name) {
+    if (!taken.insert(file_in("", name, "").stem().string()).second) {
+      throw InputError({}, name, "two results with this name", "different names");
+    }
+  };
+  for (const Map& map : product.maps) take(map.name);
+  for (const Table& table : product.tables) take(table.name);
+  for (const Plot& plot : product.plots) take(plot.name);
+}
+
+}  // namespace
+
+fs::path file_in(const fs::path& folder, const std::string& name, const std::string& extension) {
+  std::string stem;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '_' || c == '-' || (c == '.' && !stem.empty());
+    stem += plain ? c : '_';
+  }
+  return folder / ((stem.empty() ? "unnamed" : stem) + "." + extension);
+}
+
+std::vector<fs::path> write_product(const Product& product, const Provenance& provenance,
+                                    const fs::path& folder,
+                                    const std::vector<std::string>& formats) {
+  require_distinct_files(product);
+  std::vector<fs::path> paths;
+  for (const WriterKind& kind : kinds_named(formats)) {
+    const std::vector<fs::path> written = kind.make()->write(product, provenance, folder);
+    paths.insert(paths.end(), written.begin(), written.end());
+  }
+  return paths;
+}
+
+}  // namespace photorque

@@ -1,0 +1,21 @@
+// Products to files in several formats at once.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/product.h"
+#include "core/provenance.h"
+
+namespace photorque {
+
+// Writes `product` in each of `formats` (names of writer kinds; empty: all of them) and returns the
+// paths. InputError for an unknown format, and when two items would share a file; then nothing is
+// written.
+std::vector<std::filesystem::path> write_product(const Product& product,
+                                                 const Provenance& provenance,
+                                                 const std::filesystem::path& folder,
+                                                 const std::vector<std::string>& formats = {});
+
+}  // namespace photorque
