@@ -1,0 +1,75 @@
+// Which bin of a surface grid each hit falls into.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "raytrace/receiver.h"
+#include "receivers/surface_grid.h"
+
+namespace photorque {
+
+// The hits that count for a grid, as runs of neighbours, and their bins.
+struct BinnedHits {
+  struct Run {
+    uint32_t begin, end;  // indices into Hits
+  };
+  int runs = 0;
+  std::array<Run, Hits::capacity> run;
+  std::array<uint32_t, Hits::capacity> bin;  // per index into Hits; only of hits that count
+};
+
+// Calls add(hit, bin) for all binned hits. Neighbours often share a bin, and adding to it would
+// have to wait for the sum before; four interleaved streams do not.
+template <typename Add>
+void for_each_binned(const BinnedHits& binned, const Add& add) {
+  for (size_t r = 0; r < static_cast<size_t>(binned.runs); ++r) {
+    const size_t begin = binned.run[r].begin, end = binned.run[r].end;
+    size_t stride = (end - begin) / 4;
+    if (stride % 64 == 0 && stride > 0) stride -= 8;  // or the streams share sets of the cache
+    for (size_t i = begin; i < begin + stride; ++i) {
+      for (size_t stream = 0; stream < 4; ++stream) {
+        const size_t hit = i + stream * stride;
+        add(hit, binned.bin[hit]);
+      }
+    }
+    for (size_t hit = begin + 4 * stride; hit < end; ++hit) add(hit, binned.bin[hit]);
+  }
+}
+
+// Looks hits up in a grid: the instance belongs to it, the side counts, the triangle is turned the
+// right way, and the position gives the bin. Immutable; keeps what it needs of the scene.
+class HitBinner {
+ public:
+  // `grid` must have been laid over `scene`.
+  HitBinner(const Scene& scene, const SurfaceGrid& grid);
+
+  void bin(const Hits& hits, BinnedHits& out) const;
+
+ private:
+  // A coordinate in units of cells: slope · position + offset.
+  struct CellCoordinate {
+    std::array<double, 3> slope{};
+    double offset = 0.0;
+    double last = 0.0;  // index of the last cell
+  };
+
+  void set_plane(const SurfaceGrid& grid);
+  void collect(const Hits& hits, BinnedHits& out) const;
+  void collect_turned(const Hits& hits, BinnedHits::Run all, BinnedHits& out) const;
+  void bin_plane(const Hits& hits, BinnedHits& out) const;
+  void bin_texture(const Hits& hits, BinnedHits& out) const;
+
+  SurfaceGrid::Over over_;
+  uint32_t width_;
+  // Per instance of the scene: bit 1, hits on the front count; bit 0, on the back.
+  std::vector<uint8_t> side_bits_;
+  // Triangle t of instance i has its entry in the tables below at first_face_[i] + t.
+  std::vector<uint32_t> first_face_;
+  std::vector<uint8_t> turned_towards_;            // empty: all are
+  std::vector<std::array<Vec2, 3>> corner_cells_;  // texture: cell coordinates of the corners
+  CellCoordinate column_, row_;                    // plane
+};
+
+}  // namespace photorque

@@ -1,0 +1,206 @@
+#include "receivers/surface_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "receivers/surface_clip.h"
+
+namespace photorque {
+namespace {
+
+struct Bounds {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 high = -Vec2::Constant(std::numeric_limits<double>::infinity());
+
+  void include(const Vec2& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+};
+
+InputError error(const SurfaceGridOptions& options, const std::string& found,
+                 const std::string& expected) {
+  return InputError(options.where, options.key, found, expected);
+}
+
+double area_of(std::span<const SurfaceFace> faces) {
+  return std::accumulate(faces.begin(), faces.end(), 0.0, [](double sum, const SurfaceFace& face) {
+    return sum + face.area_body_m2.norm();
+  });
+}
+
+Vec3 normal_of(std::span<const SurfaceFace> faces, const SurfaceGridOptions& options) {
+  if (options.facing_body) return options.facing_body->normalized();
+  Vec3 sum = Vec3::Zero();
+  for (const SurfaceFace& face : faces) sum += face.area_body_m2;
+  if (sum.norm() < 1e-6 * area_of(faces)) {
+    throw error(options, "a closed surface, whose mean normal is zero",
+                "an open surface, or the direction to look from: facing = [x, y, z], or over = "
+                "\"uv\"");
+  }
+  return sum.normalized();
+}
+
+void set_axes(SurfaceGrid& grid, const Vec3& normal_body) {
+  const auto in_plane = [&](const Vec3& axis) {
+    return Vec3(axis - axis.dot(normal_body) * normal_body);
+  };
+  const bool along_x = in_plane(Vec3::UnitX()).norm() < 1e-6;
+  grid.normal_body = normal_body;
+  grid.u_axis_body = in_plane(along_x ? Vec3::UnitY() : Vec3::UnitX()).normalized();
+  grid.v_axis_body = normal_body.cross(grid.u_axis_body);
+}
+
+Vec2 plane_coordinates(const SurfaceGrid& grid, const Vec3& position_body_m) {
+  return {grid.u_axis_body.dot(position_body_m), grid.v_axis_body.dot(position_body_m)};
+}
+
+void fit_extent(SurfaceGrid& grid, std::span<const SurfaceFace> faces,
+                const SurfaceGridOptions& options) {
+  Bounds bounds;
+  for (const SurfaceFace& face : faces) {
+    for (const Vec3& corner : face.corner_body_m) bounds.include(plane_coordinates(grid, corner));
+  }
+  if (((bounds.high - bounds.low).array() <= 0.0).any()) {
+    throw error(options, "a surface that is edge-on to the grid", "a surface seen from its front");
+  }
+  grid.u_low = bounds.low.x();
+  grid.v_low = bounds.low.y();
+  grid.u_high = bounds.high.x();
+  grid.v_high = bounds.high.y();
+}
+
+void check_texture(const Scene& scene, std::span<const SurfaceFace> faces,
+                   const SurfaceGridOptions& options) {
+  constexpr double slack = 1e-6;  // texture coordinates are often stored as rounded integers
+  for (const SurfaceFace& face : faces) {
+    const Instance& instance = scene.instances[face.instance];
+    if (scene.meshes[instance.mesh].uv.empty()) {
+      throw error(options, "node \"" + instance.node + "\" without texture coordinates",
+                  "a mesh with texture coordinates, or over = \"plane\"");
+    }
+    for (const Vec2& uv : texture_corners(scene, face)) {
+      if (!((uv.array() >= -slack).all() && (uv.array() <= 1 + slack).all())) {
+        throw error(options,
+                    "texture coordinates (" + std::to_string(uv.x()) + ", " +
+                        std::to_string(uv.y()) + ") on node \"" + instance.node + "\"",
+                    "texture coordinates from 0 to 1");
+      }
+    }
+  }
+}
+
+Vec2 to_cells(const SurfaceGrid& grid, const Vec2& uv) {
+  return {(uv.x() - grid.u_low) / (grid.u_high - grid.u_low) * grid.width,
+          (uv.y() - grid.v_low) / (grid.v_high - grid.v_low) * grid.height};
+}
+
+void measure_areas(SurfaceGrid& grid, const Scene& scene, std::span<const SurfaceFace> faces) {
+  grid.area_m2.assign(static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), 0.0);
+  for (const SurfaceFace& face : faces) {
+    std::array<Vec2, 3> corners;
+    if (grid.over == SurfaceGrid::Over::texture) corners = texture_corners(scene, face);
+    for (size_t i = 0; i < 3; ++i) {
+      if (grid.over == SurfaceGrid::Over::plane) {
+        corners[i] = plane_coordinates(grid, face.corner_body_m[i]);
+      }
+      corners[i] = to_cells(grid, corners[i]);
+    }
+    const double area_m2 = face.area_body_m2.norm();
+    split_over_cells(corners, grid.width, grid.height, [&](int column, int row, double fraction) {
+      grid.area_m2[static_cast<size_t>(row) * static_cast<size_t>(grid.width) +
+                   static_cast<size_t>(column)] += fraction * area_m2;
+    });
+  }
+  // Where an edge of the surface lies on a line of the grid, rounding spills a sliver over it; that
+  // is no surface.
+  const double largest_m2 = *std::max_element(grid.area_m2.begin(), grid.area_m2.end());
+  for (double& area_m2 : grid.area_m2) {
+    if (area_m2 < 1e-11 * largest_m2) area_m2 = 0.0;
+  }
+}
+
+size_t nearest_bin(const SurfaceGrid& grid, const Vec2& uv) {
+  const Vec2 cell = to_cells(grid, uv);
+  const auto column = static_cast<size_t>(std::clamp(cell.x(), 0.0, grid.width - 1.0));
+  const auto row = static_cast<size_t>(std::clamp(cell.y(), 0.0, grid.height - 1.0));
+  return row * static_cast<size_t>(grid.width) + column;
+}
+
+}  // namespace
+
+std::vector<SurfaceFace> faces_of(const Scene& scene, std::span<const uint32_t> instances,
+                                  const std::optional<Vec3>& facing_body) {
+  std::vector<SurfaceFace> faces;
+  for (const uint32_t index : instances) {
+    const Instance& instance = scene.instances[index];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const bool mirrored = instance.body_from_mesh.linear().determinant() < 0.0;
+    for (uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+      SurfaceFace face{index, triangle, {}, {}};
+      for (size_t i = 0; i < 3; ++i) {
+        face.corner_body_m[i] =
+            instance.body_from_mesh * mesh.vertices_m[mesh.triangles[triangle][i]];
+      }
+      const auto& [a, b, c] = face.corner_body_m;
+      face.area_body_m2 = (mirrored ? -0.5 : 0.5) * (b - a).cross(c - a);
+      const bool turned_towards =
+          !facing_body || face.area_body_m2.dot(*facing_body) >
+                              1e-9 * face.area_body_m2.norm() * facing_body->norm();
+      if (turned_towards) faces.push_back(face);
+    }
+  }
+  return faces;
+}
+
+double SurfaceGrid::total_area_m2() const {
+  return std::accumulate(area_m2.begin(), area_m2.end(), 0.0);
+}
+
+SurfaceGrid make_surface_grid(const Scene& scene, std::span<const uint32_t> instances,
+                              const SurfaceGridOptions& options) {
+  for (const int bins : {options.width, options.height}) {
+    if (bins < 1 || bins > max_grid_bins) {
+      throw error(options, std::to_string(bins) + " bins",
+                  "1 to " + std::to_string(max_grid_bins) + " bins in each direction");
+    }
+  }
+  const std::vector<SurfaceFace> faces = faces_of(scene, instances, options.facing_body);
+  if (!(area_of(faces) > 0.0)) {
+    throw error(options, options.facing_body ? "no surface that faces that way" : "zero area",
+                "a surface with area");
+  }
+  SurfaceGrid grid;
+  grid.over = options.over;
+  grid.side = options.side;
+  grid.facing_body = options.facing_body;
+  grid.instances.assign(instances.begin(), instances.end());
+  grid.width = options.width;
+  grid.height = options.height;
+  if (grid.over == SurfaceGrid::Over::plane) {
+    set_axes(grid, normal_of(faces, options));
+    fit_extent(grid, faces, options);
+  } else {
+    check_texture(scene, faces, options);
+  }
+  measure_areas(grid, scene, faces);
+  return grid;
+}
+
+size_t bin_of_position(const SurfaceGrid& grid, const Vec3& position_body_m) {
+  return nearest_bin(grid, plane_coordinates(grid, position_body_m));
+}
+
+size_t bin_of_texture(const SurfaceGrid& grid, const Vec2& uv) {
+  return nearest_bin(grid, uv);
+}
+
+std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face) {
+  const Mesh& mesh = scene.meshes[scene.instances[face.instance].mesh];
+  const auto& corners = mesh.triangles[face.triangle];
+  return {mesh.uv[corners[0]], mesh.uv[corners[1]], mesh.uv[corners[2]]};
+}
+
+}  // namespace photorque

@@ -1,0 +1,93 @@
+// A regular grid of bins laid over part of a scene, and the area of surface in every bin.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/errors.h"
+#include "raytrace/scene.h"
+
+namespace photorque {
+
+// Which side of a surface counts. `both` adds the two sides up over the area of one: the irradiance
+// of a bifacial sheet.
+enum class Side { front, back, both };
+
+// A triangle of the scene in the body frame. `area_body_m2` points to the front; its length is the
+// area.
+struct SurfaceFace {
+  uint32_t instance = 0;
+  uint32_t triangle = 0;
+  std::array<Vec3, 3> corner_body_m;
+  Vec3 area_body_m2 = Vec3::Zero();
+};
+
+// The triangles of some instances; with `facing_body`, only those whose front is turned towards
+// that direction (by less than 90 deg).
+std::vector<SurfaceFace> faces_of(const Scene& scene, std::span<const uint32_t> instances,
+                                  const std::optional<Vec3>& facing_body = std::nullopt);
+
+struct SurfaceGrid {
+  // plane:   bins are squares of a plane, seen along `normal_body`; coordinates u, v in metres are
+  //          the components of the position along u_axis_body and v_axis_body.
+  // texture: bins are squares of the texture coordinates, u and v in [0, 1].
+  enum class Over { plane, texture };
+
+  Over over = Over::plane;
+  Side side = Side::front;
+  std::optional<Vec3> facing_body;
+  std::vector<uint32_t> instances;
+
+  // plane only: right-handed and orthonormal, v = normal × u.
+  Vec3 normal_body = Vec3::UnitZ();
+  Vec3 u_axis_body = Vec3::UnitX();
+  Vec3 v_axis_body = Vec3::UnitY();
+
+  int width = 0;                                        // bins along u
+  int height = 0;                                       // bins along v
+  double u_low = 0, u_high = 1, v_low = 0, v_high = 1;  // outer edges
+
+  // Area of surface (one side) per bin, bin = iv · width + iu; exact to 1e-12 of the total. Zero
+  // where there is no surface.
+  std::vector<double> area_m2;
+
+  size_t bins() const { return area_m2.size(); }
+  double total_area_m2() const;
+};
+
+struct SurfaceGridOptions {
+  SurfaceGrid::Over over = SurfaceGrid::Over::plane;
+  Side side = Side::front;
+  int width = 100;   // 1 … 4096
+  int height = 100;  // 1 … 4096
+  // Keep only faces turned towards this direction and look along it. Needed for closed bodies,
+  // whose mean normal is zero.
+  std::optional<Vec3> facing_body;
+  // How an error calls the user's choice of surface.
+  InputLocation where;
+  std::string key = "receiver";
+};
+
+inline constexpr int max_grid_bins = 4096;  // per direction
+
+// Lays a grid over the instances. In the plane, the normal is `facing_body` or else the
+// area-weighted mean normal; u is the projection of body x (of body y where the normal is within
+// 1e-6 rad of ±x), and the extent is the bounding rectangle of all faces.
+// Throws InputError when there is no surface, when a closed surface lacks `facing_body`, when a
+// mesh lacks texture coordinates or has some outside [0, 1].
+SurfaceGrid make_surface_grid(const Scene& scene, std::span<const uint32_t> instances,
+                              const SurfaceGridOptions& options);
+
+// The bin of a point of the body frame (over a plane) or of texture coordinates (over a texture);
+// the nearest bin for points outside.
+size_t bin_of_position(const SurfaceGrid& grid, const Vec3& position_body_m);
+size_t bin_of_texture(const SurfaceGrid& grid, const Vec2& uv);
+
+// Texture coordinates of the corners of a face.
+std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face);
+
+}  // namespace photorque

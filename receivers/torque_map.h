@@ -1,0 +1,48 @@
+// Torque of light on part of a scene, bin by bin: where on a plate the torque comes from.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "raytrace/receiver.h"
+#include "receivers/hit_binner.h"
+#include "receivers/surface_grid.h"
+
+namespace photorque {
+
+// Torque about `about_body_m` in the body frame, x, y, z.
+struct TorqueMap {
+  SurfaceGrid grid;
+  Vec3 about_body_m = Vec3::Zero();
+  std::array<std::vector<Estimate>, 3> per_bin_N_m;  // NaN in bins without surface
+  std::array<Estimate, 3> total_N_m;                 // errors from the replicates of the total
+};
+
+// `kind = "torque_map"`. Bins: for every bin of the grid, the torque about `about_body_m`, x, y, z
+// in the body frame [N m] (per bin, not per area: the sum over bins is the torque).
+class TorqueMapReceiver final : public Receiver {
+ public:
+  // `grid` must have been laid over `scene`.
+  TorqueMapReceiver(std::string name, const Scene& scene, SurfaceGrid grid,
+                    const Vec3& about_body_m = Vec3::Zero());
+
+  size_t bins() const override;
+  void score(const Hits& hits, std::span<double> sums) const override;
+  // Maps "torque_x_NAME", "torque_y_NAME", "torque_z_NAME" [N m], signed, and the totals
+  // "torque_x_NAME_body_N_m" ….
+  Product product(const BinSums& sums) const override;
+
+  TorqueMap torque_map(const BinSums& sums) const;
+
+  const std::string& name() const { return name_; }
+  const SurfaceGrid& grid() const { return grid_; }
+
+ private:
+  std::string name_;
+  SurfaceGrid grid_;
+  Vec3 about_body_m_;
+  HitBinner binner_;
+};
+
+}  // namespace photorque

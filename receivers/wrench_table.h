@@ -1,0 +1,18 @@
+// A table of wrenches over angles, as results for people and other programs.
+#pragma once
+
+#include <string>
+
+#include "core/product.h"
+#include "core/wrench_table.h"
+
+namespace photorque {
+
+// The table "wrench_table_NAME" with a row per node (angles in degrees, components and standard
+// errors in the body frame), and
+// - for two regular axes: maps "force_x_NAME" … "torque_z_NAME" with nodes at the middles of bins,
+// - for a single heading or azimuth: the plots "force_NAME" and "torque_NAME" over the tilt or
+//   elevation.
+Product wrench_table_product(const WrenchTable& table, const std::string& name);
+
+}  // namespace photorque
