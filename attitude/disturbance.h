@@ -87,10 +87,9 @@ struct Moment {
 
   // Results.
   Vec3Of<T> torque_body_N_m;  // add to it
-  // Inertia that does not turn with the body because it sits on its own spring or bearing (add
-  // J a aᵀ); it is taken out of inertia_kg_m2 when the body's acceleration is solved for. The law
-  // that adds it also adds the torque −ω × (J a σ) of its own absolute rate σ about the axis a.
+  // Inertia that does not turn with the body: use detach_inertia().
   Mat3Of<T> detached_inertia_kg_m2;
+  bool inertia_changed = false;  // false: inertia_kg_m2 is the platform's and nothing is detached
   // What an ideal gyro senses: the inertial rate (earth_rotation adds to it).
   Vec3Of<T> inertial_rate_body_rad_s;
   // Stage::measurement adds to these.
@@ -100,6 +99,20 @@ struct Moment {
 
   // A lab vector in body axes.
   Vec3Of<T> to_body(const Vec3Of<T>& v_lab) const { return lab_from_body.transpose() * v_lab; }
+
+  // For Stage::conditions: the inertia differs by this much.
+  void change_inertia(const Mat3Of<T>& by_kg_m2) {
+    inertia_kg_m2 += by_kg_m2;
+    inertia_changed = true;
+  }
+
+  // This part of the inertia, J a aᵀ, sits on its own spring or bearing about the axis a and does
+  // not follow the body's acceleration. The law also adds the torque −ω × (J a σ) of its own
+  // absolute rate σ about that axis, and the torque of its spring or motor.
+  void detach_inertia(const Mat3Of<T>& part_kg_m2) {
+    detached_inertia_kg_m2 += part_kg_m2;
+    inertia_changed = true;
+  }
 
   // The centre of mass moves by `offset_body_m`; adds the torque m r × g that this causes.
   void move_mass(const Vec3Of<T>& offset_body_m) {

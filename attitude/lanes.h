@@ -27,10 +27,26 @@ struct Lanes {
   void set(int lane, double x) { (lane < 4 ? low[lane] : high[lane - 4]) = x; }
 
   Lanes operator-() const { return {-low, -high}; }
-  Lanes& operator+=(const Lanes& b) { return *this = {low + b.low, high + b.high}; }
-  Lanes& operator-=(const Lanes& b) { return *this = {low - b.low, high - b.high}; }
-  Lanes& operator*=(const Lanes& b) { return *this = {low * b.low, high * b.high}; }
-  Lanes& operator/=(const Lanes& b) { return *this = {low / b.low, high / b.high}; }
+  Lanes& operator+=(const Lanes& b) {
+    low += b.low;
+    high += b.high;
+    return *this;
+  }
+  Lanes& operator-=(const Lanes& b) {
+    low -= b.low;
+    high -= b.high;
+    return *this;
+  }
+  Lanes& operator*=(const Lanes& b) {
+    low *= b.low;
+    high *= b.high;
+    return *this;
+  }
+  Lanes& operator/=(const Lanes& b) {
+    low /= b.low;
+    high /= b.high;
+    return *this;
+  }
 
   friend Lanes operator+(const Lanes& a, const Lanes& b) {
     return {a.low + b.low, a.high + b.high};
@@ -89,15 +105,24 @@ inline Lanes where_at_least(const Lanes& x, double bound, const Lanes& a, const 
   return {x.low >= bound ? a.low : b.low, x.high >= bound ? a.high : b.high};
 }
 
-// The largest |lane|; NaN if any lane is.
+// The larger of |a| and |b|, lane by lane; |a| where b is NaN.
+inline Lanes larger_magnitude(const Lanes& a, const Lanes& b) {
+  const auto magnitude = [](const Lanes::Quad& x) { return x > -x ? x : -x; };
+  const auto larger = [](const Lanes::Quad& x, const Lanes::Quad& y) { return y > x ? y : x; };
+  return {larger(magnitude(a.low), magnitude(b.low)), larger(magnitude(a.high), magnitude(b.high))};
+}
+
+inline double sum(const Lanes& x) {
+  const Lanes::Quad s = x.low + x.high;
+  return (s[0] + s[3]) + (s[1] + s[2]);
+}
+
+// The largest of the lanes, none of which may be NaN.
 inline double largest(const Lanes& x) {
-  double most = 0.0;
-  for (int i = 0; i < Lanes::count; ++i) {
-    const double a = std::abs(x[i]);
-    if (!(a <= most)) most = a;
-    if (std::isnan(most)) return most;
-  }
-  return most;
+  const Lanes::Quad m = x.low > x.high ? x.low : x.high;
+  const double a = m[0] > m[1] ? m[0] : m[1];
+  const double b = m[2] > m[3] ? m[2] : m[3];
+  return a > b ? a : b;
 }
 
 }  // namespace photorque
