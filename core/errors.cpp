@@ -20,14 +20,15 @@ std::string message(const InputLocation& where, const std::string& key, const st
   if (where.line > 0) text += ":" + std::to_string(where.line);
   if (!key.empty()) text += (text.empty() ? "" : ": ") + one_line(key);
   if (!found.empty()) text += ": found " + one_line(found);
-  if (!expected.empty()) text += (found.empty() ? ": expected " : ", expected ") + one_line(expected);
+  if (!expected.empty())
+    text += (found.empty() ? ": expected " : ", expected ") + one_line(expected);
   return text;
 }
 
 }  // namespace
 
-InputError::InputError(const InputLocation& where, const std::string& key,
-                       const std::string& found, const std::string& expected)
+InputError::InputError(const InputLocation& where, const std::string& key, const std::string& found,
+                       const std::string& expected)
     : std::runtime_error(message(where, key, found, expected)) {}
 
 }  // namespace photorque

@@ -10,8 +10,8 @@ namespace photorque {
 
 struct Provenance {
   std::string program = "photorque";
-  std::string version;     // of the program, from CMake
-  std::string git_hash;    // of the source tree at build; "+" appended if it was modified
+  std::string version;   // of the program, from CMake
+  std::string git_hash;  // of the source tree at build; "+" appended if it was modified
   uint64_t seed = 0;
   std::vector<std::pair<std::string, std::string>> inputs;  // file name, 128-bit hash in hex
 

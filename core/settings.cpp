@@ -18,37 +18,66 @@ struct Unit {
 
 // Longest suffix first where one ends in another ("_N_m" before "_m").
 constexpr Unit units[] = {
-    {"kg_m2", "inertia", 1.0},       {"m_per_Ah", "shift per charge", 1.0 / 3600.0},
-    {"kg_m3", "density", 1.0},       {"N_m_s", "angular momentum", 1.0},
-    {"N_m", "torque", 1.0},          {"mN_m", "torque", 1e-3},
-    {"uN_m", "torque", 1e-6},        {"W_m2", "irradiance", 1.0},
-    {"mW_cm2", "irradiance", 10.0},  {"W_sr", "radiant intensity", 1.0},
-    {"m_s2", "acceleration", 1.0},   {"m_s", "speed", 1.0},
-    {"rad_s", "angular rate", 1.0},  {"deg_s", "angular rate", degree_rad},
-    {"rpm", "angular rate", pi / 30},{"A_m2", "magnetic dipole", 1.0},
-    {"A_W", "responsivity", 1.0},    {"A_m2K3", "saturation", 1.0},
+    {"kg_m2", "inertia", 1.0},
+    {"m_per_Ah", "shift per charge", 1.0 / 3600.0},
+    {"kg_m3", "density", 1.0},
+    {"N_m_s", "angular momentum", 1.0},
+    {"N_m", "torque", 1.0},
+    {"mN_m", "torque", 1e-3},
+    {"uN_m", "torque", 1e-6},
+    {"W_m2", "irradiance", 1.0},
+    {"mW_cm2", "irradiance", 10.0},
+    {"W_sr", "radiant intensity", 1.0},
+    {"m_s2", "acceleration", 1.0},
+    {"m_s", "speed", 1.0},
+    {"rad_s", "angular rate", 1.0},
+    {"deg_s", "angular rate", degree_rad},
+    {"rpm", "angular rate", pi / 30},
+    {"A_m2", "magnetic dipole", 1.0},
+    {"A_W", "responsivity", 1.0},
+    {"A_m2K3", "saturation", 1.0},
     {"V_K", "voltage per temperature", 1.0},
-    {"deg", "angle", degree_rad},    {"rad", "angle", 1.0},
-    {"mrad", "angle", 1e-3},         {"arcmin", "angle", degree_rad / 60},
+    {"deg", "angle", degree_rad},
+    {"rad", "angle", 1.0},
+    {"mrad", "angle", 1e-3},
+    {"arcmin", "angle", degree_rad / 60},
     {"arcsec", "angle", arcsecond_rad},
-    {"km", "length", 1e3},           {"mm", "length", 1e-3},
-    {"um", "length", 1e-6},          {"nm", "length", 1e-9},
-    {"cm", "length", 1e-2},          {"m", "length", 1.0},
-    {"kg", "mass", 1.0},             {"g", "mass", 1e-3},
-    {"kW", "power", 1e3},            {"mW", "power", 1e-3},
-    {"W", "power", 1.0},             {"Wh", "energy", 3600.0},
-    {"J", "energy", 1.0},            {"Ah", "charge", 3600.0},
-    {"mAh", "charge", 3.6},          {"C", "charge", 1.0},
-    {"mA", "current", 1e-3},         {"A", "current", 1.0},
-    {"mV", "voltage", 1e-3},         {"V", "voltage", 1.0},
-    {"ohm", "resistance", 1.0},      {"mohm", "resistance", 1e-3},
-    {"K", "temperature", 1.0},       {"Hz", "frequency", 1.0},
-    {"kHz", "frequency", 1e3},       {"ms", "time", 1e-3},
-    {"us", "time", 1e-6},            {"min", "time", 60.0},
-    {"h", "time", 3600.0},           {"s", "time", 1.0},
-    {"Pa", "pressure", 1.0},         {"bar", "pressure", 1e5},
-    {"T", "magnetic field", 1.0},    {"uT", "magnetic field", 1e-6},
-    {"nT", "magnetic field", 1e-9},  {"N", "force", 1.0},
+    {"km", "length", 1e3},
+    {"mm", "length", 1e-3},
+    {"um", "length", 1e-6},
+    {"nm", "length", 1e-9},
+    {"cm", "length", 1e-2},
+    {"m", "length", 1.0},
+    {"kg", "mass", 1.0},
+    {"g", "mass", 1e-3},
+    {"kW", "power", 1e3},
+    {"mW", "power", 1e-3},
+    {"W", "power", 1.0},
+    {"Wh", "energy", 3600.0},
+    {"J", "energy", 1.0},
+    {"Ah", "charge", 3600.0},
+    {"mAh", "charge", 3.6},
+    {"C", "charge", 1.0},
+    {"mA", "current", 1e-3},
+    {"A", "current", 1.0},
+    {"mV", "voltage", 1e-3},
+    {"V", "voltage", 1.0},
+    {"ohm", "resistance", 1.0},
+    {"mohm", "resistance", 1e-3},
+    {"K", "temperature", 1.0},
+    {"Hz", "frequency", 1.0},
+    {"kHz", "frequency", 1e3},
+    {"ms", "time", 1e-3},
+    {"us", "time", 1e-6},
+    {"min", "time", 60.0},
+    {"h", "time", 3600.0},
+    {"s", "time", 1.0},
+    {"Pa", "pressure", 1.0},
+    {"bar", "pressure", 1e5},
+    {"T", "magnetic field", 1.0},
+    {"uT", "magnetic field", 1e-6},
+    {"nT", "magnetic field", 1e-9},
+    {"N", "force", 1.0},
 };
 
 bool ends_with_unit(std::string_view key, std::string_view suffix) {
@@ -128,8 +157,8 @@ KeyUnit unit_of_key(std::string_view key) {
   }
   if (best == nullptr) return {std::string(key), "", "", 1.0};
   const std::string_view suffix = best->suffix;
-  return {std::string(key.substr(0, key.size() - suffix.size() - 1)), best->suffix,
-          best->dimension, best->to_SI};
+  return {std::string(key.substr(0, key.size() - suffix.size() - 1)), best->suffix, best->dimension,
+          best->to_SI};
 }
 
 std::string nearest(std::string_view word, const std::set<std::string>& candidates) {
@@ -176,7 +205,9 @@ std::string Settings::full_name(std::string_view key) const {
   return key.empty() ? name_ : name_ + "." + std::string(key);
 }
 
-InputLocation Settings::where() const { return node_->where; }
+InputLocation Settings::where() const {
+  return node_->where;
+}
 
 InputError Settings::error(std::string_view key, const std::string& found,
                            const std::string& expected) const {
@@ -198,9 +229,10 @@ const SettingsNode* Settings::find(std::string_view key, double* factor) const {
       const KeyUnit other = unit_of_key(other_key);
       if (other.stem != wanted.stem || other.dimension != wanted.dimension) continue;
       if (found != nullptr) {
-        throw InputError(node.where, full_name(other_key),
-                         "the same quantity as " + std::string(exact == table.end() ? "another key" : key),
-                         "it once");
+        throw InputError(
+            node.where, full_name(other_key),
+            "the same quantity as " + std::string(exact == table.end() ? "another key" : key),
+            "it once");
       }
       found = &node;
       *factor = other.to_SI;
@@ -218,7 +250,8 @@ const SettingsNode& Settings::require(std::string_view key, double* factor,
   if (!wanted.unit.empty()) {
     for (const auto& [other_key, node] : std::get<SettingsNode::Table>(node_->value)) {
       if (other_key == wanted.stem || unit_of_key(other_key).stem == wanted.stem) {
-        throw InputError(node.where, full_name(other_key), "a key without a unit of " + wanted.dimension,
+        throw InputError(node.where, full_name(other_key),
+                         "a key without a unit of " + wanted.dimension,
                          "the key " + std::string(key));
       }
     }
@@ -316,7 +349,8 @@ int64_t Settings::integer(std::string_view key, int64_t low, int64_t high) const
   if (const auto* i = std::get_if<int64_t>(&node.value)) whole = *i;
   // 1e8 is a real number in TOML, and the natural way to write a count.
   const auto* d = std::get_if<double>(&node.value);
-  if (d != nullptr && std::abs(*d) < 0x1p53 && *d == std::floor(*d)) whole = static_cast<int64_t>(*d);
+  if (d != nullptr && std::abs(*d) < 0x1p53 && *d == std::floor(*d))
+    whole = static_cast<int64_t>(*d);
   if (!whole || *whole < low || *whole > high) {
     throw InputError(node.where, full_name(key), describe(node), expected);
   }
@@ -341,7 +375,8 @@ std::string Settings::text(std::string_view key) const {
   double factor = 1.0;
   const SettingsNode& node = require(key, &factor, "a text in quotes");
   const auto* s = std::get_if<std::string>(&node.value);
-  if (s == nullptr) throw InputError(node.where, full_name(key), describe(node), "a text in quotes");
+  if (s == nullptr)
+    throw InputError(node.where, full_name(key), describe(node), "a text in quotes");
   return *s;
 }
 
@@ -456,7 +491,9 @@ std::vector<Settings> Settings::tables(std::string_view key) const {
     return all;
   }
   const auto* array = std::get_if<SettingsNode::Array>(&node->value);
-  if (array == nullptr) throw InputError(node->where, full_name(key), describe(*node), "tables [[" + full_name(key) + "]]");
+  if (array == nullptr)
+    throw InputError(node->where, full_name(key), describe(*node),
+                     "tables [[" + full_name(key) + "]]");
   for (size_t i = 0; i < array->size(); ++i) {
     const SettingsNode& item = (*array)[i];
     const std::string item_name = full_name(key) + "[" + std::to_string(i) + "]";
@@ -484,10 +521,10 @@ void Settings::finish() const {
   for (const auto& [key, node] : std::get<SettingsNode::Table>(node_->value)) {
     if (!log_->read.contains(&node)) {
       const auto asked = log_->asked.find(node_);
-      const std::string hint =
-          asked == log_->asked.end() ? "" : nearest(key, asked->second);
-      throw InputError(node.where, full_name(key), "an unknown key",
-                       hint.empty() ? "only known keys here" : "a known key, perhaps \"" + hint + "\"");
+      const std::string hint = asked == log_->asked.end() ? "" : nearest(key, asked->second);
+      throw InputError(
+          node.where, full_name(key), "an unknown key",
+          hint.empty() ? "only known keys here" : "a known key, perhaps \"" + hint + "\"");
     }
     if (node.is_table()) Settings(&node, root_, log_, full_name(key)).finish();
     if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {

@@ -25,7 +25,7 @@ struct SettingsNode {
   using Array = std::vector<SettingsNode>;
   using Table = std::map<std::string, SettingsNode, std::less<>>;
   std::variant<bool, int64_t, double, std::string, Array, Table> value = Table{};
-  InputLocation where;
+  InputLocation where = {};
 
   bool is_table() const { return std::holds_alternative<Table>(value); }
   bool is_array() const { return std::holds_alternative<Array>(value); }

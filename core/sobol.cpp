@@ -31,7 +31,8 @@ struct Primitive {
   uint32_t coefficients;
   std::array<uint32_t, 3> initial;
 };
-constexpr std::array<Primitive, 3> primitives{{{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}}};
+constexpr std::array<Primitive, 3> primitives{
+    {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}}};
 
 constexpr std::array<std::array<uint32_t, 32>, sobol_dimensions> reversed_columns() {
   std::array<std::array<uint32_t, 32>, sobol_dimensions> columns{};
@@ -69,8 +70,8 @@ constexpr std::array<std::array<uint32_t, sobol_block>, sobol_dimensions> low_ta
 constexpr auto low = low_table();
 
 uint32_t dimension_seed(const SobolStream& stream, int dimension) {
-  return static_cast<uint32_t>(hash_words(stream.seed, stream.stream, stream.group,
-                                          static_cast<uint64_t>(dimension)) >> 32);
+  return static_cast<uint32_t>(
+      hash_words(stream.seed, stream.stream, stream.group, static_cast<uint64_t>(dimension)) >> 32);
 }
 
 constexpr uint32_t reversed_point(int dimension, uint32_t index) {

@@ -18,9 +18,9 @@ inline constexpr int sobol_dimensions = 4;
 // Points per block; blocks start at multiples of this.
 inline constexpr uint32_t sobol_block = 256;
 
-// Which scrambled sequence: every different (seed, stream, group) gives an independent scrambling of
-// the same point set. `group` 0 keeps the order of the points (so blocks stay well distributed among
-// themselves); other groups also scramble the order and serve as padding.
+// Which scrambled sequence: every different (seed, stream, group) gives an independent scrambling
+// of the same point set. `group` 0 keeps the order of the points (so blocks stay well distributed
+// among themselves); other groups also scramble the order and serve as padding.
 struct SobolStream {
   uint64_t seed = 0;
   uint64_t stream = 0;

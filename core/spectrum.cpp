@@ -18,9 +18,9 @@ double gaussian_below(const Spectrum& spectrum, double wavelength_m) {
 // (J. H. Lienhard, A Heat Transfer Textbook, section 10.1; W. K. Widger and M. P. Woodall, 1976).
 double blackbody_below(const Spectrum& spectrum, double wavelength_m) {
   if (wavelength_m <= 0.0) return 0.0;
-  const double x = planck_J_s * speed_of_light_m_s /
-                   (wavelength_m * boltzmann_J_K * spectrum.temperature_K);
-  if (x < 0.05) return 1.0 - 5.0 * x * x * x / std::pow(pi, 4) ;  // Rayleigh–Jeans tail
+  const double x =
+      planck_J_s * speed_of_light_m_s / (wavelength_m * boltzmann_J_K * spectrum.temperature_K);
+  if (x < 0.05) return 1.0 - 5.0 * x * x * x / std::pow(pi, 4);  // Rayleigh–Jeans tail
   double sum = 0.0;
   for (int n = 1; n <= 1000; ++n) {
     const double nx = n * x;

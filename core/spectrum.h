@@ -23,9 +23,9 @@ using BandValues = std::array<double, max_bands>;
 struct Spectrum {
   enum class Shape { gaussian, blackbody };
   Shape shape = Shape::gaussian;
-  double centre_m = 550e-9;      // gaussian: wavelength of the maximum
-  double fwhm_m = 20e-9;         // gaussian: full width at half maximum; 0 is a line
-  double temperature_K = 5772.0; // blackbody
+  double centre_m = 550e-9;       // gaussian: wavelength of the maximum
+  double fwhm_m = 20e-9;          // gaussian: full width at half maximum; 0 is a line
+  double temperature_K = 5772.0;  // blackbody
 };
 
 // The fraction of the spectrum's power in each band. Bands may leave wavelengths out: the fractions

@@ -7,7 +7,8 @@ namespace photorque {
 
 // Maps points and directions of one right-handed frame into another.
 // `rotation` must be of unit norm; `translation_m` is the origin of the source frame, expressed in
-// the target frame. Composition reads as the names do: lab_from_led = lab_from_body * body_from_led.
+// the target frame. Composition reads as the names do: lab_from_led = lab_from_body *
+// body_from_led.
 struct RigidTransform {
   Quat rotation = Quat::Identity();
   Vec3 translation_m = Vec3::Zero();

@@ -40,8 +40,8 @@ class Emitter {
   // the point of the aperture, 2 and 3 the direction.
   virtual void emit(const SampleBlock& samples, RayBlock& rays) const = 0;
 
-  // Radiant intensity at `angle_rad` ∈ [0, π] from the axis over its maximum, for beams that are the
-  // same all round the axis; the average around the axis for others. In [0, 1].
+  // Radiant intensity at `angle_rad` ∈ [0, π] from the axis over its maximum, for beams that are
+  // the same all round the axis; the average around the axis for others. In [0, 1].
   virtual double relative_intensity(double angle_rad) const = 0;
 };
 

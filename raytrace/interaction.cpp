@@ -26,7 +26,9 @@ Lobe choose_lobe(const OpticalSurface& surface, int bands, double u, BandValues&
   const BandValues& fraction = lobe == Lobe::specular  ? surface.specular
                                : lobe == Lobe::diffuse ? surface.diffuse
                                                        : surface.transmitted;
-  const double share = lobe == Lobe::specular ? specular : lobe == Lobe::diffuse ? diffuse : transmitted;
+  const double share = lobe == Lobe::specular  ? specular
+                       : lobe == Lobe::diffuse ? diffuse
+                                               : transmitted;
   const double scale = total / share;
   for (int b = 0; b < bands; ++b) power_W[b] *= fraction[b] * scale;
   return lobe;
@@ -54,56 +56,102 @@ Ray make_ray(const Vec3& origin_m, const Vec3& direction, uint32_t sample) {
   return ray;
 }
 
-void add_momentum(std::array<double, 6>& sums, const Vec3& at_m, const Vec3& direction,
-                  double power_W) {
-  const Vec3 force = direction * (power_W / speed_of_light_m_s);
-  const Vec3 torque = at_m.cross(force);
-  for (int k = 0; k < 3; ++k) {
-    sums[k] += force[k];
-    sums[3 + k] += torque[k];
-  }
+// The side of the surface that was hit, as its unit normal.
+Vec3 lit_normal(const InteractionContext& context, const Hits& hits, int i) {
+  const TrianglePlane& plane = context.scene->plane(hits.instance[i], hits.triangle[i]);
+  const Vec3 front(plane.normal[0], plane.normal[1], plane.normal[2]);
+  return hits.front[i] != 0 ? front : Vec3(-front);
 }
 
-// Sends the rest of hit i on its way; returns the momentum flow that it takes along [N].
-Vec3 send_on(const InteractionContext& context, const HitBuffer& buffer, int i,
-             const OpticalSurface& surface, BandValues power_W, const Vec3& direction,
+Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
+  return direction - 2.0 * direction.dot(normal) * normal;
+}
+
+// The momentum flow [N] that leaves with all lobes of hit i: the expectation over what send_on()
+// draws, so that forces carry no noise of the draw. Lambertian light takes 2/3 of its power over c
+// along the normal (e.g. Markley and Crassidis, Fundamentals of Spacecraft Attitude Determination
+// and Control, section 3.3.6).
+Vec3 expected_recoil(const Hits& hits, int i, const OpticalSurface& surface, const Vec3& direction,
+                     const Vec3& normal) {
+  double specular = 0.0, diffuse = 0.0, transmitted = 0.0;
+  for (int b = 0; b < hits.bands; ++b) {
+    specular += hits.incident_W[b][i] * surface.specular[b];
+    diffuse += hits.incident_W[b][i] * surface.diffuse[b];
+    transmitted += hits.incident_W[b][i] * surface.transmitted[b];
+  }
+  return (specular * mirrored(direction, normal) + (2.0 / 3.0) * diffuse * normal +
+          transmitted * direction) /
+         speed_of_light_m_s;
+}
+
+// Sends the rest of hit i on its way along one lobe.
+void send_on(const InteractionContext& context, const HitBuffer& buffer, int i,
+             const OpticalSurface& surface, const Vec3& direction, const Vec3& normal,
              LedgerSums& ledger, Continuation& next) {
   const Hits& hits = buffer.hits;
   SobolStream stream = context.stream;
-  stream.group = hits.depth[i] + 1u;
+  stream.group = static_cast<uint32_t>(context.depth) + 1u;
   const auto point = sobol_point(stream, buffer.sample[i]);
+  BandValues power_W{};
+  for (int b = 0; b < hits.bands; ++b) power_W[b] = hits.incident_W[b][i];
   const Lobe lobe = choose_lobe(surface, hits.bands, point[0], power_W);
 
-  const TrianglePlane& plane = context.scene->plane(hits.instance[i], hits.triangle[i]);
-  const Vec3 front(plane.normal[0], plane.normal[1], plane.normal[2]);
-  const Vec3 normal = hits.front[i] != 0 ? front : Vec3(-front);  // towards where the ray came from
   const Vec3 position(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
-  Vec3 onward = direction;
-  double lift = context.scene->lift_m;
-  switch (lobe) {
-    case Lobe::specular:
-      onward = direction - 2.0 * direction.dot(normal) * normal;
-      break;
-    case Lobe::diffuse:
-      onward = lambertian_direction(normal, point[1], point[2]);
-      break;
-    case Lobe::transmitted:
-      lift = -lift;
-      break;
-  }
-  const Ray ray = make_ray(position + lift * normal, onward, buffer.sample[i]);
-  // What leaves is what the ray carries, rounded as it is.
-  const Vec3 taken(ray.direction[0], ray.direction[1], ray.direction[2]);
+  const double lift = lobe == Lobe::transmitted ? -context.scene->lift_m : context.scene->lift_m;
+  const Vec3 onward = lobe == Lobe::specular  ? mirrored(direction, normal)
+                      : lobe == Lobe::diffuse ? lambertian_direction(normal, point[1], point[2])
+                                              : direction;
   double total = 0.0;
   for (int b = 0; b < hits.bands; ++b) total += power_W[b];
   if (total < context.cutoff_W) {
     ledger.truncated_W += total;
-    add_momentum(ledger.momentum_out, position, taken, total);
-  } else {
-    next.rays.push_back(ray);
-    next.power_W.insert(next.power_W.end(), power_W.begin(), power_W.begin() + hits.bands);
+    ledger.release(position, onward, total);
+    return;
   }
-  return taken * (total / speed_of_light_m_s);
+  next.rays.push_back(make_ray(position + lift * normal, onward, buffer.sample[i]));
+  next.power_W.insert(next.power_W.end(), power_W.begin(), power_W.begin() + hits.bands);
+}
+
+using Lane = Eigen::Map<Eigen::ArrayXd>;
+Lane lane(Hits::Column<double>& column, int count) {
+  return {column.data(), count};
+}
+
+// absorbed_W and left_W of every hit.
+void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
+  Hits& hits = buffer.hits;
+  lane(buffer.left_W, hits.count).setZero();
+  for (int b = 0; b < hits.bands; ++b) {
+    const double* fraction = scene.absorbed_fraction[b].data();
+    const double* incident = hits.incident_W[b].data();
+    double* absorbed = hits.absorbed_W[b].data();
+    for (int i = 0; i < hits.count; ++i) {
+      absorbed[i] = incident[i] * fraction[2 * hits.instance[i] + hits.front[i]];
+    }
+    lane(buffer.left_W, hits.count) +=
+        lane(hits.incident_W[b], hits.count) - lane(hits.absorbed_W[b], hits.count);
+  }
+}
+
+// The momentum that arrives: force_N of every hit, and the ledger's intake for first hits.
+void take_momentum(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger) {
+  Hits& hits = buffer.hits;
+  const int n = hits.count;
+  for (size_t k = 0; k < 3; ++k) lane(hits.force_N[k], n).setZero();
+  for (int b = 0; b < hits.bands; ++b) {
+    for (size_t k = 0; k < 3; ++k) {
+      lane(hits.force_N[k], n) +=
+          lane(buffer.direction[k], n) * lane(hits.incident_W[b], n) * (1.0 / speed_of_light_m_s);
+    }
+  }
+  if (context.depth > 0) return;
+  for (size_t k = 0; k < 3; ++k) {
+    const size_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+    ledger.momentum_in[k] += lane(hits.force_N[k], n).sum();
+    ledger.momentum_in[3 + k] += (lane(hits.position_m[k1], n) * lane(hits.force_N[k2], n) -
+                                  lane(hits.position_m[k2], n) * lane(hits.force_N[k1], n))
+                                     .sum();
+  }
 }
 
 }  // namespace
@@ -115,37 +163,48 @@ void LedgerSums::add(const LedgerSums& other) {
     momentum_in[k] += other.momentum_in[k];
     momentum_out[k] += other.momentum_out[k];
   }
-  for (size_t i = 0; i < absorbed_W.size(); ++i) absorbed_W[i] += other.absorbed_W[i];
+  for (size_t i = 0; i < absorbed_lanes_W.size(); ++i) {
+    for (size_t lane = 0; lane < 4; ++lane)
+      absorbed_lanes_W[i][lane] += other.absorbed_lanes_W[i][lane];
+  }
+}
+
+void LedgerSums::release(const Vec3& at_m, const Vec3& direction, double power_W) {
+  const Vec3 force = direction * (power_W / speed_of_light_m_s);
+  const Vec3 torque = at_m.cross(force);
+  for (size_t k = 0; k < 3; ++k) {
+    momentum_out[k] += force[static_cast<Eigen::Index>(k)];
+    momentum_out[3 + k] += torque[static_cast<Eigen::Index>(k)];
+  }
+}
+
+double LedgerSums::absorbed_W(size_t instance) const {
+  const auto& lanes = absorbed_lanes_W[instance];
+  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
 void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger,
               Continuation& next) {
   Hits& hits = buffer.hits;
   const Scene& scene = context.scene->scene;
+  absorb(*context.scene, buffer);
+  take_momentum(context, buffer, ledger);
+  for (int b = 0; b < hits.bands; ++b) {
+    for (int i = 0; i < hits.count; ++i) {
+      ledger.absorbed_lanes_W[hits.instance[i]][static_cast<size_t>(i & 3)] +=
+          hits.absorbed_W[b][i];
+    }
+  }
   for (int i = 0; i < hits.count; ++i) {
+    if (!(buffer.left_W[i] > 0.0)) continue;
     const Instance& instance = scene.instances[hits.instance[i]];
     const OpticalSurface& surface =
         scene.surfaces[hits.front[i] != 0 ? instance.front_surface : instance.back_surface];
-    BandValues power_W{};
-    double incident = 0.0, absorbed = 0.0;
-    for (int b = 0; b < hits.bands; ++b) {
-      power_W[b] = hits.incident_W[b][i];
-      hits.absorbed_W[b][i] = power_W[b] * surface.absorbed[b];
-      incident += power_W[b];
-      absorbed += hits.absorbed_W[b][i];
-    }
     const Vec3 direction(buffer.direction[0][i], buffer.direction[1][i], buffer.direction[2][i]);
-    Vec3 force = direction * (incident / speed_of_light_m_s);
-    const double left = incident - absorbed;
-    if (left > 0.0) {
-      force -= send_on(context, buffer, i, surface, power_W, direction, ledger, next);
-    }
-    ledger.absorbed_W[hits.instance[i]] += absorbed;
-    for (int k = 0; k < 3; ++k) hits.force_N[k][i] = force[k];
-    if (hits.depth[i] == 0) {
-      const Vec3 position(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
-      add_momentum(ledger.momentum_in, position, direction, incident);
-    }
+    const Vec3 normal = lit_normal(context, hits, i);
+    const Vec3 recoil = expected_recoil(hits, i, surface, direction, normal);
+    for (int k = 0; k < 3; ++k) hits.force_N[k][i] -= recoil[k];
+    send_on(context, buffer, i, surface, direction, normal, ledger, next);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "raytrace/launch.h"
+#include "raytrace/find_hits.h"
 #include "raytrace/receiver.h"
 #include "raytrace/traceable_scene_data.h"
 
@@ -29,26 +29,26 @@ struct LedgerSums {
   double truncated_W = 0.0;
   std::array<double, 6> momentum_in{};   // of rays at their first hit
   std::array<double, 6> momentum_out{};  // of rays that escaped after a hit, or were truncated
-  std::vector<double> absorbed_W;        // per instance
+  // Per instance, in four lanes that take turns: one running sum would wait for itself at every
+  // hit.
+  std::vector<std::array<double, 4>> absorbed_lanes_W;
 
+  double absorbed_W(size_t instance) const;
   void add(const LedgerSums& other);
+  // A ray with this power leaves for good through `at_m`.
+  void release(const Vec3& at_m, const Vec3& direction, double power_W);
 };
 
-// Hits under way to the receivers, with what the receivers need not know.
-struct HitBuffer {
-  Hits hits;
-  Hits::Column<uint32_t> sample;
-  std::array<Hits::Column<float>, 3> direction;
+struct InteractionContext {
+  const TraceableScene::Data* scene = nullptr;
+  SobolStream stream;     // of the beam and replicate; group is set per depth
+  int depth = 0;          // of all hits in the buffer
+  double cutoff_W = 0.0;  // rays with less than this are truncated
 };
 
 // Settles all hits of the buffer: fills absorbed_W and force_N, adds to the ledger and appends the
 // rays that go on to `next`. The lobe and direction of a ray come from its own Sobol point of group
 // depth + 1.
-struct InteractionContext {
-  const TraceableScene::Data* scene;
-  SobolStream stream;          // of the beam and replicate; group is set per depth
-  double cutoff_W = 0.0;       // rays with less than this are truncated
-};
 void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger,
               Continuation& next);
 

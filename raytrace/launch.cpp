@@ -94,13 +94,15 @@ void counting_sort(uint32_t count, LaunchBuffer& buffer) {
   buffer.start.assign(key_count + 1, 0);
   for (uint32_t i = 0; i < count; ++i) ++buffer.start[buffer.key[i] + 1u];
   for (uint32_t k = 0; k < key_count; ++k) buffer.start[k + 1] += buffer.start[k];
-  for (uint32_t i = 0; i < count; ++i) buffer.rays[buffer.start[buffer.key[i]]++] = buffer.unsorted[i];
+  for (uint32_t i = 0; i < count; ++i)
+    buffer.rays[buffer.start[buffer.key[i]]++] = buffer.unsorted[i];
 }
 
 SampleBlock sample_block(const SobolStream& stream, uint32_t first) {
   SampleBlock samples;
-  sobol_points(stream, first, {samples.bits[0].data(), samples.bits[1].data(),
-                               samples.bits[2].data(), samples.bits[3].data()});
+  sobol_points(stream, first,
+               {samples.bits[0].data(), samples.bits[1].data(), samples.bits[2].data(),
+                samples.bits[3].data()});
   return samples;
 }
 

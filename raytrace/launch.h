@@ -14,7 +14,7 @@ namespace photorque {
 
 // Most rays of a batch: large enough that sorting brings packets of neighbours together, small
 // enough that a batch stays in the cache.
-inline constexpr uint32_t largest_batch = 1u << 15;
+inline constexpr uint32_t largest_batch = 1u << 14;
 
 // A ray as Embree takes it. Its single-precision origin and direction ARE the ray: everything later
 // is computed in double precision from them.
@@ -35,7 +35,8 @@ struct LaunchBuffer {
 
 // Where the rays of a beam cross a plane near the scene, as a grid to sort by.
 struct LandingGrid {
-  double plane_z_m = 0.0;  // in the emitter's frame; ≤ 0: the scene is behind, directions serve instead
+  double plane_z_m =
+      0.0;  // in the emitter's frame; ≤ 0: the scene is behind, directions serve instead
   float x_low = 0, y_low = 0, x_scale = 0, y_scale = 0;  // landing point → cell
 };
 
@@ -44,8 +45,8 @@ LandingGrid landing_grid(const Emitter& emitter, const RigidTransform& body_from
                          const TraceableScene::Data& scene);
 
 // Emits points first … first + count − 1 of the stream into `buffer.rays`. `first` and `count` are
-// multiples of ray_block, count ≤ largest_batch. Origins are moved along the rays to the sphere that
-// holds the scene, in double precision, before they are rounded: sources may be far away.
+// multiples of ray_block, count ≤ largest_batch. Origins are moved along the rays to the sphere
+// that holds the scene, in double precision, before they are rounded: sources may be far away.
 //
 // The rays are sorted by the signs of their directions first and by landing cell second. Embree
 // follows a packet as one only within an octant of directions; a beam along an axis, whose rays

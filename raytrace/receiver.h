@@ -21,16 +21,16 @@ struct Hits {
   using Column = std::array<T, capacity>;
 
   int count = 0;
-  int bands = 1;                     // only this many rows of the band columns are filled
-  Column<uint32_t> instance;         // index into Scene::instances
-  Column<uint32_t> triangle;         // index into that mesh's triangles
-  Column<uint8_t> front;             // 1: hit from the front, 0: from the back
-  Column<uint16_t> depth;            // 0: straight from the emitter
-  std::array<Column<double>, 3> position_m;     // on the triangle's plane to 2e-10 of the scene size
-  std::array<Column<float>, 2> barycentric;     // weights of the triangle's vertices 1 and 2
-  std::array<Column<double>, max_bands> incident_W;   // per band
-  std::array<Column<double>, max_bands> absorbed_W;   // per band
-  std::array<Column<double>, 3> force_N;   // momentum rate in minus out: Σ_bands (P_in d_in − P_out d_out)/c
+  int bands = 1;                             // only this many rows of the band columns are filled
+  Column<uint32_t> instance;                 // index into Scene::instances
+  Column<uint32_t> triangle;                 // index into that mesh's triangles
+  Column<uint8_t> front;                     // 1: hit from the front, 0: from the back
+  Column<uint16_t> depth;                    // 0: straight from the emitter
+  std::array<Column<double>, 3> position_m;  // on the triangle's plane to 2e-10 of the scene size
+  std::array<Column<float>, 2> barycentric;  // weights of the triangle's vertices 1 and 2
+  std::array<Column<double>, max_bands> incident_W;  // per band
+  std::array<Column<double>, max_bands> absorbed_W;  // per band
+  std::array<Column<double>, 3> force_N;  // momentum flow in minus expected flow out, all bands
 };
 
 // What the tracer summed for one receiver: one vector of bins per replicate. Each replicate is an

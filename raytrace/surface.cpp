@@ -2,8 +2,7 @@
 
 namespace photorque {
 
-OpticalSurface grey_surface(std::string name, double specular, double diffuse,
-                            double transmitted) {
+OpticalSurface grey_surface(std::string name, double specular, double diffuse, double transmitted) {
   OpticalSurface surface;
   surface.name = std::move(name);
   surface.absorbed.fill(1.0 - specular - diffuse - transmitted);

@@ -20,6 +20,9 @@ void check(const Scene& scene) {
       }
     }
     const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.triangles.empty()) {
+      throw InputError({"scene"}, instance.path, "a mesh without triangles", "triangles");
+    }
     for (const auto& triangle : mesh.triangles) {
       for (const uint32_t vertex : triangle) {
         if (vertex >= mesh.vertices_m.size()) {
@@ -41,9 +44,9 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   const bool mirrored = instance.body_from_mesh.linear().determinant() < 0.0;
 
   RTCGeometry geometry = rtcNewGeometry(data.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                              3 * sizeof(float), mesh.vertices_m.size()));
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               mesh.vertices_m.size()));
   auto* indices = static_cast<uint32_t*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               3 * sizeof(uint32_t), mesh.triangles.size()));
@@ -55,7 +58,8 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   std::vector<Vec3> placed(mesh.vertices_m.size());
   for (size_t i = 0; i < placed.size(); ++i) {
     placed[i] = instance.body_from_mesh * mesh.vertices_m[i];
-    for (int k = 0; k < 3; ++k) vertices[3 * i + static_cast<size_t>(k)] = static_cast<float>(placed[i][k]);
+    for (int k = 0; k < 3; ++k)
+      vertices[3 * i + static_cast<size_t>(k)] = static_cast<float>(placed[i][k]);
   }
   data.first_triangle.push_back(static_cast<uint32_t>(data.planes.size()));
   for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -73,6 +77,10 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(data.embree, geometry);  // its id is the instance's index: both count from 0
   rtcReleaseGeometry(geometry);
+  for (size_t b = 0; b < max_bands; ++b) {
+    data.absorbed_fraction[b].push_back(data.scene.surfaces[instance.back_surface].absorbed[b]);
+    data.absorbed_fraction[b].push_back(data.scene.surfaces[instance.front_surface].absorbed[b]);
+  }
 }
 
 void bound(TraceableScene::Data& data) {
@@ -117,6 +125,8 @@ TraceableScene::TraceableScene(Scene scene, bool leak_safe) : data_(std::make_un
 TraceableScene::~TraceableScene() = default;
 TraceableScene::TraceableScene(TraceableScene&&) noexcept = default;
 
-const Scene& TraceableScene::scene() const { return data_->scene; }
+const Scene& TraceableScene::scene() const {
+  return data_->scene;
+}
 
 }  // namespace photorque

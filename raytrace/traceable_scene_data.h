@@ -27,6 +27,8 @@ struct TraceableScene::Data {
   int packet_width = 8;                  // rays per packet that this machine's Embree runs natively
   std::vector<uint32_t> first_triangle;  // per instance, into `planes`
   std::vector<TrianglePlane> planes;
+  // absorbed_fraction[band][2 · instance + (1 if hit from the front)]
+  std::array<std::vector<double>, max_bands> absorbed_fraction;
   Vec3 centre_m = Vec3::Zero();  // of a sphere that holds the scene
   double radius_m = 0.0;
   // How far a ray that leaves a surface starts above it: beyond single-precision rounding of any

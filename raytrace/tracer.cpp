@@ -4,12 +4,12 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "raytrace/find_hits.h"
 #include "raytrace/interaction.h"
 #include "raytrace/launch.h"
 
@@ -43,9 +43,11 @@ Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from
   const RigidTransform body_from_lab = lab_from_body.inverse();
   for (const Beam& beam : beams) {
     const double power = beam.emitter->power_W();
-    const double wanted = static_cast<double>(options.rays) / options.replicates * power / plan.emitted_W;
+    const double wanted =
+        static_cast<double>(options.rays) / options.replicates * power / plan.emitted_W;
     const uint64_t capped = static_cast<uint64_t>(std::min(wanted, 0x1p31));
-    const uint32_t rays = std::bit_ceil(std::max<uint32_t>(static_cast<uint32_t>(capped), ray_block));
+    const uint32_t rays =
+        std::bit_ceil(std::max<uint32_t>(static_cast<uint32_t>(capped), ray_block));
     const RigidTransform body_from_emitter = body_from_lab * beam.lab_from_emitter;
     BeamPlan share{&beam,
                    body_from_emitter,
@@ -72,7 +74,7 @@ struct Sums {
   uint64_t segments = 0;
 
   Sums(size_t instances, std::span<const Receiver* const> all) {
-    ledger.absorbed_W.assign(instances, 0.0);
+    ledger.absorbed_lanes_W.assign(instances, {});
     for (const Receiver* receiver : all) receivers.emplace_back(receiver->bins(), 0.0);
   }
   void add(const Sums& other) {
@@ -89,19 +91,22 @@ class BatchTracer {
  public:
   BatchTracer(const TraceableScene::Data& scene, std::span<const Receiver* const> receivers,
               const TraceOptions& options)
-      : scene_(scene), receivers_(receivers), options_(options), hits_(std::make_unique<HitBuffer>()) {
+      : scene_(scene),
+        receivers_(receivers),
+        options_(options),
+        hits_(std::make_unique<HitBuffer>()) {
     hits_->hits.bands = scene.scene.bands.count();
   }
 
   void run(const BeamPlan& plan, const SobolStream& stream, uint32_t first, Sums& sums) {
     sums_ = &sums;
-    context_ = {&scene_, stream, options_.cutoff * plan.watt_per_ray};
+    context_ = {&scene_, stream, 0, options_.cutoff * plan.watt_per_ray};
     launch(*plan.beam->emitter, plan.body_from_emitter, scene_, plan.landing, stream, first,
            plan.batch, launched_);
     next_.clear();
-    depth_ = 0;
     trace_wave(launched_.rays, plan.power_per_ray_W.data(), 0, Coherence::coherent);
-    for (depth_ = 1; !next_.rays.empty() && depth_ < options_.max_depth; ++depth_) {
+    for (context_.depth = 1; !next_.rays.empty() && context_.depth < options_.max_depth;
+         ++context_.depth) {
       std::swap(current_, next_);
       next_.clear();
       trace_wave(current_.rays, current_.power_W.data(), bands(), Coherence::incoherent);
@@ -116,86 +121,43 @@ class BatchTracer {
   void trace_wave(const std::vector<Ray>& rays, const double* power_W, int stride,
                   Coherence coherence) {
     sums_->segments += rays.size();
-    if (scene_.packet_width == 16) {
-      trace_packets<16>(rays, power_W, stride, coherence);
-    } else {
-      trace_packets<8>(rays, power_W, stride, coherence);
+    for (size_t begin = 0; begin < rays.size(); begin += Hits::capacity) {
+      const std::span<const Ray> some =
+          std::span(rays).subspan(begin, std::min<size_t>(Hits::capacity, rays.size() - begin));
+      const double* power = power_W + begin * static_cast<size_t>(stride);
+      find_hits(scene_, some, coherence, *hits_);
+      drop_misses(some, power, stride);
+      if (hits_->hits.count == 0) continue;
+      locate_hits(scene_, context_.depth, *hits_);
+      interact(context_, *hits_, sums_->ledger, next_);
+      for (size_t r = 0; r < receivers_.size(); ++r) {
+        receivers_[r]->score(hits_->hits, sums_->receivers[r]);
+      }
     }
-    settle();
   }
 
-  template <int Width>
-  void trace_packets(const std::vector<Ray>& rays, const double* power_W, int stride,
-                     Coherence coherence) {
-    embree_seam::Query query(coherence);
-    alignas(64) int valid[Width];
-    alignas(64) typename embree_seam::PacketType<Width>::type packet;
-    for (size_t begin = 0; begin < rays.size(); begin += Width) {
-      const int count = static_cast<int>(std::min<size_t>(Width, rays.size() - begin));
-      for (int i = 0; i < Width; ++i) {
-        const Ray& ray = rays[begin + static_cast<size_t>(std::min(i, count - 1))];
-        valid[i] = i < count ? -1 : 0;
-        packet.ray.org_x[i] = ray.origin_m[0];
-        packet.ray.org_y[i] = ray.origin_m[1];
-        packet.ray.org_z[i] = ray.origin_m[2];
-        packet.ray.dir_x[i] = ray.direction[0];
-        packet.ray.dir_y[i] = ray.direction[1];
-        packet.ray.dir_z[i] = ray.direction[2];
-        packet.ray.tnear[i] = 0.0f;
-        packet.ray.tfar[i] = std::numeric_limits<float>::infinity();
-        packet.ray.time[i] = 0.0f;
-        packet.ray.mask[i] = ~0u;
-        packet.ray.id[i] = 0;
-        packet.ray.flags[i] = 0;
-        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-      }
-      query.intersect(scene_.embree, valid, packet);
-      for (int i = 0; i < count; ++i) {
-        const double* power = power_W + (begin + static_cast<size_t>(i)) * static_cast<size_t>(stride);
-        const Ray& ray = rays[begin + static_cast<size_t>(i)];
-        if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
-          escape(ray, power);
+  // Lets the rays that hit nothing escape, closes the gaps that they leave, and gives the others
+  // their powers.
+  void drop_misses(std::span<const Ray> rays, const double* power_W, int stride) {
+    Hits& hits = hits_->hits;
+    if (compact(*hits_, kept_) != static_cast<int>(rays.size())) {
+      int at = 0;
+      for (int i = 0; i < static_cast<int>(rays.size()); ++i) {
+        if (at < hits.count && kept_[at] == i) {
+          ++at;
         } else {
-          append(ray, power, packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i],
-                 packet.hit.v[i]);
+          escape(rays[static_cast<size_t>(i)], power_W + i * stride);
         }
       }
     }
-  }
-
-  void append(const Ray& ray, const double* power_W, uint32_t instance, uint32_t triangle, float u,
-              float v) {
-    Hits& hits = hits_->hits;
-    const int i = hits.count++;
-    const TrianglePlane& plane = scene_.plane(instance, triangle);
-    double distance = plane.offset_m, facing = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      distance -= plane.normal[k] * ray.origin_m[k];
-      facing += plane.normal[k] * ray.direction[k];
-      hits_->direction[k][i] = ray.direction[k];
+    for (int b = 0; b < hits.bands; ++b) {
+      double* incident = hits.incident_W[b].data();
+      if (stride == 0) {
+        std::fill_n(incident, hits.count, power_W[b]);
+      } else {
+        for (int i = 0; i < hits.count; ++i) incident[i] = power_W[kept_[i] * stride + b];
+      }
     }
-    // The hit in double precision from the triangle's plane: Embree's own distance is off by up to
-    // 5e-7 of the scene's size.
-    const double t = distance / facing;
-    for (int k = 0; k < 3; ++k) hits.position_m[k][i] = ray.origin_m[k] + t * ray.direction[k];
-    hits.instance[i] = instance;
-    hits.triangle[i] = triangle;
-    hits.front[i] = facing < 0.0 ? 1 : 0;
-    hits.depth[i] = static_cast<uint16_t>(depth_);
-    hits.barycentric[0][i] = u;
-    hits.barycentric[1][i] = v;
-    for (int b = 0; b < hits.bands; ++b) hits.incident_W[b][i] = power_W[b];
-    hits_->sample[i] = ray.sample;
-    if (hits.count == Hits::capacity) settle();
-  }
-
-  void settle() {
-    Hits& hits = hits_->hits;
-    if (hits.count == 0) return;
-    interact(context_, *hits_, sums_->ledger, next_);
-    for (size_t r = 0; r < receivers_.size(); ++r) receivers_[r]->score(hits, sums_->receivers[r]);
-    hits.count = 0;
   }
 
   double total(const double* power_W) const {
@@ -207,17 +169,13 @@ class BatchTracer {
   void escape(const Ray& ray, const double* power_W) {
     const double power = total(power_W);
     sums_->ledger.escaped_W += power;
-    if (depth_ > 0) leave(ray, power);
+    if (context_.depth > 0) leave(ray, power);
   }
 
   void leave(const Ray& ray, double power) {
-    const Vec3 force = Vec3(ray.direction[0], ray.direction[1], ray.direction[2]) *
-                       (power / speed_of_light_m_s);
-    const Vec3 torque = Vec3(ray.origin_m[0], ray.origin_m[1], ray.origin_m[2]).cross(force);
-    for (size_t k = 0; k < 3; ++k) {
-      sums_->ledger.momentum_out[k] += force[static_cast<Eigen::Index>(k)];
-      sums_->ledger.momentum_out[3 + k] += torque[static_cast<Eigen::Index>(k)];
-    }
+    const Vec3 direction(ray.direction[0], ray.direction[1], ray.direction[2]);
+    const Vec3 origin(ray.origin_m[0], ray.origin_m[1], ray.origin_m[2]);
+    sums_->ledger.release(origin, direction, power);
   }
 
   // What is still under way at the depth limit.
@@ -236,11 +194,12 @@ class BatchTracer {
   LaunchBuffer launched_;
   Continuation current_, next_;
   InteractionContext context_{};
+  Hits::Column<int> kept_{};
   Sums* sums_ = nullptr;
-  int depth_ = 0;
 };
 
-// Parts that the batches of one replicate are cut into; fixed, so that sums do not depend on threads.
+// Parts that the batches of one replicate are cut into; fixed, so that sums do not depend on
+// threads.
 constexpr uint64_t most_parts = 4;
 
 Sums trace_part(const TraceableScene::Data& scene, const Plan& plan,
@@ -270,7 +229,7 @@ Ledger make_ledger(const std::vector<Sums>& replicates, const Plan& plan) {
   };
   const auto absorbed = [](const LedgerSums& s) {
     double sum = 0.0;
-    for (const double power : s.absorbed_W) sum += power;
+    for (size_t i = 0; i < s.absorbed_lanes_W.size(); ++i) sum += s.absorbed_W(i);
     return sum;
   };
   Ledger ledger;
@@ -278,12 +237,13 @@ Ledger make_ledger(const std::vector<Sums>& replicates, const Plan& plan) {
   ledger.absorbed_W = estimate(absorbed);
   ledger.escaped_W = estimate([](const LedgerSums& s) { return s.escaped_W; });
   ledger.truncated_W = estimate([](const LedgerSums& s) { return s.truncated_W; });
-  for (size_t i = 0; i < replicates[0].ledger.absorbed_W.size(); ++i) {
+  for (size_t i = 0; i < replicates[0].ledger.absorbed_lanes_W.size(); ++i) {
     ledger.absorbed_by_instance_W.push_back(
-        estimate([i](const LedgerSums& s) { return s.absorbed_W[i]; }));
+        estimate([i](const LedgerSums& s) { return s.absorbed_W(i); }));
   }
   for (size_t k = 0; k < 3; ++k) {
-    ledger.force_N[k] = estimate([k](const LedgerSums& s) { return s.momentum_in[k] - s.momentum_out[k]; });
+    ledger.force_N[k] =
+        estimate([k](const LedgerSums& s) { return s.momentum_in[k] - s.momentum_out[k]; });
     ledger.torque_N_m[k] =
         estimate([k](const LedgerSums& s) { return s.momentum_in[3 + k] - s.momentum_out[3 + k]; });
   }
@@ -336,7 +296,8 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
     done[item] = trace_part(data, plan, receivers, options, static_cast<int>(item / parts),
                             plan.batches * part / parts, plan.batches * (part + 1) / parts);
     const size_t now = ++finished;
-    if (options.progress) options.progress(static_cast<double>(now) / static_cast<double>(done.size()));
+    if (options.progress)
+      options.progress(static_cast<double>(now) / static_cast<double>(done.size()));
   });
 
   std::vector<Sums> by_replicate;
@@ -349,7 +310,8 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   for (size_t i = 0; i < receivers.size(); ++i) {
     BinSums sums{receivers[i]->bins(), options.replicates, {}};
     for (const Sums& replicate : by_replicate) {
-      sums.sums.insert(sums.sums.end(), replicate.receivers[i].begin(), replicate.receivers[i].end());
+      sums.sums.insert(sums.sums.end(), replicate.receivers[i].begin(),
+                       replicate.receivers[i].end());
     }
     result.sums.push_back(std::move(sums));
   }

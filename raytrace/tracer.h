@@ -4,8 +4,9 @@
 // followed from surface to surface. At a hit the absorbed fraction of its power stays there and one
 // of the other lobes, drawn in proportion to its power, carries all the rest on, so that
 //   emitted = absorbed + escaped + truncated
-// holds for every ray, not only on average. Standard errors come from the spread of the replicates.
-// Results are the same bits at any number of threads.
+// holds for every ray, not only on average. The force of a hit is the momentum that arrives minus
+// the expectation of what leaves over all lobes. Standard errors come from the spread of the
+// replicates. Results are the same bits at any number of threads.
 #pragma once
 
 #include <functional>
@@ -23,8 +24,8 @@ namespace photorque {
 // the emitters move, not the scene. Immutable after construction.
 class TraceableScene {
  public:
-  // Keeps its own copy of the scene. Throws InputError for indices out of range or vertices that are
-  // not finite. `leak_safe` makes rays watertight along shared edges at 12–20 % of the speed.
+  // Keeps its own copy of the scene. Throws InputError for indices out of range or vertices that
+  // are not finite. `leak_safe` makes rays watertight along shared edges at 12–20 % of the speed.
   explicit TraceableScene(Scene scene, bool leak_safe = true);
   ~TraceableScene();
   TraceableScene(TraceableScene&&) noexcept;
@@ -39,12 +40,13 @@ class TraceableScene {
 };
 
 struct TraceOptions {
-  uint64_t rays = 1ull << 23;  // in total; rounded up per beam and replicate to a power of two ≥ 256
-  int replicates = 16;         // ≥ 8
+  uint64_t rays =
+      1ull << 23;       // in total; rounded up per beam and replicate to a power of two ≥ 256
+  int replicates = 16;  // ≥ 8
   uint64_t seed = 1;
-  int max_depth = 64;          // interactions after which a ray's remaining power is truncated, ≥ 1
-  double cutoff = 1e-9;        // truncate rays with less than this fraction of their first power
-  int threads = 0;             // 0: all
+  int max_depth = 64;    // interactions after which a ray's remaining power is truncated, ≥ 1
+  double cutoff = 1e-9;  // truncate rays with less than this fraction of their first power
+  int threads = 0;       // 0: all
   std::function<void(double)> progress;  // called with the finished fraction, from any thread
 };
 
@@ -57,8 +59,9 @@ struct Ledger {
   Estimate truncated_W;
   std::vector<Estimate> absorbed_by_instance_W;
   double closure = 0.0;  // |emitted − absorbed − escaped − truncated| / emitted
-  // Force and torque about the body origin from the rays as they left minus as they escaped (or were
-  // truncated): what the sum over all surfaces must equal. Body frame.
+  // Force and torque about the body origin (body frame) from the rays alone: momentum at their
+  // first hit minus momentum as they escaped or were truncated. The sum of Hits::force_N over all
+  // surfaces has the same expectation by another route, with less noise: a check in every run.
   std::array<Estimate, 3> force_N;
   std::array<Estimate, 3> torque_N_m;
 };

@@ -24,7 +24,8 @@ inline void transpose_8x8(const float* in, float* out, int out_stride) {
   }
   for (int i = 0; i < 4; ++i) {
     _mm256_storeu_ps(out + i * out_stride, _mm256_permute2f128_ps(quad[i], quad[i + 4], 0x20));
-    _mm256_storeu_ps(out + (i + 4) * out_stride, _mm256_permute2f128_ps(quad[i], quad[i + 4], 0x31));
+    _mm256_storeu_ps(out + (i + 4) * out_stride,
+                     _mm256_permute2f128_ps(quad[i], quad[i + 4], 0x31));
   }
 #else
   for (int i = 0; i < 8; ++i) {

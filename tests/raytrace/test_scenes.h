@@ -20,14 +20,18 @@ class ParallelBeam final : public Emitter {
     for (int i = 0; i < ray_block; ++i) {
       const double u = sobol_fraction(samples.bits[0][i]), v = sobol_fraction(samples.bits[1][i]);
       const double radius = size_m_ * std::sqrt(u), angle = 2 * pi * v;
-      rays.origin_m[0][i] = shape_ == Shape::square ? size_m_ * (u - 0.5) : radius * std::cos(angle);
-      rays.origin_m[1][i] = shape_ == Shape::square ? size_m_ * (v - 0.5) : radius * std::sin(angle);
+      rays.origin_m[0][i] =
+          shape_ == Shape::square ? size_m_ * (u - 0.5) : radius * std::cos(angle);
+      rays.origin_m[1][i] =
+          shape_ == Shape::square ? size_m_ * (v - 0.5) : radius * std::sin(angle);
       rays.origin_m[2][i] = 0.0;
       rays.direction[0][i] = rays.direction[1][i] = 0.0;
       rays.direction[2][i] = 1.0;
     }
   }
-  double relative_intensity(double angle_rad) const override { return angle_rad == 0.0 ? 1.0 : 0.0; }
+  double relative_intensity(double angle_rad) const override {
+    return angle_rad == 0.0 ? 1.0 : 0.0;
+  }
 
  private:
   double power_W_;
@@ -40,7 +44,10 @@ class PillboxDisc final : public Emitter {
  public:
   enum class Measure { angle, projected };
   PillboxDisc(double power_W, double radius_m, double half_angle_rad, Measure measure)
-      : power_W_(power_W), radius_m_(radius_m), half_angle_rad_(half_angle_rad), measure_(measure) {}
+      : power_W_(power_W),
+        radius_m_(radius_m),
+        half_angle_rad_(half_angle_rad),
+        measure_(measure) {}
   double power_W() const override { return power_W_; }
   void emit(const SampleBlock& samples, RayBlock& rays) const override {
     for (int i = 0; i < ray_block; ++i) {
@@ -115,6 +122,24 @@ inline Mesh sphere(double radius_m, int rings) {
   return mesh;
 }
 
+// Force and torque about the body origin, summed over all hits: bins fx fy fz tx ty tz.
+class TotalWrench final : public Receiver {
+ public:
+  size_t bins() const override { return 6; }
+  void score(const Hits& hits, std::span<double> sums) const override {
+    for (int i = 0; i < hits.count; ++i) {
+      const Vec3 at(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
+      const Vec3 force(hits.force_N[0][i], hits.force_N[1][i], hits.force_N[2][i]);
+      const Vec3 torque = at.cross(force);
+      for (int k = 0; k < 3; ++k) {
+        sums[static_cast<size_t>(k)] += force[k];
+        sums[static_cast<size_t>(3 + k)] += torque[k];
+      }
+    }
+  }
+  Product product(const BinSums&) const override { return {}; }
+};
+
 // Adds a mesh with the same surface on both sides; returns the instance's index.
 inline uint32_t add(Scene& scene, Mesh mesh, const OpticalSurface& surface,
                     const std::string& node) {
@@ -129,7 +154,8 @@ inline uint32_t add(Scene& scene, Mesh mesh, const OpticalSurface& surface,
 }
 
 // A beam from `origin_m` along `direction`.
-inline Beam beam(std::shared_ptr<const Emitter> emitter, const Vec3& origin_m, const Vec3& direction) {
+inline Beam beam(std::shared_ptr<const Emitter> emitter, const Vec3& origin_m,
+                 const Vec3& direction) {
   return {"beam", std::move(emitter), frame_looking_along(direction, origin_m), Spectrum{}};
 }
 

@@ -1,0 +1,34 @@
+// Rays → hits: through Embree in packets, then in double precision.
+#pragma once
+
+#include <span>
+
+#include "raytrace/launch.h"
+#include "raytrace/receiver.h"
+#include "raytrace/traceable_scene_data.h"
+
+namespace photorque {
+
+// Hits under way to the receivers, with what the receivers need not know.
+struct HitBuffer {
+  Hits hits;
+  Hits::Column<uint32_t> sample;
+  // The rays in single precision: ox oy oz dx dy dz, then the bits of `sample`, and padding.
+  std::array<Hits::Column<float>, 8> ray;
+  std::array<Hits::Column<double>, 3> direction;
+  Hits::Column<double> left_W;  // power that goes on, all bands
+};
+
+// Traces up to Hits::capacity rays. Afterwards row i of the buffer belongs to ray i: instance (or
+// RTC_INVALID_GEOMETRY_ID), triangle, barycentric, ray; hits.count is the number of rays.
+void find_hits(const TraceableScene::Data& scene, std::span<const Ray> rays, Coherence coherence,
+               HitBuffer& buffer);
+
+// Closes the gaps of the rows without a hit; hits.count becomes the number of hits and kept[j] the
+// row that hit j had. Returns the number of hits.
+int compact(HitBuffer& buffer, Hits::Column<int>& kept);
+
+// Fills position, direction, front, sample and depth of every hit.
+void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer);
+
+}  // namespace photorque

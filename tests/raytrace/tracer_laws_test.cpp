@@ -1,0 +1,266 @@
+// What must hold for every scene: balances, independence of threads, honest errors.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "core/errors.h"
+#include "tests/raytrace/test_scenes.h"
+
+namespace photorque {
+namespace {
+
+using testing::add;
+
+// A bit of everything: mirrors, matt and translucent sheets, a box in between.
+Scene busy_scene() {
+  Scene scene;
+  add(scene, testing::rectangle(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)),
+      grey_surface("matt", 0.1, 0.6), "floor");
+  add(scene, testing::rectangle(Vec3(0.5, 0, 0.5), Vec3(0, 1, 0), Vec3(0, 0, 1)),
+      grey_surface("mirror", 0.9, 0.05), "wall");
+  add(scene, testing::rectangle(Vec3(0, 0, 0.8), Vec3(0.6, 0, 0.1), Vec3(0, 0.6, 0)),
+      grey_surface("film", 0.2, 0.1, 0.5), "film");
+  add(scene, testing::box(Vec3(-0.2, -0.1, 0.2), Vec3(0.1, 0.2, 0.4)),
+      grey_surface("paint", 0.0, 0.3), "box");
+  return scene;
+}
+
+Beam wide_cone(double height_m) {
+  const auto emitter = std::make_shared<testing::PillboxDisc>(
+      2.5, 0.1, 20 * degree_rad, testing::PillboxDisc::Measure::projected);
+  return testing::beam(emitter, Vec3(0.1, -0.2, height_m), Vec3(-0.05, 0.1, -1));
+}
+
+TEST(Ledger, ClosesForEveryReplicate) {
+  const TraceableScene scene(busy_scene());
+  const Beam beam = wide_cone(2.0);
+  for (const int depth : {1, 2, 5, 64}) {
+    TraceOptions options;
+    options.rays = 1 << 17;
+    options.max_depth = depth;
+    options.cutoff = depth == 5 ? 1e-3 : 1e-9;
+    const Ledger ledger = trace(scene, {}, std::span(&beam, 1), {}, options).ledger;
+    EXPECT_LE(ledger.closure, 1e-12);
+    EXPECT_NEAR(ledger.absorbed_W.value + ledger.escaped_W.value + ledger.truncated_W.value, 2.5,
+                1e-11);
+    double by_instance = 0.0;
+    for (const Estimate& part : ledger.absorbed_by_instance_W) by_instance += part.value;
+    EXPECT_NEAR(by_instance, ledger.absorbed_W.value, 1e-12);
+    if (depth == 1) {  // one interaction only: much is cut off
+      EXPECT_GT(ledger.truncated_W.value, 0.1);
+    }
+    if (depth == 64) {
+      EXPECT_LT(ledger.truncated_W.value, 1e-6);
+    }
+  }
+}
+
+TEST(Ledger, SurfacesAndRaysAgreeOnForceAndTorque) {
+  const TraceableScene scene(busy_scene());
+  const Beam beam = wide_cone(2.0);
+  const testing::TotalWrench wrench;
+  const Receiver* const receivers[] = {&wrench};
+  TraceOptions options;
+  options.rays = 1 << 20;
+  const TraceResult result = trace(scene, {}, std::span(&beam, 1), receivers, options);
+  for (size_t k = 0; k < 6; ++k) {
+    const Estimate surfaces = result.sums[0].estimate(k);
+    const Estimate rays = k < 3 ? result.ledger.force_N[k] : result.ledger.torque_N_m[k - 3];
+    const double error = std::hypot(surfaces.standard_error, rays.standard_error);
+    EXPECT_LT(std::abs(surfaces.value - rays.value), 4 * error) << k;
+    EXPECT_LT(error, 1e-3 * 2.5 / speed_of_light_m_s);
+  }
+}
+
+// Scores, and notes which threads did.
+class ThreadCounter final : public Receiver {
+ public:
+  size_t bins() const override { return 1; }
+  void score(const Hits& hits, std::span<double> sums) const override {
+    for (int i = 0; i < hits.count; ++i) sums[0] += hits.incident_W[0][i] * hits.position_m[0][i];
+    const std::scoped_lock lock(mutex_);
+    threads_.insert(std::this_thread::get_id());
+  }
+  Product product(const BinSums&) const override { return {}; }
+  size_t count() const { return threads_.size(); }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::set<std::thread::id> threads_;
+};
+
+TEST(Threads, SameBitsAtOneTwoAndSeven) {
+  const TraceableScene scene(busy_scene());
+  const std::vector<Beam> beams = {wide_cone(2.0), wide_cone(1.5)};
+  std::vector<std::vector<double>> results;
+  for (const int threads : {1, 2, 7, 7}) {
+    const testing::TotalWrench wrench;
+    const ThreadCounter counter;
+    const Receiver* const receivers[] = {&wrench, &counter};
+    TraceOptions options;
+    options.rays = 1 << 20;
+    options.threads = threads;
+    const TraceResult result = trace(scene, lab_from_body_at(0.3, 0.2), beams, receivers, options);
+    std::vector<double> all = result.sums[0].sums;
+    all.insert(all.end(), result.sums[1].sums.begin(), result.sums[1].sums.end());
+    all.push_back(result.ledger.escaped_W.value);
+    results.push_back(all);
+    // A test of threads that ran on one thread would prove nothing.
+    EXPECT_LE(counter.count(), static_cast<size_t>(threads));
+    if (threads == 1) {
+      EXPECT_EQ(counter.count(), 1u);
+    }
+    if (threads == 7) {
+      EXPECT_GE(counter.count(), 3u);
+    }
+  }
+  for (size_t i = 1; i < results.size(); ++i) EXPECT_EQ(results[i], results[0]);
+}
+
+TEST(Seed, ChangesTheBitsAndNotTheMeaning) {
+  const TraceableScene scene(busy_scene());
+  const Beam beam = wide_cone(2.0);
+  TraceOptions options;
+  options.rays = 1 << 17;
+  const Estimate a = trace(scene, {}, std::span(&beam, 1), {}, options).ledger.absorbed_W;
+  options.seed = 2;
+  const Estimate b = trace(scene, {}, std::span(&beam, 1), {}, options).ledger.absorbed_W;
+  EXPECT_NE(a.value, b.value);
+  EXPECT_LT(std::abs(a.value - b.value), 4 * std::hypot(a.standard_error, b.standard_error));
+}
+
+// The 95 % interval of Student's t holds the truth in about 95 of 100 independent runs. The truth
+// is a closed form: a Lambertian floor under a square beam sends cosine-distributed light at a disc
+// above it; here simply the power that lands on one half of a plate that the beam covers unevenly.
+TEST(StandardErrors, CoverTheTruthNinetyFivePercentOfTheTime) {
+  Scene plate;
+  add(plate, testing::rectangle(Vec3(0.123, 0, 0), Vec3(0.5, 0.1, 0), Vec3(-0.07, 0.6, 0)),
+      grey_surface("black", 0, 0), "plate");
+  const double area = 0.5 * 0.6 + 0.1 * 0.07;
+  const TraceableScene scene(std::move(plate));
+  const Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 1.0), Vec3(0, 0, 3),
+                                  Vec3(0, 0, -1));
+  const int runs = 400;
+  int covered = 0, covered_by_half = 0;
+  for (int run = 0; run < runs; ++run) {
+    TraceOptions options;
+    options.rays = 16 * 1024;
+    options.seed = static_cast<uint64_t>(run) + 100;
+    const Estimate e = trace(scene, {}, std::span(&beam, 1), {}, options).ledger.absorbed_W;
+    const double error = std::abs(e.value - area);
+    covered += error <= student_t_975(options.replicates) * e.standard_error;
+    covered_by_half += error <= 0.5 * student_t_975(options.replicates) * e.standard_error;
+  }
+  // Binomial: 95 % ± 1.1 %; five of these either way.
+  EXPECT_NEAR(covered / static_cast<double>(runs), 0.95, 0.055);
+  // The mutant: standard errors that claim twice the accuracy are found out.
+  EXPECT_GT(std::abs(covered_by_half / static_cast<double>(runs) - 0.95), 0.055);
+}
+
+TEST(LowDiscrepancy, BeatsPseudoRandomErrorTenfold) {
+  // A plate that catches a fraction p of the beam: pseudo-random counting would err by
+  // sqrt(p (1 − p)/n).
+  Scene plate;
+  add(plate, testing::rectangle(Vec3(0.123, 0, 0), Vec3(0.5, 0.1, 0), Vec3(-0.07, 0.6, 0)),
+      grey_surface("black", 0, 0), "plate");
+  const TraceableScene scene(std::move(plate));
+  const Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 1.0), Vec3(0, 0, 3),
+                                  Vec3(0, 0, -1));
+  TraceOptions options;
+  options.rays = 1 << 20;
+  const TraceResult result = trace(scene, {}, std::span(&beam, 1), {}, options);
+  const double p = 0.307;
+  EXPECT_LT(result.ledger.absorbed_W.standard_error,
+            0.1 * std::sqrt(p * (1 - p) / static_cast<double>(result.rays)));
+}
+
+TEST(Bands, EachBandSeesItsOwnSurfaceAndTheSumIsConserved) {
+  Scene scene;
+  scene.bands.edges_m = {400e-9, 600e-9, 800e-9};
+  OpticalSurface filter;  // reflects the short band, absorbs the long one
+  filter.specular = {0.75, 0.0};
+  filter.absorbed = {0.25, 1.0};
+  add(scene, testing::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 2, 0)), filter, "filter");
+  const TraceableScene traceable(std::move(scene));
+  Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(3.0, 1.0), Vec3(0, 0, 3),
+                            Vec3(0, 0, -1));
+  beam.spectrum = {Spectrum::Shape::gaussian, 600e-9, 20e-9, 0.0};  // half of it in each band
+  TraceOptions options;
+  options.rays = 1 << 14;
+  const Ledger ledger = trace(traceable, {}, std::span(&beam, 1), {}, options).ledger;
+  EXPECT_NEAR(ledger.absorbed_W.value, 1.5 * 0.25 + 1.5, 1e-12);
+  EXPECT_NEAR(ledger.escaped_W.value, 1.5 * 0.75, 1e-12);
+  EXPECT_LE(ledger.closure, 1e-12);
+}
+
+TEST(Transmission, GoesStraightOnThroughBothSides) {
+  Scene scene;
+  add(scene, testing::rectangle(Vec3(0, 0, 1), Vec3(2, 0, 0), Vec3(0, 2, 0)),
+      grey_surface("half", 0, 0, 0.5), "upper");
+  add(scene, testing::rectangle(Vec3(0, 0, 0.5), Vec3(2, 0, 0), Vec3(0, -2, 0)),
+      grey_surface("half", 0, 0, 0.5), "flipped");
+  const uint32_t floor = add(scene, testing::rectangle(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 2, 0)),
+                             grey_surface("black", 0, 0), "floor");
+  const TraceableScene traceable(std::move(scene));
+  const Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 1.0), Vec3(0, 0, 3),
+                                  Vec3(0, 0, -1));
+  TraceOptions options;
+  options.rays = 1 << 14;
+  const Ledger ledger = trace(traceable, {}, std::span(&beam, 1), {}, options).ledger;
+  EXPECT_NEAR(ledger.absorbed_by_instance_W[floor].value, 0.25, 1e-12);
+}
+
+// A source at 1e9 m must hit what it is aimed at: it is brought near in double precision.
+TEST(FarSource, KeepsItsAim) {
+  Scene scene;
+  add(scene, testing::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)),
+      grey_surface("black", 0, 0), "plate");
+  const TraceableScene traceable(std::move(scene));
+  const Vec3 d = Vec3(1, 2, -3).normalized();
+  const Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 0.1), -1e9 * d, d);
+  const testing::TotalWrench wrench;
+  const Receiver* const receivers[] = {&wrench};
+  TraceOptions options;
+  options.rays = 1 << 16;
+  const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
+  EXPECT_NEAR(result.ledger.absorbed_W.value, 1.0, 1e-12);
+  // Centred on the origin: no torque, to what a double resolves at 1e9 m (1e-7 m).
+  for (size_t k = 3; k < 6; ++k) {
+    EXPECT_LT(std::abs(result.sums[0].estimate(k).value) * speed_of_light_m_s, 5e-7);
+  }
+}
+
+TEST(MirroredInstance, KeepsItsFrontOutside) {
+  Scene scene;
+  const uint32_t id = add(scene, testing::box(Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.5, 0.5)),
+                          grey_surface("black", 0, 0), "box");
+  scene.instances[id].body_from_mesh = Affine(Eigen::Scaling(-1.0, 2.0, 1.0));
+  scene.surfaces.push_back(grey_surface("mirror", 1, 0));
+  scene.instances[id].back_surface = 1;  // would show
+  const TraceableScene traceable(std::move(scene));
+  const Beam beam = testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 0.4), Vec3(0, 0, 3),
+                                  Vec3(0, 0, -1));
+  TraceOptions options;
+  options.rays = 1 << 14;
+  EXPECT_NEAR(trace(traceable, {}, std::span(&beam, 1), {}, options).ledger.absorbed_W.value, 1.0,
+              1e-12);
+}
+
+TEST(Options, OutOfRangeAreRefusedInOneLine) {
+  const TraceableScene scene(busy_scene());
+  const Beam beam = wide_cone(2.0);
+  TraceOptions few;
+  few.replicates = 4;
+  EXPECT_THROW(trace(scene, {}, std::span(&beam, 1), {}, few), InputError);
+  EXPECT_THROW(trace(scene, {}, {}, {}, {}), InputError);
+  Scene broken = busy_scene();
+  broken.instances[0].mesh = 99;
+  EXPECT_THROW(TraceableScene{broken}, InputError);
+}
+
+}  // namespace
+}  // namespace photorque
