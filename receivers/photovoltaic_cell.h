@@ -1,0 +1,90 @@
+// A solar cell as a lumped circuit: photocurrent, one or two diodes, shunt with reverse breakdown,
+// series resistance.
+//
+//   I = I_L − D(V_d),   V = V_d − I R_s,                                                      (1)
+//   D(V_d) = I₁ (e^{V_d/n₁V_t} − 1) + I₂ (e^{V_d/n₂V_t} − 1)
+//            + V_d/R_sh · (1 + a (1 − V_d/V_br)^{−m}),   V_t = kT/q.                           (2)
+//
+// I and V are explicit functions of the diode voltage V_d; everything here is a search along it. D
+// rises strictly on (V_br, ∞) for a < e² (the steepest fall of the last term is ((m−1)/(m+1))^{m+1}
+// a/R_sh < e⁻² a/R_sh), so every search has one root, is bracketed from both sides by the inverses
+// of the single terms of (2), and cannot fail.
+//
+// Currents leave the cell at its positive terminal; a reverse-biased cell has V < 0. A whole module
+// of N like cells in series is the same circuit with n, R_s, R_sh, V_br multiplied by N.
+//
+// Sources: (1)–(2) with a = 0, M. Wolf, H. Rauschenbach, Adv. Energy Conversion 3, 455 (1963);
+// breakdown, J. W. Bishop, Solar Cells 25, 73 (1988), eq. 6.
+#pragma once
+
+namespace photorque {
+
+// At one temperature.
+struct CellParameters {
+  double saturation_1_A = 1e-12;    // I₁ ≥ 0
+  double ideality_1 = 1.0;          // n₁ > 0
+  double saturation_2_A = 0.0;      // I₂ ≥ 0; I₁ + I₂ > 0
+  double ideality_2 = 2.0;          // n₂ > 0
+  double series_ohm = 0.0;          // R_s ≥ 0
+  double shunt_ohm = 1e4;           // R_sh > 0, finite
+  double breakdown_fraction = 0.0;  // a in [0, 7]; 0: no breakdown
+  double breakdown_V = -15.0;       // V_br < 0
+  double breakdown_exponent = 3.0;  // m ≥ 1
+  double temperature_K = 298.15;    // T > 0
+};
+
+// D of eq. 2 and its derivatives by V_d.
+struct DarkCurrent {
+  double value_A = 0.0;
+  double slope_S = 0.0;  // > 0
+  double curvature_A_V2 = 0.0;
+};
+
+struct CellOperatingPoint {
+  double voltage_V = 0.0;
+  double current_A = 0.0;
+  double diode_V = 0.0;
+  double power_W() const { return voltage_V * current_A; }
+};
+
+// The circuit made ready for evaluation. Accuracy of all results: a few units of rounding of the
+// largest term in (1) and (2), that is about 1e-15 of I_L and of V_d.
+class CellCurve {
+ public:
+  // Throws InputError for parameters out of the ranges above.
+  explicit CellCurve(const CellParameters& parameters);
+
+  const CellParameters& parameters() const { return parameters_; }
+  double thermal_V() const { return thermal_V_; }
+
+  // D at a diode voltage > V_br.
+  DarkCurrent dark(double diode_V) const;
+  // The diode voltage at which D + extra_S·V_d equals a current of either sign. `extra_S` ≥ 0.
+  double diode_voltage_V(double dark_A, double extra_S = 0.0) const;
+
+  double voltage_V(double photocurrent_A, double current_A) const;
+  double current_A(double photocurrent_A, double voltage_V) const;
+  double open_circuit_V(double photocurrent_A) const { return diode_voltage_V(photocurrent_A); }
+  double short_circuit_A(double photocurrent_A) const { return current_A(photocurrent_A, 0.0); }
+  // The point of most power; all zero for a photocurrent ≤ 0.
+  CellOperatingPoint maximum_power(double photocurrent_A) const;
+  // The photocurrent that gives a short-circuit current.
+  double photocurrent_A(double short_circuit_A) const;
+
+ private:
+  struct Bracket {
+    double low_V, high_V;
+  };
+  Bracket forward_bracket(double dark_A, double conductance_S) const;
+  Bracket reverse_bracket(double dark_A, double conductance_S) const;
+
+  CellParameters parameters_;
+  double thermal_V_;
+  double scale_1_V_;         // n₁ V_t
+  double scale_2_V_;         // n₂ V_t
+  double shunt_S_;           // 1/R_sh
+  double breakdown_S_;       // a/R_sh
+  double breakdown_size_V_;  // |V_br|
+};
+
+}  // namespace photorque

@@ -1,0 +1,206 @@
+#include "receivers/photovoltaic_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "core/errors.h"
+#include "receivers/photovoltaic_root.h"
+
+namespace photorque {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void check(const ArrayWiring& wiring, size_t cells) {
+  std::vector<char> used(cells, 0);
+  for (const auto& string : wiring.strings) {
+    if (string.substrings.empty()) throw InputError({}, "array", "an empty string", "substrings");
+    for (const auto& substring : string.substrings) {
+      if (substring.rows.empty()) throw InputError({}, "array", "an empty substring", "cells");
+      for (const auto& row : substring.rows) {
+        if (row.empty()) throw InputError({}, "array", "an empty row", "cells");
+        for (const int cell : row) {
+          if (cell < 0 || static_cast<size_t>(cell) >= cells || used[static_cast<size_t>(cell)]) {
+            throw InputError({}, "array", "cell " + std::to_string(cell),
+                             "each of the " + std::to_string(cells) + " cells at most once");
+          }
+          used[static_cast<size_t>(cell)] = 1;
+        }
+      }
+    }
+  }
+  if (wiring.strings.empty()) throw InputError({}, "array", "no strings", "at least one");
+}
+
+}  // namespace
+
+ArrayCurve::ArrayCurve(const ArrayWiring& wiring, const CellTables& tables,
+                       const std::vector<double>& photocurrents_A)
+    : tables_(tables), cells_(photocurrents_A.size()) {
+  if (tables.size() != cells_) {
+    throw InputError({}, "array", std::to_string(tables.size()) + " cell tables",
+                     "one per photocurrent");
+  }
+  check(wiring, cells_);
+  strings_.reserve(wiring.strings.size());
+  for (const auto& string : wiring.strings) strings_.emplace_back(string, tables, photocurrents_A);
+  for (const StringCurve& string : strings_) switches_.push_back(switches_of(string));
+  end_x_ = find_end_x();
+}
+
+ArrayPoint ArrayCurve::point(double x, double y) const {
+  return by_current() ? ArrayPoint{y, x} : ArrayPoint{x, y};
+}
+
+ArrayCurve::Node ArrayCurve::make_node() const {
+  Node node;
+  node.strings.reserve(strings_.size());
+  for (const StringCurve& string : strings_) node.strings.push_back(string.make_state());
+  return node;
+}
+
+void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, Node& node,
+                          const Node* low, const Node* high) const {
+  node.x = x;
+  if (by_current()) {
+    StringState& state = node.strings[0];
+    strings_[0].at_current(x, regimes[0], state);
+    node.y = state.voltage_V;
+    node.slope = state.slope_ohm;
+    node.curvature = state.curvature_V_A2;
+    return;
+  }
+  node.y = node.slope = node.curvature = 0.0;
+  for (size_t s = 0; s < strings_.size(); ++s) {
+    StringState& state = node.strings[s];
+    double low_A = 0.0, high_A = strings_[s].largest_photocurrent_A();
+    if (low != nullptr && high != nullptr) {
+      low_A = high->strings[s].current_A;
+      high_A = low->strings[s].current_A;
+      state.current_A = std::midpoint(low_A, high_A);
+    }
+    strings_[s].at_voltage(x, regimes[s], low_A, high_A, state);
+    node.y += state.current_A;
+    const double g = 1.0 / state.slope_ohm;
+    node.slope += g;
+    if (g > 0) node.curvature += state.curvature_V_A2 * g * g * g;
+  }
+}
+
+ArrayCurve::Switches ArrayCurve::switches_of(const StringCurve& string) const {
+  Switches switches{string.clamp_currents_A(), infinity};
+  if (by_current()) return switches;
+  StringState state = string.make_state();
+  for (double& clamp : switches.clamp_x) {
+    if (clamp == infinity) continue;
+    string.at_current(clamp, string.regime_at(clamp), state);
+    clamp = state.voltage_V;
+  }
+  if (string.has_blocking_clamp()) switches.blocked_x = string.open_circuit_V();
+  return switches;
+}
+
+std::vector<StringRegime> ArrayCurve::regimes_at(double x) const {
+  std::vector<StringRegime> regimes(strings_.size());
+  for (size_t s = 0; s < strings_.size(); ++s) {
+    for (const double clamp_x : switches_[s].clamp_x) {
+      const bool clamped = clamp_x != infinity && (by_current() ? x >= clamp_x : x < clamp_x);
+      regimes[s].clamped.push_back(clamped);
+    }
+    regimes[s].blocked = x >= switches_[s].blocked_x;
+  }
+  return regimes;
+}
+
+double ArrayCurve::y_at(double x) const {
+  Node node = make_node();
+  evaluate(x, regimes_at(x), node);
+  return node.y;
+}
+
+double ArrayCurve::find_end_x() const {
+  double low = 0.0, high = 0.0;
+  if (by_current()) {
+    high = strings_[0].largest_photocurrent_A();
+  } else {
+    low = infinity;
+    for (const StringCurve& string : strings_) {
+      low = std::min(low, string.open_circuit_V());
+      high = std::max(high, string.open_circuit_V());
+    }
+  }
+  low = std::max(low, 0.0);
+  if (!(high > low)) return std::max(high, 0.0);
+  Node node = make_node();
+  return falling_root(low, high, high, 1e-13, [&](double x) {
+    evaluate(x, regimes_at(x), node);
+    return ValueAndSlope{node.y, -node.slope};
+  });
+}
+
+double ArrayCurve::x_at(double y) const {
+  if (end_x_ == 0.0) return 0.0;
+  Node node = make_node();
+  return falling_root(0.0, end_x_, 0.5 * end_x_, 1e-12, [&](double x) {
+    evaluate(x, regimes_at(x), node);
+    return ValueAndSlope{node.y - y, -node.slope};
+  });
+}
+
+double ArrayCurve::current_A(double voltage_V) const {
+  return by_current() ? x_at(voltage_V) : y_at(voltage_V);
+}
+
+double ArrayCurve::voltage_V(double current_A) const {
+  return by_current() ? y_at(current_A) : x_at(current_A);
+}
+
+std::vector<ArrayCurve::Piece> ArrayCurve::pieces() const {
+  std::vector<double> edges = {0.0, end_x_};
+  for (const Switches& switches : switches_) {
+    edges.insert(edges.end(), switches.clamp_x.begin(), switches.clamp_x.end());
+    edges.push_back(switches.blocked_x);
+  }
+  std::erase_if(edges, [&](double x) { return !(x >= 0.0 && x <= end_x_); });
+  std::ranges::sort(edges);
+  std::vector<Piece> pieces;
+  for (size_t i = 0; i + 1 < edges.size(); ++i) {
+    if (edges[i + 1] > edges[i]) {
+      pieces.push_back({edges[i], edges[i + 1], regimes_at(std::midpoint(edges[i], edges[i + 1]))});
+    }
+  }
+  return pieces;
+}
+
+std::vector<ArrayPoint> ArrayCurve::sample(int intervals) const {
+  std::vector<ArrayPoint> points;
+  if (end_x_ == 0.0) return {ArrayPoint{}};
+  Node node = make_node();
+  for (const Piece& piece : pieces()) {
+    const double width = piece.high_x - piece.low_x;
+    const int steps = std::max(1, static_cast<int>(std::ceil(intervals * width / end_x_)));
+    for (int i = piece.low_x == 0.0 ? 0 : 1; i <= steps; ++i) {
+      const double x = i == steps ? piece.high_x : piece.low_x + width * i / steps;
+      evaluate(x, piece.regimes, node);
+      points.push_back(point(x, x == end_x_ ? 0.0 : node.y));
+    }
+  }
+  if (by_current()) std::ranges::reverse(points);
+  return points;
+}
+
+CellStates ArrayCurve::cells_at(double voltage_V) const {
+  CellStates states{std::vector<double>(cells_, 0.0), std::vector<double>(cells_, 0.0)};
+  const double x = by_current() ? x_at(voltage_V) : voltage_V;
+  Node node = make_node();
+  evaluate(x, regimes_at(x), node);
+  for (size_t s = 0; s < strings_.size(); ++s) {
+    strings_[s].cells_at(node.strings[s].current_A, states.voltages_V, states.currents_A);
+  }
+  return states;
+}
+
+}  // namespace photorque

@@ -1,0 +1,116 @@
+// The maxima of ArrayCurve: isolation of the zeros of P′ by bounds, as photovoltaic_curve.h tells.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "receivers/photovoltaic_curve.h"
+#include "receivers/photovoltaic_root.h"
+
+namespace photorque {
+
+class ArrayCurve::Search {
+ public:
+  explicit Search(const ArrayCurve& curve) : curve_(curve) {}
+
+  std::vector<ArrayPoint> run() {
+    Node low = curve_.make_node(), high = curve_.make_node();
+    for (const Piece& piece : curve_.pieces()) {
+      curve_.evaluate(piece.low_x, piece.regimes, low);
+      curve_.evaluate(piece.high_x, piece.regimes, high);
+      search(low, high, piece, 0);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  struct Bounds {
+    double low, high;
+    bool hold_zero() const { return low <= 0.0 && high >= 0.0; }
+  };
+
+  void search(const Node& low, const Node& high, const Piece& piece, size_t depth) {
+    const bool falls = low.power_slope() > 0.0 && high.power_slope() < 0.0;
+    const SlopeRange range = range_between(low, high, piece);
+    const Bounds second = power_curvature(low, high, range);
+    if (!second.hold_zero()) {
+      if (falls) refine(low, high, piece, depth);
+      return;
+    }
+    if (!power_slope(low, high, range, second).hold_zero()) return;
+    // Two zeros closer than this cannot be told apart in double precision.
+    if (high.x - low.x <= 1e-12 * curve_.end_x_) {
+      if (falls) refine(low, high, piece, depth);
+      return;
+    }
+    Node& middle = node(depth);
+    curve_.evaluate(std::midpoint(low.x, high.x), piece.regimes, middle, &low, &high);
+    search(low, middle, piece, depth + 1);
+    search(node(depth), high, piece, depth + 1);
+  }
+
+  SlopeRange range_between(const Node& low, const Node& high, const Piece& piece) const {
+    if (curve_.by_current()) {
+      return curve_.strings_[0].resistance_range(low.strings[0], high.strings[0], piece.regimes[0]);
+    }
+    SlopeRange sum;
+    for (size_t s = 0; s < curve_.strings_.size(); ++s) {
+      sum +=
+          curve_.strings_[s].conductance_range(high.strings[s], low.strings[s], piece.regimes[s]);
+    }
+    return sum;
+  }
+
+  // P″ = −2 slope + x curvature.
+  static Bounds power_curvature(const Node& low, const Node& high, const SlopeRange& r) {
+    return {-2.0 * r.slope_high + (r.curvature_low < 0 ? high.x : low.x) * r.curvature_low,
+            -2.0 * r.slope_low + (r.curvature_high > 0 ? high.x : low.x) * r.curvature_high};
+  }
+
+  // P′ = y − x slope, directly and by the mean value theorem from either end.
+  static Bounds power_slope(const Node& low, const Node& high, const SlopeRange& r,
+                            const Bounds& second) {
+    const double width = high.x - low.x;
+    const double from_low = low.power_slope(), from_high = high.power_slope();
+    return {std::max({high.y - high.x * r.slope_high, from_low + std::min(0.0, width * second.low),
+                      from_high - std::max(0.0, width * second.high)}),
+            std::min({low.y - low.x * r.slope_low, from_low + std::max(0.0, width * second.high),
+                      from_high - std::min(0.0, width * second.low)})};
+  }
+
+  void refine(const Node& low, const Node& high, const Piece& piece, size_t depth) {
+    Node& at = node(depth);
+    const double guess =
+        low.x + (high.x - low.x) * low.power_slope() / (low.power_slope() - high.power_slope());
+    const double x = falling_root(low.x, high.x, guess, 1e-10, [&](double trial_x) {
+      curve_.evaluate(trial_x, piece.regimes, at, &low, &high);
+      return ValueAndSlope{at.power_slope(), at.power_curvature()};
+    });
+    // Along the tangent from the last trial, 1e-10 away.
+    found_.push_back(curve_.point(x, at.y - (x - at.x) * at.slope));
+  }
+
+  Node& node(size_t depth) {
+    while (nodes_.size() <= depth) nodes_.push_back(std::make_unique<Node>(curve_.make_node()));
+    return *nodes_[depth];
+  }
+
+  const ArrayCurve& curve_;
+  std::vector<std::unique_ptr<Node>> nodes_;  // one per depth: references stay valid
+  std::vector<ArrayPoint> found_;
+};
+
+std::vector<ArrayPoint> ArrayCurve::maxima() const {
+  std::vector<ArrayPoint> found = Search(*this).run();
+  std::ranges::sort(found, {}, &ArrayPoint::voltage_V);
+  return found;
+}
+
+ArrayPoint ArrayCurve::maximum_power() const {
+  ArrayPoint best;
+  for (const ArrayPoint& point : maxima()) {
+    if (point.power_W() > best.power_W()) best = point;
+  }
+  return best;
+}
+
+}  // namespace photorque

@@ -1,0 +1,43 @@
+// From light to photocurrent.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/spectrum.h"
+
+namespace photorque {
+
+// Electrons collected per photon that falls on the cell (external: reflection is included), by
+// wavelength; straight between the points, zero outside them.
+struct QuantumEfficiency {
+  std::vector<double> wavelength_m;  // ascending, at least two
+  std::vector<double> efficiency;    // in [0, 1]
+
+  double at(double wavelength_m) const;
+};
+
+// Monocrystalline silicon. Shape: the spectral response of a measured cell, 13 points, from
+// A. Driesse, J. Stein, Global Normal Spectral Irradiance in Albuquerque (2020),
+// doi:10.2172/1814068, divided by wavelength. The measurement is relative; `peak` is the efficiency
+// at the best wavelength (800 nm), by default that of a textured cell with an antireflective coat
+// (assumed).
+QuantumEfficiency silicon_quantum_efficiency(double peak = 0.95);
+
+// Ampere per watt at one wavelength: EQE λ q/(h c).
+double responsivity_A_W(const QuantumEfficiency& efficiency, double wavelength_m);
+
+// A spectrum and how much radiant power has it, in any unit.
+struct WeighedSpectrum {
+  Spectrum spectrum;
+  double power = 1.0;
+};
+
+// Ampere per watt of the light in each band, averaged over the spectra in proportion to their power
+// in it; zero for a band without light. The integral is a sum over steps of 0.5 nm (1e-5 relative
+// for smooth spectra); a line is taken at its wavelength.
+BandValues band_responsivity_A_W(const QuantumEfficiency& efficiency, const Bands& bands,
+                                 std::span<const WeighedSpectrum> spectra);
+
+}  // namespace photorque
