@@ -1,0 +1,35 @@
+// The bytes that a glTF document refers to, and the only place of the reader that asks for files.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "scenes/gltf_fault.h"
+#include "scenes/gltf_reader.h"
+
+namespace photorque::gltf {
+
+// `bytes` holds at least byte_length; nothing when the document leaves the source open, which is
+// legal as long as nobody reads it (placeholders, fallbacks of compressed data).
+struct Buffer {
+  uint64_t byte_length = 0;
+  std::optional<std::string> bytes;
+};
+
+struct Buffers {
+  std::vector<Buffer> buffers;
+  std::vector<std::pair<std::string, std::string>> inputs;  // external files: name, content hash
+};
+
+// Loads every buffer of a document that passed check_schema(). `binary` is the BIN chunk of a GLB.
+// Throws InputError for bytes that are missing or fewer than declared, and for URIs that are
+// malformed, of a scheme other than data:, absolute, or leave the folder of the model.
+Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_view> binary,
+                     bool is_glb, const std::string& file, const GltfOpen& open, Budget* budget);
+
+}  // namespace photorque::gltf
