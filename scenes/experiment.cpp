@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "receivers/receiver_kind.h"
+#include "receivers/receiver_settings.h"
 #include "scenes/gltf_reader.h"
 #include "sources/source_kind.h"
 
@@ -18,24 +19,6 @@ std::vector<std::string> names_of(const std::vector<Kind>& kinds) {
   std::vector<std::string> names;
   for (const Kind& kind : kinds) names.push_back(kind.name);
   return names;
-}
-
-// Every node of the scene, those most like `word` first.
-std::string list_of_nodes(const Scene& scene, const std::string& word) {
-  std::set<std::string> names;
-  for (const Instance& instance : scene.instances) {
-    std::istringstream path(instance.path);
-    for (std::string name; std::getline(path, name, '/');) names.insert(name);
-  }
-  std::vector<std::string> ordered;
-  for (std::string best = nearest(word, names); !best.empty(); best = nearest(word, names)) {
-    ordered.push_back(best);
-    names.erase(best);
-  }
-  ordered.insert(ordered.end(), names.begin(), names.end());
-  std::string list;
-  for (const std::string& name : ordered) list += (list.empty() ? "" : ", ") + name;
-  return list;
 }
 
 void require_spectrum_inside(const Settings& source, const Beam& beam, const Bands& bands) {
@@ -51,13 +34,16 @@ void require_spectrum_inside(const Settings& source, const Beam& beam, const Ban
   throw source.error("", outside.str(), "[scene] bands_nm that hold all of it");
 }
 
-std::vector<Beam> make_beams(const ExperimentFile& file, const Scene& scene) {
+std::vector<Beam> make_beams(const ExperimentFile& file, const Scene& scene,
+                             std::vector<std::string>& notices) {
   if (file.sources.empty())
     throw file.settings.error("source", "nothing", "at least one [[source]]");
   const std::vector<SourceKind> kinds = all_source_kinds();
-  const SourceContext context{.scene_radius_m = scene.radius_m()};
   std::vector<Beam> beams;
   for (const Settings& source : file.sources) {
+    const SourceContext context{
+        .scene_radius_m = scene.radius_m(),
+        .notice = [&](const std::string& line) { notices.push_back(source.name() + ": " + line); }};
     const SourceKind& kind = kinds[source.choice("kind", names_of(kinds))];
     for (Beam& beam : kind.make(source, context)) {
       require_spectrum_inside(source, beam, scene.bands);
@@ -77,11 +63,8 @@ const ReceiverKind& kind_of(const Settings& receiver, const std::vector<Receiver
 NamedReceiver make_receiver(const Settings& settings, const Scene& scene,
                             const std::vector<ReceiverKind>& kinds) {
   const ReceiverKind& kind = kind_of(settings, kinds);
-  const std::string node = settings.text_or("node", "");
-  if (settings.has("node") && scene.instances_of(node).empty()) {
-    throw settings.error("node", "\"" + node + "\"", "a node: " + list_of_nodes(scene, node));
-  }
-  std::string name = settings.text_or("name", node.empty() ? kind.name : node);
+  std::string name = settings.has("node") ? read_target(settings, scene).name
+                                          : settings.text_or("name", kind.name);
   return {std::move(name), kind.name, kind.make(settings, scene)};
 }
 
@@ -141,12 +124,15 @@ std::vector<const Receiver*> Experiment::receiver_pointers() const {
 }
 
 Experiment resolve_experiment(ExperimentFile file) {
-  if (!file.scene_file)
+  if (!file.scene_file) {
     throw file.settings.error("scene", "nothing", "a table [scene] with a file");
-  GltfModel model = read_gltf(*file.scene_file, {.bands = file.bands, .materials = file.materials});
+  }
+  GltfModel model = read_gltf(
+      *file.scene_file,
+      {.bands = file.bands, .materials = file.materials, .metres_per_unit = file.metres_per_unit});
   require_triangles(model.scene, *file.scene_file);
 
-  std::vector<Beam> beams = make_beams(file, model.scene);
+  std::vector<Beam> beams = make_beams(file, model.scene, model.notices);
   std::vector<NamedReceiver> receivers = make_receivers(file, model.scene);
   const Camera camera = read_camera(file, model.scene.radius_m());
   file.settings.finish();

@@ -54,6 +54,7 @@ struct ExperimentFile {
 
   // Of an optical run; empty when the file has no [scene].
   std::optional<std::filesystem::path> scene_file;
+  double metres_per_unit = 1.0;  // [scene] metres_per_unit: of lengths in the scene's file
   Bands bands;
   std::vector<Settings> materials;  // [[material]], overrides by name
   std::vector<Settings> sources;

@@ -11,8 +11,8 @@ namespace photorque {
 namespace {
 
 // Tables that optical runs accept as they are; the programs that use them check them.
-constexpr const char* tables_of_others[] = {"array",       "platform", "environment",
-                                            "disturbance", "sensors",  "recording"};
+constexpr const char* tables_of_others[] = {"array",   "platform",  "environment", "disturbance",
+                                            "sensors", "recording", "published"};
 
 void require_ascending(const Settings& settings, std::string_view key,
                        const std::vector<double>& values) {
@@ -110,6 +110,7 @@ ExperimentFile read_experiment_file(const std::filesystem::path& path,
   if (settings.has("scene")) {
     const Settings scene = settings.table("scene");
     file.scene_file = path.parent_path() / scene.text("file");
+    file.metres_per_unit = scene.number_or("metres_per_unit", 1.0, Range::positive());
     file.bands = read_bands(scene);
   }
   file.materials = settings.tables("material");
