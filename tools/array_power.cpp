@@ -1,0 +1,65 @@
+#include "tools/array_power.h"
+
+#include <algorithm>
+
+#include "core/errors.h"
+
+namespace photorque {
+
+ArrayPower read_array_power(const OpticalRun& run) {
+  const Experiment& experiment = run.experiment();
+  const auto tables = experiment.file.others("array");
+  if (tables.size() != 1) {
+    throw InputError({experiment.file.path.string()}, "array",
+                     tables.empty() ? "no table" : "more than one table", "one table [array]");
+  }
+  ArrayPower array;
+  array.flux_map = run.flux_map_index(tables[0].text_or("receiver", ""));
+  array.design = read_array_design(tables[0]);
+  tables[0].finish();
+
+  std::vector<WeighedSpectrum> spectra;
+  for (const Beam& beam : experiment.beams) {
+    spectra.push_back({beam.spectrum, beam.emitter->power_W()});
+  }
+  const BandValues responsivity =
+      band_responsivity_A_W(array.design.efficiency, experiment.scene.bands, spectra);
+  array.responsivity_A_W.assign(responsivity.begin(),
+                                responsivity.begin() + experiment.scene.bands.count());
+  return array;
+}
+
+ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result) {
+  const ArrayLight light = array_light(run.flux_map(array.flux_map), result.sums[array.flux_map]);
+  return evaluate_array(array.design, light, array.responsivity_A_W);
+}
+
+Product array_power_product(const ArrayResult& array, const TraceResult& result) {
+  Product product = array_product(array);
+  const double emitted = result.ledger.emitted_W;
+  const auto over_emitted = [&](const Estimate& power) {
+    return Estimate{power.value / emitted, power.standard_error / emitted};
+  };
+  product.quantities.push_back({"illumination_efficiency", over_emitted(array.power_on_cells_W)});
+  product.quantities.push_back({"light_to_electric_efficiency", over_emitted(array.power_W)});
+  return product;
+}
+
+void print_array(const Console& console, const ArrayResult& array, const TraceResult& result) {
+  const double emitted = result.ledger.emitted_W;
+  console.heading("Solar array (maximum power point)");
+  console.line("  light on the cells      " + show(array.power_on_cells_W, "W") + "  (" +
+               show(100 * array.power_on_cells_W.value / emitted) + " % of emitted)");
+  console.line("  electric power          " + show(array.power_W, "W") + "  (" +
+               show(100 * array.efficiency.value) + " % of the light on the cells)");
+  console.line("  voltage, current        " + show(array.voltage_V, "V") + ", " +
+               show(array.current_A, "A"));
+  console.line("  every cell by itself    " + show(array.sum_of_cells_W, "W") + "  (" +
+               show(100 * array.mismatch_loss.value) + " % lost to uneven light and diodes)");
+  const auto reversed = std::count_if(array.cells.voltage_V.begin(), array.cells.voltage_V.end(),
+                                      [](double v) { return v < 0.0; });
+  console.line("  local maxima of power   " + std::to_string(array.maxima.size()) +
+               "; cells in reverse at the best one: " + std::to_string(reversed));
+}
+
+}  // namespace photorque

@@ -1,0 +1,31 @@
+// From a trace to the electric power of the experiment's solar array.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "receivers/photovoltaic_array.h"
+#include "tools/optical_run.h"
+
+namespace photorque {
+
+// The `[array]` of an experiment, ready to be evaluated after each trace.
+struct ArrayPower {
+  ArrayDesign design;
+  size_t flux_map = 0;                   // place among the receivers
+  std::vector<double> responsivity_A_W;  // per band of the scene
+};
+
+// Reads `[array]`; its key `receiver` names the flux map that holds the cells (default: the first
+// one). InputError when the experiment has no array, and for unknown keys.
+ArrayPower read_array_power(const OpticalRun& run);
+
+ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result);
+
+// array_product() and the fractions that need the emitted power: "illumination_efficiency" (power on
+// the cells over emitted) and "light_to_electric_efficiency".
+Product array_power_product(const ArrayResult& array, const TraceResult& result);
+
+void print_array(const Console& console, const ArrayResult& array, const TraceResult& result);
+
+}  // namespace photorque

@@ -1,0 +1,62 @@
+// What the optical commands have in common: experiment → trace → products → files.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/product.h"
+#include "core/provenance.h"
+#include "receivers/flux_map.h"
+#include "receivers/wrench.h"
+#include "scenes/experiment.h"
+#include "tools/console.h"
+
+namespace photorque {
+
+// An experiment made ready to trace: its scene built once, its receivers, and always a wrench over
+// the whole scene ("body", added if the experiment names none).
+class OpticalRun {
+ public:
+  // Reads the experiment; prints its notices and the shapes of its sources.
+  OpticalRun(const CommandLine& line, const Console& console);
+
+  const Experiment& experiment() const { return experiment_; }
+  const TraceableScene& scene() const { return scene_; }
+  const Provenance& provenance() const { return provenance_; }
+
+  // Traces at an attitude, with the options of the experiment.
+  TraceResult run(const RigidTransform& lab_from_body,
+                  const std::function<void(double)>& progress) const;
+
+  // The place of a receiver among experiment().receivers and TraceResult::sums.
+  size_t wrench_index() const { return wrench_; }
+  // The flux map called `name`, or the first one if `name` is empty. InputError if there is none.
+  size_t flux_map_index(const std::string& name) const;
+
+  const WrenchReceiver& wrench() const;
+  const FluxMapReceiver& flux_map(size_t index) const;
+
+  // Ledger, shapes of the sources, and the product of every receiver.
+  Product product(const TraceResult& result) const;
+
+ private:
+  Experiment experiment_;
+  TraceableScene scene_;
+  Provenance provenance_;
+  size_t wrench_ = 0;
+  int threads_ = 0;
+};
+
+// Where the light went and what it did, as text.
+void print_trace(const Console& console, const OpticalRun& run, const TraceResult& result);
+
+// Adds the items of `more` to `product`.
+void append(Product& product, Product more);
+
+// Writes every item of the product and summary.json into the command's folder and says where; with
+// --json prints the summary.
+void write_results(const CommandLine& line, const Console& console, const Product& product,
+                   const Provenance& provenance, uint64_t rays, double wall_s);
+
+}  // namespace photorque

@@ -1,0 +1,83 @@
+// The program: reads the command line, runs one verb, turns exceptions into exit statuses.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "core/errors.h"
+#include "core/provenance.h"
+#include "tools/verb.h"
+
+namespace photorque {
+
+std::filesystem::path CommandLine::out_folder() const {
+  return out ? *out : std::filesystem::path("out") / experiment.stem() / verb;
+}
+
+std::vector<std::string> CommandLine::all_overrides() const {
+  std::vector<std::string> all = overrides;
+  if (seed) all.push_back("trace.seed=" + std::to_string(*seed));
+  return all;
+}
+
+namespace {
+
+void add_options(CLI::App& command, CommandLine& line) {
+  command.add_option("experiment", line.experiment, "Experiment file (TOML)")->required();
+  command.add_option("--set", line.overrides, "Change a key of the experiment: KEY=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--out", line.out, "Folder for the results (default: out/EXPERIMENT/VERB)");
+  command.add_option("--threads", line.threads, "Threads to use (default: all)")
+      ->check(CLI::Range(0, 1024));
+  command.add_option("--seed", line.seed, "Seed of all randomness, over the experiment's own");
+  command.add_flag("--quiet", line.quiet, "Print nothing but errors");
+  command.add_flag("--json", line.json, "Print the summary as JSON instead of text");
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Light, torque and attitude of free-floating platforms.");
+  app.name("photorque");
+  const Provenance build = build_provenance();
+  app.set_version_flag("--version", "photorque " + build.version + " (git " + build.git_hash + ")");
+  app.require_subcommand(1);
+  CommandLine line;
+  const std::vector<Verb> verbs = all_verbs();
+  for (const Verb& verb : verbs) {
+    CLI::App* command = app.add_subcommand(verb.name, verb.summary);
+    add_options(*command, line);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::fprintf(stderr, "photorque: %s (see photorque --help)\n", error.what());
+    return 2;
+  }
+  for (const Verb& verb : verbs) {
+    if (app.got_subcommand(verb.name)) {
+      line.verb = verb.name;
+      verb.run(line);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace photorque
+
+int main(int argc, char** argv) {
+  try {
+    return photorque::run(argc, argv);
+  } catch (const photorque::InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  } catch (const photorque::NumericalError& error) {
+    std::fprintf(stderr, "numerical failure: %s\n", error.what());
+    return 3;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "numerical failure: not enough memory\n");
+    return 3;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "numerical failure: %s\n", error.what());
+    return 3;
+  }
+}

@@ -1,0 +1,32 @@
+// photorque power: trace, then the solar array.
+#include "tools/array_power.h"
+#include "tools/published.h"
+
+namespace photorque {
+namespace {
+
+void run_power(const CommandLine& line) {
+  Console console(line);
+  const OpticalRun run(line, console);
+  const ArrayPower array = read_array_power(run);
+  const auto published = read_published(run.experiment().file.others("published"));
+  const TraceResult result = run.run(run.experiment().lab_from_body, console.progress("tracing"));
+  console.done();
+  const ArrayResult power = evaluate(array, run, result);
+  print_trace(console, run, result);
+  print_array(console, power, result);
+  Product product = run.product(result);
+  append(product, array_power_product(power, result));
+  Table table = compare_published(published, run.experiment().file.attitude.tilt_rad, product, console);
+  if (!table.columns.empty()) product.tables.push_back(std::move(table));
+  write_results(line, console, product, run.provenance(), result.rays, result.wall_s);
+}
+
+}  // namespace
+
+Verb power_kind() {
+  return {"power", "Trace, then the solar array: current-voltage curve and maximum power point",
+          run_power};
+}
+
+}  // namespace photorque

@@ -1,0 +1,40 @@
+// What every command of the program shares.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace photorque {
+
+// The command line: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
+struct CommandLine {
+  std::string verb;
+  std::filesystem::path experiment;
+  std::vector<std::string> overrides;         // --set, in order
+  std::optional<std::filesystem::path> out;   // --out
+  int threads = 0;                            // 0: all
+  std::optional<uint64_t> seed;               // over the experiment's own
+  bool quiet = false;                         // no text but errors
+  bool json = false;                          // the summary as JSON on standard output
+
+  // --out, or out/EXPERIMENT/VERB below the current folder.
+  std::filesystem::path out_folder() const;
+  // The overrides with --seed among them.
+  std::vector<std::string> all_overrides() const;
+};
+
+// One command. `run` does everything and throws what goes wrong.
+struct Verb {
+  std::string name;
+  std::string summary;  // one sentence for --help
+  std::function<void(const CommandLine&)> run;
+};
+
+// Every verb named in tools/CMakeLists.txt, in that order.
+std::vector<Verb> all_verbs();
+
+}  // namespace photorque
