@@ -63,6 +63,28 @@ Parameters array_parameter(const Settings& settings, const std::string& key, siz
   return all;
 }
 
+size_t count_as_written(const Settings& settings, const std::string& key) {
+  const SettingsNode* node = &settings.raw(key);
+  if (const auto* table = std::get_if<SettingsNode::Table>(&node->value)) {
+    const auto value = table->find("value");
+    if (value == table->end()) return 0;
+    node = &value->second;
+  }
+  const auto* array = std::get_if<SettingsNode::Array>(&node->value);
+  if (array == nullptr) return 0;
+  size_t count = 0;
+  for (const SettingsNode& item : *array) {
+    const auto* row = std::get_if<SettingsNode::Array>(&item.value);
+    count += row == nullptr ? 1 : row->size();
+  }
+  return count;
+}
+
+std::filesystem::path file_of(const Settings& settings, const std::string& key) {
+  const std::filesystem::path experiment = settings.where().file;
+  return experiment.parent_path() / settings.text(key);
+}
+
 Parameters fixed_parameter(const std::string& key, std::span<const double> values_SI) {
   Parameters all;
   for (size_t i = 0; i < values_SI.size(); ++i) {

@@ -30,6 +30,7 @@
 //   }  // namespace photorque
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -134,6 +135,9 @@ struct ExtraState {
   std::string name;  // ends in its unit
   double initial = 0.0;
   double scale = 1.0;  // > 0, a deviation of this size matters as much as 1 rad of attitude
+  // What it begins with besides when the platform begins by turning as one rigid body: this times
+  // the rate, body axes. For states that count from the inertial frame.
+  Vec3 per_body_rate = Vec3::Zero();
 };
 
 // What belongs to one disturbance alone.
@@ -229,6 +233,11 @@ Parameters vector_parameter_or(const Settings& settings, const std::string& key,
                                const Vec3& otherwise_SI);
 // `size` numbers, e.g. the six of a symmetric matrix.
 Parameters array_parameter(const Settings& settings, const std::string& key, size_t size);
+// How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine for
+// three rows of three; looks into { value = …, sigma = … }.
+size_t count_as_written(const Settings& settings, const std::string& key);
+// The file that `key` names; a relative path counts from the experiment file.
+std::filesystem::path file_of(const Settings& settings, const std::string& key);
 // Parameters that were not written but computed (a compliance from a beam's dimensions).
 Parameters fixed_parameter(const std::string& key, std::span<const double> values_SI);
 

@@ -1,0 +1,51 @@
+// What a discharging lithium-ion battery does to a platform: lithium wanders from anode to cathode
+// and takes the centre of mass along. Source: eq. 30–34.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/constants.h"
+#include "core/vector.h"
+
+namespace photorque {
+
+// One lithium ion per electron, M/F: 7.19e-8 kg/C, that is 0.2589 g/Ah. Molar mass 6.94 g/mol
+// (IUPAC 2021, conventional value; natural sources vary by 0.4 %).
+inline constexpr double lithium_kg_C = 6.94e-3 / faraday_C_mol;
+// Eq. 31: the transport rules' 0.3 g/Ah, which counts all lithium in a cell and is rounded up.
+inline constexpr double lithium_as_published_kg_C = 0.3e-3 / 3600.0;
+
+// One cell on the platform.
+struct BatteryCell {
+  Vec3 position_body_m = Vec3::Zero();  // of its centre
+  // From the mean place of the lithium when charged (anode) to that when empty (cathode), body
+  // axes. The paper takes half the cell's length; wound and stacked cells alternate their
+  // electrodes every 0.1 mm or so, for which that is an upper bound by orders of magnitude.
+  Vec3 electrodes_body_m = Vec3::Zero();
+  // Share of the battery's charge that passes through this cell: 1 in series, 1/n of n in parallel.
+  double charge_share = 1.0;
+};
+
+// Shift of the platform's centre of mass per charge drawn [m/C] (eq. 30). Equal cells mounted in
+// opposition cancel.
+Vec3 com_shift_m_C(std::span<const BatteryCell> cells, double platform_mass_kg,
+                   double lithium_per_charge_kg_C = lithium_kg_C);
+
+// Change of the inertia about the centre of rotation per charge drawn [kg m²/C]; this one does not
+// cancel in symmetric pairs.
+Mat3 inertia_change_kg_m2_C(std::span<const BatteryCell> cells,
+                            double lithium_per_charge_kg_C = lithium_kg_C);
+
+// What the platform consumes over an experiment.
+struct LoadPhase {
+  double duration_s = 0.0;
+  double power_W = 0.0;
+};
+double energy_J(std::span<const LoadPhase> profile);
+
+// Mass of the battery that holds this energy [kg]; lithium-ion packs reach 60 to 250 Wh/kg, here in
+// J/kg.
+double battery_mass_kg(double energy_J, double specific_energy_J_kg);
+
+}  // namespace photorque

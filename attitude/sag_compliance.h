@@ -1,0 +1,48 @@
+// How far the centre of mass sags per unit of gravity.
+//
+// A platform whose parts hang on springs has its centre of mass at C g_B beside where it would lie
+// without weight: C [s²] is symmetric, in body axes. Balanced at zero tilt, what remains at any
+// other attitude is the torque m C (g_B − g_B,ref) × g_B (disturbance elastic_sag). Here the two
+// structures of the paper fill C; the beams are slender, clamped at the middle, and bend only
+// across their length. Source: eq. 2 and 3, corrected by Euler–Bernoulli's deflections
+// (docs/physics.md).
+#pragma once
+
+#include "core/vector.h"
+
+namespace photorque {
+
+// Two opposite arms along `axis_body`, each a beam with an instrument at its end.
+struct DumbbellArms {
+  Vec3 axis_body = Vec3::UnitX();       // any length but zero
+  double length_m = 0.0;                // of one arm, > 0
+  double end_mass_kg = 0.0;             // M_s, at the end of one arm
+  double beam_mass_kg = 0.0;            // m_l, of one arm
+  double bending_stiffness_N_m2 = 0.0;  // EI, > 0
+};
+
+// `count` equal counterbalance beams along the body's z axis, clamped at the plate.
+struct CounterbalanceBeams {
+  double length_m = 0.0;
+  double total_mass_kg = 0.0;           // m_l, of all beams together
+  double bending_stiffness_N_m2 = 0.0;  // EI of one beam
+  int count = 1;                        // N_l
+};
+
+// Compliance of the whole platform's centre of mass [s²]; `platform_mass_kg` is of everything.
+Mat3 sag_compliance_s2(const DumbbellArms& arms, double platform_mass_kg);
+Mat3 sag_compliance_s2(const CounterbalanceBeams& beams, double platform_mass_kg);
+
+// Torque [N m] about a horizontal axis across the arms (beams), at a tilt about that axis, balanced
+// at zero tilt. Dumbbell: ∝ sin θ − ½ sin 2θ, the arms tilting with it; tabletop: ∝ sin 2θ.
+// Positive: drives the tilt on.
+double sag_torque_N_m(const DumbbellArms& arms, double tilt_rad, double gravity_m_s2);
+double sag_torque_N_m(const CounterbalanceBeams& beams, double tilt_rad, double gravity_m_s2);
+
+// Eq. 2 and 3 as printed, signs included. Their unit is N: one length is missing. For comparison
+// with the paper alone.
+double sag_torque_as_published(const DumbbellArms& arms, double tilt_rad, double gravity_m_s2);
+double sag_torque_as_published(const CounterbalanceBeams& beams, double tilt_rad,
+                               double gravity_m_s2);
+
+}  // namespace photorque

@@ -1,0 +1,47 @@
+// A wrench table made smooth: the torque and its slopes between the nodes.
+#pragma once
+
+#include <filesystem>
+
+#include "core/wrench_table.h"
+
+namespace photorque {
+
+// Cubic Hermite interpolation of a table's torque in both angles: continuous with its slopes, exact
+// at the nodes and for a torque linear in the angles. (core's wrench_at() is bilinear: its kinks
+// would shorten every step of an integrator.)
+class TorqueSurface {
+ public:
+  // At poles and at azimuths a turn apart the nodes are averaged first. NumericalError unless both
+  // axes have two nodes or more.
+  explicit TorqueSurface(const WrenchTable& table);
+
+  struct Sample {
+    Vec3 torque_body_N_m;
+    Vec3 by_polar, by_around;  // its derivatives [N m/rad]
+  };
+  // Up to one step beyond the table the edge's value holds, so that an integrator may look past a
+  // tilt stop; NumericalError further out.
+  Sample at(const TableAngles& angles) const;
+
+  WrenchTable::Angles angles() const { return table_.angles; }
+
+ private:
+  struct Row {
+    Vec3 value, slope;
+  };
+  Row row_at(size_t polar, double around_rad) const;
+  Row ghost_row(bool below, double around_rad, double* polar_rad) const;
+  bool beyond_is_pole(bool below) const;
+
+  WrenchTable table_;
+  bool closed_ = false;  // goes all round
+};
+
+// Reads a table as the program writes it: a CSV with heading_deg and tilt_deg, or azimuth_deg and
+// elevation_deg, and torque_x_N_m, torque_y_N_m, torque_z_N_m about the centre of rotation, in any
+// order among other columns; every pair of angles once. Lines that start with # are skipped.
+// InputError with the line for anything else.
+WrenchTable read_wrench_table(const std::filesystem::path& path);
+
+}  // namespace photorque
