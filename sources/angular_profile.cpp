@@ -13,6 +13,13 @@ namespace {
 // beyond is below the resolution of a 32-bit random number by a factor of 1e7.
 constexpr double negligible_exponent = 40.0;
 
+// ln cos θ with its relative precision near the axis, where cos θ has lost it.
+double log_cosine(double angle_rad) {
+  if (angle_rad > 0.25 * pi) return std::log(std::cos(angle_rad));
+  const double sine = std::sin(angle_rad);
+  return 0.5 * std::log1p(-sine * sine);
+}
+
 }  // namespace
 
 AngularProfile gaussian_profile(double fwhm_rad) {
@@ -44,10 +51,8 @@ AngularProfile pillbox_profile(double half_angle_rad, PillboxMeasure measure) {
 AngularProfile cosine_power_profile(double exponent) {
   const double rise = exponent == 0.0 ? 1.0 : -std::expm1(-negligible_exponent / exponent);
   const double end_rad = 2.0 * std::asin(std::sqrt(0.5 * rise));
-  // ln cos θ through sin² keeps narrow beams (large exponents) accurate.
   return {[exponent](double angle_rad) {
-            const double sine = std::sin(angle_rad);
-            return exponent == 0.0 ? 1.0 : std::exp(0.5 * exponent * std::log1p(-sine * sine));
+            return exponent == 0.0 ? 1.0 : std::exp(exponent * log_cosine(angle_rad));
           },
           end_rad};
 }

@@ -46,9 +46,10 @@ class FluxOutside {
     double rise = 0.5 * (low + high);
     for (int step = 0; step < 60; ++step) {
       const double excess = outside_[j + 1] + integral(rise, edge(j + 1)) - flux;
-      if (std::abs(excess) <= 1e-15 * flux) break;
+      if (std::abs(excess) <= 1e-14 * flux) break;
       (excess > 0.0 ? low : high) = rise;
       const double newton = rise + excess / intensity(rise);
+      if (std::abs(newton - rise) <= 4e-16 * rise) break;
       rise = newton > low && newton < high ? newton : 0.5 * (low + high);
     }
     return rise;
@@ -91,8 +92,9 @@ InverseFlux::InverseFlux(const AngularProfile& profile) {
     const double error = std::abs(outside(rise(middle)) / total - middle);
     largest_error_ = std::max(largest_error_, error);
     if (!monotone || !(error <= allowed_error)) {
-      throw NumericalError("the angular profile of a source cannot be tabulated: error " +
-                           std::to_string(error) + " of the flux");
+      throw NumericalError("the angular profile of a source is too steep to be tabulated: error " +
+                           std::to_string(error) + " of the flux" +
+                           (monotone ? "" : ", not monotone"));
     }
     low = high;
   }

@@ -103,7 +103,15 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind laser_kind() {
-  return {"laser", "A laser beam, Gaussian in position and angle", make};
+  return {"laser",
+          "A laser beam, Gaussian in position and angle",
+          make,
+          {{"power_W", {0.005}},
+           {"wavelength_nm", {633.0}},
+           {"waist_radius_m", {0.0005}},
+           {"divergence_half_angle_deg", {0.1}},
+           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}}};
 }
 
 }  // namespace photorque

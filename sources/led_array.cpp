@@ -135,7 +135,11 @@ Placement read_placement(const Settings& settings) {
 
   // A converging array may have both: a plane of its own and a point that its LEDs look at.
   std::optional<Vec3> aim_m;
-  if (converging) aim_m = settings.vector3("aim_m");
+  if (converging) {
+    // Said here, because Settings would take the key `aim` for an `aim_m` without its unit.
+    if (!settings.has("aim_m")) throw settings.error("aim_m", "nothing", "a point to converge on");
+    aim_m = settings.vector3("aim_m");
+  }
   const Vec3 normal = converging && settings.has("direction") ? read_direction_vector(settings)
                                                               : read_direction(settings, centre_m);
   if (layout != Layout::positions) {
@@ -176,7 +180,21 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind led_array_kind() {
-  return {"led_array", "Equal LEDs in a grid, ring, hexagon or at given points", make};
+  return {"led_array",
+          "Equal LEDs in a grid, ring, hexagon or at given points",
+          make,
+          {{"layout", {"ring"}},
+           {"count", {int64_t{6}}},
+           {"ring_radius_m", {0.2}},
+           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+           {"aim", {"converging"}},
+           {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}},
+           {"total_power_W", {90.0}},
+           {"aperture_diameter_m", {0.03}},
+           {"profile", {"super_gaussian"}},
+           {"fwhm_deg", {3.0}},
+           {"order", {4.0}},
+           {"wavelength_nm", {730.0}}}};
 }
 
 }  // namespace photorque

@@ -24,6 +24,8 @@ struct SourceKind {
   std::string summary;  // one sentence, no full stop
   // Beams in the lab frame, at least one. Reads every key it knows; throws InputError.
   std::function<std::vector<Beam>(const Settings&, const SourceContext&)> make;
+  // Keys of a typical source of this kind. The laws that every source obeys are tested on it.
+  SettingsNode::Table example;
 };
 
 // Every kind named in sources/CMakeLists.txt, in that order.

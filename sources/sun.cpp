@@ -93,7 +93,10 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind sun_kind() {
-  return {"sun", "Parallel light from a disc in the sky, of a given irradiance", make};
+  return {"sun",
+          "Parallel light from a disc in the sky, of a given irradiance",
+          make,
+          {{"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}}};
 }
 
 }  // namespace photorque

@@ -1,0 +1,123 @@
+// Laws that every kind of source obeys, tested on its example.
+#include "core/constants.h"
+#include "sampling.h"
+#include "sources/beam_shape.h"
+
+namespace photorque {
+namespace {
+
+using test::rays_of;
+using test::settings_of;
+using test::sorted_angles;
+
+std::vector<Beam> beams_of(const SourceKind& kind) {
+  return kind.make(settings_of(kind.example), {});
+}
+
+TEST(EverySource, HasANameASummaryAndAnExampleWhoseKeysItReads) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    EXPECT_FALSE(kind.name.empty());
+    EXPECT_FALSE(kind.summary.empty() || kind.summary.ends_with('.')) << kind.name;
+    const Settings settings = settings_of(kind.example);
+    EXPECT_FALSE(kind.make(settings, {}).empty()) << kind.name;
+    EXPECT_NO_THROW(settings.finish()) << kind.name;
+  }
+}
+
+TEST(EverySource, TakesItsNameFromTheUser) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    for (const Beam& beam :
+         kind.make(settings_of(test::changed(kind.example, {{"name", {"lamp 7"}}})), {})) {
+      EXPECT_TRUE(beam.name.starts_with("lamp 7")) << beam.name;
+    }
+  }
+}
+
+TEST(EverySource, EmitsUnitDirectionsForwardFromFiniteOrigins) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    for (const Beam& beam : beams_of(kind)) {
+      EXPECT_GT(beam.emitter->power_W(), 0.0) << beam.name;
+      for (const auto& ray : rays_of(*beam.emitter, 4096)) {
+        ASSERT_NEAR(ray.direction.norm(), 1.0, 1e-12) << beam.name;
+        ASSERT_GE(ray.direction.z(), 0.0) << beam.name;
+        ASSERT_TRUE(ray.origin_m.allFinite()) << beam.name;
+        ASSERT_EQ(ray.origin_m.z(), 0.0) << beam.name;
+      }
+    }
+  }
+}
+
+TEST(EverySource, SamplesTheIntensityThatItStates) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    const Beam beam = beams_of(kind).front();
+    const EncircledFlux flux(*beam.emitter);
+    EXPECT_LT(test::largest_deviation(sorted_angles(rays_of(*beam.emitter, 65536)),
+                                      [&](double t) { return flux.within(t); }),
+              1e-4)
+        << kind.name;
+  }
+}
+
+TEST(EverySource, IsEvenAroundItsAxis) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    const Beam beam = beams_of(kind).front();
+    std::vector<double> turns;
+    for (const auto& ray : rays_of(*beam.emitter, 65536)) {
+      turns.push_back(std::atan2(ray.direction.y(), ray.direction.x()) / (2.0 * pi) + 0.5);
+    }
+    std::sort(turns.begin(), turns.end());
+    EXPECT_LT(test::largest_deviation(turns, [](double x) { return x; }), 1e-4) << kind.name;
+  }
+}
+
+TEST(EverySource, StatesAnIntensityBetweenZeroAndOne) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    const Beam beam = beams_of(kind).front();
+    double largest = 0.0;
+    for (double angle_rad = 0.0; angle_rad <= pi; angle_rad += 1e-4) {
+      const double intensity = beam.emitter->relative_intensity(angle_rad);
+      ASSERT_GE(intensity, 0.0) << kind.name;
+      ASSERT_LE(intensity, 1.0) << kind.name;
+      largest = std::max(largest, intensity);
+    }
+    EXPECT_GT(largest, 0.999) << kind.name;
+  }
+}
+
+TEST(EverySource, GivesTheSameBitsEveryTimeAndInAnyOrderOfBlocks) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    const auto first = rays_of(*beams_of(kind).front().emitter, 1024);
+    const auto second = rays_of(*beams_of(kind).front().emitter, 512);
+    for (size_t i = 0; i < second.size(); ++i) {
+      ASSERT_EQ(first[i].origin_m, second[i].origin_m) << kind.name;
+      ASSERT_EQ(first[i].direction, second[i].direction) << kind.name;
+    }
+  }
+}
+
+TEST(EverySource, PutsAllItsPowerInTheSpectrum) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    for (const Beam& beam : beams_of(kind)) {
+      const BandValues share = band_fractions(beam.spectrum, Bands{{0.0, 600e-9, 1e-3}});
+      EXPECT_NEAR(share[0] + share[1], 1.0, 1e-9) << beam.name;
+    }
+  }
+}
+
+TEST(EverySource, RefusesKeysThatItDoesNotKnow) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    const Settings settings = settings_of(test::changed(kind.example, {{"colour", {"red"}}}));
+    kind.make(settings, {});
+    EXPECT_THROW(settings.finish(), InputError) << kind.name;
+  }
+}
+
+TEST(EverySource, RefusesADirectionWithoutLength) {
+  for (const SourceKind& kind : all_source_kinds()) {
+    const auto table = test::changed(kind.example, {{"direction", test::vector_node(0, 0, 0)}});
+    EXPECT_THROW(kind.make(settings_of(table), {}), InputError) << kind.name;
+  }
+}
+
+}  // namespace
+}  // namespace photorque
