@@ -59,7 +59,7 @@ Axis horizontal_axis(AxisRange range, bool log, const std::string& label, double
 }
 
 Axis vertical_axis(AxisRange range, bool log, const std::string& label, double length) {
-  const int at_most = std::clamp(static_cast<int>(length / 26.0), 2, 11);
+  const int at_most = std::clamp(static_cast<int>(length / 28.0), 3, 9);
   return axis_with(log ? range : drawable(range), log, label, at_most);
 }
 

@@ -64,6 +64,26 @@ cairo_status_t append_bytes(void* text, const unsigned char* bytes, unsigned cou
   return CAIRO_STATUS_SUCCESS;
 }
 
+// cairo numbers surfaces through the life of the process; here from 1 in every document.
+std::string with_own_surface_numbers(const std::string& svg) {
+  constexpr std::string_view stem = "surface";
+  std::map<std::string, size_t> numbers;
+  std::string result;
+  size_t position = 0;
+  for (size_t found = svg.find(stem); found != std::string::npos;
+       found = svg.find(stem, position)) {
+    const size_t digits = found + stem.size();
+    const size_t end = std::min(svg.size(), svg.find_first_not_of("0123456789", digits));
+    result.append(svg, position, digits - position);
+    if (end > digits) {
+      const auto entry = numbers.try_emplace(svg.substr(digits, end - digits), numbers.size() + 1);
+      result += std::to_string(entry.first->second);
+    }
+    position = end;
+  }
+  return result.append(svg, position);
+}
+
 }  // namespace
 
 struct Canvas::Page {
@@ -231,7 +251,7 @@ std::string Canvas::finish_svg() {
   page_->context.reset();
   cairo_surface_finish(page_->surface.get());
   check(cairo_surface_status(page_->surface.get()));
-  return std::move(page_->svg);
+  return with_own_surface_numbers(page_->svg);
 }
 
 }  // namespace photorque

@@ -69,8 +69,7 @@ class Canvas {
   void line(const PagePoint& from, const PagePoint& to, const Stroke& stroke);
   void outline(const PageBox& box, const Stroke& stroke);
   void text(const std::string& text, const PagePoint& at, const TextStyle& style);
-  // Pixels of 0xAARRGGBB without premultiplication, row 0 at the top of `box`, in sharp cells. The
-  // only call whose SVG may differ between two runs of one program.
+  // Pixels of 0xAARRGGBB without premultiplication, row 0 at the top of `box`, in sharp cells.
   void image(const PageBox& box, int width, int height, std::span<const uint32_t> argb);
 
   // What `draw` does is confined to `box`.

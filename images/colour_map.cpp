@@ -61,14 +61,14 @@ ColourMap viridis() {
   return map;
 }
 
-ColourMap purple_orange() {
-  const Msh purple = msh_from_rgb({0.436, 0.308, 0.631});
-  const Msh orange = msh_from_rgb({0.759, 0.334, 0.046});
-  const double middle_length = std::max({purple.length, orange.length, 88.0});
+ColourMap cool_warm() {
+  const Msh cool = msh_from_rgb({0.230, 0.299, 0.754});
+  const Msh warm = msh_from_rgb({0.706, 0.016, 0.150});
+  const double middle_length = std::max({cool.length, warm.length, 88.0});
   ColourMap map;
   for (size_t i = 0; i < map.colours.size(); ++i) {
     const double fraction = static_cast<double>(i) / static_cast<double>(map.colours.size() - 1);
-    const Msh& end = fraction < 0.5 ? purple : orange;
+    const Msh& end = fraction < 0.5 ? cool : warm;
     const double t = std::abs(2.0 * fraction - 1.0);  // 0 in the middle, 1 at the end
     map.colours[i] =
         rgb_from_msh({std::lerp(middle_length, end.length, t), std::lerp(0.0, end.angle_rad, t),
@@ -81,7 +81,7 @@ ColourScale colour_scale(double smallest, double largest, bool signed_values) {
   if (signed_values) {
     const double extent = std::max(std::abs(smallest), std::abs(largest));
     const double reach = extent > 0.0 ? extent : 1.0;
-    return {-reach, reach, purple_orange()};
+    return {-reach, reach, cool_warm()};
   }
   // Differences of this size are rounding, not structure.
   const bool constant =

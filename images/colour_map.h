@@ -20,11 +20,11 @@ struct ColourMap {
 // CIELAB; within ΔE*ab = 1.2 of the published table.
 ColourMap viridis();
 
-// Purple over light grey (at 1/2) to orange; lightness rises evenly to the middle and falls again.
-// For signed quantities.
-// Source: K. Moreland, "Diverging Color Maps for Scientific Visualization" (ISVC 2009), the
-// construction in Msh of its figures 2 and 3 with its purple–orange pair of ends.
-ColourMap purple_orange();
+// Blue over light grey (at 1/2) to red; lightness rises evenly to the middle and falls again. For
+// signed quantities.
+// Source: K. Moreland, "Diverging Color Maps for Scientific Visualization" (ISVC 2009): its
+// construction in the polar form of CIELAB, with its pair of cool and warm ends.
+ColourMap cool_warm();
 
 // Which colour a value has: `low` at the start of the map, `high` at its end; low < high.
 struct ColourScale {
@@ -35,8 +35,8 @@ struct ColourScale {
 };
 
 // The scale for values from `smallest` to `largest`. Unsigned: from zero, unless all values lie in
-// the upper half of [0, largest], where a map from zero would hide what differs. Signed: purple to
-// orange with zero in the middle. Constant values get a scale that shows them as such.
+// the upper half of [0, largest], where a map from zero would hide what differs. Signed: blue to
+// red with zero in the middle. Constant values get a scale that shows them as such.
 ColourScale colour_scale(double smallest, double largest, bool signed_values);
 
 // The scale for the finite values of a map; [0, 1] or [−1, 1] if there are none.

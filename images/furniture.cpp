@@ -91,7 +91,7 @@ void draw_text(Canvas& canvas, const TextBlock& block, const PagePoint& top_left
 }
 
 double PageText::body_top() const {
-  return page_margin + title.height() + 6.0;
+  return page_margin + title.height() + 9.0;
 }
 
 double PageText::page_height(double body_height) const {

@@ -89,7 +89,8 @@ void write_tiff(const fs::path& path, int width, int height,
   std::vector<OIIO::ImageSpec> specs;
   for (const ImageChannel& channel : channels) {
     specs.push_back(spec_of(width, height, {"Y"}, OIIO::TypeDesc::FLOAT, metadata));
-    specs.back().attribute("oiio:subimagename", channel.name);
+    // OpenImageIO 2.4 writes no PageName.
+    specs.back().attribute("DocumentName", channel.name);
   }
   write_file_whole(path, [&](const fs::path& temporary) {
     ImageFile file(path, temporary);

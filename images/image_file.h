@@ -34,8 +34,9 @@ struct ImageChannel {
 void write_exr(const std::filesystem::path& path, int width, int height,
                const std::vector<ImageChannel>& channels, const ImageMetadata& metadata);
 
-// Each channel is one page, named by PageName, of 32-bit floats: the form of TIFF that most
-// programs read (many refuse several float channels in a page). Losslessly compressed.
+// Each channel is one page of 32-bit floats, named by its DocumentName (in place of the title): the
+// form of TIFF that most programs read, as many refuse several float channels in a page. Losslessly
+// compressed.
 void write_tiff(const std::filesystem::path& path, int width, int height,
                 const std::vector<ImageChannel>& channels, const ImageMetadata& metadata);
 

@@ -57,6 +57,18 @@ Layout layout_of(const Map& map, const Provenance& provenance) {
   return layout;
 }
 
+// Of the finite values.
+double root_mean_square(const std::vector<double>& values) {
+  double squares = 0.0;
+  size_t count = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    squares += value * value;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+}
+
 // Shows through wherever the map has no value.
 void draw_hatching(Canvas& canvas, const PageBox& box) {
   canvas.clipped(box, [&] {
@@ -109,20 +121,16 @@ std::string map_caption(const Map& map) {
     ++count;
   }
   const std::string bins = std::to_string(map.width) + " × " + std::to_string(map.height) + " bins";
-  if (count == 0) return "no finite values · " + bins;
+  if (count == 0) return "no values · " + bins;
   std::string caption = "min " + readable_number(smallest) + " · mean " +
                         readable_number(sum / static_cast<double>(count)) + " · max " +
-                        readable_number(largest) + (map.unit.empty() ? "" : " " + map.unit);
+                        readable_number(largest) + (map.unit.empty() ? "" : " " + map.unit) +
+                        " · " + bins;
   if (!map.standard_error.empty()) {
-    double squares = 0.0;
-    for (const double error : map.standard_error)
-      squares += std::isfinite(error) ? error * error : 0;
-    caption += " · standard error " +
-               readable_number(std::sqrt(squares / static_cast<double>(map.value.size())), 2) +
-               " (rms of " + bins + ")";
-    return caption;
+    caption +=
+        " · standard error " + readable_number(root_mean_square(map.standard_error), 2) + " (rms)";
   }
-  return caption + " · " + bins;
+  return count == map.value.size() ? caption : caption + " · hatched: no value";
 }
 
 }  // namespace photorque

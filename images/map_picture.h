@@ -21,7 +21,7 @@ struct MapPicture {
 // kept up to a ratio of 8 between the sides. InputError if the map's sizes disagree.
 MapPicture map_picture(const Map& map, const Provenance& provenance);
 
-// "min … · mean … · max … W/m²", the root mean square of the standard errors, and the bins.
+// "min … · mean … · max … W/m² · 100 × 100 bins · standard error … (rms)".
 std::string map_caption(const Map& map);
 
 }  // namespace photorque

@@ -92,7 +92,7 @@ bool meets(const PageBox& box, const PagePoint& a, const PagePoint& b) {
   double leave = 1.0;
   const auto clip = [&](double start, double step, double low, double high) {
     if (step == 0.0) return start >= low && start <= high;
-    const auto [first, second] = std::minmax((low - start) / step, (high - start) / step);
+    const auto [first, second] = std::minmax({(low - start) / step, (high - start) / step});
     enter = std::max(enter, first);
     leave = std::min(leave, second);
     return enter <= leave;

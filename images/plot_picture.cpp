@@ -9,7 +9,7 @@ namespace {
 
 constexpr double page_width = 640.0;
 constexpr double gap_between_panels = 12.0;
-constexpr double widest_legend = 200.0;
+constexpr double widest_legend = 170.0;
 constexpr Rgb ink = {0.13, 0.13, 0.13};
 constexpr Rgb grid_grey = {0.87, 0.87, 0.87};
 
@@ -31,7 +31,7 @@ struct Extent {
   }
 };
 
-// With a margin on both sides, except that an axis that starts at zero keeps zero as its end.
+// With a margin on both sides.
 AxisRange padded(const Extent& extent, bool log, double margin) {
   if (extent.low > extent.high) return log ? AxisRange{1.0, 10.0} : AxisRange{0.0, 1.0};
   if (log) {
@@ -41,7 +41,7 @@ AxisRange padded(const Extent& extent, bool log, double margin) {
   }
   const AxisRange range = drawable({extent.low, extent.high});
   const double room = margin * (range.high - range.low);
-  return {range.low == 0.0 ? 0.0 : range.low - room, range.high == 0.0 ? 0.0 : range.high + room};
+  return {range.low - room, range.high + room};
 }
 
 AxisRange x_range(const std::vector<ChartPanel>& panels, bool log) {
@@ -66,7 +66,10 @@ AxisRange y_range(const ChartPanel& panel, bool log) {
       extent.include(curve.y[i] + error, log);
     }
   }
-  return padded(extent, log, 0.06);
+  AxisRange range = padded(extent, log, 0.06);
+  // A quantity that starts at zero stands on the axis.
+  if (extent.low == 0.0 && extent.high > 0.0) range.low = 0.0;
+  return range;
 }
 
 std::string caption_of(const Plot& plot) {

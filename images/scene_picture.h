@@ -14,13 +14,13 @@ namespace photorque {
 
 struct SceneLabels {
   std::string title;
-  std::string caption;
+  std::string caption = {};
   std::string unit = "W/m²";
   // Irradiance at the end of the colour scale, which starts at zero; the largest in view if absent.
-  std::optional<double> scale_end_W_m2;
+  std::optional<double> scale_end_W_m2 = {};
   // The unit vectors of the body's x, y and z in camera axes (x right, y up, z towards the viewer):
   // drawn as a small triad in the lower left corner.
-  std::optional<std::array<Vec3, 3>> body_axes_camera;
+  std::optional<std::array<Vec3, 3>> body_axes_camera = {};
 };
 
 // The view at its own pixels, with title, colour bar (where a receiver is in view), caption and

@@ -8,22 +8,11 @@ constexpr float border_strength = 0.7F;
 constexpr float crease_strength = 0.5F;
 constexpr double edge_darkening = 0.62;
 constexpr Rgb edge_colour = {0.12, 0.12, 0.14};
-// Of the range of depths in view: a larger second difference is a step, not a slanted plane.
+// Of the range of depths in view: a larger second difference is a step, not a curved surface.
 constexpr float depth_step = 0.01F;
 
 bool hit(const SceneView& view, size_t sample) {
   return std::isfinite(view.depth_m[sample]);
-}
-
-float depth_range(const SceneView& view) {
-  float nearest = std::numeric_limits<float>::infinity();
-  float farthest = 0.0F;
-  for (const float depth : view.depth_m) {
-    if (!std::isfinite(depth)) continue;
-    nearest = std::min(nearest, depth);
-    farthest = std::max(farthest, depth);
-  }
-  return farthest > nearest ? farthest - nearest : 1.0F;
 }
 
 // Between two neighbouring samples, both hit or one of them not.
@@ -35,10 +24,34 @@ float pair_strength(const SceneView& view, size_t a, size_t b) {
   return view.normal_lab[a].dot(view.normal_lab[b]) < crease_cosine ? crease_strength : 0.0F;
 }
 
-// Of three samples in a row, whether the depth jumps: on a plane it is nearly linear.
-bool depth_jumps(const SceneView& view, size_t before, size_t here, size_t after, float limit) {
-  const float second = view.depth_m[before] - 2.0F * view.depth_m[here] + view.depth_m[after];
-  return std::abs(second) > limit;  // false for infinities less infinities
+// The largest second differences of depth and of its inverse that a surface may have.
+struct StepLimits {
+  float depth_m = 1.0F;
+  float inverse_depth_1_m = 1.0F;
+};
+
+StepLimits step_limits(const SceneView& view) {
+  float nearest = std::numeric_limits<float>::infinity();
+  float farthest = 0.0F;
+  for (const float depth : view.depth_m) {
+    if (!std::isfinite(depth)) continue;
+    nearest = std::min(nearest, depth);
+    farthest = std::max(farthest, depth);
+  }
+  if (!(farthest > nearest)) return {};
+  return {depth_step * (farthest - nearest), depth_step * (1.0F / nearest - 1.0F / farthest)};
+}
+
+// Of three samples in a row, whether the depth jumps. On a plane the depth is linear in a parallel
+// view and its inverse in a perspective one, so a jump must show in both.
+bool depth_jumps(const SceneView& view, size_t before, size_t here, size_t after,
+                 const StepLimits& limits) {
+  const float a = view.depth_m[before];
+  const float b = view.depth_m[here];
+  const float c = view.depth_m[after];
+  if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c)) return false;
+  return std::abs(a - 2.0F * b + c) > limits.depth_m &&
+         std::abs(1.0F / a - 2.0F / b + 1.0F / c) > limits.inverse_depth_1_m;
 }
 
 struct Grid {
@@ -95,7 +108,7 @@ Eigen::Vector3d sample_light(const SceneView& view, const ColourScale& scale, si
 std::vector<float> edge_strength(const SceneView& view) {
   const Grid grid{view.sample_columns(), view.sample_rows()};
   std::vector<float> strength(view.depth_m.size(), 0.0F);
-  const float limit = depth_step * depth_range(view);
+  const StepLimits limits = step_limits(view);
   const auto mark = [&](int column, int row, int across, int down) {
     if (column + across >= grid.columns || row + down >= grid.rows) return;
     const size_t here = grid.at(column, row);
@@ -103,7 +116,7 @@ std::vector<float> edge_strength(const SceneView& view) {
     float edge = pair_strength(view, here, after);
     if (column >= across && row >= down) {
       const size_t before = grid.at(column - across, row - down);
-      if (depth_jumps(view, before, here, after, limit)) edge = std::max(edge, border_strength);
+      if (depth_jumps(view, before, here, after, limits)) edge = std::max(edge, border_strength);
     }
     // The nearer side carries the line, so that outlines stay on the thing that they outline.
     const size_t nearer = view.depth_m[after] < view.depth_m[here] ? after : here;

@@ -12,8 +12,8 @@ namespace photorque {
 // What a run cost; left out where unknown. The wall time is the only number that differs between
 // two equal runs, and stands on a line of its own.
 struct RunCost {
-  std::optional<double> wall_time_s;
-  std::optional<uint64_t> rays;
+  std::optional<double> wall_time_s = {};
+  std::optional<uint64_t> rays = {};
 };
 
 // {"schema": "photorque.summary/1",

@@ -1,6 +1,6 @@
 // Maps as TIFF images of 32-bit floats, for further computation.
 //
-// Page 1 is "value", page 2 "standard_error" (PageName). ImageDescription is JSON with unit,
+// Page 1 is "value", page 2 "standard_error" (DocumentName). ImageDescription is JSON with unit,
 // extents and provenance.
 #include "images/image_file.h"
 #include "images/map_channels.h"

@@ -1,0 +1,204 @@
+// Maps read back by OpenImageIO and by hand.
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/files.h"
+#include "images/colour_map.h"
+#include "images/map_picture.h"
+#include "images/write_product.h"
+#include "tests/images/sample_product.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MapFiles : public FolderTest {
+ protected:
+  fs::path written(const Map& map, const std::string& format) const {
+    Product product;
+    product.maps = {map};
+    return write_product(product, sample_provenance(), folder, {format}).at(0);
+  }
+};
+
+struct Page {
+  OIIO::ImageSpec spec;
+  std::vector<float> samples;
+  float at(int column, int row, const std::string& channel) const {
+    const int index = spec.channelindex(channel);
+    return samples[(static_cast<size_t>(row) * spec.width + column) * spec.nchannels + index];
+  }
+};
+
+Page read_page(const fs::path& path, int page) {
+  const auto input = OIIO::ImageInput::open(path.string());
+  if (!input || !input->seek_subimage(page, 0)) throw std::runtime_error(OIIO::geterror());
+  Page result{input->spec(), {}};
+  result.samples.resize(result.spec.image_pixels() * result.spec.nchannels);
+  input->read_image(page, 0, 0, result.spec.nchannels, OIIO::TypeDesc::FLOAT,
+                    result.samples.data());
+  return result;
+}
+
+void expect_description_of(const Map& map, const std::string& text) {
+  const auto json = nlohmann::json::parse(text);
+  EXPECT_EQ(json.at("title"), map.title);
+  EXPECT_EQ(json.at("unit"), map.unit);
+  EXPECT_EQ(json.at("x_low"), map.x_low);
+  EXPECT_EQ(json.at("y_high"), map.y_high);
+  EXPECT_EQ(json.at("provenance").at("seed"), sample_provenance().seed);
+  EXPECT_EQ(json.at("provenance").at("inputs").at("stasis.gltf"),
+            sample_provenance().inputs[1].second);
+}
+
+TEST_F(MapFiles, ExrHoldsBothChannelsTopRowFirst) {
+  const Map map = sample_map();
+  const Page page = read_page(written(map, "exr"), 0);
+  EXPECT_THAT(page.spec.channelnames, ::testing::UnorderedElementsAre("value", "standard_error"));
+  EXPECT_EQ(page.spec.format, OIIO::TypeDesc::FLOAT);
+  for (int iy = 0; iy < map.height; ++iy) {
+    for (int ix = 0; ix < map.width; ++ix) {
+      const size_t i = static_cast<size_t>(iy) * map.width + ix;
+      const int row = map.height - 1 - iy;
+      EXPECT_EQ(page.at(ix, row, "value"), static_cast<float>(map.value[i]));
+      EXPECT_EQ(page.at(ix, row, "standard_error"), static_cast<float>(map.standard_error[i]));
+    }
+  }
+}
+
+TEST_F(MapFiles, ExrNamesItsAttributes) {
+  const Map map = sample_map();
+  const OIIO::ImageSpec spec = read_page(written(map, "exr"), 0).spec;
+  EXPECT_EQ(spec.get_string_attribute("photorque:unit"), map.unit);
+  EXPECT_EQ(spec.get_string_attribute("photorque:git_hash"), sample_provenance().git_hash);
+  double x_low = 0.0;
+  ASSERT_TRUE(spec.getattribute("photorque:x_low", OIIO::TypeDesc::DOUBLE, &x_low));
+  EXPECT_EQ(x_low, map.x_low);
+  EXPECT_EQ(spec.get_string_attribute("DateTime"), "");
+  expect_description_of(map, spec.get_string_attribute("ImageDescription"));
+}
+
+TEST_F(MapFiles, TiffHoldsAPagePerChannel) {
+  const Map map = sample_map();
+  const fs::path path = written(map, "tiff");
+  const Page values = read_page(path, 0);
+  const Page errors = read_page(path, 1);
+  EXPECT_EQ(values.spec.nchannels, 1);
+  EXPECT_EQ(values.spec.get_string_attribute("DocumentName"), "value");
+  EXPECT_EQ(errors.spec.get_string_attribute("DocumentName"), "standard_error");
+  EXPECT_EQ(values.spec.get_string_attribute("DateTime"), "");
+  expect_description_of(map, values.spec.get_string_attribute("ImageDescription"));
+  for (int i = 0; i < map.width * map.height; ++i) {
+    const size_t source = static_cast<size_t>(map.height - 1 - i / map.width) * map.width +
+                          static_cast<size_t>(i % map.width);
+    EXPECT_EQ(values.samples[i], static_cast<float>(map.value[source]));
+    EXPECT_EQ(errors.samples[i], static_cast<float>(map.standard_error[source]));
+  }
+}
+
+TEST_F(MapFiles, ExactMapsHaveZeroErrorsAndKeepMissingValues) {
+  Map map = sample_map();
+  map.standard_error.clear();
+  map.value[0] = std::nan("");  // lowest row, first column
+  for (const std::string format : {"exr", "tiff"}) {
+    const fs::path path = written(map, format);
+    const bool pages = format == "tiff";
+    const Page values = read_page(path, 0);
+    const Page errors = read_page(path, pages ? 1 : 0);
+    EXPECT_TRUE(std::isnan(values.at(0, map.height - 1, pages ? "Y" : "value")));
+    EXPECT_EQ(errors.at(3, 2, pages ? "Y" : "standard_error"), 0.0F);
+  }
+}
+
+TEST_F(MapFiles, PngIsThePictureWithADescription) {
+  const Map map = sample_map();
+  const Picture picture = map_picture(map, sample_provenance()).picture;
+  const Page page = read_page(written(map, "png"), 0);
+  EXPECT_EQ(page.spec.width, picture.width);
+  EXPECT_EQ(page.spec.height, picture.height);
+  ASSERT_EQ(page.samples.size(), picture.rgb.size());
+  for (size_t i = 0; i < picture.rgb.size(); ++i) {
+    ASSERT_EQ(std::lround(255.0F * page.samples[i]), picture.rgb[i]);
+  }
+  expect_description_of(map, page.spec.get_string_attribute("ImageDescription"));
+}
+
+// Where the middle of a bin stands in the picture.
+std::array<uint8_t, 3> pixel_of_bin(const MapPicture& drawn, const Map& map, int ix, int iy) {
+  const double x = drawn.grid_left + drawn.grid_width * (ix + 0.5) / map.width;
+  const double y = drawn.grid_top + drawn.grid_height * (map.height - iy - 0.5) / map.height;
+  return drawn.picture.pixel(static_cast<int>(x), static_cast<int>(y));
+}
+
+TEST(MapPicture, BinsHaveTheColourOfTheirValue) {
+  const Map map = sample_map();
+  const ColourMap colours = viridis();
+  const MapPicture drawn = map_picture(map, sample_provenance());
+  for (int iy = 0; iy < map.height; ++iy) {
+    for (int ix = 0; ix < map.width; ++ix) {
+      // From zero to the largest of the values 100/3·1 … 100/3·35.
+      const double fraction = (iy * map.width + ix + 1) / 35.0;
+      EXPECT_EQ(pixel_of_bin(drawn, map, ix, iy), rgb_bytes(colours(fraction))) << ix << " " << iy;
+    }
+  }
+}
+
+TEST(MapPicture, SignedZeroIsTheNeutralMiddle) {
+  Map map = sample_map();
+  map.signed_values = true;
+  map.value.assign(map.value.size(), 0.0);
+  map.value[0] = -2e-9;
+  map.value[1] = 1e-9;
+  const MapPicture drawn = map_picture(map, {});
+  const auto [red, green, blue] = pixel_of_bin(drawn, map, 3, 3);
+  EXPECT_NEAR(red, green, 4);
+  EXPECT_NEAR(green, blue, 4);
+  const auto negative = pixel_of_bin(drawn, map, 0, 0);
+  const auto positive = pixel_of_bin(drawn, map, 1, 0);
+  EXPECT_GT(negative[2], negative[0]) << "negative is blue";
+  EXPECT_GT(positive[0], positive[2]) << "positive is red";
+}
+
+TEST(MapPicture, KeepsTheRatioOfTheSides) {
+  Map map = sample_map();  // 0.7 m by 0.5 m
+  EXPECT_NEAR(map_picture(map, {}).grid_width, map_picture(map, {}).grid_height * 1.4, 2.0);
+  map.x_high = 100.0;  // beyond what stays readable
+  EXPECT_NEAR(map_picture(map, {}).grid_width, map_picture(map, {}).grid_height * 8.0, 8.0);
+}
+
+TEST(MapPicture, MeansOfManyBinsShareAPixel) {
+  Map map = sample_map();
+  map.width = 4000;
+  map.height = 4;
+  map.x_low = 0.0;
+  map.x_high = map.y_high = 4.0;
+  map.y_low = 0.0;
+  map.standard_error.clear();
+  map.value.assign(16000, 0.0);
+  // Alternating bins of 0 and 1000: every pixel covers about five of them.
+  for (size_t i = 1; i < map.value.size(); i += 2) map.value[i] = 1000.0;
+  const MapPicture drawn = map_picture(map, {});
+  for (int column = 0; column < drawn.grid_width; column += 7) {
+    const auto pixel = drawn.picture.pixel(drawn.grid_left + column, drawn.grid_top + 5);
+    EXPECT_GT(pixel[1], rgb_bytes(viridis()(0.38))[1]);
+    EXPECT_LT(pixel[1], rgb_bytes(viridis()(0.62))[1]);
+  }
+}
+
+TEST(MapCaption, GivesExtremesMeanAndError) {
+  Map map = sample_map();
+  map.value.assign(map.value.size(), 2.0);
+  map.value[3] = 37.0;  // mean 3
+  map.standard_error.assign(map.standard_error.size(), 0.25);
+  EXPECT_EQ(map_caption(map),
+            "min 2.000 · mean 3.000 · max 37.00 W/m² · 7 × 5 bins · standard error 0.25 (rms)");
+  map.value[0] = std::nan("");
+  EXPECT_THAT(map_caption(map), ::testing::EndsWith("hatched: no value"));
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,188 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "images/plot_curves.h"
+#include "images/plot_picture.h"
+#include "tests/images/sample_product.h"
+
+namespace photorque {
+namespace {
+
+std::vector<PagePoint> noisy_line(size_t count, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  std::vector<PagePoint> line;
+  for (size_t i = 0; i < count; ++i) {
+    const double x = 300.0 * static_cast<double>(i) / static_cast<double>(count);
+    line.push_back({x, 50.0 * std::sin(0.05 * x) + 10.0 * normal(generator)});
+  }
+  return line;
+}
+
+TEST(Thinned, KeepsTheExtremesOfEveryColumn) {
+  const std::vector<PagePoint> line = noisy_line(200000, 1);
+  const std::vector<PagePoint> kept = thinned(line, 0.5);
+  EXPECT_LE(kept.size(), 4u * 601u);
+  std::map<int, std::pair<double, double>> expected;
+  std::map<int, std::pair<double, double>> found;
+  const auto include = [](auto& extremes, const PagePoint& p) {
+    auto& [low, high] = extremes.try_emplace(static_cast<int>(p.x / 0.5), p.y, p.y).first->second;
+    low = std::min(low, p.y);
+    high = std::max(high, p.y);
+  };
+  for (const PagePoint& p : line) include(expected, p);
+  for (const PagePoint& p : kept) include(found, p);
+  EXPECT_EQ(found, expected);
+  EXPECT_TRUE(std::ranges::is_sorted(kept, {}, &PagePoint::x));
+}
+
+TEST(Thinned, LeavesShortAndTurningLinesAlone) {
+  EXPECT_EQ(thinned(noisy_line(100, 2), 0.5).size(), 100u);
+  std::vector<PagePoint> circle;
+  for (int i = 0; i < 50000; ++i) circle.push_back({std::cos(0.01 * i), std::sin(0.01 * i)});
+  EXPECT_EQ(thinned(circle, 0.5).size(), circle.size());
+  EXPECT_TRUE(thinned({}, 0.5).empty());
+}
+
+ChartPanel unit_panel(std::vector<Plot::Curve> curves) {
+  Axis axis;
+  axis.range = {0.0, 1.0};
+  return {{100.0, 50.0, 400.0, 300.0}, axis, axis, std::move(curves)};
+}
+
+// Dense samples along every segment decide independently of how free_corner clips.
+bool passes_through(const ChartPanel& panel, const PageBox& box) {
+  for (const Plot::Curve& curve : panel.curves) {
+    for (size_t i = 1; i < curve.x.size(); ++i) {
+      for (double t = 0.0; t <= 1.0; t += 1.0 / 512.0) {
+        const PagePoint p = panel.at(std::lerp(curve.x[i - 1], curve.x[i], t),
+                                     std::lerp(curve.y[i - 1], curve.y[i], t));
+        if (p.x > box.x && p.x < box.right() && p.y > box.y && p.y < box.bottom()) return true;
+      }
+    }
+  }
+  return false;
+}
+
+TEST(FreeCorner, CoversNoCurve) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const Legend legend{{0}, 120.0, 60.0};
+  int found = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    Plot::Curve curve{"a", {}, {}, {}, false};
+    for (int i = 0; i < 10; ++i) {
+      curve.x.push_back(uniform(generator));
+      curve.y.push_back(uniform(generator));
+    }
+    const ChartPanel panel = unit_panel({curve});
+    const std::optional<PagePoint> corner = free_corner(panel, legend);
+    if (!corner) continue;
+    ++found;
+    EXPECT_FALSE(passes_through(panel, {corner->x, corner->y, legend.width, legend.height}));
+  }
+  EXPECT_GT(found, 30);
+  EXPECT_LT(found, 300) << "some of these lines leave no corner";
+}
+
+TEST(FreeCorner, IsNowhereWhenCurvesFillTheFrame) {
+  Plot::Curve zigzag{"a", {}, {}, {}, false};
+  for (int i = 0; i <= 100; ++i) {
+    zigzag.x.push_back(0.01 * i);
+    zigzag.y.push_back(i % 2);
+  }
+  EXPECT_FALSE(free_corner(unit_panel({zigzag}), {{0}, 120.0, 60.0}));
+}
+
+// Okabe and Ito's palette differs under the colour visions that are common; here: no two curves of
+// one chart look alike.
+TEST(CurveStroke, TellsTwentyOneCurvesApart) {
+  for (size_t i = 0; i < 21; ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      const Stroke a = curve_stroke(i);
+      const Stroke b = curve_stroke(j);
+      EXPECT_TRUE(rgb_bytes(a.colour) != rgb_bytes(b.colour) || a.dashes != b.dashes);
+    }
+  }
+}
+
+int pixels_of_colour(const Picture& picture, const Rgb& colour, int first_row, int last_row) {
+  const auto wanted = rgb_bytes(colour);
+  int count = 0;
+  for (int row = first_row; row < last_row; ++row) {
+    for (int column = 0; column < picture.width; ++column) {
+      count += picture.pixel(column, row) == wanted ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+Plot constant_plot() {
+  Plot plot;
+  plot.title = "Constant";
+  plot.curves = {{"", {0.0, 1.0}, {5.0, 5.0}, {}, false}};
+  return plot;
+}
+
+TEST(PlotPicture, DrawsAConstantAcrossTheMiddle) {
+  const Picture picture = plot_picture(constant_plot(), {});
+  const Rgb blue = curve_stroke(0).colour;
+  EXPECT_GT(pixels_of_colour(picture, blue, 0, picture.height), picture.width * 3 / 4);
+  EXPECT_EQ(pixels_of_colour(picture, blue, 0, picture.height / 3), 0);
+  EXPECT_EQ(pixels_of_colour(picture, blue, picture.height * 2 / 3, picture.height), 0);
+}
+
+TEST(PlotPicture, LeavesGapsWhereNothingCanBeShown) {
+  Plot plot = constant_plot();
+  plot.curves[0].x = {0.0, 0.25, 0.5, 0.75, 1.0};
+  plot.curves[0].y = {5.0, 5.0, std::nan(""), 5.0, 5.0};
+  const Rgb blue = curve_stroke(0).colour;
+  const Picture whole = plot_picture(constant_plot(), {});
+  const Picture gap = plot_picture(plot, {});
+  const double ratio = static_cast<double>(pixels_of_colour(gap, blue, 0, gap.height)) /
+                       pixels_of_colour(whole, blue, 0, whole.height);
+  EXPECT_NEAR(ratio, 0.5, 0.02);
+}
+
+TEST(PlotPicture, StacksPanels) {
+  Plot plot = constant_plot();
+  plot.below = {{"b", {{"", {0.0, 1.0}, {1.0, 2.0}, {}, false}}, false}};
+  const Picture picture = plot_picture(plot, {});
+  const Rgb blue = curve_stroke(0).colour;
+  EXPECT_GT(pixels_of_colour(picture, blue, 0, picture.height / 2), 100);
+  EXPECT_GT(pixels_of_colour(picture, blue, picture.height / 2, picture.height), 100);
+}
+
+TEST(PlotPicture, SurvivesEveryDegeneratePlot) {
+  Plot nothing;
+  Plot empty_curve = constant_plot();
+  empty_curve.curves[0].x = empty_curve.curves[0].y = {};
+  Plot negative_on_log = constant_plot();
+  negative_on_log.x_log = negative_on_log.y_log = true;
+  negative_on_log.curves[0].y = {-1.0, 0.0};
+  Plot one_point_on_log = negative_on_log;
+  one_point_on_log.curves[0] = {"p", {3.0}, {4.0}, {5.0}, true};
+  Plot huge = constant_plot();
+  huge.curves[0].y = {-1e300, 1e300};
+  Plot infinite = constant_plot();
+  infinite.curves[0].y = {HUGE_VAL, 1.0};
+  for (const Plot& plot :
+       {nothing, empty_curve, negative_on_log, one_point_on_log, huge, infinite}) {
+    EXPECT_GT(plot_picture(plot, {}).height, 100);
+    EXPECT_THAT(plot_svg(plot, {}), ::testing::HasSubstr("</svg>"));
+  }
+}
+
+TEST(PlotSvg, StaysSmallForLongHistories) {
+  Plot plot = constant_plot();
+  for (int i = 0; i < 300000; ++i) {
+    plot.curves[0].x.push_back(1.0 + i);
+    plot.curves[0].y.push_back(std::sin(1e-4 * i) + 0.01 * (i % 7));
+  }
+  EXPECT_LT(plot_svg(plot, {}).size(), 300000u);
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,83 @@
+// A small product of every kind, and a folder that vanishes with the test.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "core/product.h"
+#include "core/provenance.h"
+
+namespace photorque {
+
+// Values without two alike, so that no mix-up of rows, columns or channels goes unnoticed.
+inline Map sample_map() {
+  Map map;
+  map.name = "irradiance_plate";
+  map.title = "Irradiance on plate";
+  map.unit = "W/m²";
+  map.width = 7;
+  map.height = 5;
+  map.x_low = -0.35;
+  map.x_high = 0.35;
+  map.y_low = 0.1;
+  map.y_high = 0.6;
+  for (int i = 0; i < map.width * map.height; ++i) {
+    map.value.push_back(100.0 / 3.0 * (i + 1));
+    map.standard_error.push_back(0.01 * (i + 1));
+  }
+  return map;
+}
+
+inline Plot sample_plot() {
+  Plot plot;
+  plot.name = "iv_curve";
+  plot.title = "Current over voltage";
+  plot.x_label = "voltage [V]";
+  plot.y_label = "current [A]";
+  plot.curves = {{"traced", {0.0, 1.0, 2.0}, {1.2, 1.1, 0.2}, {0.1, 0.1, 0.1}, false},
+                 {"measured", {0.5, 1.5}, {1.15, 0.9}, {0.05, 0.05}, true}};
+  plot.below = {{"power [W]", {{"", {0.0, 1.0, 2.0}, {0.0, 1.1, 0.4}, {}, false}}, false}};
+  return plot;
+}
+
+inline Product sample_product() {
+  Product product;
+  product.quantities = {{"power_on_array_W", {27.1, 0.002}},
+                        {"torque_y_N_m", {1.127e-9, 1.0 / 3.0 * 1e-12}}};
+  product.maps = {sample_map()};
+  product.tables = {{"budget",
+                     "Budget of torques",
+                     {{"effect", {}, {"static, unbalance", "the \"draft\"", "#1"}},
+                      {"torque_N_m", {0.1, 1.0 / 3.0, std::nan("")}, {}}}}};
+  product.plots = {sample_plot()};
+  return product;
+}
+
+inline Provenance sample_provenance() {
+  Provenance provenance;
+  provenance.version = "12.34.56";
+  provenance.git_hash = "0123456789ab+";
+  provenance.seed = 987654321987654321ull;
+  provenance.inputs = {{"nominal.toml", "9f3c5a7b11223344aabbccddeeff0011"},
+                       {"stasis.gltf", "77aa12ff5566778899aabbccddeeff22"}};
+  return provenance;
+}
+
+class FolderTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder = std::filesystem::temp_directory_path() /
+             ("photorque_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" +
+              std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  std::filesystem::path folder;
+};
+
+}  // namespace photorque
