@@ -55,21 +55,33 @@ double CoilCage::nonuniformity(double edge_m) const {
   return worst;
 }
 
+double CircularOrbit::motion_rad_s() const {
+  return std::sqrt(earth_gravitation_m3_s2 / std::pow(radius_m, 3));
+}
+
+Vec3 CircularOrbit::node() const {
+  return {std::cos(ascending_node_rad), std::sin(ascending_node_rad), 0.0};
+}
+
+Vec3 CircularOrbit::ahead() const {
+  const Vec3 pole = Vec3::UnitZ();
+  return std::cos(inclination_rad) * pole.cross(node()) + std::sin(inclination_rad) * pole;
+}
+
+Vec3 CircularOrbit::up(double time_s) const {
+  const double u = phase_rad + motion_rad_s() * time_s;
+  return std::cos(u) * node() + std::sin(u) * ahead();
+}
+
 TimeSeries orbit_field_T(const CircularOrbit& orbit, double decimal_year, double duration_s,
                          double interval_s) {
   const GeomagneticModel model(decimal_year);
-  const double motion_rad_s = std::sqrt(earth_gravitation_m3_s2 / std::pow(orbit.radius_m, 3));
-  const Vec3 node(std::cos(orbit.ascending_node_rad), std::sin(orbit.ascending_node_rad), 0.0);
-  const Vec3 pole(0.0, 0.0, 1.0);
-  const Vec3 ahead =
-      std::cos(orbit.inclination_rad) * pole.cross(node) + std::sin(orbit.inclination_rad) * pole;
   const auto samples = static_cast<int>(std::ceil(duration_s / interval_s)) + 1;
   std::vector<double> times_s;
   std::vector<Vec3> fields_T;
   for (int i = 0; i < samples; ++i) {
     const double t_s = i * interval_s;
-    const double u = orbit.phase_rad + motion_rad_s * t_s;
-    const Vec3 up = std::cos(u) * node + std::sin(u) * ahead;
+    const Vec3 up = orbit.up(t_s);
     const double right_ascension_rad = std::atan2(up.y(), up.x());
     const Vec3 ned_T = model.north_east_down_T(GeocentricPosition{
         orbit.radius_m, std::acos(std::clamp(up.z(), -1.0, 1.0)),

@@ -38,6 +38,13 @@ struct CircularOrbit {
   double ascending_node_rad = 0.0;
   double phase_rad = 0.0;            // argument of latitude at time 0
   double greenwich_angle_rad = 0.0;  // of the Earth's zero meridian at time 0
+
+  double motion_rad_s() const;
+  // Unit vectors in inertial axes: towards the ascending node, a quarter turn further along the
+  // orbit, and from the Earth's centre to the spacecraft.
+  Vec3 node() const;
+  Vec3 ahead() const;
+  Vec3 up(double time_s) const;
 };
 inline constexpr double earth_gravitation_m3_s2 = 3.986004418e14;  // EGM2008
 

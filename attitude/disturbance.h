@@ -76,6 +76,7 @@ struct Moment {
   T illumination;              // share of the light that arrives: 1 lit, 0 in shadow
   Vec3Of<T> command_body_N_m;  // torque commanded; acts on the body by itself
   T battery_current_A;         // drawn from the battery (positive discharges)
+  T array_power_W;             // that the solar array delivers
 
   // The conditions in body axes: valid after Stage::conditions.
   Vec3Of<T> gravity_body_m_s2;
@@ -233,8 +234,8 @@ Parameters vector_parameter_or(const Settings& settings, const std::string& key,
                                const Vec3& otherwise_SI);
 // `size` numbers, e.g. the six of a symmetric matrix.
 Parameters array_parameter(const Settings& settings, const std::string& key, size_t size);
-// How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine for
-// three rows of three; looks into { value = …, sigma = … }.
+// How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine
+// for three rows of three; looks into { value = …, sigma = … }.
 size_t count_as_written(const Settings& settings, const std::string& key);
 // The file that `key` names; a relative path counts from the experiment file.
 std::filesystem::path file_of(const Settings& settings, const std::string& key);

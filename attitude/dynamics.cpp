@@ -59,10 +59,13 @@ Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
   inverse_inertia_1_kg_m2_ = lu.inverse();
 }
 
-PlatformState Dynamics::initial_state() const {
+PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
   PlatformState state;
+  state.rate_body_rad_s = rate_body_rad_s;
   for (const Disturbance& d : model_.disturbances) {
-    for (const ExtraState& extra : d.states) state.extra.push_back(extra.initial);
+    for (const ExtraState& extra : d.states) {
+      state.extra.push_back(extra.initial + extra.per_body_rate.dot(rate_body_rad_s));
+    }
   }
   return state;
 }
@@ -104,6 +107,7 @@ Moment<T> Dynamics::begin(const T& time_s, const Command& command, const T* y) c
           .illumination = 1.0,
           .command_body_N_m = command.torque_body_N_m.template cast<T>(),
           .battery_current_A = command.battery_current_A,
+          .array_power_W = 0.0,
           .gravity_body_m_s2 = zero,
           .magnetic_field_body_T = zero,
           .up_body = zero,
@@ -193,6 +197,7 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s, const std::array<Held, Lane
   result.command_body_N_m = now.command_body_N_m;
   result.mass_offset_body_m = now.mass_offset_body_m;
   result.battery_current_A = now.battery_current_A;
+  result.array_power_W = now.array_power_W;
   result.illumination = now.illumination;
   result.gyro_rad_s = now.inertial_rate_body_rad_s + now.gyro_error_rad_s;
   result.camera_error_rad = now.camera_error_rad;

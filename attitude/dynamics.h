@@ -50,8 +50,9 @@ class Dynamics {
   int first_parameter(size_t d) const { return layout_[d].first_parameter; }
   int parameter_count() const { return static_cast<int>(parameters_.size()); }
 
-  // A state at rest with the extra states at their initial values.
-  PlatformState initial_state() const;
+  // At zero attitude, turning at this rate as one rigid body, the extra states at their initial
+  // values.
+  PlatformState initial_state(const Vec3& rate_body_rad_s = Vec3::Zero()) const;
 
   // dy/dt at eight instants; `y` and `rates` hold size() components.
   void rates(const Lanes& time_s, const Held& held, const Lanes* y, Lanes* rates) const;
@@ -72,6 +73,7 @@ class Dynamics {
     Vec3Of<Lanes> command_body_N_m;              // as it acts
     Vec3Of<Lanes> mass_offset_body_m;
     Lanes battery_current_A;
+    Lanes array_power_W;
     Lanes illumination;
     // What noiseless instruments read; see Moment.
     Vec3Of<Lanes> gyro_rad_s;

@@ -21,7 +21,7 @@ namespace photorque {
 struct PropagationOptions {
   // Bound on the error of the polynomial within a step, relative to Dynamics::scales(): 1 rad,
   // 1 rad/s. Errors at the ends of steps, the ones that add up, are far smaller.
-  double tolerance = 1e-9;
+  double tolerance = 1e-8;
   double longest_step_s = std::numeric_limits<double>::infinity();
   int64_t most_steps = 1'000'000'000;
 };

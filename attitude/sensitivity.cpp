@@ -54,8 +54,20 @@ Sensitivity::Sensitivity(const Dynamics& dynamics, std::vector<Variable> variabl
       // Behind the attitude the tangent has one component less than the state.
       start_[static_cast<size_t>(initial + 1) * count + v] = 1.0;
     }
+    if (initial >= 3 && initial < 6) seed_bound_states(v, initial - 3);
   }
   make_blocks();
+}
+
+// States that begin by turning with the body change with its initial rate.
+void Sensitivity::seed_bound_states(size_t v, int axis) {
+  const auto& disturbances = dynamics_.model().disturbances;
+  for (size_t d = 0; d < disturbances.size(); ++d) {
+    size_t component = static_cast<size_t>(dynamics_.first_state(d));
+    for (const ExtraState& state : disturbances[d].states) {
+      start_[component++ * variables_.size() + v] = state.per_body_rate[axis];
+    }
+  }
 }
 
 void Sensitivity::make_blocks() {

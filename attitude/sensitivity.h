@@ -21,6 +21,7 @@ struct Variable {
   int parameter = -1;
 
   static Variable initial_rotation(int body_axis) { return {body_axis, 0, -1}; }
+  // Of the body and of the extra states that begin by turning with it (ExtraState::per_body_rate).
   static Variable initial_rate(int body_axis) { return {3 + body_axis, 0, -1}; }
   static Variable initial_charge() { return {6, 0, -1}; }
   static Variable initial_extra(int index) { return {7 + index, 0, -1}; }
@@ -61,6 +62,7 @@ class Sensitivity {
     Dynamics::Block block;
     std::array<int, DualLanes::block> variable;
   };
+  void seed_bound_states(size_t v, int axis);
   void make_blocks();
   void differentiate_rates(const CollocationStep& step, const Held& held);
 

@@ -1,0 +1,41 @@
+// Lines of a text file that may be compressed and need not fit into memory.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace photorque {
+
+class TextLines {
+ public:
+  // InputError when the file cannot be opened. Files that are not compressed are read as they are.
+  explicit TextLines(const std::filesystem::path& path);
+  ~TextLines();
+  TextLines(const TextLines&) = delete;
+  TextLines& operator=(const TextLines&) = delete;
+
+  // The next line without its end ("\n", "\r\n"); false at the end of the file. The view is valid
+  // until the next call. InputError when the file is damaged or a line is longer than a megabyte.
+  bool next(std::string_view& line);
+  // 1-based number of the line that next() gave last.
+  int64_t number() const { return number_; }
+
+ private:
+  struct File;
+  bool fill();
+
+  std::filesystem::path path_;
+  std::unique_ptr<File> file_;
+  std::string buffer_;
+  size_t begin_ = 0;
+  bool at_end_ = false;
+  int64_t number_ = 0;
+};
+
+// Compresses to the gzip format, without name or time, so that equal texts give equal bytes.
+std::string gzip(const std::string& text);
+
+}  // namespace photorque
