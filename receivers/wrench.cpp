@@ -121,6 +121,7 @@ std::vector<Quantity> wrench_quantities(const WrenchEstimate& wrench, const std:
   const std::string where = "_" + name + (wrench.mean.frame == Frame::body ? "_body" : "_lab");
   const Vec3 force_error_N = wrench.force_error_N(), torque_error_N_m = wrench.torque_error_N_m();
   std::vector<Quantity> quantities;
+  quantities.reserve(components);
   for (int axis = 0; axis < 3; ++axis) {
     quantities.push_back({component("force", axis) + where + "_N",
                           {wrench.mean.force_N[axis], force_error_N[axis]}});

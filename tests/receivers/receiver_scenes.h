@@ -1,0 +1,199 @@
+// Small scenes, hits and settings made by hand, for tests of receivers.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/constants.h"
+#include "core/settings.h"
+#include "raytrace/receiver.h"
+#include "raytrace/scene.h"
+
+namespace photorque::testing {
+
+// The rectangle [x0, x1] × [y0, y1] at height z, front up, texture coordinates from 0 to 1.
+inline Mesh plate(double x0, double x1, double y0, double y1, double z = 0.0) {
+  Mesh mesh;
+  mesh.vertices_m = {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  return mesh;
+}
+
+// The polygon with corners on the circle of radius 1, first corner on +x, front up.
+inline Mesh polygon(uint32_t corners) {
+  Mesh mesh;
+  mesh.vertices_m.emplace_back(0, 0, 0);
+  for (uint32_t i = 0; i < corners; ++i) {
+    const double angle = 2 * pi * i / corners;
+    mesh.vertices_m.emplace_back(std::cos(angle), std::sin(angle), 0);
+    mesh.triangles.push_back({0, i + 1, (i + 1) % corners + 1});
+  }
+  return mesh;
+}
+
+// The ring between two regular polygons with corners on circles of the given radii.
+inline Mesh ring(uint32_t corners, double inner_m, double outer_m) {
+  Mesh mesh;
+  for (uint32_t i = 0; i < corners; ++i) {
+    const Vec3 direction(std::cos(2 * pi * i / corners), std::sin(2 * pi * i / corners), 0);
+    mesh.vertices_m.push_back(inner_m * direction);
+    mesh.vertices_m.push_back(outer_m * direction);
+    const uint32_t a = 2 * i, b = 2 * ((i + 1) % corners);
+    mesh.triangles.push_back({a, a + 1, b + 1});
+    mesh.triangles.push_back({a, b + 1, b});
+  }
+  return mesh;
+}
+
+// A unit sphere cut along meridians and parallels, front outside.
+inline Mesh sphere(uint32_t meridians, uint32_t parallels) {
+  Mesh mesh;
+  for (uint32_t j = 0; j <= parallels; ++j) {
+    const double polar = pi * j / parallels;
+    for (uint32_t i = 0; i < meridians; ++i) {
+      const double around = 2 * pi * i / meridians;
+      mesh.vertices_m.emplace_back(std::sin(polar) * std::cos(around),
+                                   std::sin(polar) * std::sin(around), std::cos(polar));
+    }
+  }
+  for (uint32_t j = 0; j < parallels; ++j) {
+    for (uint32_t i = 0; i < meridians; ++i) {
+      const uint32_t a = j * meridians + i, b = j * meridians + (i + 1) % meridians;
+      if (j > 0) mesh.triangles.push_back({a, a + meridians, b});
+      if (j + 1 < parallels) mesh.triangles.push_back({b, a + meridians, b + meridians});
+    }
+  }
+  return mesh;
+}
+
+// The box [−x, x] × [−y, y] × [−z, z], front outside.
+inline Mesh box(double x, double y, double z) {
+  Mesh mesh;
+  for (const double k : {-z, z}) {
+    for (const double j : {-y, y}) {
+      for (const double i : {-x, x}) mesh.vertices_m.emplace_back(i, j, k);
+    }
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+inline uint32_t add_instance(Scene& scene, Mesh mesh, const std::string& path,
+                             const Affine& body_from_mesh = Affine::Identity()) {
+  Instance instance;
+  instance.path = path;
+  instance.node = path.substr(path.find_last_of('/') + 1);
+  instance.mesh = static_cast<uint32_t>(scene.meshes.size());
+  instance.body_from_mesh = body_from_mesh;
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back(std::move(instance));
+  return static_cast<uint32_t>(scene.instances.size() - 1);
+}
+
+inline Scene scene_of(Mesh mesh, const Affine& body_from_mesh = Affine::Identity()) {
+  Scene scene;
+  add_instance(scene, std::move(mesh), "plate", body_from_mesh);
+  return scene;
+}
+
+struct HitMaker {
+  uint32_t instance = 0;
+  uint32_t triangle = 0;
+  bool front = true;
+  Vec3 position_m = Vec3::Zero();
+  Vec2 barycentric = Vec2(0.25, 0.25);
+  std::vector<double> incident_W = {1.0};
+  std::vector<double> absorbed_W = {1.0};
+  Vec3 force_N = Vec3::Zero();
+};
+
+inline void add_hit(Hits& hits, const HitMaker& hit) {
+  const auto i = static_cast<size_t>(hits.count++);
+  hits.instance.at(i) = hit.instance;
+  hits.triangle[i] = hit.triangle;
+  hits.front[i] = hit.front ? 1 : 0;
+  hits.depth[i] = 0;
+  hits.bands = static_cast<int>(hit.incident_W.size());
+  for (size_t band = 0; band < hit.incident_W.size(); ++band) {
+    hits.incident_W[band][i] = hit.incident_W[band];
+    hits.absorbed_W[band][i] = hit.absorbed_W[band];
+  }
+  for (size_t axis = 0; axis < 3; ++axis) {
+    hits.position_m[axis][i] = hit.position_m[static_cast<Eigen::Index>(axis)];
+    hits.force_N[axis][i] = hit.force_N[static_cast<Eigen::Index>(axis)];
+  }
+  hits.barycentric[0][i] = static_cast<float>(hit.barycentric.x());
+  hits.barycentric[1][i] = static_cast<float>(hit.barycentric.y());
+}
+
+// Hits is too large for comfort on a stack.
+inline std::unique_ptr<Hits> hits_of(const std::vector<HitMaker>& all) {
+  auto hits = std::make_unique<Hits>();
+  hits->count = 0;
+  for (const HitMaker& hit : all) add_hit(*hits, hit);
+  return hits;
+}
+
+// One replicate per list of hits.
+inline BinSums sums_of(const Receiver& receiver, const std::vector<std::vector<HitMaker>>& lists) {
+  BinSums sums{receiver.bins(), static_cast<int>(lists.size()), {}};
+  sums.sums.assign(sums.bins * lists.size(), 0.0);
+  for (size_t r = 0; r < lists.size(); ++r) {
+    receiver.score(*hits_of(lists[r]), std::span(sums.sums).subspan(r * sums.bins, sums.bins));
+  }
+  return sums;
+}
+
+inline SettingsNode node_of(double x) {
+  return {x, {"test.toml", 7}};
+}
+inline SettingsNode node_of(const std::string& text) {
+  return {text, {"test.toml", 7}};
+}
+inline SettingsNode node_of(const char* text) {
+  return node_of(std::string(text));
+}
+inline SettingsNode node_of(const std::vector<double>& numbers) {
+  SettingsNode::Array array;
+  for (const double x : numbers) array.push_back(node_of(x));
+  return {std::move(array), {"test.toml", 7}};
+}
+
+inline Settings settings_of(const std::vector<std::pair<std::string, SettingsNode>>& keys) {
+  SettingsNode root;
+  root.where = {"test.toml", 6};
+  for (const auto& [key, node] : keys) std::get<SettingsNode::Table>(root.value)[key] = node;
+  return Settings(std::make_shared<const SettingsNode>(root), "receiver[0]");
+}
+
+// The message of the InputError that `action` throws; empty if it throws none.
+template <typename Action>
+std::string input_error_of(const Action& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+inline const Map& map_named(const Product& product, const std::string& name) {
+  for (const Map& map : product.maps) {
+    if (map.name == name) return map;
+  }
+  throw std::runtime_error("no map " + name);
+}
+
+inline Estimate quantity_named(const Product& product, const std::string& name) {
+  for (const Quantity& quantity : product.quantities) {
+    if (quantity.name == name) return quantity.estimate;
+  }
+  throw std::runtime_error("no quantity " + name);
+}
+
+}  // namespace photorque::testing

@@ -1,0 +1,70 @@
+#include "receivers/wrench_table.h"
+
+#include "receiver_scenes.h"
+
+namespace photorque {
+namespace {
+
+using testing::map_named;
+
+WrenchTable numbered(std::vector<double> tilts_deg, std::vector<double> headings_deg) {
+  for (double& angle : tilts_deg) angle *= degree_rad;
+  for (double& angle : headings_deg) angle *= degree_rad;
+  WrenchTable table = make_wrench_table(WrenchTable::Angles::tilt_heading, std::move(tilts_deg),
+                                        std::move(headings_deg));
+  for (size_t i = 0; i < table.nodes(); ++i) {
+    const auto x = static_cast<double>(i);
+    table.force_body_N[i] = Vec3(x, 10 * x, 100 * x);
+    table.torque_body_N_m[i] = -table.force_body_N[i];
+    table.torque_error_N_m[i] = Vec3(0.5, 0.25, 0.125);
+  }
+  return table;
+}
+
+TEST(WrenchTableProduct, RegularGridBecomesMapsCentredOnItsNodes) {
+  const Product product = wrench_table_product(numbered({0, 15, 30}, {0, 90, 180, 270}), "stasis");
+  EXPECT_EQ(product.maps.size(), 6u);
+  EXPECT_TRUE(product.plots.empty());
+  const Map& map = map_named(product, "torque_y_stasis");
+  EXPECT_EQ(map.width, 4);
+  EXPECT_EQ(map.height, 3);
+  EXPECT_NEAR(map.x_low, -45, 1e-12);
+  EXPECT_NEAR(map.x_high, 315, 1e-12);
+  EXPECT_NEAR(map.y_low, -7.5, 1e-12);
+  EXPECT_NEAR(map.y_high, 37.5, 1e-12);
+  // Heading 180 deg is column 2, tilt 15 deg row 1: node 2·3 + 1.
+  EXPECT_EQ(map.value[1 * 4 + 2], -70.0);
+  EXPECT_EQ(map.standard_error[1 * 4 + 2], 0.25);
+  EXPECT_TRUE(map.signed_values);
+  EXPECT_FALSE(map.equal_scale);
+  EXPECT_EQ(map.x_label, "heading [deg]");
+}
+
+TEST(WrenchTableProduct, TableHasARowPerNode) {
+  const Product product = wrench_table_product(numbered({0, 10, 30}, {0, 90}), "stasis");
+  EXPECT_TRUE(product.maps.empty());  // the tilts are not evenly spaced
+  const Table& table = product.tables.at(0);
+  EXPECT_EQ(table.name, "wrench_table_stasis");
+  EXPECT_EQ(table.columns[0].name, "heading_deg");
+  EXPECT_EQ(table.columns[1].name, "tilt_deg");
+  EXPECT_NEAR(table.columns[0].values[4], 90.0, 1e-12);
+  EXPECT_NEAR(table.columns[1].values[4], 10.0, 1e-12);
+  EXPECT_EQ(table.columns[3].name, "force_y_N");
+  EXPECT_EQ(table.columns[3].values[4], 40.0);
+  EXPECT_EQ(table.columns.size(), 14u);
+  for (const Table::Column& column : table.columns) EXPECT_EQ(column.values.size(), 6u);
+}
+
+TEST(WrenchTableProduct, SingleHeadingIsPlottedOverTilt) {
+  const Product product = wrench_table_product(numbered({0, 10, 20, 30}, {45}), "stasis");
+  ASSERT_EQ(product.plots.size(), 2u);
+  EXPECT_EQ(product.plots[1].name, "torque_stasis");
+  EXPECT_EQ(product.plots[1].x_label, "tilt [deg]");
+  EXPECT_EQ(product.plots[1].curves[1].label, "y");
+  EXPECT_NEAR(product.plots[1].curves[1].x[2], 20.0, 1e-12);
+  EXPECT_EQ(product.plots[1].curves[1].y[2], -20.0);
+  EXPECT_EQ(product.plots[1].curves[1].y_error[2], 0.25);
+}
+
+}  // namespace
+}  // namespace photorque
