@@ -56,7 +56,7 @@ void print_array(const Console& console, const ArrayResult& array, const TraceRe
                show(array.current_A, "A"));
   console.line("  every cell by itself    " + show(array.sum_of_cells_W, "W") + "  (" +
                show(100 * array.mismatch_loss.value) + " % lost to uneven light and diodes)");
-  const auto reversed = std::count_if(array.cells.voltage_V.begin(), array.cells.voltage_V.end(),
+  const auto reversed = std::count_if(array.cells.voltages_V.begin(), array.cells.voltages_V.end(),
                                       [](double v) { return v < 0.0; });
   console.line("  local maxima of power   " + std::to_string(array.maxima.size()) +
                "; cells in reverse at the best one: " + std::to_string(reversed));

@@ -22,8 +22,8 @@ ArrayPower read_array_power(const OpticalRun& run);
 
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result);
 
-// array_product() and the fractions that need the emitted power: "illumination_efficiency" (power on
-// the cells over emitted) and "light_to_electric_efficiency".
+// array_product() and the fractions that need the emitted power: "illumination_efficiency" (power
+// on the cells over emitted) and "light_to_electric_efficiency".
 Product array_power_product(const ArrayResult& array, const TraceResult& result);
 
 void print_array(const Console& console, const ArrayResult& array, const TraceResult& result);

@@ -22,7 +22,9 @@ std::string fixed(double value, int decimals) {
   return text;
 }
 
-int magnitude(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
+int magnitude(double value) {
+  return static_cast<int>(std::floor(std::log10(std::abs(value))));
+}
 
 }  // namespace
 

@@ -24,7 +24,8 @@ size_t whole_wrench(Experiment& experiment) {
   std::vector<uint32_t> all(experiment.scene.instances.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<uint32_t>(i);
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
-    const auto* wrench = dynamic_cast<const WrenchReceiver*>(experiment.receivers[i].receiver.get());
+    const auto* wrench =
+        dynamic_cast<const WrenchReceiver*>(experiment.receivers[i].receiver.get());
     if (wrench != nullptr && wrench->part_names().size() == all.size()) return i;
   }
   experiment.receivers.push_back(
@@ -138,7 +139,8 @@ void print_trace(const Console& console, const OpticalRun& run, const TraceResul
     const FluxMap map = run.flux_map(i).flux_map(result.sums[i]);
     row("on " + receiver.name, map.incident.power_W);
   }
-  const WrenchEstimate body = wrench_about(run.wrench().total(result.sums[run.wrench_index()]), Vec3::Zero());
+  const WrenchEstimate body =
+      wrench_about(run.wrench().total(result.sums[run.wrench_index()]), Vec3::Zero());
   console.heading("Radiation pressure (body frame, about the centre of rotation)");
   for (int k = 0; k < 3; ++k) {
     console.line(std::string("  force ") + "xyz"[k] + "   " +
@@ -155,7 +157,8 @@ void print_trace(const Console& console, const OpticalRun& run, const TraceResul
                " standard errors");
   console.line("  " + std::to_string(result.rays) + " rays, " + std::to_string(result.segments) +
                " segments in " + show(result.wall_s) + " s (" +
-               show(static_cast<double>(result.segments) / result.wall_s / 1e6) + " million segments/s)");
+               show(static_cast<double>(result.segments) / result.wall_s / 1e6) +
+               " million segments/s)");
 }
 
 void append(Product& product, Product more) {

@@ -17,14 +17,15 @@ void run_power(const CommandLine& line) {
   print_array(console, power, result);
   Product product = run.product(result);
   append(product, array_power_product(power, result));
-  Table table = compare_published(published, run.experiment().file.attitude.tilt_rad, product, console);
+  Table table =
+      compare_published(published, run.experiment().file.attitude.tilt_rad, product, console);
   if (!table.columns.empty()) product.tables.push_back(std::move(table));
   write_results(line, console, product, run.provenance(), result.rays, result.wall_s);
 }
 
 }  // namespace
 
-Verb power_kind() {
+Verb power_verb() {
   return {"power", "Trace, then the solar array: current-voltage curve and maximum power point",
           run_power};
 }

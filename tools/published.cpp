@@ -20,10 +20,9 @@ std::vector<PublishedFigure> read_published(const std::vector<Settings>& tables)
 Table compare_published(const std::vector<PublishedFigure>& figures, double tilt_rad,
                         const Product& product, const Console& console) {
   Table table{"published", "Published figures beside ours", {}};
-  std::vector<Table::Column> columns = {{"quantity", {}, {}},  {"source", {}, {}},
-                                        {"why", {}, {}},       {"published", {}, {}},
-                                        {"ours", {}, {}},      {"standard_error", {}, {}},
-                                        {"ratio", {}, {}}};
+  std::vector<Table::Column> columns = {
+      {"quantity", {}, {}}, {"source", {}, {}},         {"why", {}, {}},  {"published", {}, {}},
+      {"ours", {}, {}},     {"standard_error", {}, {}}, {"ratio", {}, {}}};
   for (const PublishedFigure& figure : figures) {
     if (std::abs(figure.tilt_rad - tilt_rad) > 1e-6) continue;
     for (const Quantity& quantity : product.quantities) {

@@ -39,7 +39,8 @@ float irradiance_at(const OpticalRun& run, const std::vector<std::pair<size_t, F
                     const VisiblePoint& point) {
   for (const auto& [index, map] : maps) {
     const SurfaceGrid& grid = map.grid;
-    const bool on_it = std::find(grid.instances.begin(), grid.instances.end(), point.instance) != grid.instances.end();
+    const bool on_it = std::find(grid.instances.begin(), grid.instances.end(), point.instance) !=
+                       grid.instances.end();
     const bool lit_side = grid.side == Side::both || (grid.side == Side::front) == point.front;
     if (!on_it || !lit_side) continue;
     size_t bin = 0;
@@ -50,7 +51,8 @@ float irradiance_at(const OpticalRun& run, const std::vector<std::pair<size_t, F
       const Mesh& mesh = scene.meshes[scene.instances[point.instance].mesh];
       const auto& corner = mesh.triangles[point.triangle];
       const double u = point.barycentric[0], v = point.barycentric[1];
-      bin = bin_of_texture(grid, (1 - u - v) * mesh.uv[corner[0]] + u * mesh.uv[corner[1]] + v * mesh.uv[corner[2]]);
+      bin = bin_of_texture(
+          grid, (1 - u - v) * mesh.uv[corner[0]] + u * mesh.uv[corner[1]] + v * mesh.uv[corner[2]]);
     }
     return static_cast<float>(map.incident.per_bin_W_m2[bin].value);
   }
@@ -68,16 +70,22 @@ SceneView make_view(const OpticalRun& run, const TraceResult& result, int thread
   view.oversampling = oversampling;
   const int columns = view.sample_columns(), rows = view.sample_rows();
   const auto sight = [&](size_t i) {
-    const double x = (static_cast<double>(i % static_cast<size_t>(columns)) + 0.5) / columns * 2 - 1;
-    const double y = (1 - (static_cast<double>(i / static_cast<size_t>(columns)) + 0.5) / rows * 2) * rows / columns;
+    const double x =
+        (static_cast<double>(i % static_cast<size_t>(columns)) + 0.5) / columns * 2 - 1;
+    const double y =
+        (1 - (static_cast<double>(i / static_cast<size_t>(columns)) + 0.5) / rows * 2) * rows /
+        columns;
     const Vec3 direction = frame.half_width * (x * frame.right + y * frame.up) - frame.back;
-    return Sight{body_from_lab.point(camera.position_m), body_from_lab.direction(direction.normalized())};
+    return Sight{body_from_lab.point(camera.position_m),
+                 body_from_lab.direction(direction.normalized())};
   };
-  const auto points = look(run.scene(), static_cast<size_t>(columns) * static_cast<size_t>(rows), sight, threads);
+  const auto points =
+      look(run.scene(), static_cast<size_t>(columns) * static_cast<size_t>(rows), sight, threads);
 
   std::vector<std::pair<size_t, FluxMap>> maps;
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
-    if (experiment.receivers[i].kind == "flux_map") maps.emplace_back(i, run.flux_map(i).flux_map(result.sums[i]));
+    if (experiment.receivers[i].kind == "flux_map")
+      maps.emplace_back(i, run.flux_map(i).flux_map(result.sums[i]));
   }
   for (const Instance& instance : experiment.scene.instances) {
     view.part_colour.push_back(part_colour(experiment.scene.surfaces[instance.front_surface]));
@@ -88,7 +96,8 @@ SceneView make_view(const OpticalRun& run, const TraceResult& result, int thread
     view.part.push_back(static_cast<int32_t>(point.instance));
     view.normal_lab.push_back(experiment.lab_from_body.direction(point.normal).cast<float>());
     view.cos_view.push_back(static_cast<float>(std::abs(point.normal.dot(sight(i).direction))));
-    view.irradiance_W_m2.push_back(point.hit ? irradiance_at(run, maps, point) : std::numeric_limits<float>::quiet_NaN());
+    view.irradiance_W_m2.push_back(point.hit ? irradiance_at(run, maps, point)
+                                             : std::numeric_limits<float>::quiet_NaN());
   }
   return view;
 }
@@ -104,14 +113,16 @@ void run_render(const CommandLine& line) {
   const CameraFrame frame = camera_frame(experiment.camera);
   SceneLabels labels;
   labels.title = experiment.file.path.stem().string() + ": irradiance";
-  labels.caption = "tilt " + show(experiment.file.attitude.tilt_rad / degree_rad) + " deg, heading " +
-                   show(experiment.file.attitude.heading_rad / degree_rad) + " deg; " +
-                   show(result.ledger.emitted_W) + " W emitted, " +
-                   show(100 * result.ledger.absorbed_W.value / result.ledger.emitted_W) + " % absorbed";
+  labels.caption = "tilt " + show(experiment.file.attitude.tilt_rad / degree_rad) +
+                   " deg, heading " + show(experiment.file.attitude.heading_rad / degree_rad) +
+                   " deg; " + show(result.ledger.emitted_W) + " W emitted, " +
+                   show(100 * result.ledger.absorbed_W.value / result.ledger.emitted_W) +
+                   " % absorbed";
   std::array<Vec3, 3> axes;
   for (int k = 0; k < 3; ++k) {
     const Vec3 axis = experiment.lab_from_body.direction(Vec3::Unit(k));
-    axes[static_cast<size_t>(k)] = {axis.dot(frame.right), axis.dot(frame.up), axis.dot(frame.back)};
+    axes[static_cast<size_t>(k)] = {axis.dot(frame.right), axis.dot(frame.up),
+                                    axis.dot(frame.back)};
   }
   labels.body_axes_camera = axes;
   const auto path = line.out_folder() / "render.png";
@@ -121,8 +132,9 @@ void run_render(const CommandLine& line) {
 
 }  // namespace
 
-Verb render_kind() {
-  return {"render", "A picture of the scene with the irradiance painted on its receivers", run_render};
+Verb render_verb() {
+  return {"render", "A picture of the scene with the irradiance painted on its receivers",
+          run_render};
 }
 
 }  // namespace photorque

@@ -18,11 +18,14 @@ class PowerTable {
       table_.columns.push_back({name, {}, {}});
     }
     if (with_array) {
-      for (const char* name : {"electric_W", "electric_error_W"}) table_.columns.push_back({name, {}, {}});
+      for (const char* name : {"electric_W", "electric_error_W"})
+        table_.columns.push_back({name, {}, {}});
     }
   }
-  void add(double tilt_rad, double heading_rad, const Estimate& light, const std::optional<Estimate>& electric) {
-    std::vector<double> row = {tilt_rad / degree_rad, heading_rad / degree_rad, light.value, light.standard_error};
+  void add(double tilt_rad, double heading_rad, const Estimate& light,
+           const std::optional<Estimate>& electric) {
+    std::vector<double> row = {tilt_rad / degree_rad, heading_rad / degree_rad, light.value,
+                               light.standard_error};
     if (electric) row.insert(row.end(), {electric->value, electric->standard_error});
     for (size_t c = 0; c < row.size(); ++c) table_.columns[c].values.push_back(row[c]);
   }
@@ -31,7 +34,11 @@ class PowerTable {
   // Curves over the tilt, one per heading.
   Plot plot(size_t headings, size_t tilts, size_t column, const std::string& name,
             const std::string& title) const {
-    Plot plot{name, title, "tilt [deg]", "power [W]", {}};
+    Plot plot;
+    plot.name = name;
+    plot.title = title;
+    plot.x_label = "tilt [deg]";
+    plot.y_label = "power [W]";
     for (size_t h = 0; h < headings; ++h) {
       Plot::Curve curve;
       for (size_t t = 0; t < tilts; ++t) {
@@ -58,7 +65,8 @@ void run_torque_map(const CommandLine& line) {
   const AttitudeGrid& grid = run.experiment().file.torque_map;
   const size_t flux_map = array ? array->flux_map : run.flux_map_index("");
 
-  WrenchTable wrenches = make_wrench_table(WrenchTable::Angles::tilt_heading, grid.tilt_rad, grid.heading_rad);
+  WrenchTable wrenches =
+      make_wrench_table(WrenchTable::Angles::tilt_heading, grid.tilt_rad, grid.heading_rad);
   PowerTable powers(array.has_value());
   uint64_t rays = 0;
   double wall_s = 0.0;
@@ -68,7 +76,8 @@ void run_torque_map(const CommandLine& line) {
       const size_t node = wrenches.node(h, t);
       // The same seed everywhere: neighbouring attitudes share their sampling errors, so that
       // differences between them are better known than each.
-      const TraceResult result = run.run(lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]), {});
+      const TraceResult result =
+          run.run(lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]), {});
       set_node(wrenches, node, run.wrench().total(result.sums[run.wrench_index()]));
       std::optional<Estimate> electric;
       if (array) electric = evaluate(*array, run, result).power_W;
@@ -83,7 +92,8 @@ void run_torque_map(const CommandLine& line) {
 
   Product product = wrench_table_product(wrenches, "body");
   product.tables.push_back(powers.table());
-  product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), 2, "power_on_receiver_over_tilt",
+  product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), 2,
+                                      "power_on_receiver_over_tilt",
                                       "Light on " + run.experiment().receivers[flux_map].name));
   if (array) {
     product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), 4,
@@ -96,7 +106,8 @@ void run_torque_map(const CommandLine& line) {
       const size_t node = wrenches.node(h, t);
       const Estimate y{wrenches.torque_body_N_m[node].y(), wrenches.torque_error_N_m[node].y()};
       char angles[64];
-      std::snprintf(angles, sizeof angles, "  %10g  %13g   ", grid.tilt_rad[t] / degree_rad, grid.heading_rad[h] / degree_rad);
+      std::snprintf(angles, sizeof angles, "  %10g  %13g   ", grid.tilt_rad[t] / degree_rad,
+                    grid.heading_rad[h] / degree_rad);
       console.line(angles + show(y, "N m"));
     }
   }
@@ -105,8 +116,9 @@ void run_torque_map(const CommandLine& line) {
 
 }  // namespace
 
-Verb torque_map_kind() {
-  return {"torque-map", "Force, torque and power over a grid of tilts and headings", run_torque_map};
+Verb torque_map_verb() {
+  return {"torque-map", "Force, torque and power over a grid of tilts and headings",
+          run_torque_map};
 }
 
 }  // namespace photorque

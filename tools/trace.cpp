@@ -13,14 +13,15 @@ void run_trace(const CommandLine& line) {
   console.done();
   print_trace(console, run, result);
   Product product = run.product(result);
-  Table table = compare_published(published, run.experiment().file.attitude.tilt_rad, product, console);
+  Table table =
+      compare_published(published, run.experiment().file.attitude.tilt_rad, product, console);
   if (!table.columns.empty()) product.tables.push_back(std::move(table));
   write_results(line, console, product, run.provenance(), result.rays, result.wall_s);
 }
 
 }  // namespace
 
-Verb trace_kind() {
+Verb trace_verb() {
   return {"trace", "Irradiance on every receiver, where the power went, radiation force and torque",
           run_trace};
 }

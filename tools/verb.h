@@ -14,12 +14,12 @@ namespace photorque {
 struct CommandLine {
   std::string verb;
   std::filesystem::path experiment;
-  std::vector<std::string> overrides;         // --set, in order
-  std::optional<std::filesystem::path> out;   // --out
-  int threads = 0;                            // 0: all
-  std::optional<uint64_t> seed;               // over the experiment's own
-  bool quiet = false;                         // no text but errors
-  bool json = false;                          // the summary as JSON on standard output
+  std::vector<std::string> overrides;        // --set, in order
+  std::optional<std::filesystem::path> out;  // --out
+  int threads = 0;                           // 0: all
+  std::optional<uint64_t> seed;              // over the experiment's own
+  bool quiet = false;                        // no text but errors
+  bool json = false;                         // the summary as JSON on standard output
 
   // --out, or out/EXPERIMENT/VERB below the current folder.
   std::filesystem::path out_folder() const;

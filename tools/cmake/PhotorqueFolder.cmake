@@ -4,12 +4,6 @@
 function(photorque_folder name)
   cmake_parse_arguments(arg "" "" "FILES;USES;LINKS" ${ARGN})
   set(target photorque_${name})
-  foreach(file IN LISTS arg_FILES)  # bootstrap
-    if(NOT IS_ABSOLUTE ${file} AND NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
-      message(WARNING "${name}/${file} does not exist yet")
-      list(REMOVE_ITEM arg_FILES ${file})
-    endif()
-  endforeach()
   add_library(${target} STATIC ${arg_FILES})
   target_include_directories(${target} PUBLIC ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
   target_link_libraries(${target} PUBLIC Eigen3::Eigen)
@@ -20,17 +14,21 @@ function(photorque_folder name)
   target_precompile_headers(${target} PRIVATE ${CMAKE_SOURCE_DIR}/core/precompiled.h)
 endfunction()
 
-# photorque_kinds(FOLDER TYPE name ...)
+# photorque_kinds(FOLDER TYPE HEADER name ...)
 #   The registry of a folder. Each NAME is one file FOLDER/NAME.cpp that defines
-#   `photorque::TYPE photorque::NAME_kind()`; generates FOLDER/registry.cpp with
-#   `std::vector<TYPE> all_TYPE()` in this order. Explicit calls, because objects that register
+#   `TYPE photorque::NAME_kind()` (`NAME_verb()` for the type Verb); generates a source with
+#   `std::vector<TYPE> all_TYPEs()` in this order, which HEADER declares. Explicit calls, because objects that register
 #   themselves are dropped by the linker from a static library.
 function(photorque_kinds folder type header)
+  set(suffix "kind")
+  if(type STREQUAL "Verb")
+    set(suffix "verb")
+  endif()
   set(declarations "")
   set(calls "")
   foreach(kind IN LISTS ARGN)
-    string(APPEND declarations "${type} ${kind}_kind();\n")
-    string(APPEND calls "      ${kind}_kind(),\n")
+    string(APPEND declarations "${type} ${kind}_${suffix}();\n")
+    string(APPEND calls "      ${kind}_${suffix}(),\n")
     list(APPEND files ${kind}.cpp)
   endforeach()
   string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" snake "${type}")
