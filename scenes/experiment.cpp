@@ -99,6 +99,18 @@ Camera read_camera(const ExperimentFile& file, double scene_radius_m) {
   return camera;
 }
 
+// The file's name as the user wrote it, where the user wrote it.
+void require_scene_file(const ExperimentFile& file) {
+  if (!file.scene_file) {
+    throw file.settings.error("scene", "nothing", "a table [scene] with a file");
+  }
+  std::error_code unreadable;
+  if (std::filesystem::is_regular_file(*file.scene_file, unreadable)) return;
+  const Settings scene = file.settings.table("scene");
+  throw scene.error("file", "\"" + scene.text("file") + "\"",
+                    "a file that exists beside the experiment");
+}
+
 void require_triangles(const Scene& scene, const std::filesystem::path& path) {
   const bool any = std::any_of(
       scene.instances.begin(), scene.instances.end(),
@@ -124,9 +136,7 @@ std::vector<const Receiver*> Experiment::receiver_pointers() const {
 }
 
 Experiment resolve_experiment(ExperimentFile file) {
-  if (!file.scene_file) {
-    throw file.settings.error("scene", "nothing", "a table [scene] with a file");
-  }
+  require_scene_file(file);
   GltfModel model = read_gltf(
       *file.scene_file,
       {.bands = file.bands, .materials = file.materials, .metres_per_unit = file.metres_per_unit});

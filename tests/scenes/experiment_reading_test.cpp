@@ -1,0 +1,156 @@
+// Experiment files become scenes, beams and receivers.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/constants.h"
+#include "scenes/experiment.h"
+
+namespace photorque {
+namespace {
+
+using testing::AnyOf;
+using testing::Contains;
+using testing::Pair;
+
+const std::filesystem::path scenes = std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "scenes";
+
+TEST(Experiment, StasisIsReadAsWritten) {
+  const Experiment experiment = read_experiment(scenes / "stasis/nominal.toml");
+  ASSERT_EQ(experiment.beams.size(), 49u);
+  double power_W = 0.0;
+  Vec3 centre_m = Vec3::Zero();
+  for (const Beam& beam : experiment.beams) {
+    power_W += beam.emitter->power_W();
+    centre_m += beam.lab_from_emitter.translation_m / 49.0;
+    EXPECT_NEAR((beam.lab_from_emitter.direction(Vec3::UnitZ()) + Vec3::UnitZ()).norm(), 0, 1e-12);
+    EXPECT_DOUBLE_EQ(beam.spectrum.centre_m, 730e-9);
+    EXPECT_DOUBLE_EQ(beam.spectrum.fwhm_m, 30e-9);
+  }
+  EXPECT_NEAR(power_W, 88.0, 1e-9);
+  EXPECT_NEAR((centre_m - Vec3(0, 0, 1)).norm(), 0.0, 1e-12);
+
+  ASSERT_EQ(experiment.receivers.size(), 3u);
+  EXPECT_EQ(experiment.receivers[0].kind, "flux_map");
+  EXPECT_EQ(experiment.receivers[0].name, "solar_array");
+  EXPECT_EQ(experiment.receivers[2].kind, "torque_map");
+  EXPECT_EQ(experiment.receiver_pointers().size(), 3u);
+  EXPECT_EQ(experiment.scene.bands.count(), 1);
+  EXPECT_EQ(experiment.file.torque_map.tilt_rad.size(), 7u);
+  EXPECT_NEAR(experiment.file.torque_map.tilt_rad.back(), 30 * degree_rad, 1e-15);
+  EXPECT_EQ(experiment.lab_from_body.rotation.w(), 1.0);
+  EXPECT_EQ(experiment.file.trace.rays, 16777216u);
+}
+
+TEST(Experiment, EveryCommittedOneIsRead) {
+  int found = 0;
+  for (const auto& folder : std::filesystem::directory_iterator(scenes)) {
+    if (!folder.is_directory()) continue;
+    for (const auto& file : std::filesystem::directory_iterator(folder)) {
+      if (file.path().extension() != ".toml" || file.path().filename() == "parameters.toml") {
+        continue;
+      }
+      ++found;
+      EXPECT_NO_THROW({
+        const Experiment experiment = read_experiment(file.path());
+        EXPECT_GE(experiment.receivers.size(), 1u) << file.path();
+      }) << file.path();
+    }
+  }
+  EXPECT_GE(found, 5);
+}
+
+TEST(Experiment, OverridesReachSourcesReceiversAndOptions) {
+  const std::vector<std::string> overrides = {"source[0].total_power_W=4.9",
+                                              "receiver[0].name=cells", "attitude.tilt_deg=30",
+                                              "trace.rays=1e6", "trace.seed=7"};
+  const Experiment experiment = read_experiment(scenes / "stasis/nominal.toml", overrides);
+  EXPECT_NEAR(experiment.beams[0].emitter->power_W(), 0.1, 1e-12);
+  EXPECT_EQ(experiment.receivers[0].name, "cells");
+  EXPECT_EQ(experiment.file.trace.rays, 1000000u);
+  EXPECT_EQ(experiment.file.trace.seed, 7u);
+  // Heading 0: the body's z axis leans towards lab x.
+  const Vec3 up_lab = experiment.lab_from_body.direction(Vec3::UnitZ());
+  EXPECT_NEAR((up_lab - Vec3(0.5, 0, std::sqrt(0.75))).norm(), 0.0, 1e-12);
+}
+
+TEST(Experiment, MaterialsMayBeReplacedByName) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "mirror.toml";
+  std::ofstream(path)
+      << "[scene]\nfile = \"" << (scenes / "stasis/stasis.gltf").string() << "\"\n"
+      << "[[material]]\nname = \"solar_cell\"\nabsorptance = 0.25\nspecular = 0.75\n"
+      << "[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n";
+  const Experiment experiment = read_experiment(path);
+  const auto array = experiment.scene.instances_of("solar_array");
+  ASSERT_EQ(array.size(), 1u);
+  const uint32_t surface = experiment.scene.instances[array[0]].front_surface;
+  EXPECT_DOUBLE_EQ(experiment.scene.surfaces[surface].specular[0], 0.75);
+  EXPECT_DOUBLE_EQ(experiment.scene.surfaces[surface].absorbed[0], 0.25);
+}
+
+TEST(Experiment, InputsNameEveryFileAndOverride) {
+  const std::vector<std::string> overrides = {"trace.seed=7"};
+  const Experiment experiment = read_experiment(scenes / "stasis/nominal.toml", overrides);
+  EXPECT_THAT(experiment.inputs, Contains(Pair("nominal.toml", testing::SizeIs(32))));
+  EXPECT_THAT(experiment.inputs, Contains(Pair("stasis.gltf", testing::SizeIs(32))));
+  EXPECT_THAT(experiment.inputs, Contains(Pair("--set trace.seed=7", testing::SizeIs(32))));
+}
+
+TEST(ExperimentFile, TablesOfOthersKeepTheirOwnRecordOfKeys) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "others.toml";
+  std::ofstream(path) << "[platform]\nmass_kg = 7\ntypo = 1\n"
+                      << "[[disturbance]]\nkind = \"a\"\n[[disturbance]]\nkind = \"b\"\nx = 1\n";
+  const ExperimentFile file = read_experiment_file(path);
+  EXPECT_FALSE(file.scene_file);
+  EXPECT_NO_THROW(file.settings.finish());  // not ours to judge
+
+  const auto platform = file.others("platform");
+  ASSERT_EQ(platform.size(), 1u);
+  EXPECT_EQ(platform[0].number("mass_kg"), 7.0);
+  EXPECT_THROW(platform[0].finish(), InputError);
+
+  const auto disturbances = file.others("disturbance");
+  ASSERT_EQ(disturbances.size(), 2u);
+  EXPECT_EQ(disturbances[0].text("kind"), "a");
+  EXPECT_NO_THROW(disturbances[0].finish());
+  EXPECT_EQ(disturbances[1].name(), "disturbance[1]");
+  EXPECT_TRUE(file.others("sensors").empty());
+}
+
+TEST(ExperimentFile, WithoutTorqueMapItsOnlyAttitudeIsTheExperimentsOwn) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tilted.toml";
+  std::ofstream(path) << "[attitude]\ntilt_deg = 20\nheading_deg = -90\n";
+  const ExperimentFile file = read_experiment_file(path);
+  ASSERT_EQ(file.torque_map.tilt_rad.size(), 1u);
+  EXPECT_DOUBLE_EQ(file.torque_map.tilt_rad[0], 20 * degree_rad);
+  EXPECT_DOUBLE_EQ(file.torque_map.heading_rad[0], -90 * degree_rad);
+}
+
+// The sphere that holds the scene fills the picture's smaller side and stays inside.
+TEST(Camera, FramesTheSceneTightly) {
+  const double radius_m = 0.37;
+  const Camera camera = camera_framing(radius_m);
+  const Vec3 forward = (camera.target_m - camera.position_m).normalized();
+  const Vec3 right = forward.cross(Vec3::UnitZ()).normalized();
+  const Vec3 up = right.cross(forward);
+  const double half_width = std::tan(0.5 * camera.field_of_view_rad);
+  const double half_height = half_width * camera.height / camera.width;
+  double widest = 0.0, highest = 0.0;
+  for (int i = 0; i <= 400; ++i) {
+    for (int k = 0; k < 400; ++k) {
+      const double z = -1.0 + i / 200.0, r = std::sqrt(std::max(0.0, 1.0 - z * z));
+      const Vec3 point_m =
+          radius_m * Vec3(r * std::cos(k * pi / 200), r * std::sin(k * pi / 200), z);
+      const Vec3 seen = point_m - camera.position_m;
+      widest = std::max(widest, std::abs(seen.dot(right) / seen.dot(forward)));
+      highest = std::max(highest, std::abs(seen.dot(up) / seen.dot(forward)));
+    }
+  }
+  EXPECT_LT(widest, half_width);
+  EXPECT_LE(highest, half_height * (1 + 1e-9));
+  EXPECT_GT(highest, half_height * 0.999);
+}
+
+}  // namespace
+}  // namespace photorque
