@@ -56,18 +56,23 @@ constexpr std::array<std::array<uint32_t, 32>, sobol_dimensions> reversed_column
 }
 constexpr auto columns = reversed_columns();
 
-constexpr std::array<std::array<uint32_t, sobol_block>, sobol_dimensions> low_table() {
-  std::array<std::array<uint32_t, sobol_block>, sobol_dimensions> table{};
+// What each byte of the index contributes: [dimension][byte][value]. The lowest byte is that of a
+// block.
+using ByteTables = std::array<std::array<std::array<uint32_t, 256>, 4>, sobol_dimensions>;
+constexpr ByteTables make_byte_tables() {
+  ByteTables tables{};
   for (int d = 0; d < sobol_dimensions; ++d) {
-    for (uint32_t i = 0; i < sobol_block; ++i) {
-      for (int k = 0; k < 8; ++k) {
-        if ((i >> k) & 1u) table[d][i] ^= columns[d][k];
+    for (int byte = 0; byte < 4; ++byte) {
+      for (uint32_t value = 0; value < 256; ++value) {
+        for (int k = 0; k < 8; ++k) {
+          if ((value >> k) & 1u) tables[d][byte][value] ^= columns[d][8 * byte + k];
+        }
       }
     }
   }
-  return table;
+  return tables;
 }
-constexpr auto low = low_table();
+constexpr ByteTables byte_tables = make_byte_tables();
 
 uint32_t dimension_seed(const SobolStream& stream, int dimension) {
   return static_cast<uint32_t>(
@@ -89,7 +94,7 @@ void sobol_points(const SobolStream& stream, uint32_t first,
   for (int d = 0; d < sobol_dimensions; ++d) {
     const uint32_t high = reversed_point(d, first);
     const uint32_t seed = dimension_seed(stream, d);
-    const uint32_t* table = low[d].data();
+    const uint32_t* table = byte_tables[d][0].data();
     uint32_t* point = out[d];
     for (uint32_t i = 0; i < sobol_block; ++i) {
       point[i] = reverse_bits(scramble_reversed(table[i] ^ high, seed));
@@ -97,14 +102,18 @@ void sobol_points(const SobolStream& stream, uint32_t first,
   }
 }
 
-std::array<double, sobol_dimensions> sobol_point(const SobolStream& stream, uint32_t index) {
-  if (stream.group != 0) {
-    index = reverse_bits(scramble_reversed(reverse_bits(index), dimension_seed(stream, -1)));
-  }
+SobolSequence::SobolSequence(const SobolStream& stream)
+    : shuffled_(stream.group != 0), order_seed_(dimension_seed(stream, -1)) {
+  for (int d = 0; d < sobol_dimensions; ++d) seeds_[d] = dimension_seed(stream, d);
+}
+
+std::array<double, sobol_dimensions> SobolSequence::point(uint32_t index) const {
+  if (shuffled_) index = reverse_bits(scramble_reversed(reverse_bits(index), order_seed_));
   std::array<double, sobol_dimensions> point;
   for (int d = 0; d < sobol_dimensions; ++d) {
-    point[d] = sobol_fraction(
-        reverse_bits(scramble_reversed(reversed_point(d, index), dimension_seed(stream, d))));
+    const uint32_t x = byte_tables[d][0][index & 255u] ^ byte_tables[d][1][(index >> 8) & 255u] ^
+                       byte_tables[d][2][(index >> 16) & 255u] ^ byte_tables[d][3][index >> 24];
+    point[d] = sobol_fraction(reverse_bits(scramble_reversed(x, seeds_[d])));
   }
   return point;
 }

@@ -32,8 +32,20 @@ struct SobolStream {
 void sobol_points(const SobolStream& stream, uint32_t first,
                   const std::array<uint32_t*, sobol_dimensions>& out);
 
-// The single point `index` of a stream, any group, as fractions in (0, 1).
-std::array<double, sobol_dimensions> sobol_point(const SobolStream& stream, uint32_t index);
+// Single points of a stream, any group. Holds the stream's scrambling ready: make one for many
+// points.
+class SobolSequence {
+ public:
+  explicit SobolSequence(const SobolStream& stream);
+
+  // Point `index` as fractions in (0, 1).
+  std::array<double, sobol_dimensions> point(uint32_t index) const;
+
+ private:
+  bool shuffled_;
+  uint32_t order_seed_;
+  std::array<uint32_t, sobol_dimensions> seeds_;
+};
 
 // A 32-bit fixed-point fraction as a double in (0, 1): the middle of its cell.
 constexpr double sobol_fraction(uint32_t bits) {

@@ -85,13 +85,11 @@ Vec3 expected_recoil(const Hits& hits, int i, const OpticalSurface& surface, con
 }
 
 // Sends the rest of hit i on its way along one lobe.
-void send_on(const InteractionContext& context, const HitBuffer& buffer, int i,
-             const OpticalSurface& surface, const Vec3& direction, const Vec3& normal,
-             LedgerSums& ledger, Continuation& next) {
+void send_on(const InteractionContext& context, const SobolSequence& sequence,
+             const HitBuffer& buffer, int i, const OpticalSurface& surface, const Vec3& direction,
+             const Vec3& normal, LedgerSums& ledger, Continuation& next) {
   const Hits& hits = buffer.hits;
-  SobolStream stream = context.stream;
-  stream.group = static_cast<uint32_t>(context.depth) + 1u;
-  const auto point = sobol_point(stream, buffer.sample[i]);
+  const auto point = sequence.point(buffer.sample[i]);
   BandValues power_W{};
   for (int b = 0; b < hits.bands; ++b) power_W[b] = hits.incident_W[b][i];
   const Lobe lobe = choose_lobe(surface, hits.bands, point[0], power_W);
@@ -195,6 +193,9 @@ void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& 
           hits.absorbed_W[b][i];
     }
   }
+  SobolStream stream = context.stream;
+  stream.group = static_cast<uint32_t>(context.depth) + 1u;
+  const SobolSequence sequence(stream);
   for (int i = 0; i < hits.count; ++i) {
     if (!(buffer.left_W[i] > 0.0)) continue;
     const Instance& instance = scene.instances[hits.instance[i]];
@@ -204,7 +205,7 @@ void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& 
     const Vec3 normal = lit_normal(context, hits, i);
     const Vec3 recoil = expected_recoil(hits, i, surface, direction, normal);
     for (int k = 0; k < 3; ++k) hits.force_N[k][i] -= recoil[k];
-    send_on(context, buffer, i, surface, direction, normal, ledger, next);
+    send_on(context, sequence, buffer, i, surface, direction, normal, ledger, next);
   }
 }
 

@@ -11,7 +11,8 @@ namespace {
 // Starts the ray at the sphere that holds the scene when the viewer stands outside, for the sake of
 // single precision.
 Ray nearby_ray(const TraceableScene::Data& scene, const Sight& sight, size_t index) {
-  const double ahead = (scene.centre_m - sight.origin_m).dot(sight.direction) - 1.001 * scene.radius_m;
+  const double ahead =
+      (scene.centre_m - sight.origin_m).dot(sight.direction) - 1.001 * scene.radius_m;
   const Vec3 origin = sight.origin_m + std::max(0.0, ahead) * sight.direction;
   Ray ray{};
   for (int k = 0; k < 3; ++k) {

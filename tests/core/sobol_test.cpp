@@ -1,0 +1,113 @@
+#include "core/sobol.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/random.h"
+
+namespace photorque {
+namespace {
+
+// The elementary interval of a pair of dimensions that a point lies in: 2^a × 2^b cells.
+uint32_t cell(double x, double y, int a, int b) {
+  return (static_cast<uint32_t>(x * (1u << a)) << b) | static_cast<uint32_t>(y * (1u << b));
+}
+
+// The first 2^m points of dimensions 0 and 1 are a (0, m, 2)-net in base 2: one point in every
+// elementary interval of area 2^−m (Sobol' 1967), and scrambling keeps that (Owen 1995).
+TEST(Sobol, FirstTwoDimensionsAreANet) {
+  const int m = 8;
+  for (const uint32_t group : {0u, 1u, 5u}) {
+    const SobolSequence sequence({7, 3, group});
+    for (int a = 0; a <= m; ++a) {
+      std::set<uint32_t> cells;
+      for (uint32_t i = 0; i < (1u << m); ++i) {
+        const auto p = sequence.point(i);
+        cells.insert(cell(p[0], p[1], a, m - a));
+      }
+      EXPECT_EQ(cells.size(), 1u << m) << "group " << group << ", " << a << " bits of x";
+    }
+  }
+}
+
+TEST(Sobol, EveryDimensionIsStratified) {
+  for (const uint32_t group : {0u, 2u}) {
+    const SobolSequence sequence({1, 2, group});
+    for (int d = 0; d < sobol_dimensions; ++d) {
+      std::set<uint32_t> strata;
+      for (uint32_t i = 4096; i < 8192; ++i) {
+        strata.insert(static_cast<uint32_t>(sequence.point(i)[static_cast<size_t>(d)] * 4096));
+      }
+      EXPECT_EQ(strata.size(), 4096u) << "dimension " << d;
+    }
+  }
+}
+
+TEST(Sobol, BlocksAndSinglePointsAgree) {
+  const SobolStream stream{42, 9, 0};
+  const SobolSequence sequence(stream);
+  std::array<std::array<uint32_t, sobol_block>, sobol_dimensions> block;
+  for (const uint32_t first : {0u, 256u, 77824u, 0xffffff00u}) {
+    sobol_points(stream, first,
+                 {block[0].data(), block[1].data(), block[2].data(), block[3].data()});
+    for (uint32_t i = 0; i < sobol_block; ++i) {
+      const auto point = sequence.point(first + i);
+      for (size_t d = 0; d < sobol_dimensions; ++d) {
+        ASSERT_EQ(point[d], sobol_fraction(block[d][i]));
+      }
+    }
+  }
+}
+
+// The integral of a product of smooth functions over the 4-cube: 16 replicates of 4096 points must
+// be unbiased within their errors and at least 20 times better than random points.
+TEST(Sobol, IntegratesASmoothFunctionUnbiasedAndFast) {
+  const auto f = [](const std::array<double, 4>& p) {
+    double product = 1.0;
+    for (size_t d = 0; d < 4; ++d) product *= 1.0 + 0.5 * (p[d] - 0.5) * static_cast<double>(d + 1);
+    return product;
+  };
+  double variance = 1.0;  // of f: Π (1 + c²/12) − 1, c = (d + 1)/2
+  for (int d = 0; d < 4; ++d) variance *= 1.0 + 0.25 * (d + 1) * (d + 1) / 12.0;
+  variance -= 1.0;
+  const int replicates = 16, points = 4096;
+  double sum = 0.0, squares = 0.0;
+  for (int r = 0; r < replicates; ++r) {
+    const SobolSequence sequence({5, static_cast<uint64_t>(r), 0});
+    double mean = 0.0;
+    for (uint32_t i = 0; i < points; ++i) mean += f(sequence.point(i)) / points;
+    sum += mean;
+    squares += (mean - 1.0) * (mean - 1.0);
+  }
+  const double error = std::sqrt(squares / replicates);  // of one replicate
+  EXPECT_LT(std::abs(sum / replicates - 1.0), 4 * error / std::sqrt(replicates));
+  EXPECT_LT(error, std::sqrt(variance / points) / 20);
+}
+
+TEST(Sobol, StreamsDiffer) {
+  std::set<double> first;
+  for (uint64_t seed : {1u, 2u}) {
+    for (uint64_t stream : {1u, 2u}) {
+      for (uint32_t group : {0u, 1u})
+        first.insert(SobolSequence({seed, stream, group}).point(0)[0]);
+    }
+  }
+  EXPECT_EQ(first.size(), 8u);
+}
+
+// Every bit of the hash flips with probability one half when any bit of the input does.
+TEST(Hash, Avalanches) {
+  for (int in = 0; in < 64; in += 7) {
+    std::array<int, 64> flips{};
+    const int trials = 2000;
+    for (uint64_t i = 0; i < trials; ++i) {
+      const uint64_t change = mix_bits(i * 77) ^ mix_bits((i * 77) ^ (1ull << in));
+      for (int out = 0; out < 64; ++out) flips[static_cast<size_t>(out)] += (change >> out) & 1;
+    }
+    for (const int count : flips) EXPECT_NEAR(count / static_cast<double>(trials), 0.5, 0.06);
+  }
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,105 @@
+// Estimates, transforms, spectra and files against hand-computed and published numbers.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/estimate.h"
+#include "core/files.h"
+#include "core/spectrum.h"
+#include "core/transform.h"
+
+namespace photorque {
+namespace {
+
+TEST(Estimate, MeanAndErrorOfFourNumbers) {
+  const std::array<double, 4> replicates = {1.0, 2.0, 3.0, 6.0};
+  const Estimate e = estimate_from_replicates(replicates);
+  EXPECT_DOUBLE_EQ(e.value, 3.0);
+  EXPECT_DOUBLE_EQ(e.standard_error, std::sqrt(14.0 / 3.0 / 4.0));  // s² = 14/3
+}
+
+// Abramowitz and Stegun, table 26.10.
+TEST(StudentT, TwoSidedNinetyFivePercent) {
+  EXPECT_NEAR(student_t_975(2), 12.706, 1e-3);
+  EXPECT_NEAR(student_t_975(3), 4.303, 1e-3);
+  EXPECT_NEAR(student_t_975(9), 2.306, 2e-3);
+  EXPECT_NEAR(student_t_975(16), 2.131, 1e-3);
+  EXPECT_NEAR(student_t_975(31), 2.042, 1e-3);
+}
+
+TEST(RigidTransform, ComposesAsTheNamesRead) {
+  const RigidTransform lab_from_body{Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized())),
+                                     Vec3(1, 0, 2)};
+  const RigidTransform body_from_led{Quat(Eigen::AngleAxisd(-1.1, Vec3::UnitY())), Vec3(0, 5, 0)};
+  const Vec3 p(0.1, 0.2, 0.3);
+  EXPECT_TRUE((lab_from_body * body_from_led)
+                  .point(p)
+                  .isApprox(lab_from_body.point(body_from_led.point(p)), 1e-14));
+  EXPECT_TRUE(lab_from_body.inverse().point(lab_from_body.point(p)).isApprox(p, 1e-14));
+}
+
+TEST(Tilt, LeansTheBodyAxisTowardsTheHeading) {
+  const Vec3 z = lab_from_body_at(30 * degree_rad, 90 * degree_rad).direction(Vec3::UnitZ());
+  EXPECT_TRUE(z.isApprox(Vec3(0, 0.5, std::sqrt(0.75)), 1e-14));
+  // Heading 0 is a turn about +y.
+  const Vec3 x = lab_from_body_at(30 * degree_rad, 0).direction(Vec3::UnitX());
+  EXPECT_TRUE(x.isApprox(Vec3(std::sqrt(0.75), 0, -0.5), 1e-14));
+}
+
+TEST(Frame, LooksAlongAnyDirection) {
+  for (const Vec3& d : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, -2, 0.5), Vec3(1e-9, 0, -1)}) {
+    EXPECT_TRUE(frame_looking_along(d, Vec3::Zero())
+                    .direction(Vec3::UnitZ())
+                    .isApprox(d.normalized(), 1e-8));
+  }
+}
+
+// Fractions of blackbody emission below λT: F. P. Incropera and D. P. DeWitt, Fundamentals of Heat
+// and Mass Transfer, table 12.1.
+TEST(Blackbody, FractionsBelowAWavelength) {
+  const Spectrum body{Spectrum::Shape::blackbody, 0, 0, 5000.0};
+  const auto below = [&](double lambda_T_um_K) {
+    return band_fractions(body, {{0.0, lambda_T_um_K * 1e-6 / 5000.0}})[0];
+  };
+  EXPECT_NEAR(below(2000), 0.066728, 2e-5);
+  EXPECT_NEAR(below(3000), 0.273232, 2e-5);
+  EXPECT_NEAR(below(4000), 0.480877, 2e-5);
+  EXPECT_NEAR(below(6000), 0.737818, 2e-5);
+  EXPECT_NEAR(below(10000), 0.914199, 2e-5);
+}
+
+TEST(GaussianLine, HalfWidthHoldsThreeQuarters) {
+  // Between the half-maximum points of a Gaussian: erf(√ln 2) = 0.760968.
+  const Spectrum led{Spectrum::Shape::gaussian, 730e-9, 30e-9, 0};
+  EXPECT_NEAR(band_fractions(led, {{715e-9, 745e-9}})[0], 0.760968, 1e-6);
+}
+
+TEST(Files, AppearWholeOrNotAtAll) {
+  const auto folder = std::filesystem::temp_directory_path() / "photorque_files_test";
+  std::filesystem::remove_all(folder);
+  write_file_whole(folder / "a" / "ok.txt", std::string("text"));
+  EXPECT_EQ(read_file(folder / "a" / "ok.txt"), "text");
+  EXPECT_THROW(write_file_whole(folder / "bad.txt",
+                                [](const std::filesystem::path& path) {
+                                  write_file_whole(path, std::string("half"));
+                                  throw NumericalError("stop");
+                                }),
+               NumericalError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "bad.txt"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    EXPECT_EQ(entry.path().filename(), "a");
+  EXPECT_THROW(read_file(folder / "missing"), InputError);
+  EXPECT_THROW(read_file(folder / "a" / "ok.txt", 3), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(InputError, IsOnePrintableLine) {
+  const InputError error({"lab.toml", 12}, "source[0].power_W", "-3\nand more", "a number > 0");
+  EXPECT_STREQ(error.what(),
+               "lab.toml:12: source[0].power_W: found -3 and more, expected a number > 0");
+}
+
+}  // namespace
+}  // namespace photorque
