@@ -28,7 +28,8 @@ void set_colour(cairo_t* context, const Rgb& colour, double opacity) {
   cairo_set_source_rgba(context, colour.red, colour.green, colour.blue, opacity);
 }
 
-// Everything that a user's font configuration may change is fixed, so that it cannot change bits.
+// Fixed, so that the defaults of a user's font configuration change no bits. (Rules that force a
+// rendering on programs still can.)
 void set_font(cairo_t* context, const TextStyle& style) {
   const CairoOwner<cairo_font_options_t> options(cairo_font_options_create());
   cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
