@@ -1,0 +1,191 @@
+// The program as a user meets it: exit statuses, messages, files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string program = std::string(PHOTORQUE_BINARY_DIR) + "/photorque";
+const fs::path scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+std::string read(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::temp_directory_path() /
+        ("photorque_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command = program + " " + arguments + " >" + (folder_ / "stdout").string() +
+                                " 2>" + (folder_ / "stderr").string();
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "stdout"),
+            read(folder_ / "stderr")};
+  }
+  std::string out(const std::string& name) const { return (folder_ / name).string(); }
+
+  // Every file of a folder by name.
+  std::map<std::string, std::string> files(const std::string& name) const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / name)) {
+      if (entry.is_regular_file()) all[entry.path().filename()] = read(entry.path());
+    }
+    return all;
+  }
+
+  fs::path folder_;
+};
+
+const std::string nominal = (scenes / "stasis" / "nominal.toml").string();
+const std::string few_rays = " --set trace.rays=65536";
+
+// summary.json without the one line that may differ: what the run cost in time.
+std::string without_time(const std::string& summary) {
+  std::istringstream lines(summary);
+  std::string kept, line;
+  while (std::getline(lines, line)) {
+    if (line.find("wall_time_s") == std::string::npos) kept += line + "\n";
+  }
+  return kept;
+}
+
+TEST_F(CommandLine, SameFilesAtOneTwoAndSevenThreadsAndAgain) {
+  std::vector<std::map<std::string, std::string>> runs;
+  for (const std::string threads : {"1", "2", "7", "7"}) {
+    const std::string name = "run" + std::to_string(runs.size());
+    const Outcome got =
+        run("power " + nominal + few_rays + " --threads " + threads + " --out " + out(name));
+    ASSERT_EQ(got.status, 0) << got.err;
+    auto all = files(name);
+    all["summary.json"] = without_time(all["summary.json"]);
+    runs.push_back(std::move(all));
+  }
+  EXPECT_GT(runs[0].size(), 20u);
+  for (size_t i = 1; i < runs.size(); ++i) {
+    ASSERT_EQ(runs[i].size(), runs[0].size());
+    for (const auto& [file, bytes] : runs[0]) EXPECT_TRUE(runs[i].at(file) == bytes) << file;
+  }
+}
+
+TEST_F(CommandLine, EveryFileCarriesProvenance) {
+  ASSERT_EQ(run("trace " + nominal + few_rays + " --seed 77 --out " + out("o")).status, 0);
+  for (const auto& [file, bytes] : files("o")) {
+    EXPECT_THAT(bytes, HasSubstr("photorque")) << file;
+    EXPECT_THAT(bytes, HasSubstr("77")) << file;
+  }
+}
+
+TEST_F(CommandLine, JsonIsTheSummaryAndNothingElse) {
+  const Outcome got = run("trace " + nominal + few_rays + " --json --out " + out("o"));
+  EXPECT_EQ(got.status, 0);
+  EXPECT_EQ(got.out, read(folder_ / "o" / "summary.json"));
+  EXPECT_THAT(got.out, HasSubstr("\"emitted_W\""));
+}
+
+TEST_F(CommandLine, QuietSaysNothing) {
+  const Outcome got = run("trace " + nominal + few_rays + " --quiet --out " + out("o"));
+  EXPECT_EQ(got.status, 0);
+  EXPECT_EQ(got.out + got.err, "");
+}
+
+TEST_F(CommandLine, EveryExperimentRuns) {
+  for (const char* name : {"dumbbell/dumbbell.toml", "tabletop/tabletop.toml", "hollow/hollow.toml",
+                           "spacecraft/spacecraft.toml"}) {
+    const Outcome got = run("trace " + (scenes / name).string() + few_rays + " --out " + out("o"));
+    EXPECT_EQ(got.status, 0) << name << ": " << got.err;
+    const Outcome picture =
+        run("render " + (scenes / name).string() + few_rays +
+            " --set camera.width=160 --set camera.height=120 --out " + out("o"));
+    EXPECT_EQ(picture.status, 0) << name << ": " << picture.err;
+  }
+}
+
+TEST_F(CommandLine, TorqueMapCoversTheGrid) {
+  const Outcome got = run("torque-map " + nominal +
+                          " --set trace.rays=16384 --set torque_map.tilt_deg=[0,30]"
+                          " --set torque_map.heading_deg=[0,180] --out " +
+                          out("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const std::string table = read(folder_ / "o" / "power_over_attitude.csv");
+  EXPECT_EQ(
+      std::count(table.begin(), table.end(), '\n') - std::count(table.begin(), table.end(), '#'), 5)
+      << table;
+}
+
+struct WrongCall {
+  std::string arguments, message;
+};
+
+TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
+  const std::string base = "trace " + nominal + few_rays + " ";
+  const std::vector<WrongCall> calls = {
+      {"", "subcommand"},
+      {"trace", "experiment"},
+      {"fly " + nominal, "fly"},
+      {"trace /nowhere/lab.toml", "/nowhere/lab.toml"},
+      {"trace " + scenes.string(), "folder"},
+      {base + "--threads many", "many"},
+      {base + "--threads -1", "-1"},
+      {base + "--set trace.rays=none", "trace.rays"},
+      {base + "--set trace.rays=0", "trace.rays"},
+      {base + "--set trace.replicates=4", "8"},
+      {base + "--set trace.ryas=4", "rays"},
+      {base + "--set source[0].power=4", "source[0].power"},
+      {base + "--set source[0].fwhm_deg=-3", "fwhm_deg"},
+      {base + "--set source[0].kind=torch", "led"},
+      {base + "--set source[7].power_W=1", "source[7]"},
+      {base + "--set scene.file=missing.gltf", "missing.gltf"},
+      {base + "--set receiver[0].node=solar_aray", "solar_array"},
+      {base + "--set receiver[0].bins=[0,5]", "bins"},
+      {base + "--set attitude.tilt_deg=400", "tilt_deg"},
+      {base + "--set attitude.tilt_deg=nan", "tilt_deg"},
+      {base + "--set nonsense", "nonsense"},
+      {"power " + nominal + few_rays + " --set array.strings=7", "strings"},
+      {"power " + nominal + few_rays + " --set array.cell=banana", "banana"},
+      {"power " + (scenes / "spacecraft" / "spacecraft.toml").string(), "array"},
+      {base + "--out /proc/nowhere/o", "/proc/nowhere"},
+  };
+  for (const WrongCall& call : calls) {
+    const bool own_folder =
+        call.arguments.find("--out") != std::string::npos || call.arguments.empty();
+    const Outcome got = run(call.arguments + (own_folder ? "" : " --out " + out("o")));
+    EXPECT_EQ(got.status, 2) << call.arguments << ": " << got.err;
+    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1)
+        << call.arguments << ": " << got.err;
+    EXPECT_THAT(got.err, HasSubstr(call.message)) << call.arguments;
+    EXPECT_FALSE(fs::exists(folder_ / "o")) << call.arguments;
+  }
+}
+
+TEST_F(CommandLine, HelpAndVersion) {
+  EXPECT_EQ(run("--help").status, 0);
+  EXPECT_THAT(run("--help").out, HasSubstr("torque-map"));
+  EXPECT_THAT(run("--version").out, HasSubstr("photorque 0."));
+}
+
+}  // namespace
