@@ -127,10 +127,13 @@ void Propagator::take_step() {
     statistics_.iterations += outcome.iterations;
     if (!outcome.converged) {
       h_s_ = 0.5 * h_s;
+      ceiling_s_ = 0.7 * h_s;
     } else if (outcome.error > 2.0 * options_.tolerance) {
       h_s_ = propose_length(outcome, h_s, false);
+      ceiling_s_ = 0.9 * h_s;
     } else {
-      h_s_ = propose_length(outcome, h_s, cut);
+      ceiling_s_ *= 1.01;
+      h_s_ = std::min(propose_length(outcome, h_s, cut), ceiling_s_);
       step_end_s_ = cut ? stop_s : start_s + h_s;
       if (sensitivity_) sensitivity_->solve(step_, held_);
       return;
@@ -141,15 +144,17 @@ void Propagator::take_step() {
 }
 
 // The length for the next attempt. Small changes are not worth a new continuation matrix, and a
-// step that a jump cut short says nothing about growth.
+// step that a jump cut short says nothing about growth. Many iterations mean that the length is
+// close to where they stop converging, and that shorter steps would be cheaper.
 double Propagator::propose_length(const CollocationStep::Outcome& outcome, double h_s,
                                   bool cut) const {
-  constexpr int slow = 35;  // iterations beyond which longer steps cost more than they save
-  const double factor = 0.9 * std::pow(options_.tolerance / outcome.error, 1.0 / gauss::points);
-  if (cut) return std::min(h_s_, std::max(factor, 0.2) * h_s);
+  constexpr int many = 20, too_many = 30;
+  double factor = 0.9 * std::pow(options_.tolerance / outcome.error, 1.0 / gauss::points);
+  if (outcome.iterations > too_many) factor = std::min(factor, 0.8);
   if (factor < 0.9) return std::max(factor, 0.2) * h_s;
-  if (factor > 1.15 && outcome.iterations < slow) return std::min(factor, 2.0) * h_s;
-  return std::max(h_s, std::min(h_s_, options_.longest_step_s));
+  if (cut) return std::max(h_s, h_s_);
+  const bool worth_it = factor > 1.15 && outcome.iterations < many;
+  return (worth_it ? std::min(factor, 2.0) : 1.0) * h_s;
 }
 
 // Switches to the values after the jumps at the start of the next step. Where the time of a jump is

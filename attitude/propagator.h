@@ -19,8 +19,9 @@
 namespace photorque {
 
 struct PropagationOptions {
-  // Bound on the error of the polynomial within a step, relative to Dynamics::scales(): 1 rad,
-  // 1 rad/s. Errors at the ends of steps, the ones that add up, are far smaller.
+  // Bound on the estimated error of the polynomial within a step, relative to Dynamics::scales(): 1
+  // rad, 1 rad/s. The dense output is some ten times better, and the ends of steps, whose errors
+  // are the ones that add up, better by many powers of ten.
   double tolerance = 1e-8;
   double longest_step_s = std::numeric_limits<double>::infinity();
   int64_t most_steps = 1'000'000'000;
@@ -109,6 +110,8 @@ class Propagator {
   size_t next_jump_ = 0;
   Held held_;
   double h_s_ = 0.0;  // length to try next
+  // Just below the last length that failed; rises slowly, so that it is tried again some day.
+  double ceiling_s_ = std::numeric_limits<double>::infinity();
   double step_end_s_ = 0.0;
   bool has_step_ = false;
   bool ended_by_event_ = false;

@@ -1,8 +1,8 @@
 #include "attitude/sensitivity.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "attitude/settling.h"
 #include "core/errors.h"
 
 namespace photorque {
@@ -142,7 +142,7 @@ void Sensitivity::solve(const CollocationStep& step, const Held& held) {
   }
   const Lanes weighted_h_s = h_s_ * Lanes(gauss::weights);
   std::vector<Lanes> stages(start_.size()), rates(start_.size());
-  double previous = 0.0;
+  Settling settling(1e-16, 1e-13);
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     for (size_t i = 0; i < start_.size(); ++i) {
       stages[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);
@@ -166,13 +166,9 @@ void Sensitivity::solve(const CollocationStep& step, const Held& held) {
       const double of_size = largest(size);
       if (of_size > 0.0) change = std::max(change, largest(moved) / of_size);
     }
-    if (!std::isfinite(change)) break;
-    const double contraction = iteration == 1 ? 1.0 : change / previous;
-    if (change == 0.0 || change * std::min(contraction, 1.0) < 1e-16 ||
-        (change < 1e-13 && contraction > 0.5)) {
-      return;
-    }
-    previous = change;
+    const Settling::Verdict verdict = settling.judge(change);
+    if (verdict == Settling::Verdict::settled) return;
+    if (verdict == Settling::Verdict::failed) break;
   }
   throw NumericalError("the derivatives of the trajectory do not converge at t = " +
                        std::to_string(step.start_s()) + " s");

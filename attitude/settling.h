@@ -1,0 +1,42 @@
+// When a fixed-point iteration has said all it can.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace photorque {
+
+// Judges the size of one change after the other. Changes may rise for an iteration or two even
+// where the iteration converges, so one rise decides nothing.
+class Settling {
+ public:
+  enum class Verdict { go_on, settled, failed };
+
+  // What is left after a change shall be below `settled`; when changes below `rounding` stop
+  // falling, rounding is all that is left.
+  Settling(double settled, double rounding) : settled_(settled), rounding_(rounding) {}
+
+  Verdict judge(double change) {
+    if (!std::isfinite(change)) return Verdict::failed;
+    const double contraction = std::min(change / previous_, 1.0);
+    const double left = change * std::max(contraction, before_);
+    if (change == 0.0 || left < settled_) return Verdict::settled;
+    rises_ = change < best_ ? 0 : rises_ + 1;
+    best_ = std::min(best_, change);
+    if (rises_ >= 2 && change < rounding_) return Verdict::settled;
+    if (rises_ >= 6) return Verdict::failed;
+    before_ = std::isfinite(previous_) ? contraction : 1.0;
+    previous_ = change;
+    return Verdict::go_on;
+  }
+
+ private:
+  double settled_, rounding_;
+  double previous_ = std::numeric_limits<double>::infinity();
+  double best_ = std::numeric_limits<double>::infinity();
+  double before_ = 1.0;  // the contraction before
+  int rises_ = 0;
+};
+
+}  // namespace photorque
