@@ -1,6 +1,7 @@
 #include "scenes/gltf_optics.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <sstream>
 
@@ -154,6 +155,17 @@ MaterialOptics material_optics(const Document& document, int index, int bands,
   const json material =
       index < 0 ? json::object() : document.json["materials"][static_cast<size_t>(index)];
   return {{derived_surface(material, bands, name), std::nullopt}, OpticsOrigin::derived};
+}
+
+bool has_ignored_texture(const json& material) {
+  constexpr std::array textures = {
+      "/pbrMetallicRoughness/baseColorTexture", "/pbrMetallicRoughness/metallicRoughnessTexture",
+      "/extensions/KHR_materials_transmission/transmissionTexture",
+      "/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture",
+      "/extensions/KHR_materials_pbrSpecularGlossiness/specularGlossinessTexture"};
+  return std::any_of(textures.begin(), textures.end(), [&](const char* texture) {
+    return material.contains(json::json_pointer(texture));
+  });
 }
 
 std::string describe_surface(const OpticalSurface& surface) {

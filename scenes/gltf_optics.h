@@ -49,6 +49,9 @@ MaterialOptics material_optics(const Document& document, int index, int bands,
 // It is a stand-in for measured values: drawing colours say little about absorptance.
 OpticalSurface derived_surface(const nlohmann::json& material, int bands, std::string name);
 
+// Whether a texture would change what derived_surface() takes from the factors alone.
+bool has_ignored_texture(const nlohmann::json& material);
+
 // The tree that core/settings reads, from JSON. InputError for null, which settings do not know.
 SettingsNode settings_from_json(const nlohmann::json& value, const InputLocation& where);
 

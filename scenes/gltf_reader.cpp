@@ -141,7 +141,7 @@ class Assembly {
     if (optics.origin == OpticsOrigin::derived) {
       add_notice(in_quotes(material.name) + ": optical properties derived from PBR values: " +
                  gltf::describe_surface(optics.sheet.front) +
-                 (has_texture(index) ? " (its texture is ignored)" : ""));
+                 (has_texture(index) ? " (textures are ignored)" : ""));
     }
     model_.materials.push_back(std::move(material));
     return model_.materials.back();
@@ -153,8 +153,8 @@ class Assembly {
   }
 
   bool has_texture(int material) const {
-    return material >= 0 && document_.model.materials[static_cast<size_t>(material)]
-                                    .pbrMetallicRoughness.baseColorTexture.index >= 0;
+    return material >= 0 &&
+           gltf::has_ignored_texture(document_.json["materials"][static_cast<size_t>(material)]);
   }
 
   uint32_t add_surface(const OpticalSurface& surface) {

@@ -30,10 +30,10 @@
 namespace photorque {
 
 struct GltfOptions {
-  Bands bands;
+  Bands bands = {};
   // [[material]] tables of an experiment: `name`, and keys as in read_sheet(). They win over the
   // model's own properties. InputError if no material has the name.
-  std::vector<Settings> materials;
+  std::vector<Settings> materials = {};
   // Length of one unit of the file [m]; CAD exports often count millimetres: 1e-3.
   double metres_per_unit = 1.0;
   // Most memory that the files, and what is made of them, may take.

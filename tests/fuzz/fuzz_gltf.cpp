@@ -1,0 +1,27 @@
+// libFuzzer target: any bytes, read as glTF, give a scene or an InputError.
+//
+//   cmake -B build-fuzz -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-fsanitize=fuzzer-no-link \
+//         -DPHOTORQUE_FUZZ=ON -DPHOTORQUE_SANITIZE=ON
+//   cmake --build build-fuzz --target fuzz_gltf
+//   build-fuzz/tests/fuzz/fuzz_gltf -rss_limit_mb=2048 CORPUS_FOLDER
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "scenes/gltf_reader.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using photorque::GltfOptions;
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  const photorque::GltfOpen zeros = [](const std::string&) -> std::optional<std::string> {
+    return std::string(4096, '\0');
+  };
+  GltfOptions options;
+  options.largest_bytes = 1 << 26;
+  try {
+    photorque::read_gltf_bytes(bytes, "fuzz", zeros, options);
+  } catch (const photorque::InputError&) {
+    // The one exception that is allowed.
+  }
+  return 0;
+}

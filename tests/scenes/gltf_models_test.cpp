@@ -1,0 +1,151 @@
+// The models that CAD programs and exporters wrote, against counts by another program.
+#include <filesystem>
+
+#include "gltf_test_model.h"
+
+namespace photorque {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::filesystem::path models =
+    std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/models";
+
+// From gltf_reference.py, beside this file, run on the same models.
+struct Reference {
+  const char* file;
+  size_t instances;
+  size_t triangles;   // over all instances, those without area left out
+  size_t degenerate;  // per mesh
+  double area_m2;
+  Vec3 low_m, high_m;  // body axes
+};
+
+void PrintTo(const Reference& one, std::ostream* out) {
+  *out << one.file;
+}
+
+class GltfModels : public ::testing::TestWithParam<Reference> {};
+
+TEST_P(GltfModels, HaveTheSizeThatAnotherProgramFinds) {
+  const Reference& expected = GetParam();
+  if (!std::filesystem::exists(models / expected.file)) GTEST_SKIP() << "no " << expected.file;
+  const GltfModel model = read_gltf(models / expected.file);
+  EXPECT_EQ(model.scene.instances.size(), expected.instances);
+  const SceneSize size = size_of(model.scene);
+  EXPECT_EQ(size.triangles, expected.triangles);
+  // The reference is printed to nine digits.
+  EXPECT_NEAR(size.area_m2, expected.area_m2, 2e-9 * expected.area_m2);
+  const double tolerance_m = 2e-9 * (expected.high_m - expected.low_m).norm();
+  EXPECT_LT((size.low_m - expected.low_m).cwiseAbs().maxCoeff(), tolerance_m);
+  EXPECT_LT((size.high_m - expected.high_m).cwiseAbs().maxCoeff(), tolerance_m);
+  const std::string notices = ::testing::PrintToString(model.notices);
+  if (expected.degenerate > 0) {
+    EXPECT_THAT(notices, HasSubstr(std::to_string(expected.degenerate) + " triangle(s) without"));
+  } else {
+    EXPECT_THAT(notices, ::testing::Not(HasSubstr("without area")));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shared, GltfModels,
+    ::testing::Values(Reference{"2CylinderEngine.glb",
+                                115,
+                                110336,
+                                10419,
+                                2663488.59,
+                                {-371.692263, -127.999996, -180.971558},
+                                {371.692169, 139.999993, 92.0415617}},
+                      Reference{"EXT_mesh_manifold/manifold/manifold.gltf",
+                                2,
+                                3440,
+                                0,
+                                62046.0262,
+                                {-50, -50, -50},
+                                {50, 50, 50}},
+                      Reference{"in/TwoCubes.glb",
+                                2,
+                                24,
+                                0,
+                                47.9999988,
+                                {-3.00000036, -1.0000006, -1},
+                                {3.00000048, 1.00000036, 1}},
+                      Reference{"blender/01_single_vs_double_sided/01_single_vs_double_sided.gltf",
+                                2,
+                                1480,
+                                0,
+                                15.7809416,
+                                {-3.49999994, -0.99999994, -0.943208571},
+                                {1, 0.99999994, 0.94320887}},
+                      Reference{"blender/02_node_hierarchy/02_node_hierarchy.gltf",
+                                2,
+                                60,
+                                0,
+                                35.013438,
+                                {-1, -1, -1},
+                                {5.00000012, 1, 5}},
+                      Reference{"blender/02_shared_mesh/02_shared_mesh.gltf",
+                                2,
+                                24,
+                                0,
+                                47.9999981,
+                                {-1, -1.41421348, -1.41421348},
+                                {5, 1.41421348, 1.41421348}},
+                      Reference{"blender/15_transmission/15_transmission.gltf",
+                                5,
+                                4800,
+                                0,
+                                62.3284627,
+                                {-0.999999821, -1.00000036, -1},
+                                {9.00000024, 0.999999166, 1}},
+                      Reference{
+                          "blender/17_ior/17_ior.gltf", 5, 60, 0, 120, {-1, -1, -1}, {13, 1, 1}},
+                      Reference{"blender/24_gpu_instancing/24_gpu_instancing.gltf",
+                                1900,
+                                7656770,
+                                0,
+                                562090.719,
+                                {-339.411277, -339.411277, 0},
+                                {339.411277, 339.411277, 13.2981021}}),
+    [](const auto& test) {
+      return std::filesystem::path(test.param.file).stem().string().insert(0, "Model_");
+    });
+
+// What the models' READMEs and exporters say beyond sizes.
+TEST(GltfModels, ShareTheMeshOfNodesThatShareIt) {
+  const auto file = models / "blender/02_shared_mesh/02_shared_mesh.gltf";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared models";
+  const Scene scene = read_gltf(file).scene;
+  ASSERT_EQ(scene.instances.size(), 2u);
+  EXPECT_EQ(scene.meshes.size(), 1u);
+  EXPECT_EQ(scene.instances[0].mesh, scene.instances[1].mesh);
+}
+
+TEST(GltfModels, RecordDoubleSided) {
+  const auto file = models / "blender/01_single_vs_double_sided/01_single_vs_double_sided.gltf";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared models";
+  for (const GltfMaterial& material : read_gltf(file).materials) {
+    EXPECT_EQ(material.double_sided, material.name == "mat_double") << material.name;
+  }
+}
+
+TEST(GltfModels, RefuseCompressionByName) {
+  const std::pair<const char*, const char*> compressed[] = {
+      {"NASA_Aqua_B_draco.glb", "KHR_draco_mesh_compression"},
+      {"2CylinderEngine_draco/2CylinderEngine.gltf", "KHR_draco_mesh_compression"},
+      {"in/BoxMeshopt.glb", "KHR_mesh_quantization"},
+      {"in/BoxMeshopt.gltf", "KHR_mesh_quantization"}};
+  if (!std::filesystem::exists(models)) GTEST_SKIP() << "no shared models";
+  for (const auto& [file, extension] : compressed) {
+    try {
+      read_gltf(models / file);
+      ADD_FAILURE() << file << " was read";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(),
+                  HasSubstr(std::string("/extensionsRequired/0: found \"") + extension + "\""));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,273 @@
+// Optical properties from extras, from an experiment's [[material]] and from drawing values.
+#include "gltf_test_model.h"
+#include "scenes/surface_settings.h"
+
+namespace photorque {
+namespace {
+
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+const InputLocation written_at = {"experiment.toml", 7};
+
+SettingsNode node_of(double number) {
+  return {number, written_at};
+}
+
+SettingsNode node_of(const std::string& text) {
+  return {text, written_at};
+}
+
+SettingsNode node_of(const std::vector<double>& numbers) {
+  SettingsNode::Array array;
+  for (const double number : numbers) array.push_back(node_of(number));
+  return {array, written_at};
+}
+
+Settings settings_of(const SettingsNode::Table& table) {
+  return Settings(std::make_shared<const SettingsNode>(SettingsNode{table, written_at}),
+                  "material[0]");
+}
+
+std::string error_of(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(SurfaceSettings, OneFractionLeftOutIsTheRest) {
+  const OpticalSurface surface = read_surface(settings_of({{"absorptance", node_of(0.7)},
+                                                           {"specular", node_of(0.1)},
+                                                           {"transmittance", node_of(0.05)}}),
+                                              2, "paint");
+  EXPECT_EQ(surface.name, "paint");
+  EXPECT_NEAR(surface.diffuse[0], 0.15, 1e-15);
+  EXPECT_NEAR(surface.diffuse[1], 0.15, 1e-15);
+  EXPECT_EQ(surface.diffuse[2], 0.0);  // beyond the bands
+  EXPECT_EQ(surface.absorbed[1], 0.7);
+}
+
+TEST(SurfaceSettings, BandsMayDiffer) {
+  const OpticalSurface surface =
+      read_surface(settings_of({{"absorptance", node_of(std::vector<double>{0.9, 0.2})},
+                                {"specular", node_of(0.1)},
+                                {"transmittance", node_of(0.0)}}),
+                   2, "cell");
+  EXPECT_NEAR(surface.diffuse[0], 0.0, 1e-15);
+  EXPECT_NEAR(surface.diffuse[1], 0.7, 1e-15);
+}
+
+TEST(SurfaceSettings, SumsThatAreOneLeaveNothingForOthers) {
+  const OpticalSurface black = read_surface(settings_of({{"absorptance", node_of(1.0)}}), 1, "b");
+  EXPECT_EQ(black.absorbed[0], 1.0);
+  EXPECT_EQ(black.specular[0] + black.diffuse[0] + black.transmitted[0], 0.0);
+}
+
+TEST(SurfaceSettings, SumsToRoundingWhenWrittenToNineDigits) {
+  const OpticalSurface surface = read_surface(settings_of({{"absorptance", node_of(0.333333333)},
+                                                           {"specular", node_of(0.333333333)},
+                                                           {"diffuse", node_of(0.333333333)},
+                                                           {"transmittance", node_of(0.0)}}),
+                                              1, "thirds");
+  EXPECT_NEAR(surface.absorbed[0] + surface.specular[0] + surface.diffuse[0], 1.0, 3e-16);
+}
+
+TEST(SurfaceSettings, WrongFractionsAreRefused) {
+  const auto error = [](const SettingsNode::Table& table, int bands = 1) {
+    return error_of([&] { read_surface(settings_of(table), bands, "x"); });
+  };
+  EXPECT_EQ(error({}),
+            "experiment.toml:7: material[0]: found no optical property, expected "
+            "absorptance, specular, diffuse, transmittance");
+  EXPECT_THAT(
+      error({{"absorptance", node_of(0.5)}}),
+      HasSubstr("found fractions that sum to 0.5 in band 0, expected a sum of 1, or all but "
+                "one of specular, diffuse, transmittance too"));
+  EXPECT_THAT(error({{"absorptance", node_of(0.5)},
+                     {"specular", node_of(0.2)},
+                     {"diffuse", node_of(0.2)},
+                     {"transmittance", node_of(0.2)}}),
+              HasSubstr("sum to 1.1 in band 0"));
+  EXPECT_THAT(error({{"absorptance", node_of(0.5)},
+                     {"specular", node_of(0.5 + 2e-9)},
+                     {"diffuse", node_of(0.0)}}),
+              HasSubstr("expected a sum of 1"));
+  EXPECT_THAT(error({{"absorptance", node_of(1.5)}}), HasSubstr("found 1.5, expected a number in"));
+  EXPECT_THAT(error({{"absorptance", node_of(std::vector<double>{1, 1, 1})}}, 2),
+              HasSubstr("found an array of 3, expected one number, or one for each of 2 band(s)"));
+  EXPECT_THAT(error({{"absorptance", node_of(std::string("black"))}}), HasSubstr("\"black\""));
+}
+
+TEST(SurfaceSettings, BackIsATableOfItsOwn) {
+  const SettingsNode back{SettingsNode::Table{{"specular", node_of(1.0)}}, written_at};
+  const Settings both = settings_of({{"absorptance", node_of(1.0)}, {"back", back}});
+  const SheetOptics sheet = read_sheet(both, 1, "cell");
+  EXPECT_EQ(sheet.front.absorbed[0], 1.0);
+  ASSERT_TRUE(sheet.back.has_value());
+  EXPECT_EQ(sheet.back->specular[0], 1.0);
+  EXPECT_NO_THROW(both.finish());
+  EXPECT_FALSE(read_sheet(settings_of({{"absorptance", node_of(1.0)}}), 1, "x").back);
+}
+
+TestModel painted_model(const json& material) {
+  TestModel model = triangle_model();
+  model.json["materials"] = json::array({material});
+  model.json["meshes"][0]["primitives"][0]["material"] = 0;
+  return model;
+}
+
+TEST(GltfOptics, ExtrasAreTakenAsTheyAre) {
+  const TestModel model = painted_model({{"name", "cell"},
+                                         {"extras",
+                                          {{"photorque",
+                                            {{"absorptance", {0.9, 0.1}},
+                                             {"specular", 0.1},
+                                             {"transmittance", 0},
+                                             {"back", {{"diffuse", 1}}}}},
+                                           {"other", "tools' data"}}}});
+  const Bands bands{{400e-9, 700e-9, 1100e-9}};
+  const GltfModel read = model.read({.bands = bands});
+  const Instance& instance = read.scene.instances.at(0);
+  const OpticalSurface& front = read.scene.surfaces.at(instance.front_surface);
+  const OpticalSurface& back = read.scene.surfaces.at(instance.back_surface);
+  EXPECT_NEAR(front.diffuse[1], 0.8, 1e-15);
+  EXPECT_EQ(back.diffuse[0], 1.0);
+  EXPECT_EQ(read.materials.at(0).origin, OpticsOrigin::extras);
+  EXPECT_EQ(read.scene.bands.count(), 2);
+  EXPECT_TRUE(read.notices.empty());
+}
+
+TEST(GltfOptics, UnknownKeysInExtrasSuggestTheKnown) {
+  const TestModel model =
+      painted_model({{"extras", {{"photorque", {{"absorptance", 1}, {"transmitance", 0}}}}}});
+  EXPECT_EQ(error_of([&] { model.read(); }),
+            "model.gltf: /materials/0/extras/photorque.transmitance: found an unknown key, "
+            "expected a known key, perhaps \"transmittance\"");
+  const TestModel text = painted_model({{"extras", {{"photorque", "black"}}}});
+  EXPECT_THAT(error_of([&] { text.read(); }),
+              HasSubstr("/materials/0/extras/photorque: found \"black\", expected an object"));
+  const TestModel null = painted_model({{"extras", {{"photorque", {{"diffuse", nullptr}}}}}});
+  EXPECT_THAT(error_of([&] { null.read(); }), HasSubstr("found null"));
+}
+
+TEST(GltfOptics, ExperimentWinsOverExtras) {
+  TestModel model =
+      painted_model({{"name", "cell"}, {"extras", {{"photorque", {{"absorptance", 1}}}}}});
+  const Settings material =
+      settings_of({{"name", node_of(std::string("cell"))}, {"diffuse", node_of(1.0)}});
+  const GltfModel read = model.read({.materials = {material}});
+  EXPECT_EQ(read.scene.surfaces.at(0).diffuse[0], 1.0);
+  EXPECT_EQ(read.materials.at(0).origin, OpticsOrigin::experiment);
+  EXPECT_NO_THROW(material.finish());
+}
+
+TEST(GltfOptics, ExperimentMustNameAMaterialOnce) {
+  const TestModel model = painted_model({{"name", "solar_cell"}});
+  const auto material = [](const std::string& name) {
+    return settings_of({{"name", node_of(name)}, {"diffuse", node_of(1.0)}});
+  };
+  EXPECT_EQ(error_of([&] { model.read({.materials = {material("solarcell")}}); }),
+            "experiment.toml:7: material[0].name: found \"solarcell\", expected a material of "
+            "model.gltf, perhaps \"solar_cell\"");
+  EXPECT_THAT(error_of([&] {
+                model.read({.materials = {material("solar_cell"), material("solar_cell")}});
+              }),
+              HasSubstr("a second time"));
+}
+
+struct Derived {
+  const char* name;
+  json material;
+  double specular, diffuse, transmitted;
+};
+void PrintTo(const Derived& derived, std::ostream* out) {
+  *out << derived.name;
+}
+
+class DerivedOptics : public ::testing::TestWithParam<Derived> {};
+
+TEST_P(DerivedOptics, FollowTheStatedRule) {
+  const GltfModel read = painted_model(GetParam().material).read();
+  const OpticalSurface& surface = read.scene.surfaces.at(0);
+  EXPECT_NEAR(surface.specular[0], GetParam().specular, 1e-12);
+  EXPECT_NEAR(surface.diffuse[0], GetParam().diffuse, 1e-12);
+  EXPECT_NEAR(surface.transmitted[0], GetParam().transmitted, 1e-12);
+  EXPECT_NEAR(
+      surface.absorbed[0] + surface.specular[0] + surface.diffuse[0] + surface.transmitted[0], 1.0,
+      4e-16);
+  EXPECT_GE(surface.absorbed[0], 0.0);
+  EXPECT_THAT(read.notices, Contains(HasSubstr("derived from PBR values: absorptance ")));
+}
+
+// By hand from the rule in scenes/gltf_optics.h; F0 = 0.04 at n = 1.5 and 1/9 at n = 2.
+INSTANTIATE_TEST_SUITE_P(
+    Rule, DerivedOptics,
+    ::testing::Values(
+        Derived{"default_is_white_rough_metal", json::object(), 0, 1, 0},
+        Derived{"mirror", {{"pbrMetallicRoughness", {{"roughnessFactor", 0}}}}, 1, 0, 0},
+        Derived{"grey_paint",
+                {{"pbrMetallicRoughness",
+                  {{"baseColorFactor", {0.5, 0.5, 0.5, 1}},
+                   {"metallicFactor", 0},
+                   {"roughnessFactor", 0.75}}}},
+                0.01,
+                0.03 + 0.48,
+                0},
+        Derived{"half_metal_of_green",
+                {{"pbrMetallicRoughness",
+                  {{"baseColorFactor", {0, 1, 0, 1}},
+                   {"metallicFactor", 0.5},
+                   {"roughnessFactor", 0}}}},
+                0.02 + 0.5 * 0.7152,
+                0.48 * 0.7152,
+                0},
+        Derived{"glass",
+                {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+                 {"extensions",
+                  {{"KHR_materials_transmission", {{"transmissionFactor", 0.75}}},
+                   {"KHR_materials_ior", {{"ior", 2}}}}}},
+                1.0 / 9,
+                0.25 * 8 / 9,
+                0.75 * 8 / 9},
+        Derived{"half_covered",
+                {{"alphaMode", "BLEND"},
+                 {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}}},
+                0,
+                0.5,
+                0.5},
+        Derived{"alpha_of_opaque_is_nothing",
+                {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}}},
+                0,
+                1,
+                0},
+        Derived{"cut_out",
+                {{"alphaMode", "MASK"},
+                 {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.4}}}}},
+                0,
+                0,
+                1},
+        Derived{"specular_glossiness",
+                {{"extensions",
+                  {{"KHR_materials_pbrSpecularGlossiness",
+                    {{"diffuseFactor", {0.5, 0.5, 0.5, 1}},
+                     {"specularFactor", {0.2, 0.2, 0.2}},
+                     {"glossinessFactor", 0.25}}}}}},
+                0.05,
+                0.15 + 0.4,
+                0}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(GltfOptics, PrimitivesWithoutMaterialHaveTheDefault) {
+  const GltfModel read = triangle_model().read();
+  EXPECT_EQ(read.scene.instances.at(0).material, "");
+  EXPECT_EQ(read.scene.surfaces.at(0).diffuse[0], 1.0);
+  EXPECT_THAT(read.notices, Contains(StartsWith("material without a name: optical")));
+}
+
+}  // namespace
+}  // namespace photorque
