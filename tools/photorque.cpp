@@ -2,9 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <set>
 
 #include "core/errors.h"
 #include "core/provenance.h"
+#include "core/settings.h"
 #include "tools/verb.h"
 
 namespace photorque {
@@ -44,6 +46,16 @@ int run(int argc, char** argv) {
   for (const Verb& verb : verbs) {
     CLI::App* command = app.add_subcommand(verb.name, verb.summary);
     add_options(*command, line);
+  }
+  if (argc > 1 && argv[1][0] != '-') {
+    std::set<std::string> known;
+    for (const Verb& verb : verbs) known.insert(verb.name);
+    if (!known.contains(argv[1])) {
+      const std::string hint = nearest(argv[1], known);
+      std::fprintf(stderr, "photorque: unknown command \"%s\"%s (see photorque --help)\n", argv[1],
+                   hint.empty() ? "" : (", perhaps \"" + hint + "\"").c_str());
+      return 2;
+    }
   }
   try {
     app.parse(argc, argv);
