@@ -57,6 +57,22 @@ Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
   const Eigen::FullPivLU<Mat3> lu(model_.platform.inertia_kg_m2);
   if (!lu.isInvertible()) throw NumericalError("the platform's inertia is singular");
   inverse_inertia_1_kg_m2_ = lu.inverse();
+  inertia_changes_ = changes_inertia();
+}
+
+// Whether some law does, tried at the start: none does so only now and then.
+bool Dynamics::changes_inertia() const {
+  const std::vector<double> start = to_vector(initial_state());
+  const std::vector<Lanes> y(start.begin(), start.end());
+  std::vector<Lanes> rates(y.size(), Lanes(0.0));
+  Moment<Lanes> now = begin(Lanes(0.0), broadcast({}), y.data());
+  run_stages(order_, now, [&](size_t d) {
+    const Layout& own = layout_[d];
+    model_.disturbances[d].law->act({parameters_.data() + own.first_parameter,
+                                     y.data() + own.first_state, rates.data() + own.first_state},
+                                    now);
+  });
+  return now.inertia_changed;
 }
 
 PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
@@ -209,14 +225,15 @@ Moment<DualLanes> Dynamics::differentiate(const Lanes& time_s, const Command& co
                                           const Lanes* y, const Block& block, bool with_instruments,
                                           std::vector<DualLanes>& rates) const {
   std::vector<DualLanes> y_dual(y, y + size_);
-  bool everything = false;
+  // Any law may change the inertia that all torques are divided by.
+  bool everything = inertia_changes_;
   for (int k = 0; k < DualLanes::block; ++k) {
     if (block.state[k] < 0) continue;
     y_dual[static_cast<size_t>(block.state[k])].partial[k] = 1.0;
     everything = everything || block.state[k] < component::extra;
   }
-  // A disturbance depends on the body's state, on what is its own, and on what those of earlier
-  // stages did.
+  // A torque depends on the body's state, on what is its own, and on what those of earlier stages
+  // did: these always act.
   const auto owns = [&](size_t d) {
     const Disturbance& disturbance = model_.disturbances[d];
     const Layout& own = layout_[d];
@@ -233,45 +250,38 @@ Moment<DualLanes> Dynamics::differentiate(const Lanes& time_s, const Command& co
   };
   std::vector<size_t> owners;
   for (const size_t d : order_) {
-    if (!owns(d)) continue;
-    owners.push_back(d);
-    everything = everything || model_.disturbances[d].stage < Stage::torque;
+    const bool earlier = model_.disturbances[d].stage < Stage::torque, owner = owns(d);
+    if (earlier || owner) owners.push_back(d);
+    everything = everything || (earlier && owner);
   }
   // An instrument's error may scale with what it senses.
   everything = everything ||
                (with_instruments && std::any_of(instruments_.begin(), instruments_.end(), owns));
 
   std::vector<DualLanes> own_parameters;
-  for (;;) {
-    rates.assign(static_cast<size_t>(size_), DualLanes(0.0));
-    Moment<DualLanes> now = begin(DualLanes(time_s), command, y_dual.data());
-    const auto act = [&](size_t d) {
-      const Disturbance& disturbance = model_.disturbances[d];
-      const Layout& own = layout_[d];
-      const Lanes* first = parameters_.data() + own.first_parameter;
-      own_parameters.assign(first, first + disturbance.parameters.size());
-      for (int k = 0; k < DualLanes::block; ++k) {
-        const int index = block.parameter[k] - own.first_parameter;
-        if (index >= 0 && index < static_cast<int>(own_parameters.size())) {
-          own_parameters[static_cast<size_t>(index)].partial[k] = 1.0;
-        }
+  rates.assign(static_cast<size_t>(size_), DualLanes(0.0));
+  Moment<DualLanes> now = begin(DualLanes(time_s), command, y_dual.data());
+  const auto act = [&](size_t d) {
+    const Disturbance& disturbance = model_.disturbances[d];
+    const Layout& own = layout_[d];
+    const Lanes* first = parameters_.data() + own.first_parameter;
+    own_parameters.assign(first, first + disturbance.parameters.size());
+    for (int k = 0; k < DualLanes::block; ++k) {
+      const int index = block.parameter[k] - own.first_parameter;
+      if (index >= 0 && index < static_cast<int>(own_parameters.size())) {
+        own_parameters[static_cast<size_t>(index)].partial[k] = 1.0;
       }
-      disturbance.law->act(
-          {own_parameters.data(), y_dual.data() + own.first_state, rates.data() + own.first_state},
-          now);
-    };
-    run_stages(everything ? order_ : owners, now, act);
-    // When the inertia depends on the block, so does what every other torque brings about.
-    if (now.inertia_changed && !everything) {
-      everything = true;
-      continue;
     }
-    solve(now, rates.data());
-    if (with_instruments) {
-      for (const size_t d : instruments_) act(d);
-    }
-    return now;
+    disturbance.law->act(
+        {own_parameters.data(), y_dual.data() + own.first_state, rates.data() + own.first_state},
+        now);
+  };
+  run_stages(everything ? order_ : owners, now, act);
+  solve(now, rates.data());
+  if (with_instruments) {
+    for (const size_t d : instruments_) act(d);
   }
+  return now;
 }
 
 void Dynamics::derivatives(const Lanes& time_s, const Held& held, const Lanes* y,

@@ -109,6 +109,7 @@ class Dynamics {
   void run_stages(const std::vector<size_t>& order, Moment<T>& now, const Act& act) const;
   template <class T>
   void solve(const Moment<T>& now, T* rates) const;
+  bool changes_inertia() const;
   void free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const;
   // Evaluates with derivatives, leaving out disturbances that cannot depend on the block.
   Moment<DualLanes> differentiate(const Lanes& time_s, const Command& command, const Lanes* y,
@@ -123,6 +124,7 @@ class Dynamics {
   std::vector<size_t> instruments_;  // those
   std::vector<Lanes> parameters_;
   Mat3 inverse_inertia_1_kg_m2_;
+  bool inertia_changes_ = false;
 };
 
 // The torque of every disturbance at one state [N m], in the model's order, body axes.

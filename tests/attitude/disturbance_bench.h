@@ -1,0 +1,72 @@
+// A platform with chosen disturbances, and what acts on it.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "attitude/disturbance_kind.h"
+#include "attitude/dynamics.h"
+#include "attitude/propagator.h"
+#include "tests/attitude/settings_bench.h"
+
+namespace photorque {
+
+// The paper's tabletop platform in a plausible laboratory.
+inline AttitudeModel bench_model() {
+  AttitudeModel model;
+  model.platform.mass_kg = 7.0;
+  model.platform.inertia_kg_m2 = Vec3(0.11, 0.12, 0.19).asDiagonal();
+  model.environment.magnetic_field_lab_T = {1e-6, 2.2e-5, -4.2e-5};
+  model.environment.latitude_rad = 0.794;
+  model.environment.earth_rate_lab_rad_s =
+      earth_rate_rad_s * Vec3(0.0, std::cos(0.794), std::sin(0.794));
+  return model;
+}
+
+inline Disturbance make(const AttitudeModel& model, const std::string& kind,
+                        const std::vector<std::pair<std::string, SettingsNode>>& entries) {
+  std::vector<std::pair<std::string, SettingsNode>> all = entries;
+  all.emplace_back("kind", node(kind.c_str()));
+  const Settings settings = settings_of(table(all));
+  Disturbance disturbance = read_disturbance(settings, {model.platform, model.environment});
+  settings.finish();
+  return disturbance;
+}
+
+// The model with this one disturbance more.
+inline AttitudeModel with(AttitudeModel model, const std::string& kind,
+                          const std::vector<std::pair<std::string, SettingsNode>>& entries) {
+  model.disturbances.push_back(make(model, kind, entries));
+  return model;
+}
+
+inline PlatformState state_of(const AttitudeModel& model, const Quat& lab_from_body,
+                              const Vec3& rate_body_rad_s = Vec3::Zero(), double time_s = 0.0,
+                              double charge_drawn_C = 0.0) {
+  PlatformState state = Dynamics(model).initial_state(rate_body_rad_s);
+  state.lab_from_body = lab_from_body.normalized();
+  state.time_s = time_s;
+  state.charge_drawn_C = charge_drawn_C;
+  return state;
+}
+
+inline Quat turned(double angle_rad, const Vec3& axis) {
+  return Quat(Eigen::AngleAxisd(angle_rad, axis.normalized()));
+}
+
+// Torque of the model's last disturbance.
+inline Vec3 torque_body_N_m(const AttitudeModel& model, const PlatformState& state) {
+  return disturbance_torques_body_N_m(model, state).back();
+}
+
+inline PlatformState flown(const AttitudeModel& model, const PlatformState& start, double end_s,
+                           double tolerance = 1e-12) {
+  const Dynamics dynamics(model);
+  const double times_s[] = {end_s};
+  PropagationOptions options;
+  options.tolerance = tolerance;
+  return propagate(dynamics, start, times_s, options).states.back();
+}
+
+}  // namespace photorque

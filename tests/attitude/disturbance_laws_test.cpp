@@ -1,0 +1,407 @@
+// Laws that hold for every registered disturbance: a new kind is tested without being asked, or the
+// first test here fails for want of an example of it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+using Entries = std::vector<std::pair<std::string, SettingsNode>>;
+
+// A small wrench table, written once for the run.
+std::string light_table() {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "law_light.csv";
+  std::ofstream file(path);
+  file.precision(17);
+  file << "heading_deg,tilt_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
+  for (int heading = -180; heading < 180; heading += 15) {
+    for (int tilt = 0; tilt <= 180; tilt += 10) {
+      const double t = tilt * degree_rad, h = heading * degree_rad;
+      file << heading << ',' << tilt << ',' << 1e-9 * std::sin(t) * std::sin(h) << ','
+           << -1e-9 * std::sin(t) * std::cos(h) << ',' << 2e-10 * std::cos(t) << '\n';
+    }
+  }
+  return path.string();
+}
+
+// One example of each kind, with values large enough to matter in double precision.
+std::map<std::string, Entries> examples() {
+  const std::string light = light_table();
+  return {
+      {"static_unbalance", {{"offset_m", numbers({2e-5, -1e-5, -3e-5})}}},
+      {"mass_shift", {{"time_s", node(5)}, {"offset_m", numbers({1e-5, 2e-5, 1e-6})}}},
+      {"battery_discharge", {{"shift_m_per_Ah", numbers({3e-6, -1e-6, 2e-6})}}},
+      {"elastic_sag",
+       {{"compliance_s2",
+         list({numbers({3e-6, 1e-7, 0}), numbers({1e-7, 2e-6, 0}), numbers({0, 0, 1e-6})})}}},
+      {"stepper_quantization", {{"moving_mass_kg", node(0.25)}, {"lead_m", node(2e-3)}}},
+      {"bearing_drag", {{"axial_N_m_s", node(2e-5)}, {"transverse_N_m_s", node(3e-5)}}},
+      {"turbine_torque", {{"torque_N_m", node(3e-6)}}},
+      {"dry_friction", {{"torque_N_m", node(2e-6)}}},
+      {"air_friction", {{"coefficient", node(4e-5)}}},
+      {"air_pressure_drag", {{"coefficient_N_m_s2", node(7e-4)}}},
+      {"room_draft", {{"torque_lab_N_m", numbers({0, 0, 2e-6})}}},
+      {"magnetic_dipole", {{"dipole_A_m2", numbers({0.01, 0.03, -0.02})}}},
+      {"helmholtz_cage", {{"gain_error", node(0.1)}}},
+      {"eddy_damping", {{"coefficient_N_m_s_per_T2", node(40)}}},
+      {"radiation_pressure", {{"table", node(light.c_str())}}},
+      {"gravity_gradient", {}},
+      {"earth_rotation", {}},
+      {"rotor_momentum", {{"momentum_N_m_s", numbers({4e-4, -2e-3, -1e-3})}}},
+      {"tether", {{"stiffness_N_m_per_rad", node(2e-4)}}},
+      {"floor_vibration",
+       {{"acceleration_m_s2", numbers({0, 0, 0.02})},
+        {"frequency_Hz", node(0.3)},
+        {"phase", node(0.4)}}},
+      {"periodic_torque",
+       {{"torque_N_m", numbers({1e-5, -5e-5, -2e-5})},
+        {"frequency_Hz", node(0.7)},
+        {"phase", node(2.6)}}},
+      {"flexible_mode",
+       {{"axis", numbers({1, 0.5, 0})},
+        {"frequency_Hz", node(0.4)},
+        {"damping", node(0.02)},
+        {"inertia_kg_m2", node(0.03)}}},
+      {"actuator_gain", {{"gain_error", numbers({0.1, 0.2, -0.1})}}},
+      {"inertia_error", {{"delta_kg_m2", numbers({0.003, -0.002, 0.004, 0.001, -0.001, 0.002})}}},
+      {"gravity_tilt", {{"tilt_rad", numbers({1e-3, -2e-3})}}},
+      {"attitude_latency", {{"latency_s", node(0.05)}}},
+      {"gyro_bias", {{"bias_rad_s", numbers({1e-3, -1e-3, 2e-3})}}},
+      {"gyro_scale", {{"scale", numbers({0.01, -0.02, 0.01})}}},
+      {"gyro_misalignment", {{"misalignment_rad", numbers({1e-3, 2e-3, -1e-3})}}},
+      {"orbit",
+       {{"altitude_km", node(500)},
+        {"inclination_deg", node(51)},
+        {"phase_deg", node(30)},
+        {"date_year", node(2026)},
+        {"duration_s", node(600)},
+        {"sun_direction", numbers({1, 0.3, 0.2})}}},
+      {"power_balance", {{"load_W", node(25)}, {"array_power_W", node(30)}}},
+      {"wheel_control",
+       {{"gain_N_m_per_rad", node(0.01)},
+        {"gain_N_m_s", node(0.05)},
+        {"wheel_inertia_kg_m2", node(1e-3)},
+        {"largest_torque_N_m", node(0.5)},
+        {"largest_rate_rad_s", node(500)},
+        {"viscous_N_m_s", node(1e-6)}}},
+      {"camera_misalignment", {{"misalignment_rad", numbers({1e-3, 2e-3, -1e-3})}}},
+  };
+}
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const DisturbanceKind& kind : all_disturbance_kinds()) names.push_back(kind.name);
+  return names;
+}
+
+// The model that a kind is tried in: an offset for those that need one, the field, a command.
+AttitudeModel model_with(const std::string& kind) {
+  AttitudeModel model = bench_model();
+  model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4}, .battery_current_A = 2.0});
+  model = with(model, "static_unbalance", {{"offset_m", numbers({1e-6, 2e-6, -2e-5})}});
+  model = with(model, "magnetic_dipole", {{"dipole_A_m2", numbers({0.01, -0.02, 0.005})}});
+  const auto all = examples();
+  const auto example = all.find(kind);
+  if (example == all.end()) {
+    ADD_FAILURE() << "give an example of " << kind << " in examples()";
+    return model;
+  }
+  return with(model, kind, example->second);
+}
+
+Vec3 random_vector(std::mt19937_64& engine) {
+  std::normal_distribution<double> normal;
+  const double x = normal(engine), y = normal(engine), z = normal(engine);
+  return {x, y, z};
+}
+
+PlatformState random_state(const AttitudeModel& model, std::mt19937_64& engine) {
+  const Vec3 axis = random_vector(engine), rate = 0.1 * random_vector(engine);
+  const double angle = std::uniform_real_distribution<double>(0.0, 2.8)(engine);
+  PlatformState state = state_of(model, turned(angle, axis), rate, 7.3, 900.0);
+  for (double& extra : state.extra) extra += 0.01 * random_vector(engine).x();
+  return state;
+}
+
+std::vector<double> rates_of(const Dynamics& dynamics, double time_s,
+                             const std::vector<double>& y) {
+  std::vector<Lanes> lanes(y.begin(), y.end()), rates(y.size(), Lanes(0.0));
+  dynamics.rates(Lanes(time_s), dynamics.model().schedule.at(time_s), lanes.data(), rates.data());
+  std::vector<double> values;
+  for (const Lanes& rate : rates) values.push_back(rate[0]);
+  return values;
+}
+
+class EveryDisturbance : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Kind, EveryDisturbance, testing::ValuesIn(kind_names()),
+                         [](const auto& kind) { return kind.param; });
+
+TEST_P(EveryDisturbance, IsFiniteAtRestUprightAndUpsideDown) {
+  const AttitudeModel model = model_with(GetParam());
+  const Dynamics dynamics(model);
+  for (const Quat& q : {Quat::Identity(), turned(pi, Vec3::UnitX()), turned(1e-12, {1, 1, 1})}) {
+    const std::vector<double> y = to_vector(state_of(model, q, Vec3::Zero(), 17.3));
+    for (const double rate : rates_of(dynamics, 17.3, y)) EXPECT_TRUE(std::isfinite(rate));
+    std::vector<Lanes> lanes(y.begin(), y.end());
+    std::vector<Lanes> derivatives(y.size() * DualLanes::block, Lanes(0.0));
+    Dynamics::Block block;
+    block.parameter.fill(-1);
+    for (int k = 0; k < DualLanes::block; ++k) block.state[k] = k;
+    dynamics.derivatives(Lanes(17.3), model.schedule.at(17.3), lanes.data(), block,
+                         derivatives.data());
+    for (const Lanes& derivative : derivatives) EXPECT_TRUE(std::isfinite(derivative[0]));
+  }
+}
+
+TEST_P(EveryDisturbance, IsTheSameForBothQuaternionsOfAnAttitude) {
+  const AttitudeModel model = model_with(GetParam());
+  std::mt19937_64 engine(3);
+  for (int i = 0; i < 5; ++i) {
+    PlatformState state = random_state(model, engine);
+    const Vec3 torque = torque_body_N_m(model, state);
+    state.lab_from_body.coeffs() *= -1.0;
+    EXPECT_LT((torque_body_N_m(model, state) - torque).norm(), 1e-13 * (torque.norm() + 1e-12));
+  }
+}
+
+// Column of exact derivatives of dy/dt by one component of the state or one parameter.
+std::vector<double> exact_column(const Dynamics& dynamics, double time_s,
+                                 const std::vector<double>& y, int component, int parameter) {
+  const std::vector<Lanes> lanes(y.begin(), y.end());
+  Dynamics::Block block;
+  block.state.fill(-1);
+  block.parameter.fill(-1);
+  block.state[0] = component;
+  block.parameter[0] = parameter;
+  std::vector<Lanes> all(y.size() * DualLanes::block, Lanes(0.0));
+  dynamics.derivatives(Lanes(time_s), dynamics.model().schedule.at(time_s), lanes.data(), block,
+                       all.data());
+  std::vector<double> column;
+  for (size_t c = 0; c < y.size(); ++c) column.push_back(all[c * DualLanes::block][0]);
+  return column;
+}
+
+void expect_slope(const std::vector<double>& derivative, const std::vector<double>& above,
+                  const std::vector<double>& below, double step, const std::string& what) {
+  double size = 0.0;
+  for (const double d : derivative) size = std::max(size, std::abs(d));
+  for (size_t c = 0; c < derivative.size(); ++c) {
+    // Differences are good to the square of the step and to rounding over the step.
+    EXPECT_NEAR(derivative[c], (above[c] - below[c]) / (2 * step), 2e-6 * size + 1e-9)
+        << what << ", component " << c;
+  }
+}
+
+double step_of(const std::vector<Parameter>& parameters, const Parameter& parameter) {
+  double size = 0.0;
+  for (const Parameter& p : parameters) {
+    if (p.key == parameter.key) size = std::max(size, std::abs(p.value));
+  }
+  return 2e-5 * (size > 0.0 ? size : 1.0);
+}
+
+void expect_parameter_slopes(const AttitudeModel& model, size_t d, const PlatformState& state) {
+  const Dynamics dynamics(model);
+  const std::vector<double> y = to_vector(state);
+  const std::vector<Parameter>& parameters = model.disturbances[d].parameters;
+  for (size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].key == "time_s") continue;  // an instant of a jump
+    const double step = step_of(parameters, parameters[p]);
+    const auto moved = [&](double by) {
+      AttitudeModel other = model;
+      other.disturbances[d].parameters[p].value += by;
+      return rates_of(Dynamics(other), state.time_s, y);
+    };
+    const int index = dynamics.first_parameter(d) + static_cast<int>(p);
+    expect_slope(exact_column(dynamics, state.time_s, y, -1, index), moved(step), moved(-step),
+                 step, model.disturbances[d].kind + "." + parameters[p].key);
+  }
+}
+
+void expect_state_slopes(const AttitudeModel& model, const PlatformState& state) {
+  const Dynamics dynamics(model);
+  const std::vector<double> y = to_vector(state);
+  for (size_t i = 0; i < y.size(); ++i) {
+    const double step = 1e-5;
+    std::vector<double> above = y, below = y;
+    above[i] += step;
+    below[i] -= step;
+    expect_slope(exact_column(dynamics, state.time_s, y, static_cast<int>(i), -1),
+                 rates_of(dynamics, state.time_s, above), rates_of(dynamics, state.time_s, below),
+                 step, "state " + std::to_string(i));
+  }
+}
+
+// Derivatives that the laws compute exactly against central differences, by every component of the
+// state and by every parameter except instants of jumps.
+TEST_P(EveryDisturbance, DerivativesAgreeWithCentralDifferences) {
+  const AttitudeModel model = model_with(GetParam());
+  std::mt19937_64 engine(11);
+  const PlatformState state = random_state(model, engine);
+  expect_state_slopes(model, state);
+  expect_parameter_slopes(model, model.disturbances.size() - 1, state);
+}
+
+// The same with all of them acting: one disturbance's torque may depend on what another did to the
+// field, the centre of mass or the inertia.
+TEST(Disturbances, DerivativesAgreeWhenAllActTogether) {
+  AttitudeModel model = bench_model();
+  model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4}, .battery_current_A = 2.0});
+  for (const auto& [kind, entries] : examples()) model = with(model, kind, entries);
+  std::mt19937_64 engine(11);
+  const PlatformState state = random_state(model, engine);
+  expect_state_slopes(model, state);
+  for (size_t d = 0; d < model.disturbances.size(); ++d) {
+    if (model.disturbances[d].stage != Stage::measurement) expect_parameter_slopes(model, d, state);
+  }
+}
+
+// Turning the whole laboratory about the vertical, with its field and the Earth's axis, changes
+// nothing, for all that have no horizontal direction of their own.
+std::vector<std::string> kinds_without_heading() {
+  static const std::map<std::string, std::string> headed = {
+      {"tether", "pulls to zero attitude"},
+      {"wheel_control", "turns to a target attitude"},
+      {"gravity_tilt", "is about lab axes"},
+      {"orbit", "is in inertial axes"}};
+  std::vector<std::string> names;
+  for (const std::string& name : kind_names()) {
+    if (!headed.contains(name)) names.push_back(name);
+  }
+  return names;
+}
+
+class EveryKindWithoutHeading : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Kind, EveryKindWithoutHeading, testing::ValuesIn(kinds_without_heading()),
+                         [](const auto& kind) { return kind.param; });
+
+TEST_P(EveryKindWithoutHeading, DoesNotKnowWhereNorthIs) {
+  const AttitudeModel model = model_with(GetParam());
+  std::mt19937_64 engine(5);
+  for (const double angle : {0.7, 2.9, -1.3}) {
+    const Quat turn = turned(angle, Vec3::UnitZ());
+    AttitudeModel turned_model = model;
+    turned_model.environment.magnetic_field_lab_T = turn * model.environment.magnetic_field_lab_T;
+    turned_model.environment.earth_rate_lab_rad_s = turn * model.environment.earth_rate_lab_rad_s;
+    PlatformState state = random_state(model, engine);
+    const Vec3 torque = torque_body_N_m(model, state);
+    state.lab_from_body = turn * state.lab_from_body;
+    EXPECT_LT((torque_body_N_m(turned_model, state) - torque).norm(),
+              1e-12 * (torque.norm() + 1e-12));
+  }
+}
+
+// What stands still takes no power, what brakes takes some: T·ω ≤ 0 for every drag.
+class EveryDrag : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Kind, EveryDrag,
+                         testing::Values("bearing_drag", "dry_friction", "air_friction",
+                                         "air_pressure_drag", "eddy_damping"),
+                         [](const auto& kind) { return kind.param; });
+
+TEST_P(EveryDrag, TakesPowerInMotionAndIsNothingAtRest) {
+  const AttitudeModel model = model_with(GetParam());
+  std::mt19937_64 engine(7);
+  for (int i = 0; i < 200; ++i) {
+    PlatformState state = random_state(model, engine);
+    EXPECT_LT(torque_body_N_m(model, state).dot(state.rate_body_rad_s), 0.0);
+    state.rate_body_rad_s.setZero();
+    EXPECT_EQ(torque_body_N_m(model, state).norm(), 0.0);
+  }
+}
+
+// Torques that derive from a potential: T·ω is minus its rate of change, with the potential written
+// down apart from the law. A rotor's torque does no work at all: its potential is zero.
+class EveryPotential : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Kind, EveryPotential,
+                         testing::Values("static_unbalance", "magnetic_dipole", "gravity_gradient",
+                                         "tether", "elastic_sag", "rotor_momentum"),
+                         [](const auto& kind) { return kind.param; });
+
+double potential_J(const AttitudeModel& model, const Quat& q) {
+  const Platform& p = model.platform;
+  const Environment& e = model.environment;
+  const Disturbance& d = model.disturbances.back();
+  const auto number = [&](size_t i) { return d.parameters[i].value; };
+  const auto vector = [&] { return Vec3(number(0), number(1), number(2)); };
+  if (d.kind == "static_unbalance") return -p.mass_kg * (q * vector()).dot(e.gravity_lab_m_s2);
+  if (d.kind == "magnetic_dipole") return -(q * vector()).dot(e.magnetic_field_lab_T);
+  if (d.kind == "gravity_gradient") {
+    const Vec3 up = q.conjugate() * e.up_lab;
+    return 1.5 * e.gravity_gradient_1_s2 * up.dot(p.inertia_kg_m2 * up);
+  }
+  if (d.kind == "tether") {
+    const double angle = q.angularDistance(Quat::Identity());
+    return 0.5 * number(0) * angle * angle;
+  }
+  if (d.kind == "elastic_sag") {
+    Mat3 compliance_s2;
+    for (int i = 0; i < 9; ++i) compliance_s2(i / 3, i % 3) = number(static_cast<size_t>(i));
+    const Vec3 change = q.conjugate() * e.gravity_lab_m_s2 - e.gravity_lab_m_s2;
+    return -0.5 * p.mass_kg * change.dot(compliance_s2 * change);
+  }
+  return 0.0;
+}
+
+TEST_P(EveryPotential, TorqueIsMinusItsSlope) {
+  const AttitudeModel model = model_with(GetParam());
+  std::mt19937_64 engine(13);
+  for (int i = 0; i < 10; ++i) {
+    const PlatformState state = random_state(model, engine);
+    const Vec3 torque = torque_body_N_m(model, state);
+    const Vec3& rate = state.rate_body_rad_s;
+    const double step_s = 1e-3;
+    const double ahead =
+        potential_J(model, state.lab_from_body * turned(rate.norm() * step_s, rate));
+    const double behind =
+        potential_J(model, state.lab_from_body * turned(-rate.norm() * step_s, rate));
+    EXPECT_NEAR(torque.dot(rate), -(ahead - behind) / (2 * step_s),
+                1e-5 * torque.norm() * rate.norm() + 1e-15);
+  }
+}
+
+TEST_P(EveryDisturbance, SaysWhatItIsInOneSentence) {
+  for (const DisturbanceKind& kind : all_disturbance_kinds()) {
+    if (kind.name != GetParam()) continue;
+    EXPECT_GT(kind.summary.size(), 15u);
+    EXPECT_NE(kind.summary.back(), '.');
+  }
+}
+
+TEST_P(EveryDisturbance, RefusesAKeyThatItDoesNotKnow) {
+  const auto all = examples();
+  if (!all.contains(GetParam())) return;
+  Entries entries = all.at(GetParam());
+  entries.emplace_back("colour", node(1.0));
+  EXPECT_THROW(make(bench_model(), GetParam(), entries), InputError);
+}
+
+TEST(GravityGradient, IsZeroOnASphere) {
+  AttitudeModel model = bench_model();
+  model.platform.inertia_kg_m2 = 0.15 * Mat3::Identity();
+  model = with(model, "gravity_gradient", {});
+  std::mt19937_64 engine(1);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_LT(torque_body_N_m(model, random_state(model, engine)).norm(), 1e-22);
+  }
+}
+
+TEST(Disturbances, UnknownKindIsOneClearLine) {
+  try {
+    make(bench_model(), "bearing_drug", {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("bearing_drag"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,198 @@
+// Torques of fields: magnetic, gravity's gradient, the Earth's rotation, light.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "attitude/coil_cage.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/wrench_table.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+// 0.1 A m² across 50 µT: 5e-6 N m.
+TEST(MagneticDipole, IsDipoleCrossField) {
+  AttitudeModel model = bench_model();
+  model.environment.magnetic_field_lab_T = {0, 5e-5, 0};
+  model = with(model, "magnetic_dipole", {{"dipole_A_m2", numbers({0.1, 0, 0})}});
+  const Vec3 torque = torque_body_N_m(model, state_of(model, Quat::Identity()));
+  EXPECT_LT((torque - Vec3(0, 0, 5e-6)).norm(), 1e-20);
+}
+
+// A compass needle about the vertical: the frequency √(m B_h / J) of small swings around north.
+TEST(MagneticDipole, SwingsLikeACompass) {
+  AttitudeModel model = bench_model();
+  model.environment.magnetic_field_lab_T = {0, 2e-5, 0};
+  model = with(model, "magnetic_dipole",
+               {{"loop", list({table({{"current_A", node(0.5)},
+                                      {"turns", node(20)},
+                                      {"area_m2", numbers({0, 0.01, 0})}})})}});
+  const double half_period_s = pi * std::sqrt(0.19 / (0.1 * 2e-5));
+  const PlatformState start = state_of(model, turned(1e-4, Vec3::UnitZ()));
+  const PlatformState half = flown(model, start, half_period_s);
+  EXPECT_LT(half.lab_from_body.angularDistance(turned(-1e-4, Vec3::UnitZ())), 1e-11);
+}
+
+TEST(HelmholtzCage, CancelsPlaysAndErrs) {
+  const AttitudeModel base = bench_model();
+  const std::vector<std::pair<std::string, SettingsNode>> dipole = {
+      {"dipole_A_m2", numbers({0.02, 0.03, -0.01})}};
+  const Vec3 m(0.02, 0.03, -0.01);
+  const auto torque = [&](const std::vector<std::pair<std::string, SettingsNode>>& cage, double t) {
+    const AttitudeModel model = with(with(base, "helmholtz_cage", cage), "magnetic_dipole", dipole);
+    return torque_body_N_m(model, state_of(model, Quat::Identity(), Vec3::Zero(), t));
+  };
+  EXPECT_LT(torque({}, 5).norm(), 1e-20);
+  const Vec3 uncancelled = m.cross(base.environment.magnetic_field_lab_T);
+  EXPECT_LT((torque({{"gain_error", node(-0.1)}}, 5) - 0.1 * uncancelled).norm(), 1e-20);
+  EXPECT_LT((torque({{"field_lab_uT", numbers({10, 0, 0})}}, 5) - m.cross(Vec3(1e-5, 0, 0))).norm(),
+            1e-20);
+
+  const CircularOrbit orbit{.radius_m = 6371.2e3 + 500e3, .inclination_rad = 0.9};
+  const Vec3 there_T = orbit_field_T(orbit, 2026.0, 6000, 20).at(1230.0);
+  const SettingsNode played = table({{"altitude_km", node(500)},
+                                     {"inclination_rad", node(0.9)},
+                                     {"date_year", node(2026)},
+                                     {"duration_s", node(6000)}});
+  EXPECT_LT((torque({{"orbit", played}}, 1230.0) - m.cross(there_T)).norm(), 1e-18);
+}
+
+TEST(HelmholtzCage, PlaysAFile) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "field.csv";
+  std::ofstream(path) << "t_s,field_x_T,field_y_T,field_z_T\n0,0,0,0\n10,1e-5,0,0\n20,2e-5,0,0\n";
+  const AttitudeModel model =
+      with(with(bench_model(), "helmholtz_cage", {{"field_file", node(path.c_str())}}),
+           "magnetic_dipole", {{"dipole_A_m2", numbers({0, 0.1, 0})}});
+  const Vec3 torque = torque_body_N_m(model, state_of(model, Quat::Identity(), Vec3::Zero(), 15.0));
+  EXPECT_LT((torque - Vec3(0, 0, -1.5e-6)).norm(), 1e-18);
+  std::filesystem::remove(path);
+}
+
+// Basilisk's gravity-gradient test case (reference values recomputed from its orbit and attitude).
+TEST(GravityGradient, AgreesWithBasilisk) {
+  AttitudeModel model;
+  model.platform.inertia_kg_m2 = Vec3(500, 800, 350).asDiagonal();
+  const Vec3 position_m(-2816801.601023, 5248174.846916, 3677157.264677);
+  model.environment.up_lab = position_m.normalized();
+  model.environment.gravity_gradient_1_s2 = 398600.436e9 / std::pow(position_m.norm(), 3);
+  model = with(model, "gravity_gradient", {});
+  // Modified Rodrigues parameters (0.1, 0.2, −0.3) of the body in the inertial frame.
+  const Vec3 sigma(0.1, 0.2, -0.3);
+  const double s2 = sigma.squaredNorm();
+  const Vec3 v = 2 * sigma / (1 + s2);
+  const Quat q((1 - s2) / (1 + s2), v.x(), v.y(), v.z());
+  const Vec3 expected(-5.337578596847e-05, 1.255502419919e-04, 1.361858926892e-04);
+  EXPECT_LT((torque_body_N_m(model, state_of(model, q)) - expected).norm(), 1e-15);
+}
+
+// Libration at a fixed point of the orbit: ω² = 3 n² (I_y − I_x)/I_z, period 3762.29 s (orts).
+TEST(GravityGradient, LibratesWithTheClosedFormPeriod) {
+  AttitudeModel model;
+  model.platform.inertia_kg_m2 = Vec3(10, 30, 25).asDiagonal();
+  model.environment.up_lab = Vec3::UnitX();
+  model.environment.gravity_gradient_1_s2 = 398600.4418e9 / std::pow(7000e3, 3);
+  model = with(model, "gravity_gradient", {});
+  const double period_s = 3762.291311808465;
+  const double amplitude_rad = 1e-4;
+  const PlatformState start = state_of(model, turned(amplitude_rad, Vec3::UnitZ()));
+  const PlatformState quarter = flown(model, start, period_s / 4);
+  EXPECT_LT(quarter.lab_from_body.angularDistance(Quat::Identity()), 1e-10);
+  EXPECT_NEAR(quarter.rate_body_rad_s.z() / (-0.001670042212696011 * amplitude_rad), 1.0, 1e-7);
+}
+
+// On the ground: 3 g/R (I_i − I_j)/2 sin 2θ; 6.9e-7 N m for a difference of 0.3 kg m² at 45 deg.
+TEST(GravityGradient, OnTheGround) {
+  AttitudeModel model = bench_model();
+  model.platform.inertia_kg_m2 = Vec3(1.3, 1.3, 1.0).asDiagonal();
+  model = with(model, "gravity_gradient", {});
+  EXPECT_NEAR(torque_body_N_m(model, state_of(model, turned(pi / 4, Vec3::UnitX()))).norm(), 6.9e-7,
+              0.05e-7);
+}
+
+// A body at rest among the stars turns once a sidereal day for the lab, however it is shaped.
+TEST(EarthRotation, BodyAtRestAmongTheStarsTurnsBackward) {
+  const AttitudeModel model = with(bench_model(), "earth_rotation", {});
+  const Vec3 earth = model.environment.earth_rate_lab_rad_s;
+  const Quat start = turned(0.7, {1, 2, -1});
+  const double time_s = 30000;
+  const PlatformState end =
+      flown(model, state_of(model, start, start.conjugate() * -earth), time_s);
+  const Quat expected = turned(-earth.norm() * time_s, earth) * start;
+  EXPECT_LT(end.lab_from_body.angularDistance(expected), 1e-9);
+}
+
+// Any free motion in the lab, seen from the stars, keeps its angular momentum.
+TEST(EarthRotation, KeepsMomentumAmongTheStars) {
+  const AttitudeModel model = with(bench_model(), "earth_rotation", {});
+  const Vec3 earth = model.environment.earth_rate_lab_rad_s;
+  const Mat3 I = model.platform.inertia_kg_m2;
+  const auto momentum = [&](const PlatformState& s) -> Vec3 {
+    const Vec3 inertial_body = s.rate_body_rad_s + s.lab_from_body.conjugate() * earth;
+    return turned(earth.norm() * s.time_s, earth) * (s.lab_from_body * (I * inertial_body));
+  };
+  const PlatformState start = state_of(model, turned(0.4, {1, 0, 1}), {0.05, -0.02, 0.04});
+  const PlatformState end = flown(model, start, 5000);
+  EXPECT_LT((momentum(end) - momentum(start)).norm(), 1e-11 * momentum(start).norm());
+}
+
+// What a north-finding gyro at rest reads: 15.041 deg/h.
+TEST(EarthRotation, GyroAtRestReadsFifteenDegreesPerHour) {
+  const AttitudeModel model = with(bench_model(), "earth_rotation", {});
+  const PlatformState state = state_of(model, turned(0.3, {0, 1, 1}));
+  std::vector<Lanes> y;
+  for (const double x : to_vector(state)) y.emplace_back(x);
+  const Dynamics dynamics(model);
+  const Dynamics::Instants now = dynamics.at(Lanes(0.0), {}, y.data());
+  const Vec3 reading(now.gyro_rad_s[0][0], now.gyro_rad_s[1][0], now.gyro_rad_s[2][0]);
+  EXPECT_NEAR(reading.norm() / degree_rad * 3600, 15.041, 0.001);
+}
+
+class LightTable : public testing::Test {
+ protected:
+  // A black disc of 0.1 m² at z = 0.2 m above the centre, facing body z, under a vertical beam of
+  // 1000 W/m² that is wider than it: F = −(P/c) A cos θ up, T = r × F.
+  static Vec3 closed_form(const Vec3& up_body) {
+    return Vec3(0, 0, 0.2).cross(
+        Vec3(-1000 / speed_of_light_m_s * 0.1 * std::max(up_body.z(), 0.0) * up_body));
+  }
+  void SetUp() override {
+    std::ofstream file(path_);
+    file.precision(17);
+    file << "heading_deg,tilt_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
+    for (int heading = -180; heading <= 180; heading += 10) {
+      for (int tilt = 0; tilt <= 60; tilt += 3) {
+        const double t = tilt * degree_rad, h = heading * degree_rad;
+        const Vec3 torque =
+            closed_form({-std::sin(t) * std::cos(h), -std::sin(t) * std::sin(h), std::cos(t)});
+        file << heading << ',' << tilt << ',' << torque.x() << ',' << torque.y() << ','
+             << torque.z() << '\n';
+      }
+    }
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) / "light.csv";
+};
+
+TEST_F(LightTable, TorqueFollowsTheTableAtAnyAttitude) {
+  const AttitudeModel model = with(bench_model(), "radiation_pressure",
+                                   {{"table", node(path_.c_str())}, {"scale", node(1.5)}});
+  for (const Quat& q : {turned(0.3, {1, 2, 0}), turned(0.9, {-2, 1, 0.4}), turned(2.0, {0.1, 0, 1}),
+                        Quat::Identity()}) {
+    const Vec3 expected = 1.5 * closed_form(q.conjugate() * Vec3::UnitZ());
+    // Interpolation over 10 deg of a torque of 1e-7 N m.
+    EXPECT_LT((torque_body_N_m(model, state_of(model, q)) - expected).norm(), 1e-11);
+  }
+}
+
+TEST_F(LightTable, NamesAMissingFile) {
+  EXPECT_THROW(make(bench_model(), "radiation_pressure", {{"table", node("/nowhere/table.csv")}}),
+               InputError);
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,149 @@
+// Torques from on board and from the room: rotors, springs, shakers, actuators, swirl and draught.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+// A symmetric gyrostat precesses: in body axes its transverse rate turns at
+// ((I_s − I_t) ω_s + h)/I_t (Hughes, Spacecraft Attitude Dynamics, § 6.1).
+TEST(RotorMomentum, GyrostatPrecessesAtTheClosedFormRate) {
+  AttitudeModel model;
+  model.platform.inertia_kg_m2 = Vec3(0.12, 0.12, 0.19).asDiagonal();
+  model = with(model, "rotor_momentum", {{"momentum_N_m_s", numbers({0, 0, 0.05})}});
+  const PlatformState end = flown(model, state_of(model, Quat::Identity(), {0.02, 0, 0.1}), 7.0);
+  const double angle = ((0.19 - 0.12) * 0.1 + 0.05) / 0.12 * 7.0;
+  EXPECT_NEAR(end.rate_body_rad_s.x(), 0.02 * std::cos(angle), 1e-12);
+  EXPECT_NEAR(end.rate_body_rad_s.y(), 0.02 * std::sin(angle), 1e-12);
+  EXPECT_NEAR(end.rate_body_rad_s.z(), 0.1, 1e-13);
+}
+
+TEST(Tether, TwistsWithThePeriodOfATorsionSpring) {
+  const AttitudeModel model =
+      with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(2e-4)}});
+  // About a principal axis the law is linear at any angle below half a turn.
+  const double half_period_s = pi * std::sqrt(0.19 / 2e-4);
+  const PlatformState end =
+      flown(model, state_of(model, turned(2.5, Vec3::UnitZ())), half_period_s);
+  EXPECT_LT(end.lab_from_body.angularDistance(turned(-2.5, Vec3::UnitZ())), 1e-8);
+}
+
+TEST(Tether, PullsAlongTheRotationVector) {
+  const AttitudeModel model =
+      with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(2e-4)}});
+  const Vec3 axis = Vec3(1, -2, 2) / 3;
+  for (const double angle : {1e-9, 0.3, 3.0}) {
+    const Quat q = turned(angle, axis);
+    const Vec3 expected = -2e-4 * angle * axis;
+    EXPECT_LT((torque_body_N_m(model, state_of(model, q)) - expected).norm(),
+              1e-12 * expected.norm());
+  }
+}
+
+// J ω(t) = ∫ T₀ sin(2πft + φ) dt.
+TEST(PeriodicTorque, IntegratesToTheClosedFormRate) {
+  const AttitudeModel model = with(
+      bench_model(), "periodic_torque",
+      {{"torque_N_m", numbers({0, 0, 5e-5})}, {"frequency_Hz", node(1.179)}, {"phase", node(2.6)}});
+  const double w = 2 * pi * 1.179, t = 33.3;
+  const double expected = 5e-5 / (0.19 * w) * (std::cos(2.6) - std::cos(w * t + 2.6));
+  EXPECT_NEAR(flown(model, state_of(model, Quat::Identity()), t).rate_body_rad_s.z(), expected,
+              1e-13);
+}
+
+TEST(PeriodicTorque, TakesPhaseInDegreesToo) {
+  const AttitudeModel model = with(
+      bench_model(), "periodic_torque",
+      {{"torque_N_m", numbers({1, 0, 0})}, {"frequency_Hz", node(1)}, {"phase_deg", node(90)}});
+  EXPECT_NEAR(torque_body_N_m(model, state_of(model, Quat::Identity())).x(), 1.0, 1e-15);
+}
+
+// Two inertias on a spring, free: ω = ω_n √(I/(I − J)), about the common centre of rotation.
+TEST(FlexibleMode, FreeBodySwingsAtTheCoupledFrequency) {
+  const double I = 0.19, appendage = 0.05, f = 0.4;
+  const AttitudeModel model = with(bench_model(), "flexible_mode",
+                                   {{"axis", numbers({0, 0, 2})},
+                                    {"frequency_Hz", node(f)},
+                                    {"damping", node(0)},
+                                    {"inertia_kg_m2", node(appendage)}});
+  PlatformState start = state_of(model, Quat::Identity());
+  start.extra[0] = 0.01;  // let go with the appendage bent
+  const double coupled = 2 * pi * f * std::sqrt(I / (I - appendage));
+  const PlatformState half = flown(model, start, pi / coupled);
+  EXPECT_NEAR(half.extra[0], -0.01, 1e-10);
+  // Momentum stays zero, so the body has turned by 2 · 0.01 J/I the other way.
+  EXPECT_NEAR(2 * std::asin(half.lab_from_body.z()), 2 * 0.01 * appendage / I, 1e-10);
+}
+
+TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
+  const AttitudeModel model = with(bench_model(), "flexible_mode",
+                                   {{"axis", numbers({1, 1, 0})},
+                                    {"frequency_Hz", node(0.5)},
+                                    {"damping", node(0.05)},
+                                    {"inertia_kg_m2", node(0.03)}});
+  const Vec3 axis = Vec3(1, 1, 0).normalized();
+  const Mat3 I = model.platform.inertia_kg_m2;
+  const auto momentum_lab = [&](const PlatformState& s) -> Vec3 {
+    const Vec3 body =
+        I * s.rate_body_rad_s + 0.03 * (s.extra[1] - axis.dot(s.rate_body_rad_s)) * axis;
+    return s.lab_from_body * body;
+  };
+  const auto energy = [&](const PlatformState& s) {
+    const double along = axis.dot(s.rate_body_rad_s), pulsation = 2 * pi * 0.5;
+    return 0.5 * s.rate_body_rad_s.dot(I * s.rate_body_rad_s) +
+           0.5 * 0.03 * (s.extra[1] * s.extra[1] - along * along) +
+           0.5 * 0.03 * pulsation * pulsation * s.extra[0] * s.extra[0];
+  };
+  const PlatformState start = state_of(model, Quat::Identity(), {0.3, -0.1, 0.2});
+  EXPECT_NEAR(start.extra[1], axis.dot(Vec3(0.3, -0.1, 0.2)), 1e-16);  // begins unbent and at rest
+  const PlatformState middle = flown(model, start, 20), end = flown(model, start, 40);
+  EXPECT_LT((momentum_lab(end) - momentum_lab(start)).norm(), 1e-11);
+  EXPECT_LT(energy(middle), energy(start));
+  EXPECT_LT(energy(end), energy(middle));
+}
+
+TEST(FlexibleMode, RefusesMoreInertiaThanThePlatformHas) {
+  EXPECT_THROW(make(bench_model(), "flexible_mode",
+                    {{"axis", numbers({0, 0, 1})},
+                     {"frequency_Hz", node(1)},
+                     {"damping", node(0)},
+                     {"inertia_kg_m2", node(0.2)}}),
+               InputError);
+}
+
+TEST(ActuatorGain, AddsItsShareOfTheCommand) {
+  AttitudeModel common = bench_model();
+  common.schedule.append(0.0, {.command_body_N_m = {1e-3, 2e-3, -3e-3}});
+  const AttitudeModel per_axis =
+      with(common, "actuator_gain", {{"gain_error", numbers({0.1, -0.2, 0})}});
+  common = with(common, "actuator_gain", {{"gain_error", node(0.2)}});
+  EXPECT_LT((torque_body_N_m(common, state_of(common, Quat::Identity())) - Vec3(2e-4, 4e-4, -6e-4))
+                .norm(),
+            1e-18);
+  EXPECT_LT((torque_body_N_m(per_axis, state_of(per_axis, Quat::Identity())) - Vec3(1e-4, -4e-4, 0))
+                .norm(),
+            1e-18);
+}
+
+TEST(TurbineTorque, SpinsUpAboutTheVerticalAtAnyTilt) {
+  const AttitudeModel model = with(bench_model(), "turbine_torque", {{"torque_N_m", node(3e-6)}});
+  for (const Quat& q : {Quat::Identity(), turned(0.5, {1, 2, 0})}) {
+    EXPECT_LT((q * torque_body_N_m(model, state_of(model, q)) - Vec3(0, 0, 3e-6)).norm(), 1e-20);
+  }
+}
+
+TEST(RoomDraft, IsConstantInTheLab) {
+  const AttitudeModel model =
+      with(bench_model(), "room_draft", {{"torque_lab_N_m", numbers({1e-6, -2e-6, 3e-6})}});
+  const Quat q = turned(1.3, {1, 2, 5});
+  EXPECT_LT((q * torque_body_N_m(model, state_of(model, q)) - Vec3(1e-6, -2e-6, 3e-6)).norm(),
+            1e-20);
+}
+
+}  // namespace
+}  // namespace photorque

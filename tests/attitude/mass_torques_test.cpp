@@ -1,0 +1,183 @@
+// Torques of gravity on a centre of mass that is not where it should be.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "attitude/sag_compliance.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+constexpr double g = standard_gravity_m_s2;
+
+// Free fall about the centre of rotation from a quarter turn's worth of amplitude: the period of a
+// physical pendulum, exact with the complete elliptic integral. m = 29 kg, d = 81 µm, J = 1.3 kg m²
+// is a published testbed: 47.2 s for small swings.
+TEST(StaticUnbalance, SwingsWithThePeriodOfAPendulum) {
+  AttitudeModel model;
+  model.platform.mass_kg = 29.0;
+  model.platform.inertia_kg_m2 = Vec3(1.3, 1.3, 1.2).asDiagonal();
+  model = with(model, "static_unbalance", {{"offset_m", numbers({0, 0, -81e-6})}});
+  const double small_s = 2 * pi * std::sqrt(1.3 / (29.0 * g * 81e-6));
+  EXPECT_NEAR(small_s, 47.2, 0.05);
+  for (const double amplitude_rad : {1e-3, 0.5, 1.4}) {
+    const double period_s = small_s * 2 / pi * std::comp_ellint_1(std::sin(amplitude_rad / 2));
+    const PlatformState start = state_of(model, turned(amplitude_rad, Vec3::UnitX()));
+    const PlatformState half = flown(model, start, period_s / 2);
+    EXPECT_LT(half.lab_from_body.angularDistance(turned(-amplitude_rad, Vec3::UnitX())), 1e-8);
+    EXPECT_LT(half.rate_body_rad_s.norm(), 1e-9);
+  }
+}
+
+TEST(MassShift, ActsFromItsInstantOn) {
+  const AttitudeModel model = with(bench_model(), "mass_shift",
+                                   {{"time_s", node(100)}, {"offset_m", numbers({1e-6, 0, 0})}});
+  const PlatformState start = state_of(model, Quat::Identity());
+  EXPECT_LT(flown(model, start, 100.0).rate_body_rad_s.norm(), 1e-15);
+  // Then a constant torque m r g about −y … for a moment: θ = ½ α t².
+  const PlatformState later = flown(model, start, 101.0);
+  const double acceleration = 7.0 * g * 1e-6 / 0.12;
+  EXPECT_NEAR(later.rate_body_rad_s.y() / acceleration, 1.0, 1e-6);
+  EXPECT_NEAR(2 * later.lab_from_body.y() / (0.5 * acceleration), 1.0, 1e-6);
+}
+
+// Eq. 34: the full charge of the paper's battery, rounded lithium; its 2.3e-4 N m at zero tilt.
+TEST(BatteryDischarge, ReproducesThePaperFromItsCells) {
+  const AttitudeModel model =
+      with(bench_model(), "battery_discharge",
+           {{"lithium", node("rounded")},
+            {"cell", list({table({{"electrodes_m", numbers({0.03225, 0, 0})}})})}});
+  const PlatformState empty = state_of(model, Quat::Identity(), Vec3::Zero(), 0.0, 2.4 * 3600);
+  EXPECT_NEAR(torque_body_N_m(model, empty).norm(), 2.3e-4, 0.05e-4);
+  EXPECT_EQ(torque_body_N_m(model, state_of(model, Quat::Identity())).norm(), 0.0);
+}
+
+// 1 µm per ampere hour, drawn at 2 A for half an hour, is 1 µm.
+TEST(BatteryDischarge, CountsAmpereHours) {
+  AttitudeModel model =
+      with(bench_model(), "battery_discharge", {{"shift_m_per_Ah", numbers({0, 1e-6, 0})}});
+  model.schedule.append(0.0, {.battery_current_A = 2.0});
+  const PlatformState after = state_of(model, Quat::Identity(), Vec3::Zero(), 0.0, 2.0 * 1800);
+  EXPECT_NEAR(torque_body_N_m(model, after).x(), -7.0 * g * 1e-6, 1e-12);
+}
+
+// Wang, Li and Bao (2006), Acta Aeronautica: between lateral and axial stiffness k_x and k_z the
+// torque is (m g)² (1/k_x − 1/k_z) sin θ cos θ; balanced at zero tilt, (m g)²/k_z sin θ is taken
+// out.
+TEST(ElasticSag, AnisoelasticTorqueOfALumpedPlatform) {
+  const double weight = 7.0 * g, kx = 4e6, kz = 9e6;
+  const AttitudeModel model = with(bench_model(), "elastic_sag",
+                                   {{"compliance_s2", numbers({7.0 / kx, 7.0 / kx, 7.0 / kz})}});
+  for (const double tilt : {0.05, 0.5, 1.0}) {
+    const Vec3 torque = torque_body_N_m(model, state_of(model, turned(tilt, Vec3::UnitY())));
+    const double free = weight * weight * (1 / kx - 1 / kz) * std::sin(tilt) * std::cos(tilt);
+    const double balanced = free + weight * weight / kz * std::sin(tilt);
+    EXPECT_NEAR(torque.y() / balanced, 1.0, 1e-12);
+    EXPECT_LT(std::hypot(torque.x(), torque.z()), 1e-15);
+  }
+}
+
+TEST(ElasticSag, BeamsGiveTheTorqueOfTheirClosedForms) {
+  const DumbbellArms arms{Vec3::UnitX(), 0.6, 2.5, 0.8, 900.0};
+  const AttitudeModel dumbbell =
+      with(bench_model(), "elastic_sag",
+           {{"dumbbell", table({{"length_m", node(0.6)},
+                                {"end_mass_kg", node(2.5)},
+                                {"beam_mass_kg", node(0.8)},
+                                {"bending_stiffness_N_m2", node(900)}})}});
+  const CounterbalanceBeams beams{0.25, 3.2, 300.0, 4};
+  const AttitudeModel tabletop = with(bench_model(), "elastic_sag",
+                                      {{"tabletop", table({{"length_m", node(0.25)},
+                                                           {"total_mass_kg", node(3.2)},
+                                                           {"bending_stiffness_N_m2", node(300)},
+                                                           {"count", node(4)}})}});
+  for (const double tilt : {0.1, 0.5, 1.0}) {
+    const Quat q = turned(tilt, Vec3::UnitY());
+    EXPECT_NEAR(
+        torque_body_N_m(dumbbell, state_of(dumbbell, q)).y() / sag_torque_N_m(arms, tilt, g), 1.0,
+        1e-12);
+    EXPECT_NEAR(
+        torque_body_N_m(tabletop, state_of(tabletop, q)).y() / sag_torque_N_m(beams, tilt, g), 1.0,
+        1e-12);
+  }
+}
+
+TEST(ElasticSag, RefusesACouplingThatIsNotSymmetric) {
+  EXPECT_THROW(make(bench_model(), "elastic_sag",
+                    {{"compliance_s2", list({numbers({1e-7, 1e-8, 0}), numbers({0, 1e-7, 0}),
+                                             numbers({0, 0, 1e-7})})}}),
+               InputError);
+}
+
+// The paper's 1.23e-5 N m for one axis at rest; three axes add as vectors.
+TEST(StepperQuantization, ReproducesThePaper) {
+  const std::vector<std::pair<std::string, SettingsNode>> usual = {{"moving_mass_kg", node(0.25)},
+                                                                   {"lead_m", node(2e-3)}};
+  auto one_axis = usual;
+  one_axis.emplace_back("rounding_steps", numbers({0.5, 0, 0, 0, 0, 0, 0, 0}));
+  const AttitudeModel single = with(bench_model(), "stepper_quantization", one_axis);
+  EXPECT_NEAR(torque_body_N_m(single, state_of(single, Quat::Identity())).norm(), 1.23e-5,
+              0.005e-5);
+  const AttitudeModel worst = with(bench_model(), "stepper_quantization", usual);
+  EXPECT_NEAR(torque_body_N_m(worst, state_of(worst, Quat::Identity())).norm(),
+              std::sqrt(2.0) * 1.226e-5, 0.005e-5);
+  auto too_far = usual;
+  too_far.emplace_back("rounding_steps", numbers({0.6, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_THROW(make(bench_model(), "stepper_quantization", too_far), InputError);
+}
+
+// A floor that accelerates at a is a lab whose gravity is g − a (equivalence).
+TEST(FloorVibration, IsGravityOfAnAcceleratedLab) {
+  const Vec3 offset_m(2e-6, -1e-6, -3e-5), acceleration(0.3, -0.2, 0.1);
+  const AttitudeModel rigid =
+      with(bench_model(), "static_unbalance", {{"offset_m", numbers({2e-6, -1e-6, -3e-5})}});
+  // Frequency zero and a quarter turn of phase: a constant acceleration.
+  const AttitudeModel shaken = with(rigid, "floor_vibration",
+                                    {{"acceleration_m_s2", numbers({0.3, -0.2, 0.1})},
+                                     {"frequency_Hz", node(0)},
+                                     {"phase", node(pi / 2)}});
+  AttitudeModel heavier = rigid;
+  heavier.environment.gravity_lab_m_s2 -= acceleration;
+  const PlatformState state = state_of(rigid, turned(0.4, {1, 2, 3}));
+  const std::vector<Vec3> parts = disturbance_torques_body_N_m(shaken, state);
+  const Vec3 expected = torque_body_N_m(heavier, state);
+  EXPECT_LT((parts[0] + parts[1] - expected).norm(), 1e-15);
+}
+
+TEST(FloorVibration, PlaysSpectraAndRecordings) {
+  const AttitudeModel base =
+      with(bench_model(), "static_unbalance", {{"offset_m", numbers({0, 0, -1e-5})}});
+  const AttitudeModel noisy = with(base, "floor_vibration",
+                                   {{"spectrum", table({{"frequency_Hz", numbers({1, 10})},
+                                                        {"density_m2_s3", numbers({1e-8, 1e-8})},
+                                                        {"tones", node(200)}})}});
+  // Torque about x: m · 1e-5 · a_y, whose mean square is 9e-8 by the area of the spectrum.
+  double sum = 0;
+  constexpr int samples = 4000;
+  for (int i = 0; i < samples; ++i) {
+    sum += std::pow(
+        torque_body_N_m(noisy, state_of(noisy, Quat::Identity(), Vec3::Zero(), 0.37 * i)).x(), 2);
+  }
+  EXPECT_NEAR(sum / samples / (std::pow(7.0 * 1e-5, 2) * 9e-8), 1.0, 0.06);
+
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "floor.csv";
+  std::ofstream(path) << "t_s,acceleration_x_m_s2,acceleration_y_m_s2,acceleration_z_m_s2\n0,0.1,0,"
+                         "0\n1,0.2,0,0\n2,0.3,0,0\n";
+  const AttitudeModel recorded = with(
+      base, "floor_vibration", {{"accelerogram_file", node(path.c_str())}, {"scale", node(2)}});
+  EXPECT_NEAR(
+      torque_body_N_m(recorded, state_of(recorded, Quat::Identity(), Vec3::Zero(), 1.0)).y(),
+      7.0 * 1e-5 * 0.4, 1e-15);
+  EXPECT_EQ(
+      torque_body_N_m(recorded, state_of(recorded, Quat::Identity(), Vec3::Zero(), 5.0)).norm(),
+      0.0);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace photorque

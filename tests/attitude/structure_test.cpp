@@ -1,0 +1,186 @@
+// Sag of beams, lithium in batteries, and moving masses: the functions behind the disturbances.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "attitude/battery.h"
+#include "attitude/moving_masses.h"
+#include "attitude/sag_compliance.h"
+#include "core/constants.h"
+#include "tests/attitude/settings_bench.h"
+
+namespace photorque {
+namespace {
+
+constexpr double g = standard_gravity_m_s2;
+
+// ∫ y dm of a clamped beam with an end mass, per unit of gravity: bending moment → curvature →
+// slope → deflection, each integrated by the trapezoidal rule.
+double beam_moment_by_integration(double l, double end_mass, double beam_mass, double EI) {
+  constexpr int n = 20000;
+  const double dx = l / n;
+  double slope = 0, y = 0, sum = 0;
+  const auto curvature = [&](double x) {
+    const double arm = l - x;
+    return (end_mass * arm + beam_mass / l * arm * arm / 2) / EI;
+  };
+  for (int i = 0; i < n; ++i) {
+    const double x = i * dx;
+    const double slope_next = slope + dx * 0.5 * (curvature(x) + curvature(x + dx));
+    const double y_next = y + dx * 0.5 * (slope + slope_next);
+    sum += beam_mass / l * dx * 0.5 * (y + y_next);
+    slope = slope_next;
+    y = y_next;
+  }
+  return sum + end_mass * y;
+}
+
+TEST(SagCompliance, DumbbellIsTheDeflectionOfItsBeams) {
+  const DumbbellArms arms{Vec3::UnitX(), 0.6, 2.5, 0.8, 900.0};
+  const Mat3 compliance = sag_compliance_s2(arms, 12.0);
+  const double expected = 2 * beam_moment_by_integration(0.6, 2.5, 0.8, 900.0) / 12.0;
+  EXPECT_NEAR(compliance(1, 1) / expected, 1.0, 1e-7);
+  EXPECT_NEAR(compliance(2, 2) / expected, 1.0, 1e-7);
+  EXPECT_NEAR(compliance(0, 0), 0.0, 1e-20);
+}
+
+TEST(SagCompliance, TabletopIsTheDeflectionOfItsBeams) {
+  const CounterbalanceBeams beams{0.25, 3.2, 300.0, 4};
+  const Mat3 compliance = sag_compliance_s2(beams, 7.0);
+  const double expected = 4 * beam_moment_by_integration(0.25, 0.0, 0.8, 300.0) / 7.0;
+  EXPECT_NEAR(compliance(0, 0) / expected, 1.0, 1e-7);
+  EXPECT_NEAR(compliance(1, 1) / expected, 1.0, 1e-7);
+  EXPECT_NEAR(compliance(2, 2), 0.0, 1e-20);
+}
+
+// The displaced masses' moment of weight, mass by mass: the arm tilted by θ bends across its length
+// by its compliance times g cos θ; balanced at θ = 0.
+TEST(SagCompliance, DumbbellTorqueIsTheWeightOfTheDisplacedMass) {
+  const DumbbellArms arms{Vec3::UnitX(), 0.6, 2.5, 0.8, 900.0};
+  const double moment = 2 * beam_moment_by_integration(0.6, 2.5, 0.8, 900.0);
+  for (const double tilt : {0.1, 0.5, 1.2}) {
+    // Across the arm the masses rise by moment·g·(1 − cos θ) from where they balanced; sideways of
+    // the vertical that is times sin θ.
+    const double lever = moment * g * (1 - std::cos(tilt)) * std::sin(tilt);
+    EXPECT_NEAR(sag_torque_N_m(arms, tilt, g) / (lever * g), 1.0, 1e-6);
+  }
+}
+
+TEST(SagCompliance, TabletopTorquePeaksAtFortyFiveDegrees) {
+  const CounterbalanceBeams beams{0.25, 3.2, 300.0, 4};
+  const double peak = sag_torque_N_m(beams, pi / 4, g);
+  EXPECT_GT(peak, sag_torque_N_m(beams, pi / 4 - 0.01, g));
+  EXPECT_GT(peak, sag_torque_N_m(beams, pi / 4 + 0.01, g));
+  const double moment = 4 * beam_moment_by_integration(0.25, 0.0, 0.8, 300.0);
+  EXPECT_NEAR(peak / (0.5 * moment * g * g), 1.0, 1e-6);
+}
+
+// What is wrong with the printed forms: a length, and for the tabletop 48/40 besides.
+TEST(SagCompliance, PublishedTabletopLacksALength) {
+  const CounterbalanceBeams beams{0.25, 3.2, 300.0, 4};
+  const double ours = sag_torque_N_m(beams, 0.4, g),
+               printed = sag_torque_as_published(beams, 0.4, g);
+  EXPECT_NEAR(ours / printed, 0.25 * 48.0 / 40.0, 1e-12);
+  const DumbbellArms arms{Vec3::UnitX(), 0.6, 2.5, 0.0, 900.0};
+  // Massless beams: 2 M²l³/3 · (sin − ½ sin 2θ) against M²l²/2 · (sin 2θ − 2 sin θ).
+  EXPECT_NEAR(sag_torque_N_m(arms, 0.4, g) / sag_torque_as_published(arms, 0.4, g),
+              -0.6 * (2.0 / 3.0) / 1.0, 1e-12);
+}
+
+TEST(Battery, LithiumFollowsFaraday) {
+  EXPECT_NEAR(lithium_kg_C * 3600 * 1e3, 0.2589, 5e-5);  // g/Ah
+  EXPECT_NEAR(lithium_as_published_kg_C * 3600 * 1e3, 0.3, 1e-12);
+}
+
+// Eq. 33 and 34: VARTA EasyPack XL, 2400 mAh, on a platform of 7 kg; and its torque.
+TEST(Battery, ReproducesThePaper) {
+  const BatteryCell cell{.electrodes_body_m = {0.03225, 0, 0}};
+  const Vec3 shift_m = com_shift_m_C({&cell, 1}, 7.0, lithium_as_published_kg_C) * 2.4 * 3600;
+  EXPECT_NEAR(shift_m.x(), 3.32e-6, 0.005e-6);
+  EXPECT_NEAR(7.0 * g * shift_m.norm(), 2.3e-4, 0.05e-4);
+  const Vec3 exact_m = com_shift_m_C({&cell, 1}, 7.0) * 2.4 * 3600;
+  EXPECT_NEAR(exact_m.x() / shift_m.x(), 0.2589 / 0.3, 2e-4);
+}
+
+TEST(Battery, OpposedCellsCancelInPlaceButNotInInertia) {
+  const std::vector<BatteryCell> cells = {{{0.1, 0, 0}, {0.03, 0, 0}, 0.5},
+                                          {{-0.1, 0, 0}, {-0.03, 0, 0}, 0.5}};
+  EXPECT_EQ(com_shift_m_C(cells, 7.0).norm(), 0.0);
+  // Two point masses of dm/2 moving from 85 to 115 mm.
+  const double change_m2 = 0.115 * 0.115 - 0.085 * 0.085;
+  const Mat3 inertia = inertia_change_kg_m2_C(cells);
+  EXPECT_NEAR(inertia(1, 1) / (lithium_kg_C * change_m2), 1.0, 1e-12);
+  EXPECT_NEAR(inertia(2, 2) / (lithium_kg_C * change_m2), 1.0, 1e-12);
+  EXPECT_NEAR(inertia(0, 0), 0.0, 1e-22);
+}
+
+// Section III.B: 25 W over 24 h are 600 Wh, not the 360 Wh printed, which are 15 W.
+TEST(Battery, DayAtNominalPowerTakes600WattHours) {
+  const LoadPhase nominal{86400, 25.0}, printed{86400, 15.0};
+  EXPECT_DOUBLE_EQ(energy_J({&nominal, 1}) / 3600, 600.0);
+  EXPECT_DOUBLE_EQ(energy_J({&printed, 1}) / 3600, 360.0);
+  EXPECT_DOUBLE_EQ(battery_mass_kg(600 * 3600.0, 150 * 3600.0), 4.0);
+}
+
+// 1.8 deg, 2 mm and 0.25 kg on 7 kg: usual parts, which give the paper's printed results.
+MovingMass usual_mass() {
+  return {.direction_body = Vec3::UnitX(),
+          .mass_kg = 0.25,
+          .lead_m = 2e-3,
+          .step_angle_rad = 1.8 * degree_rad};
+}
+
+TEST(MovingMasses, ReproduceThePaper) {
+  EXPECT_NEAR(com_resolution_m(usual_mass(), 7.0), 1.79e-7, 0.005e-7);
+  EXPECT_NEAR(horizontal_rounding_torque_N_m(usual_mass(), 0.0, g), 1.23e-5, 0.005e-5);
+  EXPECT_NEAR(vertical_rounding_torque_N_m(usual_mass(), pi / 2, g), 1.23e-5, 0.005e-5);
+  EXPECT_NEAR(horizontal_rounding_torque_N_m(usual_mass(), pi / 2, g), 0.0, 1e-20);
+}
+
+// A full turn of the screw moves the mass by its lead.
+TEST(MovingMasses, TurnOfTheScrewIsOneLead) {
+  MovingMass mass = usual_mass();
+  EXPECT_NEAR(mass.pitch_m() * 200, 2e-3, 1e-18);
+  mass.microsteps = 16;
+  EXPECT_NEAR(mass.pitch_m() * 200 * 16, 2e-3, 1e-18);
+  EXPECT_NEAR(mass.com_step_m(7.0).x() * 200 * 16, 2e-3 * 0.25 / 7.0, 1e-18);
+}
+
+TEST(MovingMasses, BalanceToHalfAStepAlongEachAxis) {
+  const std::vector<MovingMass> masses = eight_masses(usual_mass());
+  const double resolution_m = com_resolution_m(usual_mass(), 7.0);
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 offset_m(1e-5 * std::sin(1.0 + i), 2e-5 * std::cos(2.3 * i),
+                        -6e-5 * std::sin(0.7 * i));
+    const BalanceCommand command = steps_that_remove(offset_m, masses, 7.0);
+    EXPECT_LE(command.left_over_m.cwiseAbs().maxCoeff(), resolution_m * (1 + 1e-9));
+    Vec3 moved_m = offset_m;
+    for (size_t k = 0; k < masses.size(); ++k) {
+      moved_m += static_cast<double>(command.steps[k]) * masses[k].com_step_m(7.0);
+    }
+    EXPECT_LT((moved_m - command.left_over_m).norm(), 1e-15);
+  }
+}
+
+TEST(MovingMasses, UnreachableDirectionsAreLeftOver) {
+  const BalanceCommand command = steps_that_remove({1e-5, 2e-5, 0}, {usual_mass()}, 7.0);
+  EXPECT_LT(std::abs(command.left_over_m.x()), com_resolution_m(usual_mass(), 7.0));
+  EXPECT_EQ(command.left_over_m.y(), 2e-5);
+}
+
+TEST(MovingMasses, SettingsNameAnySet) {
+  const Settings usual = settings_of(table({{"moving_mass_kg", node(0.25)}, {"lead_mm", node(2)}}));
+  EXPECT_EQ(read_moving_masses(usual).size(), 8u);
+  const Settings three = settings_of(
+      table({{"moving_mass_kg", node(0.4)},
+             {"lead_m", node(1e-3)},
+             {"step_angle_deg", node(0.9)},
+             {"directions", list({numbers({2, 0, 0}), numbers({0, 1, 1}), numbers({0, 0, 1})})}}));
+  const std::vector<MovingMass> masses = read_moving_masses(three);
+  ASSERT_EQ(masses.size(), 3u);
+  EXPECT_NEAR(masses[1].direction_body.norm(), 1.0, 1e-15);
+  EXPECT_NEAR(masses[0].pitch_m(), 1e-3 / 400, 1e-18);
+}
+
+}  // namespace
+}  // namespace photorque
