@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.24)
 # Writes core/build_info.h at every build; touches it only when it changes.
 find_program(GIT git)
 set(hash "unknown")

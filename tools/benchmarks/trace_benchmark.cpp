@@ -1,0 +1,187 @@
+// Speed of the forward tracer without bounces, beside a bare Embree loop over the same sorted rays.
+//
+// Case A: a disc of 0.4 m, pillbox of 1.5 deg, over a 0.5 m square of 100 × 100 bins with a box
+// between. Case B: 50 LEDs of 3 deg over a plate of 20,000 triangles with posts.
+#include <benchmark/benchmark.h>
+
+#include <numeric>
+
+#include "core/constants.h"
+#include "core/parallel.h"
+#include "raytrace/find_hits.h"
+#include "receivers/flux_map.h"
+#include "sources/source_kind.h"
+
+namespace photorque {
+namespace {
+
+SettingsNode number(double x) {
+  return {x, {}};
+}
+SettingsNode text(const char* t) {
+  return {std::string(t), {}};
+}
+SettingsNode vector(const Vec3& v) {
+  return {SettingsNode::Array{number(v.x()), number(v.y()), number(v.z())}, {}};
+}
+
+std::vector<Beam> lamp(SettingsNode::Table table) {
+  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{std::move(table), {}}));
+  for (const SourceKind& kind : all_source_kinds()) {
+    if (kind.name == "led") return kind.make(settings, {});
+  }
+  return {};
+}
+
+void add(Scene& scene, Mesh mesh, const std::string& node) {
+  Instance instance;
+  instance.node = instance.path = node;
+  instance.mesh = static_cast<uint32_t>(scene.meshes.size());
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back(instance);
+}
+
+// A plate of `cells`² squares about the origin in the plane z.
+Mesh plate(double side_m, int cells, double z_m) {
+  Mesh mesh;
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      mesh.vertices_m.emplace_back(side_m * (i / static_cast<double>(cells) - 0.5),
+                                   side_m * (j / static_cast<double>(cells) - 0.5), z_m);
+    }
+  }
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i < cells; ++i) {
+      const auto at = static_cast<uint32_t>(j * (cells + 1) + i);
+      const auto up = at + static_cast<uint32_t>(cells) + 1;
+      mesh.triangles.push_back({at, at + 1, up + 1});
+      mesh.triangles.push_back({at, up + 1, up});
+    }
+  }
+  return mesh;
+}
+
+Mesh box(const Vec3& low, const Vec3& high) {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices_m.emplace_back((i & 1) ? high.x() : low.x(), (i & 2) ? high.y() : low.y(),
+                                 (i & 4) ? high.z() : low.z());
+  }
+  mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+  return mesh;
+}
+
+struct Case {
+  Scene scene;
+  std::vector<Beam> beams;
+};
+
+Case case_a() {
+  Case a;
+  a.scene.surfaces.push_back(grey_surface("black", 0, 0));
+  add(a.scene, plate(0.5, 1, 0.0), "receiver");
+  add(a.scene, box(Vec3(0, -0.02, 0.5), Vec3(0.1, 0.08, 0.55)), "box");
+  a.beams = lamp({{"power_W", number(1)},
+                  {"aperture_diameter_m", number(0.4)},
+                  {"profile", text("pillbox")},
+                  {"half_angle_deg", number(1.5)},
+                  {"pillbox_measure", text("angle")},
+                  {"wavelength_nm", number(730)},
+                  {"position_m", vector(Vec3(0, 0, 1.5))},
+                  {"aim_m", vector(Vec3::Zero())}});
+  return a;
+}
+
+Case case_b() {
+  Case b;
+  b.scene.surfaces.push_back(grey_surface("black", 0, 0));
+  add(b.scene, plate(0.5, 99, 0.0), "receiver");
+  for (int k = 0; k < 16; ++k) {
+    const double angle = 2 * pi * k / 16, x = 0.2 * std::cos(angle), y = 0.2 * std::sin(angle);
+    add(b.scene, box(Vec3(x - 0.01, y - 0.01, 0.0), Vec3(x + 0.01, y + 0.01, 0.08)),
+        "post_" + std::to_string(k));
+  }
+  for (int k = 0; k < 50; ++k) {
+    const Vec3 at(0.06 * (k % 10) - 0.27, 0.1 * (k / 10) - 0.2, 1.5);
+    auto beams = lamp({{"power_W", number(1)},
+                       {"aperture_diameter_m", number(0.045)},
+                       {"profile", text("gaussian")},
+                       {"fwhm_deg", number(3)},
+                       {"wavelength_nm", number(730)},
+                       {"position_m", vector(at)},
+                       {"aim_m", vector(Vec3(0.5 * at.x(), 0.5 * at.y(), 0))}});
+    b.beams.insert(b.beams.end(), beams.begin(), beams.end());
+  }
+  return b;
+}
+
+FluxMapReceiver flux_map(const Scene& scene) {
+  SurfaceGridOptions options;
+  const auto instances = scene.instances_of("receiver");
+  return {"receiver", scene, make_surface_grid(scene, instances, options)};
+}
+
+void forward(benchmark::State& state, const Case& which) {
+  const TraceableScene scene(which.scene, false);
+  const FluxMapReceiver map = flux_map(which.scene);
+  const Receiver* const receivers[] = {&map};
+  TraceOptions options;
+  options.rays = 1ull << 24;
+  options.threads = static_cast<int>(state.range(0));
+  uint64_t rays = 0;
+  for (auto _ : state) rays += trace(scene, {}, which.beams, receivers, options).rays;
+  state.counters["Mrays/s"] =
+      benchmark::Counter(static_cast<double>(rays) / 1e6, benchmark::Counter::kIsRate);
+}
+
+// Embree alone: rays of one batch per beam, already sorted, traced over and over in packets.
+void bare_embree(benchmark::State& state, const Case& which) {
+  const TraceableScene scene(which.scene, false);
+  std::vector<LaunchBuffer> batches(std::min<size_t>(which.beams.size(), 8));
+  for (size_t b = 0; b < batches.size(); ++b) {
+    const Beam& beam = which.beams[b * which.beams.size() / batches.size()];
+    const LandingGrid grid = landing_grid(*beam.emitter, beam.lab_from_emitter, scene.data());
+    launch(*beam.emitter, beam.lab_from_emitter, scene.data(), grid, {1, b, 0}, 0, largest_batch,
+           batches[b]);
+  }
+  const int threads = static_cast<int>(state.range(0));
+  constexpr size_t repeats = 32;
+  uint64_t rays = 0;
+  for (auto _ : state) {
+    parallel_for(repeats * batches.size(), threads, [&](size_t item) {
+      const auto buffer = std::make_unique<HitBuffer>();
+      const std::span<const Ray> all = batches[item % batches.size()].rays;
+      for (size_t begin = 0; begin < all.size(); begin += Hits::capacity) {
+        find_hits(scene.data(), all.subspan(begin, Hits::capacity), Coherence::coherent, *buffer);
+        benchmark::DoNotOptimize(buffer->hits.instance[0]);
+      }
+    });
+    rays += repeats * batches.size() * largest_batch;
+  }
+  state.counters["Mrays/s"] =
+      benchmark::Counter(static_cast<double>(rays) / 1e6, benchmark::Counter::kIsRate);
+}
+
+void case_a_forward(benchmark::State& state) {
+  forward(state, case_a());
+}
+void case_a_bare_embree(benchmark::State& state) {
+  bare_embree(state, case_a());
+}
+void case_b_forward(benchmark::State& state) {
+  forward(state, case_b());
+}
+void case_b_bare_embree(benchmark::State& state) {
+  bare_embree(state, case_b());
+}
+
+BENCHMARK(case_a_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(case_a_bare_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(case_b_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(case_b_bare_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace photorque
+
+BENCHMARK_MAIN();
