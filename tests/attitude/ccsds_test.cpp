@@ -1,0 +1,204 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "attitude/ccsds_acm.h"
+#include "attitude/ccsds_aem.h"
+#include "attitude/ccsds_epoch.h"
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+std::filesystem::path shared_file(const std::string& name) {
+  return std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/ccsds" / name;
+}
+
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& text = "")
+      : path_(std::filesystem::path(testing::TempDir()) /
+              ("ccsds_" + std::to_string(::getpid()) + "_" + std::to_string(next_++) + ".txt")) {
+    std::ofstream(path_) << text;
+  }
+  ~TemporaryFile() { std::filesystem::remove(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  static inline int next_ = 0;
+  std::filesystem::path path_;
+};
+
+// The words of a message, numbers by their value: what it says, whatever its spacing. Written apart
+// from the reader under test.
+std::vector<std::string> said(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::vector<std::string> words;
+  for (std::string line; std::getline(file, line);) {
+    const size_t equals = line.find('=');
+    if (equals != std::string::npos) line.replace(equals, 1, " = ");
+    std::istringstream in(line);
+    for (std::string word; in >> word;) {
+      char* end = nullptr;
+      const double number = std::strtod(word.c_str(), &end);
+      if (*end != '\0') {
+        words.push_back(word);
+        continue;
+      }
+      std::ostringstream exact;
+      exact.precision(17);
+      exact << number;
+      words.push_back(exact.str());
+    }
+  }
+  return words;
+}
+
+constexpr const char* small_aem =
+    "CCSDS_AEM_VERS = 1.0\nCREATION_DATE = 2020-01-01T00:00:00\nORIGINATOR = TEST\n"
+    "META_START\nOBJECT_NAME = A\nOBJECT_ID = B\nREF_FRAME_A = LAB\nREF_FRAME_B = SC_BODY_1\n"
+    "ATTITUDE_DIR = A2B\nTIME_SYSTEM = UTC\nSTART_TIME = 2020-01-01T00:00:00\n"
+    "STOP_TIME = 2020-01-01T00:00:01\nATTITUDE_TYPE = QUATERNION\nQUATERNION_TYPE = FIRST\n"
+    "META_STOP\nDATA_START\n2020-01-01T00:00:00 1 0 0 0\n2020-001T00:00:01.5 0 1 0 0\nDATA_STOP\n";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+class SharedMessage : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(File, SharedMessage,
+                         testing::Values("AEMExample01.txt", "CCSDS_BasicQuatFile.aem",
+                                         "CCSDS_BasicEulerFile.aem", "ACMExample05.txt"),
+                         [](const auto& name) {
+                           return std::filesystem::path(name.param).stem().string();
+                         });
+
+TEST_P(SharedMessage, SaysTheSameWhenWrittenBack) {
+  const std::filesystem::path path = shared_file(GetParam());
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not at hand";
+  const TemporaryFile copy;
+  if (std::string(GetParam()).starts_with("ACM")) {
+    const AttitudeComprehensive acm = read_acm(path);
+    write_acm(copy.path(), acm);
+    EXPECT_EQ(read_acm(copy.path()).message, acm.message);
+  } else {
+    const AttitudeEphemeris aem = read_aem(path);
+    write_aem(copy.path(), aem);
+    EXPECT_EQ(read_aem(copy.path()), aem);
+  }
+  EXPECT_EQ(said(copy.path()), said(path));
+}
+
+// GMAT wrote the same attitude as quaternions (scalar last) and as Euler angles 321.
+TEST(Aem, QuaternionAndEulerFilesHoldTheSameAttitude) {
+  const auto quaternion_path = shared_file("CCSDS_BasicQuatFile.aem");
+  if (!std::filesystem::exists(quaternion_path)) GTEST_SKIP() << "shared files are not at hand";
+  const auto quaternions = read_aem(quaternion_path).segments.front().attitudes();
+  const auto angles =
+      read_aem(shared_file("CCSDS_BasicEulerFile.aem")).segments.front().attitudes();
+  // One file has a row more.
+  int compared = 0;
+  for (const auto& angle : angles) {
+    for (const auto& quaternion : quaternions) {
+      if (std::abs(quaternion.time_s - angle.time_s) > 1e-6) continue;
+      EXPECT_GT(std::abs(quaternion.a_from_b.dot(angle.a_from_b)), 1.0 - 1e-12);
+      ++compared;
+    }
+  }
+  EXPECT_GE(compared, 120);
+}
+
+// The first epoch of those files, as published.
+TEST(Aem, EulerSequenceAgreesWithThePublishedQuaternion) {
+  const std::string euler =
+      replaced(replaced(replaced(replaced(small_aem, "QUATERNION\n", "EULER_ANGLE\n"),
+                                 "QUATERNION_TYPE = FIRST", "EULER_ROT_SEQ = 321"),
+                        "1 0 0 0", "35.4540963916258 -15.74726604135554 18.80387738364443"),
+               "0 1 0 0", "0 0 0");
+  const TemporaryFile file(euler);
+  const Quat q = read_aem(file.path()).segments.front().attitudes().front().a_from_b;
+  const Quat published(0.9240493645517975, 0.1952861484651402, -0.07946016321668915,
+                       0.3188764252036319);
+  EXPECT_NEAR(std::abs(q.dot(published)), 1.0, 1e-15);
+}
+
+TEST(Aem, ScalarFirstAndDirectionAreHeeded) {
+  const TemporaryFile a2b(small_aem);
+  const auto samples = read_aem(a2b.path()).segments.front().attitudes();
+  EXPECT_EQ(samples[0].a_from_b.w(), 1.0);
+  EXPECT_EQ(samples[1].a_from_b.x(), 1.0);
+  EXPECT_EQ(samples[1].time_s, 1.5);
+  const TemporaryFile b2a(replaced(small_aem, "A2B", "B2A"));
+  EXPECT_EQ(read_aem(b2a.path()).segments.front().attitudes()[1].a_from_b.x(), -1.0);
+}
+
+TEST(Aem, AFlownPlatformComesBack) {
+  std::vector<PlatformState> states(3);
+  for (size_t i = 0; i < states.size(); ++i) {
+    states[i].time_s = 86399.5 * static_cast<double>(i);
+    states[i].lab_from_body =
+        Quat(Eigen::AngleAxisd(0.4 * static_cast<double>(i), Vec3(1, -2, 3).normalized()));
+  }
+  const TemporaryFile file;
+  write_aem(file.path(), make_aem(states, "1999-12-31T00:00:00", "STASIS", "2026-01-01T00:00:00"));
+  const auto samples = read_aem(file.path()).segments.front().attitudes();
+  ASSERT_EQ(samples.size(), states.size());
+  for (size_t i = 0; i < states.size(); ++i) {
+    EXPECT_NEAR(samples[i].time_s, states[i].time_s, 1e-6);
+    EXPECT_LT(samples[i].a_from_b.angularDistance(states[i].lab_from_body), 1e-15);
+  }
+}
+
+TEST(Aem, WrongMessagesAreRefused) {
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{"CCSDS_AEM_VERS = 1.0\n", ""},
+                                                        {"OBJECT_NAME = A\n", ""},
+                                                        {"OBJECT_NAME", "OBJECT_NOME"},
+                                                        {"ATTITUDE_DIR = A2B", "ATTITUDE_DIR = AB"},
+                                                        {"1 0 0 0", "1 0 0"},
+                                                        {"1 0 0 0", "1 0 0 x"},
+                                                        {"DATA_STOP", ""},
+                                                        {"META_STOP", "DATA_STOP"}}) {
+    const TemporaryFile file(replaced(small_aem, from, to));
+    EXPECT_THROW(read_aem(file.path()), InputError) << from << " -> " << to;
+  }
+  const TemporaryFile long_quaternion(replaced(small_aem, "1 0 0 0", "1 1 0 0"));
+  EXPECT_THROW(read_aem(long_quaternion.path()).segments.front().attitudes(), InputError);
+}
+
+TEST(Acm, NumbersOfTheSharedFile) {
+  const auto path = shared_file("ACMExample05.txt");
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not at hand";
+  const AttitudeComprehensive acm = read_acm(path);
+  ASSERT_EQ(acm.attitudes.size(), 5u);
+  EXPECT_EQ(acm.attitudes[0].time_s[1], 0.25);
+  EXPECT_NEAR(acm.attitudes[0].quaternions()[1].x(), 0.73529, 1e-5);
+  EXPECT_NEAR(acm.attitudes[0].quaternions()[1].w(), 0.181158, 1e-5);
+  EXPECT_EQ(acm.attitudes[1].euler_sequence, "XYZ");
+  EXPECT_EQ(acm.attitudes[3].values[0].size(), 13u);
+  EXPECT_EQ(acm.wet_mass_kg, 1916.0);
+  EXPECT_EQ((*acm.inertia_kg_m2)(0, 2), -25.7);
+  EXPECT_EQ((*acm.inertia_kg_m2)(2, 2), 1490.0);
+}
+
+// Days by the calendar; day of the year 60 of a leap year is 29 February.
+TEST(CalendarTimes, CountDaysAsTheCalendarDoes) {
+  const auto at = [](const char* text) { return *parse_epoch(text); };
+  EXPECT_EQ(at("1970-01-01T00:00:00").day, 0);
+  EXPECT_EQ(at("2000-03-01T00:00:00").day - at("2000-02-28T00:00:00").day, 2);
+  EXPECT_EQ(at("1900-03-01T00:00:00").day - at("1900-02-28T00:00:00").day, 1);
+  EXPECT_EQ(at("2024-060T06:30:00.25").seconds_since(at("2024-02-29T00:00:00Z")), 23400.25);
+  EXPECT_EQ(epoch_text(at("1999-12-31T23:59:59.9999996")), "2000-01-01T00:00:00.000000");
+  EXPECT_EQ(epoch_text(at("2016-12-31T23:59:59").after(2.5)), "2017-01-01T00:00:01.500000");
+  for (const char* text : {"", "2000", "2000-13-01T00:00:00", "2001-02-29T00:00:00",
+                           "2000-01-01T24:00:00", "2000-01-01T00:61:00", "2000-366",
+                           "2001-366T00:00:00", "2000-01-01 00:00:00", "2000-01-01T00:00:0x"}) {
+    EXPECT_FALSE(parse_epoch(text)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace photorque
