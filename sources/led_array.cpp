@@ -13,10 +13,11 @@
 //   position_m = [0, 0, 1.5]         # centre of the array, lab frame (not for "positions")
 //   direction = [0, 0, -1]           # normal of the array's plane; its x and y axes are the lab's,
 //                                    # turned by the shortest rotation from +z to the direction
-//   aim = "parallel"                 # (default) all look along `direction`, or from the centre at
-//   aim_m # aim = "converging"             # each looks at the point aim_m; `direction` may be left
-//   out power_W = 2.0                    # of each LED, or total_power_W # aperture_diameter_m,
-//   profile, fwhm_deg, wavelength_nm, … as for "led"
+//   aim = "parallel"                 # default: all look along `direction`, or from the centre
+//                                    #   at aim_m
+//   # aim = "converging"             # each looks at the point aim_m; `direction` may be left out
+//   power_W = 2.0                    # of each LED, or total_power_W
+//   # aperture_diameter_m, profile, fwhm_deg, wavelength_nm, … as for "led"
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -4,9 +4,9 @@
 //   kind = "sun"
 //   name = "sun"                   # default "sun"
 //   irradiance_W_m2 = 1361         # on a plane normal to `direction`; default: mean at 1 au
-//   angular_radius_deg = 0.2665    # of the disc, [0, 45]; 0 is collimated; default: the Sun at 1
-//   au direction = [0, 0, -1]         # in which the light travels, lab frame temperature_K = 5772
-//   # of the blackbody spectrum
+//   angular_radius_deg = 0.2665    # of the disc, [0, 45]; 0: collimated; default: Sun at 1 au
+//   direction = [0, 0, -1]         # in which the light travels, lab frame
+//   temperature_K = 5772           # of the blackbody spectrum
 //
 // The disc has the same radiance L all over (no limb darkening): directions are even in solid
 // angle. For each direction the rays fill a disc of radius R normal to THAT direction and centred
