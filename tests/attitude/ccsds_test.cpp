@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "attitude/ccsds_acm.h"
@@ -96,19 +97,25 @@ TEST_P(SharedMessage, SaysTheSameWhenWrittenBack) {
 TEST(Aem, QuaternionAndEulerFilesHoldTheSameAttitude) {
   const auto quaternion_path = shared_file("CCSDS_BasicQuatFile.aem");
   if (!std::filesystem::exists(quaternion_path)) GTEST_SKIP() << "shared files are not at hand";
-  const auto quaternions = read_aem(quaternion_path).segments.front().attitudes();
-  const auto angles =
-      read_aem(shared_file("CCSDS_BasicEulerFile.aem")).segments.front().attitudes();
-  // One file has a row more.
-  int compared = 0;
-  for (const auto& angle : angles) {
-    for (const auto& quaternion : quaternions) {
-      if (std::abs(quaternion.time_s - angle.time_s) > 1e-6) continue;
-      EXPECT_GT(std::abs(quaternion.a_from_b.dot(angle.a_from_b)), 1.0 - 1e-12);
-      ++compared;
+  const auto by_epoch = [](const std::filesystem::path& path) {
+    std::map<std::string, Quat> attitudes;
+    for (const auto& segment : read_aem(path).segments) {
+      const auto samples = segment.attitudes();
+      for (size_t i = 0; i < samples.size(); ++i) {
+        attitudes[segment.rows[i].epoch] = samples[i].a_from_b;
+      }
     }
+    return attitudes;
+  };
+  const auto quaternions = by_epoch(quaternion_path);
+  int compared = 0;
+  for (const auto& [epoch, attitude] : by_epoch(shared_file("CCSDS_BasicEulerFile.aem"))) {
+    const auto same = quaternions.find(epoch);
+    if (same == quaternions.end()) continue;
+    EXPECT_GT(std::abs(same->second.dot(attitude)), 1.0 - 1e-14) << epoch;
+    ++compared;
   }
-  EXPECT_GE(compared, 120);
+  EXPECT_EQ(compared, 122);
 }
 
 // The first epoch of those files, as published.
