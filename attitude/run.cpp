@@ -8,16 +8,6 @@
 namespace photorque {
 namespace {
 
-// A table of `root` with its own record of the keys read, so that finish() complains about keys of
-// this table alone. An empty table when there is none.
-Settings own_table(const Settings& root, const std::string& key, bool required) {
-  if (!root.has(key) && !required) {
-    return Settings(std::make_shared<const SettingsNode>(), key);
-  }
-  const Settings table = root.table(key);  // complains when it is no table
-  return Settings(std::make_shared<const SettingsNode>(root.raw(key)), table.name());
-}
-
 std::vector<Disturbance> read_own_disturbances(const Settings& root,
                                                const DisturbanceContext& context) {
   if (!root.has("disturbance")) return {};
@@ -130,6 +120,14 @@ Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
 }
 
 }  // namespace
+
+Settings own_table(const Settings& root, const std::string& key, bool required) {
+  if (!root.has(key) && !required) {
+    return Settings(std::make_shared<const SettingsNode>(), key);
+  }
+  const Settings table = root.table(key);  // complains when it is no table
+  return Settings(std::make_shared<const SettingsNode>(root.raw(key)), table.name());
+}
 
 BelievedModel read_attitude_model(const Settings& root) {
   const Settings platform = own_table(root, "platform", true);

@@ -24,6 +24,11 @@ struct PropagationRun {
   std::string epoch;  // calendar time of t = 0, ISO 8601, for files that need one
 };
 
+// The table `key` of an experiment with its own record of the keys read, so that finish() complains
+// about keys of this table alone, whoever else looked at the file. Empty where there is none and
+// none is required.
+Settings own_table(const Settings& root, const std::string& key, bool required);
+
 // What is believed about the platform and its laboratory: [platform], [environment],
 // [[disturbance]] and [sensors] of an experiment file. InputError for wrong or unknown keys in
 // them.

@@ -37,6 +37,7 @@ class Sensitivity {
   // `y` is the initial state. `dynamics` must outlive this.
   Sensitivity(const Dynamics& dynamics, std::vector<Variable> variables, std::span<const double> y);
 
+  const Dynamics& dynamics() const { return dynamics_; }
   const std::vector<Variable>& variables() const { return variables_; }
 
   // Differentiates an attempted step. NumericalError when the iteration does not settle.
