@@ -170,7 +170,10 @@ std::optional<PrimitiveMesh> GeometryReader::read(int mesh, size_t index) {
   }
   const std::vector<uint32_t> all_corners = corners(primitive, vertices.count(), where);
   // Room for the triangles, twice, and for as many vertices as they can use.
-  budget_->charge(all_corners.size(), 2 * sizeof(Triangle) + sizeof(Vec3) + sizeof(Vec2), where);
+  const size_t corners_per_triangle = primitive.mode == TINYGLTF_MODE_TRIANGLES ? 3 : 1;
+  budget_->charge(all_corners.size() / corners_per_triangle, 2 * sizeof(Triangle), where);
+  budget_->charge(std::min(all_corners.size(), vertices.count()),
+                  sizeof(Vec3) + sizeof(Vec2) + sizeof(uint32_t), where);
 
   PrimitiveMesh result;
   const std::vector<uint32_t> used =

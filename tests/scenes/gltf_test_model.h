@@ -158,16 +158,23 @@ struct SceneSize {
 };
 inline SceneSize size_of(const Scene& scene) {
   SceneSize size;
-  for (size_t i = 0; i < scene.instances.size(); ++i) {
-    const size_t count = scene.meshes[scene.instances[i].mesh].triangles.size();
-    size.triangles += count;
-    for (size_t t = 0; t < count; ++t) {
-      const auto p = body_corners(scene, i, t);
-      size.area_m2 += 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
-      for (const Vec3& corner : p) {
-        size.low_m = size.low_m.cwiseMin(corner);
-        size.high_m = size.high_m.cwiseMax(corner);
-      }
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    std::vector<Vec3> corners;
+    for (const Vec3& vertex : mesh.vertices_m) {
+      corners.push_back(instance.body_from_mesh * vertex);
+      size.low_m = size.low_m.cwiseMin(corners.back());
+      size.high_m = size.high_m.cwiseMax(corners.back());
+    }
+    size.triangles += mesh.triangles.size();
+    for (const auto& triangle : mesh.triangles) {
+      const double* a = corners[triangle[0]].data();
+      const double* b = corners[triangle[1]].data();
+      const double* c = corners[triangle[2]].data();
+      const double u[] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+      const double v[] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+      size.area_m2 += 0.5 * std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                       u[0] * v[1] - u[1] * v[0]);
     }
   }
   return size;
