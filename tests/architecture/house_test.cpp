@@ -184,10 +184,11 @@ TEST(House, InterfacesHaveAtMostThreeVirtualFunctions) {
   }
 }
 
-// One word in the folder's list is one file, and every kind's file is in the list. No two kinds share
-// a function: linkers do not see return types and would quietly take either.
+// One word in the folder's list is one file, and every kind's file is in the list. No two kinds
+// share a function: linkers do not see return types and would quietly take either.
 TEST(House, EveryKindIsListedOnce) {
-  static const std::regex kind_function(R"((?:Kind|Verb)\s+([a-z0-9_]+)_(?:kind|verb)\s*\(\s*\)\s*\{)");
+  static const std::regex kind_function(
+      R"((?:Kind|Verb)\s+([a-z0-9_]+)_(?:kind|verb)\s*\(\s*\)\s*\{)");
   std::set<std::string> functions;
   for (const auto& [folder, unused] : allowed) {
     const std::string list = text_of(root / folder / "CMakeLists.txt");

@@ -157,8 +157,8 @@ TEST(OrificeFilm, GapUnderLoadInvertsTheLoad) {
   }
 }
 
-// The stiffness at the rated load, continued as a spring, opens the gap far less than the film opens:
-// this is why a catalogue's stiffness cannot be used to unload a bearing.
+// The stiffness at the rated load, continued as a spring, opens the gap far less than the film
+// opens: this is why a catalogue's stiffness cannot be used to unload a bearing.
 TEST(OrificeFilm, UnloadedFilmIsThickerThanTheSpringPredicts) {
   const double rated_N = 250.0, unloaded_N = 10.0;
   const double rated_m = gap_under_load_m(fed_socket(), feed, room, rated_N);

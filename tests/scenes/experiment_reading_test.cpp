@@ -40,7 +40,7 @@ TEST(Experiment, StasisIsReadAsWritten) {
   EXPECT_EQ(experiment.file.torque_map.tilt_rad.size(), 7u);
   EXPECT_NEAR(experiment.file.torque_map.tilt_rad.back(), 30 * degree_rad, 1e-15);
   EXPECT_EQ(experiment.lab_from_body.rotation.w(), 1.0);
-  EXPECT_EQ(experiment.file.trace.rays, 16777216u);
+  EXPECT_EQ(experiment.file.trace.rays, 12845056u);
 }
 
 TEST(Experiment, EveryCommittedOneIsRead) {
