@@ -42,6 +42,8 @@ class GeomagneticModel {
   Vec3 north_east_down_T(const GeocentricPosition& position) const;
   // The lab frame: x east, y north, z up [T].
   Vec3 lab_T(const GeodeticPosition& position) const;
+  // Field of the model's centred dipole (degree 1) at its equator, at 6371.2 km [T].
+  double dipole_equatorial_field_T() const;
 
  private:
   static constexpr int degree = 13;

@@ -139,8 +139,9 @@ ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
   result.cell_light_W = array.cover.gather(mean, std::vector<double>(array.factor_A_W.size(), 1.0));
   result.cell_photocurrent_A = array.cover.gather(mean, array.factor_A_W);
   const ArrayCurve curve = array.curve(result.cell_photocurrent_A);
-  result.maxima = curve.maxima();
-  result.curve = curve.sample(curve_intervals);
+  const ArrayCurve::Scan scan = curve.scan(curve_intervals);
+  result.maxima = scan.maxima;
+  result.curve = scan.points;
   result.cells = curve.cells_at(result.voltage_V.value);
   result.columns = design.columns;
   result.rows = design.rows;

@@ -66,7 +66,8 @@ class CellCurve {
   double current_A(double photocurrent_A, double voltage_V) const;
   double open_circuit_V(double photocurrent_A) const { return diode_voltage_V(photocurrent_A); }
   double short_circuit_A(double photocurrent_A) const { return current_A(photocurrent_A, 0.0); }
-  // The point of most power; all zero for a photocurrent ≤ 0.
+  // The point of most power; all zero for a photocurrent ≤ 0. It is the only maximum unless the
+  // breakdown term carries most of the forward current (a > 1 with |V_br| of a few n V_t).
   CellOperatingPoint maximum_power(double photocurrent_A) const;
   // The photocurrent that gives a short-circuit current.
   double photocurrent_A(double short_circuit_A) const;

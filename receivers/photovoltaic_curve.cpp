@@ -13,6 +13,8 @@ namespace photorque {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// Relative step of a string's current at which its solution ends: the error is of second order.
+constexpr double fine = 1e-9;
 
 void check(const ArrayWiring& wiring, size_t cells) {
   std::vector<char> used(cells, 0);
@@ -33,6 +35,22 @@ void check(const ArrayWiring& wiring, size_t cells) {
     }
   }
   if (wiring.strings.empty()) throw InputError({}, "array", "no strings", "at least one");
+}
+
+// I(V) beyond a point of a string from its derivatives there.
+double taylor_A(const StringState& a, double voltage_V) {
+  const double conductance_S = 1.0 / a.slope_ohm;
+  const double h = (voltage_V - a.voltage_V) * conductance_S;
+  return a.current_A - h + 0.5 * a.curvature_V_A2 * h * h * conductance_S;
+}
+
+// Between two points, from values and slopes.
+double hermite_A(const StringState& a, const StringState& b, double voltage_V) {
+  const double width = b.voltage_V - a.voltage_V, t = (voltage_V - a.voltage_V) / width;
+  const double rise = b.current_A - a.current_A;
+  const double slope_a = -width / a.slope_ohm, slope_b = -width / b.slope_ohm;
+  return a.current_A + t * (slope_a + t * (3 * rise - 2 * slope_a - slope_b +
+                                           t * (slope_a + slope_b - 2 * rise)));
 }
 
 }  // namespace
@@ -63,7 +81,7 @@ ArrayCurve::Node ArrayCurve::make_node() const {
 }
 
 void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, Node& node,
-                          const Node* low, const Node* high) const {
+                          double tolerance, const Node* low, const Node* high) const {
   node.x = x;
   if (by_current()) {
     StringState& state = node.strings[0];
@@ -80,9 +98,11 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
     if (low != nullptr && high != nullptr) {
       low_A = high->strings[s].current_A;
       high_A = low->strings[s].current_A;
-      state.current_A = std::midpoint(low_A, high_A);
+      state.current_A = hermite_A(low->strings[s], high->strings[s], x);
+    } else if (state.slope_ohm > 0.0) {
+      state.current_A = taylor_A(state, x);
     }
-    strings_[s].at_voltage(x, regimes[s], low_A, high_A, state);
+    strings_[s].at_voltage(x, regimes[s], low_A, high_A, tolerance, state);
     node.y += state.current_A;
     const double g = 1.0 / state.slope_ohm;
     node.slope += g;
@@ -117,7 +137,7 @@ std::vector<StringRegime> ArrayCurve::regimes_at(double x) const {
 
 double ArrayCurve::y_at(double x) const {
   Node node = make_node();
-  evaluate(x, regimes_at(x), node);
+  evaluate(x, regimes_at(x), node, fine);
   return node.y;
 }
 
@@ -136,8 +156,8 @@ double ArrayCurve::find_end_x() const {
   if (!(high > low)) return std::max(high, 0.0);
   Node node = make_node();
   return falling_root(low, high, high, 1e-13, [&](double x) {
-    evaluate(x, regimes_at(x), node);
-    return ValueAndSlope{node.y, -node.slope};
+    evaluate(x, regimes_at(x), node, fine);
+    return FunctionAt{node.y, -node.slope};
   });
 }
 
@@ -145,8 +165,8 @@ double ArrayCurve::x_at(double y) const {
   if (end_x_ == 0.0) return 0.0;
   Node node = make_node();
   return falling_root(0.0, end_x_, 0.5 * end_x_, 1e-12, [&](double x) {
-    evaluate(x, regimes_at(x), node);
-    return ValueAndSlope{node.y - y, -node.slope};
+    evaluate(x, regimes_at(x), node, fine);
+    return FunctionAt{node.y - y, -node.slope};
   });
 }
 
@@ -175,28 +195,11 @@ std::vector<ArrayCurve::Piece> ArrayCurve::pieces() const {
   return pieces;
 }
 
-std::vector<ArrayPoint> ArrayCurve::sample(int intervals) const {
-  std::vector<ArrayPoint> points;
-  if (end_x_ == 0.0) return {ArrayPoint{}};
-  Node node = make_node();
-  for (const Piece& piece : pieces()) {
-    const double width = piece.high_x - piece.low_x;
-    const int steps = std::max(1, static_cast<int>(std::ceil(intervals * width / end_x_)));
-    for (int i = piece.low_x == 0.0 ? 0 : 1; i <= steps; ++i) {
-      const double x = i == steps ? piece.high_x : piece.low_x + width * i / steps;
-      evaluate(x, piece.regimes, node);
-      points.push_back(point(x, x == end_x_ ? 0.0 : node.y));
-    }
-  }
-  if (by_current()) std::ranges::reverse(points);
-  return points;
-}
-
 CellStates ArrayCurve::cells_at(double voltage_V) const {
   CellStates states{std::vector<double>(cells_, 0.0), std::vector<double>(cells_, 0.0)};
   const double x = by_current() ? x_at(voltage_V) : voltage_V;
   Node node = make_node();
-  evaluate(x, regimes_at(x), node);
+  evaluate(x, regimes_at(x), node, fine);
   for (size_t s = 0; s < strings_.size(); ++s) {
     strings_[s].cells_at(node.strings[s].current_A, states.voltages_V, states.currents_A);
   }

@@ -46,12 +46,16 @@ class ArrayCurve {
 
   // All local maxima of the power between short and open circuit, by rising voltage. Empty in the
   // dark. Powers are exact to 1e-12 relative.
-  std::vector<ArrayPoint> maxima() const;
+  std::vector<ArrayPoint> maxima() const { return scan(1).maxima; }
   // The largest of maxima(); zero in the dark.
   ArrayPoint maximum_power() const;
-  // Points of the curve by rising voltage, both ends and all breakpoints among them: x in at least
-  // `intervals` (≥ 1) steps.
-  std::vector<ArrayPoint> sample(int intervals) const;
+  // Points of the curve by rising voltage, both ends and all breakpoints among them, x in at least
+  // `intervals` (≥ 1) steps; with all local maxima, found between them.
+  struct Scan {
+    std::vector<ArrayPoint> points;
+    std::vector<ArrayPoint> maxima;
+  };
+  Scan scan(int intervals) const;
   CellStates cells_at(double voltage_V) const;
 
  private:
@@ -75,8 +79,9 @@ class ArrayCurve {
 
   bool by_current() const { return strings_.size() == 1; }
   Node make_node() const;
-  // `low` and `high`, if given, are nodes of the piece at either side of x.
-  void evaluate(double x, const std::vector<StringRegime>& regimes, Node& node,
+  // `tolerance` is that of StringCurve::at_voltage(); `low` and `high`, if given, are nodes of the
+  // piece at either side of x.
+  void evaluate(double x, const std::vector<StringRegime>& regimes, Node& node, double tolerance,
                 const Node* low = nullptr, const Node* high = nullptr) const;
   std::vector<StringRegime> regimes_at(double x) const;
   Switches switches_of(const StringCurve& string) const;

@@ -10,19 +10,35 @@ namespace photorque {
 
 class ArrayCurve::Search {
  public:
-  explicit Search(const ArrayCurve& curve) : curve_(curve) {}
+  Search(const ArrayCurve& curve, int intervals) : curve_(curve), intervals_(intervals) {}
 
-  std::vector<ArrayPoint> run() {
+  Scan run() {
+    if (curve_.end_x_ == 0.0) return {{ArrayPoint{}}, {}};
     Node low = curve_.make_node(), high = curve_.make_node();
     for (const Piece& piece : curve_.pieces()) {
-      curve_.evaluate(piece.low_x, piece.regimes, low);
-      curve_.evaluate(piece.high_x, piece.regimes, high);
-      search(low, high, piece, 0);
+      const double width = piece.high_x - piece.low_x;
+      const int steps =
+          std::max(1, static_cast<int>(std::ceil(intervals_ * width / curve_.end_x_)));
+      curve_.evaluate(piece.low_x, piece.regimes, low, coarse);
+      if (scan_.points.empty()) add_point(low);
+      for (int i = 1; i <= steps; ++i) {
+        high = low;  // the start of its strings' solutions
+        const double x = i == steps ? piece.high_x : piece.low_x + width * i / steps;
+        curve_.evaluate(x, piece.regimes, high, coarse);
+        add_point(high);
+        search(low, high, piece, 0);
+        std::swap(low, high);
+      }
     }
-    return std::move(found_);
+    std::ranges::sort(scan_.points, {}, &ArrayPoint::voltage_V);
+    std::ranges::sort(scan_.maxima, {}, &ArrayPoint::voltage_V);
+    return std::move(scan_);
   }
 
  private:
+  // Tolerances of the strings' currents: for bounds, and for results.
+  static constexpr double coarse = 1e-6, fine = 1e-9;
+
   struct Bounds {
     double low, high;
     bool hold_zero() const { return low <= 0.0 && high >= 0.0; }
@@ -43,7 +59,7 @@ class ArrayCurve::Search {
       return;
     }
     Node& middle = node(depth);
-    curve_.evaluate(std::midpoint(low.x, high.x), piece.regimes, middle, &low, &high);
+    curve_.evaluate(std::midpoint(low.x, high.x), piece.regimes, middle, coarse, &low, &high);
     search(low, middle, piece, depth + 1);
     search(node(depth), high, piece, depth + 1);
   }
@@ -82,11 +98,15 @@ class ArrayCurve::Search {
     const double guess =
         low.x + (high.x - low.x) * low.power_slope() / (low.power_slope() - high.power_slope());
     const double x = falling_root(low.x, high.x, guess, 1e-10, [&](double trial_x) {
-      curve_.evaluate(trial_x, piece.regimes, at, &low, &high);
-      return ValueAndSlope{at.power_slope(), at.power_curvature()};
+      curve_.evaluate(trial_x, piece.regimes, at, fine, &low, &high);
+      return FunctionAt{at.power_slope(), at.power_curvature()};
     });
     // Along the tangent from the last trial, 1e-10 away.
-    found_.push_back(curve_.point(x, at.y - (x - at.x) * at.slope));
+    scan_.maxima.push_back(curve_.point(x, at.y - (x - at.x) * at.slope));
+  }
+
+  void add_point(const Node& node) {
+    scan_.points.push_back(curve_.point(node.x, node.x == curve_.end_x_ ? 0.0 : node.y));
   }
 
   Node& node(size_t depth) {
@@ -96,13 +116,12 @@ class ArrayCurve::Search {
 
   const ArrayCurve& curve_;
   std::vector<std::unique_ptr<Node>> nodes_;  // one per depth: references stay valid
-  std::vector<ArrayPoint> found_;
+  int intervals_;
+  Scan scan_;
 };
 
-std::vector<ArrayPoint> ArrayCurve::maxima() const {
-  std::vector<ArrayPoint> found = Search(*this).run();
-  std::ranges::sort(found, {}, &ArrayPoint::voltage_V);
-  return found;
+ArrayCurve::Scan ArrayCurve::scan(int intervals) const {
+  return Search(*this, intervals).run();
 }
 
 ArrayPoint ArrayCurve::maximum_power() const {

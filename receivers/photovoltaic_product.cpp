@@ -56,7 +56,8 @@ Table cell_table(const ArrayResult& result) {
 
 void add_plots(const ArrayResult& result, const Table& iv, Product& product) {
   const auto& v = iv.columns[0].values;
-  Plot current{"iv_curve", "Current of the array", "voltage [V]", "current [A]", {}, false, false, {}};
+  Plot current{"iv_curve", "Current of the array", "voltage [V]", "current [A]", {}, false, false,
+               {}};
   current.curves.push_back({"array", v, iv.columns[1].values, {}, false});
   Plot power{"pv_curve", "Power of the array", "voltage [V]", "power [W]", {}, false, false, {}};
   power.curves.push_back({"array", v, iv.columns[2].values, {}, false});

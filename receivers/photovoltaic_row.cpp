@@ -1,45 +1,99 @@
 #include "receivers/photovoltaic_row.h"
 
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "receivers/photovoltaic_root.h"
 
 namespace photorque {
+namespace {
 
-ElementPoint tied_cells_at(std::span<const LitCell> cells, double current_A,
-                           std::span<JunctionState> states) {
+// Sums over the cells of a row, each at a current of its own.
+struct RowSums {
+  double conductance_S = 0.0;
+  double curvature_A_V2 = 0.0;  // of I(V)
+
+  void add(const ElementPoint& cell) {
+    const double g = 1.0 / cell.slope_ohm;
+    conductance_S += g;
+    curvature_A_V2 += cell.curvature_V_A2 * g * g * g;
+  }
+  ElementPoint at(double voltage_V) const {
+    const double slope = 1.0 / conductance_S;
+    return {voltage_V, slope, curvature_A_V2 * slope * slope * slope};
+  }
+};
+
+constexpr size_t most_cells = 64;  // in a row that is solved for all currents at once
+
+// Newton's method for all currents at once: each cell's curve is replaced by its tangent and the
+// tangents are made to meet at one voltage. Cells of one type without series resistance would all
+// have the same dark current; from there two or three rounds are enough. Empty if they are not.
+std::optional<ElementPoint> solve_together(std::span<const LitCell> cells, double current_A,
+                                           std::span<JunctionState> states) {
+  if (cells.size() > most_cells) return std::nullopt;
+  double all_A = 0.0;
+  for (const LitCell& cell : cells) all_A += cell.photocurrent_A;
+  const double dark_A = (all_A - current_A) / static_cast<double>(cells.size());
+  double cell_A[most_cells];
+  ElementPoint points[most_cells];
+  for (size_t i = 0; i < cells.size(); ++i) cell_A[i] = cells[i].photocurrent_A - dark_A;
+  for (int round = 0; round < 12; ++round) {
+    RowSums sums;
+    double tangents_A = -current_A;
+    for (size_t i = 0; i < cells.size(); ++i) {
+      points[i] = cell_at(cells[i], cell_A[i], states[i]);
+      sums.add(points[i]);
+      tangents_A += cell_A[i] + points[i].voltage_V / points[i].slope_ohm;
+    }
+    const double voltage_V = tangents_A / sums.conductance_S;
+    double spread_V = 0.0;
+    for (size_t i = 0; i < cells.size(); ++i) {
+      const double apart_V = points[i].voltage_V - voltage_V;
+      cell_A[i] += apart_V / points[i].slope_ohm;
+      spread_V = std::max(spread_V, std::abs(apart_V));
+    }
+    // What is left is of second order in the spread over n V_t.
+    if (spread_V <= 1e-9) return sums.at(voltage_V);
+  }
+  return std::nullopt;
+}
+
+// The same by one search for the voltage, with a search for each cell's current inside.
+ElementPoint solve_nested(std::span<const LitCell> cells, double current_A,
+                          std::span<JunctionState> states) {
   // Were the current shared equally, the row's voltage would lie between its cells'.
   const double share_A = current_A / static_cast<double>(cells.size());
-  double low_V = std::numeric_limits<double>::infinity(), high_V = -low_V, sum_V = 0.0;
+  double low_V = std::numeric_limits<double>::infinity(), high_V = -low_V;
   for (const LitCell& cell : cells) {
     JunctionState unused;
     const double v = cell_at(cell, share_A, unused).voltage_V;
     low_V = std::min(low_V, v);
     high_V = std::max(high_V, v);
-    sum_V += v;
   }
-  double conductance_S = 0.0, curvature_A_V2 = 0.0;
+  RowSums sums;
   const auto excess_A = [&](double voltage_V) {
     double sum_A = -current_A;
-    conductance_S = curvature_A_V2 = 0.0;
+    sums = {};
     for (size_t i = 0; i < cells.size(); ++i) {
-      const LitCell& cell = cells[i];
-      const double i_A = cell.table->curve().current_A(cell.photocurrent_A, voltage_V);
-      const ElementPoint point = cell_at(cell, i_A, states[i]);
-      const double g = 1.0 / point.slope_ohm;
+      const double i_A = cells[i].table->curve().current_A(cells[i].photocurrent_A, voltage_V);
+      sums.add(cell_at(cells[i], i_A, states[i]));
       sum_A += i_A;
-      conductance_S += g;
-      curvature_A_V2 += point.curvature_V_A2 * g * g * g;
     }
-    return ValueAndSlope{sum_A, -conductance_S};
+    return FunctionAt{sum_A, -sums.conductance_S, sums.curvature_A_V2};
   };
   const double voltage_V =
-      low_V < high_V
-          ? falling_root(low_V, high_V, sum_V / static_cast<double>(cells.size()), 1e-9, excess_A)
-          : low_V;
-  if (!(low_V < high_V)) excess_A(low_V);
-  const double slope = 1.0 / conductance_S;
-  return {voltage_V, slope, curvature_A_V2 * slope * slope * slope};
+      falling_root(low_V, high_V, std::midpoint(low_V, high_V), 1e-9, excess_A);
+  return sums.at(voltage_V);
+}
+
+}  // namespace
+
+ElementPoint tied_cells_at(std::span<const LitCell> cells, double current_A,
+                           std::span<JunctionState> states) {
+  const auto together = solve_together(cells, current_A, states);
+  return together ? *together : solve_nested(cells, current_A, states);
 }
 
 SlopeRange tied_cells_range(std::span<const LitCell> cells, std::span<const JunctionState> high_v,

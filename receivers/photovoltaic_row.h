@@ -1,7 +1,7 @@
 // Cells tied in parallel, as one element of a string.
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
 #include <span>
 
 #include "receivers/photovoltaic_slope.h"
@@ -9,10 +9,12 @@
 
 namespace photorque {
 
+// `copies` like cells in series; 1 in a row.
 struct LitCell {
   const DiodeVoltageTable* table = nullptr;
   double photocurrent_A = 0.0;
   double series_ohm = 0.0;
+  double copies = 1.0;
 };
 
 // A two-terminal element at a current.
@@ -22,32 +24,35 @@ struct ElementPoint {
   double curvature_V_A2 = 0.0;  // d²V/dI²
 };
 
-// What bounds over an interval need to know of one junction at each end.
+// What bounds over an interval need to know of one junction at each end: V_d(j) and its
+// derivatives.
 struct JunctionState {
-  double slope_ohm = 0.0;            // dV_d/dj
-  double dark_curvature_A_V2 = 0.0;  // D″(V_d)
+  double slope_ohm = 0.0;
+  double curvature_V_A2 = 0.0;
 };
 
 // One cell at a current of either sign.
 inline ElementPoint cell_at(const LitCell& cell, double current_A, JunctionState& state) {
   const DiodeVoltage v = cell.table->at(cell.photocurrent_A - current_A);
-  const double conductance_S = 1.0 / v.slope_ohm;
-  state = {v.slope_ohm, -v.curvature_V_A2 * conductance_S * conductance_S * conductance_S};
+  state = {v.slope_ohm, v.curvature_V_A2};
   return {v.value_V - current_A * cell.series_ohm, v.slope_ohm + cell.series_ohm, v.curvature_V_A2};
 }
 
 // Bounds on V(I) of one cell between two states; `high_v` at the higher diode voltage.
+//
+// With r = dV_d/dj = 1/D′ the curvature is −D″ r³, and D″ is monotone: over the interval it lies
+// between −D″(high_v) r³ and −D″(low_v) r³ for some r of the interval.
 inline SlopeRange cell_range(const LitCell& cell, const JunctionState& high_v,
                              const JunctionState& low_v) {
-  double low = high_v.slope_ohm, high = low_v.slope_ohm;
-  if (low > high) std::swap(low, high);
-  if (high_v.dark_curvature_A_V2 > 0 && low_v.dark_curvature_A_V2 < 0) {
-    high = cell.table->largest_slope_ohm();
-  }
-  const double low3 = low * low * low, high3 = high * high * high;
-  const double least = -high_v.dark_curvature_A_V2, most = -low_v.dark_curvature_A_V2;
-  return {low + cell.series_ohm, high + cell.series_ohm, least * (least < 0 ? high3 : low3),
-          most * (most > 0 ? high3 : low3)};
+  const double low = std::min(high_v.slope_ohm, low_v.slope_ohm);
+  const double high = high_v.curvature_V_A2 < 0 && low_v.curvature_V_A2 > 0
+                          ? cell.table->largest_slope_ohm()
+                          : std::max(high_v.slope_ohm, low_v.slope_ohm);
+  const double least_r = (high_v.curvature_V_A2 < 0 ? high : low) / high_v.slope_ohm;
+  const double most_r = (low_v.curvature_V_A2 > 0 ? high : low) / low_v.slope_ohm;
+  return {low + cell.series_ohm, high + cell.series_ohm,
+          high_v.curvature_V_A2 * least_r * least_r * least_r,
+          low_v.curvature_V_A2 * most_r * most_r * most_r};
 }
 
 // Cells tied in parallel at a total current; `states` has one entry per cell.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "receivers/photovoltaic_row.h"
@@ -23,7 +24,7 @@ struct StringState {
   std::vector<JunctionState> cells;
   std::vector<double> bypass_V;  // voltages of the bypass junctions, warm starts of their solve
   std::vector<double> bypass_S;  // conductances of these junctions without R_s
-  double blocking_S = 0.0;       // of the blocking junction
+  double blocking_ohm = 0.0;     // of the blocking junction, without R_s
 };
 
 // Which ideal diodes conduct. Over a piece of the curve on which this does not change, the string
@@ -52,10 +53,10 @@ class StringCurve {
   StringState make_state() const;
   void at_current(double current_A, const StringRegime& regime, StringState& state) const;
   // The current is looked for in [low_A, high_A], or below when the voltage is above
-  // open_circuit_V(). The state is that of a current at most 1e-9 relative away; the current itself
-  // is exact to second order in that.
+  // open_circuit_V(), from the state's own current. Slopes are those of a current at most a
+  // fraction `tolerance` away; the current itself is exact to second order in that.
   void at_voltage(double voltage_V, const StringRegime& regime, double low_A, double high_A,
-                  StringState& state) const;
+                  double tolerance, StringState& state) const;
 
   // Bounds on I(V) between two states; `high_i` at the higher current.
   SlopeRange conductance_range(const StringState& low_i, const StringState& high_i,
@@ -70,15 +71,28 @@ class StringCurve {
                 std::vector<double>& currents_A) const;
 
  private:
-  // `copies` like rows of one cell each are evaluated once.
+  // A Diode with n V_t and its reciprocal at hand.
+  struct Junction {
+    Diode::Kind kind = Diode::Kind::none;
+    double drop_V = 0.0, saturation_A = 0.0, series_ohm = 0.0;
+    double scale_V = 0.0, per_scale_1_V = 0.0;
+
+    explicit Junction(const Diode& diode);
+    // I(V) with the series resistance, from the junction's own conductance.
+    double slope_S(double conductance_S) const;
+    double curvature_A_V2(double conductance_S) const;
+    SlopeRange range(double low_S, double high_S) const;
+  };
+  // Cells of a substring: first those in series, one after the other, then the rows of tied ones.
   struct Row {
     uint32_t first_cell, cells;
-    double copies;
   };
   struct Substring {
-    uint32_t first_row, rows;
-    Diode bypass;
+    Junction bypass;
+    uint32_t first_cell = 0, cells = 0;  // in series
+    uint32_t first_row = 0, rows = 0;    // of tied cells
     double clamp_A = std::numeric_limits<double>::infinity();
+    double open_circuit_V = 0.0;  // of the rows
   };
 
   void add_substring(const ArrayWiring::Substring& wiring, const CellTables& tables,
@@ -93,11 +107,18 @@ class StringCurve {
   SlopeRange substring_range(uint32_t index, const StringState& low_i,
                              const StringState& high_i) const;
 
+  std::span<const LitCell> lit(const Row& row) const {
+    return std::span(cells_).subspan(row.first_cell, row.cells);
+  }
+  std::span<const Row> rows_of(const Substring& substring) const {
+    return std::span(rows_).subspan(substring.first_row, substring.rows);
+  }
+
   std::vector<LitCell> cells_;
   std::vector<std::vector<int>> wired_;  // the wiring's cells behind each of cells_
   std::vector<Row> rows_;
   std::vector<Substring> substrings_;
-  Diode blocking_;
+  Junction blocking_;
   double largest_photocurrent_A_ = 0.0;
   double open_circuit_V_ = 0.0;
 };

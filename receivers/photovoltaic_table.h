@@ -40,12 +40,14 @@ class DiodeVoltageTable {
     if (bin >= side.piece_of_bin.size()) return exact(dark_A);
     const Piece& p = side.pieces[side.piece_of_bin[bin]];
     const double t = (s - p.start_A) * p.per_A;
-    const double value =
-        p.c[0] + t * (p.c[1] + t * (p.c[2] + t * (p.c[3] + t * (p.c[4] + t * p.c[5]))));
-    const double first =
-        p.c[1] + t * (2 * p.c[2] + t * (3 * p.c[3] + t * (4 * p.c[4] + t * 5 * p.c[5])));
-    const double second = 2 * p.c[2] + t * (6 * p.c[3] + t * (12 * p.c[4] + t * 20 * p.c[5]));
-    return {value, std::copysign(p.per_A, dark_A) * first, p.per_A * p.per_A * second};
+    // Horner's scheme for the polynomial, its derivative and half its second derivative.
+    double value = p.c[5], first = 0.0, half_second = 0.0;
+    for (int k = 4; k >= 0; --k) {
+      half_second = half_second * t + first;
+      first = first * t + value;
+      value = value * t + p.c[k];
+    }
+    return {value, std::copysign(p.per_A, dark_A) * first, 2 * p.per_A * p.per_A * half_second};
   }
 
   // The largest slope of the table's function, at the inflection of D.

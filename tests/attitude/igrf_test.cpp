@@ -193,6 +193,7 @@ TEST(DipoleField, IsTheFarLimitOfTheFullModel) {
   // IGRF-14 at 2025.0: dipole moment from g10, g11, h11; the magnetic axis has this colatitude.
   const Vec3 dipole_nT(-1410.3, 4545.5, -29350.0);
   const double equatorial_T = dipole_nT.norm() * nT;
+  EXPECT_NEAR(GeomagneticModel(2025.0).dipole_equatorial_field_T(), equatorial_T, 1e-15);
   const Vec3 axis = -dipole_nT.normalized();
   const double theta = 1.1, phi = 0.4;
   const Vec3 up(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));

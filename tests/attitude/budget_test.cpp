@@ -1,0 +1,234 @@
+// The budget, and the paper's figures beside ours.
+#include "attitude/budget.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+PaperFigure figure(const std::string& quantity) {
+  for (const PaperFigure& f : paper_figures()) {
+    if (f.quantity == quantity) return f;
+  }
+  ADD_FAILURE() << quantity;
+  return {};
+}
+
+const Table& table_named(const Product& product, const std::string& name) {
+  for (const Table& t : product.tables) {
+    if (t.name == name) return t;
+  }
+  throw std::runtime_error("no table " + name);
+}
+
+const Table::Column& column(const Table& t, const std::string& name) {
+  for (const Table::Column& c : t.columns) {
+    if (c.name == name) return c;
+  }
+  throw std::runtime_error("no column " + name);
+}
+
+// What the paper's own inputs determine must come out as printed, to its digits.
+TEST(PaperFigures, AreReproducedWhereThePaperGivesTheInputs) {
+  EXPECT_NEAR(figure("com_resolution_m").ours, 1.79e-7, 0.005e-7);
+  EXPECT_NEAR(figure("stepper_torque_N_m").ours, 1.23e-5, 0.005e-5);
+  EXPECT_NEAR(figure("battery_shift_m").as_published, 3.32e-6, 0.005e-6);
+  EXPECT_NEAR(figure("battery_torque_N_m").as_published, 2.3e-4, 0.05e-4);
+  EXPECT_DOUBLE_EQ(figure("energy_of_24_h_Wh").ours, 600.0);
+  EXPECT_DOUBLE_EQ(figure("camera_in_plane_arcsec").ours, 12.0);
+  EXPECT_DOUBLE_EQ(figure("camera_out_of_plane_arcsec").ours, 37.0);
+}
+
+// 0.2589 g of lithium per ampere hour instead of 0.3.
+TEST(PaperFigures, BatteryWithFaradaysConstant) {
+  EXPECT_NEAR(figure("battery_shift_m").ours / figure("battery_shift_m").as_published, 0.863, 1e-3);
+}
+
+// IAGA's DGRF for 1945: g10 −30594, g11 −2285, h11 5810 nT, a dipole of 31224 nT: the paper's
+// 3.12e-5 T is the field of those years.
+TEST(PaperFigures, EquatorialFieldIsThatOfThe1940s) {
+  EXPECT_NEAR(figure("dipole_equatorial_field_T").ours, 2.973e-5, 0.001e-5);
+  EXPECT_THAT(figure("dipole_equatorial_field_T").why, testing::HasSubstr("194"));
+}
+
+// The paper: a gap that opens like a spring halves the ratio of drags from 19.63 to about 9. A like
+// bearing opens by the same factor; its film opens further, which the spring cannot tell.
+TEST(PaperFigures, SpringOpensTheGapAsInThePaperAndTheFilmOpensItFurther) {
+  const UnloadedDrag drag = unloaded_drag();
+  EXPECT_NEAR(drag.ratio_spring, 19.63 / 9.0, 0.25);
+  EXPECT_GT(drag.ratio_film, 2.0 * drag.ratio_spring);
+  EXPECT_GT(drag.rated_load_N, 100.0);
+}
+
+TEST(PaperFigures, EveryFigureSaysWhyItDiffers) {
+  std::set<std::string> names;
+  for (const PaperFigure& f : paper_figures()) {
+    EXPECT_TRUE(names.insert(f.quantity).second) << f.quantity;
+    EXPECT_GT(f.published, 0.0);
+    EXPECT_GT(f.why.size(), 20u);
+    EXPECT_TRUE(f.ours > 0.0 || std::isnan(f.ours));
+  }
+  for (const char* name :
+       {"lumped_drag_at_1_rpm_N_m", "cylinder_drag_at_1_rpm_N_m", "cfd_drag_at_1_rpm_N_m",
+        "cfd_friction_at_1_rpm_N_m", "radiation_torque_at_30_deg_N_m", "bearing_load_mean_error",
+        "bearing_drag_mean_ratio", "bearing_drag_mean_ratio_with_spring"}) {
+    EXPECT_TRUE(names.contains(name)) << name;
+  }
+}
+
+// Powers that the equations show: torque of a disc ∝ R⁴, of a face ∝ size⁵, of a lever ∝ itself.
+TEST(PaperSensitivities, AreTheExponentsOfTheEquations) {
+  std::map<std::string, PaperSensitivity> by_name;
+  for (const PaperSensitivity& s : paper_sensitivities())
+    by_name[s.quantity + " by " + s.input] = s;
+  EXPECT_NEAR(by_name.at("com_resolution_m by screw_lead_m").exponent, 1.0, 1e-6);
+  EXPECT_NEAR(by_name.at("lumped_drag_at_1_rpm_N_m by platform_scale").exponent, 4.0, 1e-3);
+  EXPECT_NEAR(by_name.at("cylinder_drag_at_1_rpm_N_m by platform_scale").exponent, 5.0, 1e-3);
+  EXPECT_NEAR(by_name.at("radiation_torque_at_30_deg_N_m by array_height_m").exponent, 1.0, 1e-6);
+  // The input that gives the paper's figure, put back, gives it.
+  const PaperSensitivity scale = by_name.at("lumped_drag_at_1_rpm_N_m by platform_scale");
+  PaperInputs inputs;
+  inputs.platform_scale = scale.value_for_published;
+  for (const PaperFigure& f : paper_figures(inputs)) {
+    if (f.quantity == scale.quantity) {
+      EXPECT_NEAR(f.ours / f.published, 1.0, 1e-2);
+    }
+  }
+}
+
+// A catalogue made from the equations themselves, with known errors put in.
+TEST(BearingComparison, FindsTheErrorsPutIn) {
+  const SphericalSocket socket{0.03, pi / 4, 5e-6};
+  const double inlet_Pa = 5e5, load_N = load_capacity_N(socket, inlet_Pa, 1e5);
+  const double drag_N_m = film_drag(socket, 1.8e-5).axial_N_m_s * pi;
+  const std::vector<BearingDatasheet> catalogue = {
+      {"a", socket, inlet_Pa, load_N / 1.2, drag_N_m / 10, pi},
+      {"b", socket, inlet_Pa, load_N / 0.7, drag_N_m / 30, pi},
+      {"c", socket, inlet_Pa, load_N / 1.1, 0.0, pi}};
+  const BearingComparison c = compare_bearings(catalogue, 1e5, 1.8e-5);
+  EXPECT_NEAR(c.load_error, (0.2 + 0.3 + 0.1) / 3, 1e-12);
+  EXPECT_NEAR(c.drag_ratio, 20.0, 1e-12);
+}
+
+SettingsNode experiment(const std::vector<std::pair<std::string, SettingsNode>>& budget) {
+  return table(
+      {{"platform", table({{"topology", node("tabletop")},
+                           {"mass_kg", node(7)},
+                           {"inertia_kg_m2", list({numbers({0.1, 0, 0}), numbers({0, 0.1, 0}),
+                                                   numbers({0, 0, 0.19})})},
+                           {"battery_capacity_Ah", node(2.4)}})},
+       {"disturbance",
+        list({table({{"kind", node("turbine_torque")}, {"torque_N_m", node(1.9e-6)}}),
+              table({{"kind", node("static_unbalance")}, {"offset_m", numbers({1e-6, 0, 0})}}),
+              table({{"kind", node("static_unbalance")}, {"offset_m", numbers({0, 1e-7, 0})}}),
+              table(
+                  {{"kind", node("battery_discharge")}, {"shift_m_per_Ah", numbers({0, 1e-6, 0})}}),
+              table({{"kind", node("air_friction")}, {"coefficient", node(3e-5)}})})},
+       {"budget", table(budget)}});
+}
+
+TEST(Budget, RanksTorquesAndAddsUpAngles) {
+  const Budget budget =
+      read_budget(settings_of(experiment({{"state_of_charge", node(0.5)}, {"spin_rpm", node(1)}})));
+  ASSERT_EQ(budget.entries.size(), 5u);
+  for (size_t i = 1; i < budget.entries.size(); ++i) {
+    EXPECT_GE(budget.entries[i - 1].torque_body_N_m.norm(),
+              budget.entries[i].torque_body_N_m.norm());
+  }
+  std::map<std::string, BudgetEntry> by_name;
+  for (const BudgetEntry& e : budget.entries) by_name[e.name] = e;
+  EXPECT_TRUE(by_name.contains("static_unbalance_1") && by_name.contains("static_unbalance_2"));
+  // Half the charge of 2.4 Ah at 1 µm/Ah: 1.2 µm.
+  EXPECT_NEAR(by_name.at("battery_discharge").torque_body_N_m.norm(),
+              7 * standard_gravity_m_s2 * 1.2e-6, 1e-15);
+  EXPECT_NEAR(by_name.at("air_friction").torque_body_N_m.z(), -3e-5 * std::pow(2 * pi / 60, 1.5),
+              1e-18);
+  // 1.9e-6 N m on 0.19 kg m²: 1e-5 rad/s².
+  EXPECT_NEAR(by_name.at("turbine_torque").angle_after_minute_rad, 0.5e-5 * 3600, 1e-12);
+  EXPECT_NEAR(by_name.at("turbine_torque").angle_after_hour_rad, 0.5e-5 * 3600.0 * 3600.0, 1e-8);
+  EXPECT_NEAR(by_name.at("turbine_torque").angle_after_day_rad, 0.5e-5 * 86400.0 * 86400.0, 1e-5);
+}
+
+TEST(Budget, StateIsTiltHeadingAndRate) {
+  const Budget budget = read_budget(settings_of(experiment({{"tilt_deg", node(30)},
+                                                            {"heading_deg", node(90)},
+                                                            {"spin_rpm", node(2)},
+                                                            {"charge_drawn_Ah", node(1)}})));
+  const Vec3 up = budget.state.lab_from_body * Vec3::UnitZ();
+  EXPECT_LT((up - Vec3(0, 0.5, std::cos(pi / 6))).norm(), 1e-12);
+  EXPECT_LT(
+      (budget.state.lab_from_body * budget.state.rate_body_rad_s - Vec3(0, 0, 4 * pi / 60)).norm(),
+      1e-12);
+  EXPECT_DOUBLE_EQ(budget.state.charge_drawn_C, 3600.0);
+}
+
+TEST(Budget, ProductHoldsTheTablesAndPlots) {
+  const Budget budget =
+      read_budget(settings_of(experiment({{"tilt_deg", node(10)}, {"spin_rpm", node(1)}})));
+  const Product product = budget_product(budget);
+  const Table& ranked = table_named(product, "budget");
+  EXPECT_EQ(column(ranked, "disturbance").texts.size(), 5u);
+  double sum = 0;
+  for (const double share : column(ranked, "share_of_sum").values) sum += share;
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+  for (const Table& t : product.tables) {
+    size_t rows = 0;
+    for (const Table::Column& c : t.columns)
+      rows = std::max({rows, c.values.size(), c.texts.size()});
+    for (const Table::Column& c : t.columns)
+      EXPECT_EQ(std::max(c.values.size(), c.texts.size()), rows) << t.name << c.name;
+  }
+  EXPECT_EQ(table_named(product, "paper_figures").columns[0].texts.size(), paper_figures().size());
+  ASSERT_EQ(product.plots.size(), 2u);
+  EXPECT_EQ(product.plots[0].curves.size(), 4u);  // the battery is full: nothing to draw
+}
+
+// Figure 5: the tabletop peaks at 45 deg; the dumbbell is sin θ (1 − cos θ) and still rises there.
+TEST(Budget, FigureFive) {
+  const Product product = paper_product();
+  const Plot& plot = product.plots.front();
+  ASSERT_EQ(plot.name, "elastic_torque_by_tilt");
+  EXPECT_NEAR(plot.curves[0].y[30], 0.5 * (1 - std::cos(pi / 6)), 1e-12);
+  EXPECT_NEAR(plot.curves[1].y[30], std::sin(pi / 3), 1e-12);
+  EXPECT_NEAR(plot.curves[1].y[45], 1.0, 1e-12);
+}
+
+TEST(Budget, RefusesAStateOfChargeWithoutABattery) {
+  SettingsNode root = experiment({{"state_of_charge", node(0.5)}});
+  auto& platform =
+      std::get<SettingsNode::Table>(std::get<SettingsNode::Table>(root.value).at("platform").value);
+  platform.erase("battery_capacity_Ah");
+  EXPECT_THROW(read_budget(settings_of(root)), InputError);
+  EXPECT_THROW(read_budget(settings_of(experiment({{"tilt", node(3)}}))), InputError);
+}
+
+TEST(Budget, ComparesACatalogue) {
+  const SettingsNode bearing = table({{"name", node("x")},
+                                      {"radius_mm", node(30)},
+                                      {"half_angle_deg", node(45)},
+                                      {"gap_um", node(5)},
+                                      {"inlet_bar", node(5)},
+                                      {"load_N", node(300)},
+                                      {"drag_N_m", node(1e-4)}});
+  const Product product =
+      budget_product(read_budget(settings_of(experiment({{"bearing", list({bearing})}}))));
+  const double expected = std::abs(load_capacity_N({0.03, pi / 4, 5e-6}, 5e5, 101325.0) / 300 - 1);
+  bool found = false;
+  for (const Quantity& q : product.quantities) {
+    if (q.name != "bearing_load_mean_error") continue;
+    found = true;
+    EXPECT_NEAR(q.estimate.value, expected, 1e-12);
+  }
+  EXPECT_TRUE(found);
+}
+
+}  // namespace
+}  // namespace photorque
