@@ -1,0 +1,48 @@
+// A source and the tracer together, against a closed form that neither uses.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "raytrace/tracer.h"
+#include "sources/source_kind.h"
+#include "tests/raytrace/test_scenes.h"
+
+namespace photorque {
+namespace {
+
+// A Gaussian beam of 1/e² radius w on a centred square of side s: P erf(s/(√2 w))².
+TEST(GaussianBeam, EncircledPowerOnASquareMatchesClosedForm) {
+  const double w = 0.1;
+  SettingsNode::Table keys;
+  keys["power_W"].value = 2.0;
+  keys["wavelength_nm"].value = 730.0;
+  keys["waist_radius_m"].value = w;
+  keys["position_m"].value = SettingsNode::Array{{0.0, {}}, {0.0, {}}, {1.0, {}}};
+  keys["direction"].value = SettingsNode::Array{{0.0, {}}, {0.0, {}}, {-1.0, {}}};
+  std::vector<Beam> beams;
+  for (const SourceKind& kind : all_source_kinds()) {
+    if (kind.name != "laser") continue;
+    beams = kind.make(Settings(std::make_shared<const SettingsNode>(SettingsNode{keys, {}})), {});
+  }
+  ASSERT_EQ(beams.size(), 1u);
+  for (const double side : {0.05, 0.1, 0.2}) {
+    Scene scene;
+    testing::add(scene, testing::rectangle(Vec3::Zero(), Vec3(side, 0, 0), Vec3(0, side, 0)),
+                 grey_surface("black", 0, 0), "square");
+    const TraceableScene traceable(std::move(scene));
+    TraceOptions options;
+    options.rays = 1 << 21;
+    const Estimate power = trace(traceable, {}, beams, {}, options).ledger.absorbed_W;
+    const double exact = 2.0 * std::pow(std::erf(side / (std::numbers::sqrt2 * w)), 2);
+    EXPECT_LE(std::abs(power.value - exact), 3 * power.standard_error);
+    EXPECT_LE(std::abs(power.value - exact), 1e-4 * 2.0);
+    // As if w were the radius at half of the maximum.
+    const double mistaken =
+        2.0 * std::pow(std::erf(side * std::sqrt(std::numbers::ln2) / (2 * w)), 2);
+    EXPECT_GT(std::abs(power.value - mistaken), 10 * power.standard_error);
+  }
+}
+
+}  // namespace
+}  // namespace photorque
