@@ -32,6 +32,13 @@ struct AttitudeGrid {
   std::vector<double> heading_rad;  // ascending, at least one
 };
 
+// [torque_map] with elevations and azimuths: directions towards the Sun in body axes, every
+// elevation with every azimuth, for the table of a body in sunlight.
+struct DirectionGrid {
+  std::vector<double> elevation_rad;  // ascending in [−π/2, π/2], at least one
+  std::vector<double> azimuth_rad;    // ascending in [−π, π], from x towards y, at least one
+};
+
 // [camera]: where a picture is taken from. Lab frame, z up in the picture.
 struct Camera {
   Vec3 position_m = Vec3::Zero();
@@ -63,6 +70,8 @@ struct ExperimentFile {
   Attitude attitude;
   TraceOptions trace;
   AttitudeGrid torque_map;
+  std::optional<DirectionGrid> light_directions;  // instead of torque_map
+  std::optional<uint64_t> torque_map_rays;        // per attitude or direction; else trace.rays
   std::optional<Settings> camera;
 
   // A table that this reader leaves to others ([array], [platform], [environment], [[disturbance]],

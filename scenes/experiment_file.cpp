@@ -1,5 +1,6 @@
 // The first step of reading an experiment: the text, without the scene.
 #include <algorithm>
+#include <cmath>
 
 #include "core/constants.h"
 #include "core/files.h"
@@ -76,6 +77,59 @@ AttitudeGrid read_torque_map(const Settings& root, const Attitude& attitude) {
   return grid;
 }
 
+// An axis of directions: its array in degrees, or −half … half in even steps.
+std::vector<double> read_direction_axis(const Settings& table, const std::string& name,
+                                        double half_rad) {
+  const std::string array = name + "_deg", step = name + "_step_deg";
+  if (table.has(array)) {
+    const std::vector<double> values = table.numbers(array, {-half_rad, half_rad});
+    require_ascending(table, array, values);
+    if (table.has(step)) throw table.error(step, "a step beside " + array, "one of the two");
+    return values;
+  }
+  const double step_rad = table.number(step, {0.0, 2.0 * half_rad, true, false});
+  const double steps = 2.0 * half_rad / step_rad;
+  const double whole = std::round(steps);
+  if (std::abs(steps - whole) > 1e-9 * whole || whole > 3600.0) {
+    throw table.error(step, std::to_string(step_rad / degree_rad),
+                      "a whole fraction of " +
+                          std::to_string(std::lround(2.0 * half_rad / degree_rad)) +
+                          ", at least 0.1");
+  }
+  std::vector<double> values;
+  const auto count = static_cast<size_t>(whole);
+  for (size_t i = 0; i <= count; ++i) {
+    values.push_back(half_rad * (2.0 * static_cast<double>(i) / whole - 1.0));
+  }
+  return values;
+}
+
+std::optional<uint64_t> read_torque_map_rays(const Settings& root) {
+  if (!root.has("torque_map")) return std::nullopt;
+  const Settings table = root.table("torque_map");
+  if (!table.has("rays")) return std::nullopt;
+  return static_cast<uint64_t>(table.integer("rays", 1, int64_t{1} << 44));
+}
+
+std::optional<DirectionGrid> read_light_directions(const Settings& root) {
+  if (!root.has("torque_map")) return std::nullopt;
+  const Settings table = root.table("torque_map");
+  bool any = false;
+  for (const char* key :
+       {"azimuth_deg", "azimuth_step_deg", "elevation_deg", "elevation_step_deg"}) {
+    any = any || table.has(key);
+  }
+  if (!any) return std::nullopt;
+  for (const char* key : {"tilt_deg", "heading_deg"}) {
+    if (table.has(key)) {
+      throw table.error(key, "an attitude beside directions of light",
+                        "tilts and headings, or elevations and azimuths");
+    }
+  }
+  return DirectionGrid{read_direction_axis(table, "elevation", 0.5 * pi),
+                       read_direction_axis(table, "azimuth", pi)};
+}
+
 }  // namespace
 
 std::vector<Settings> ExperimentFile::others(const std::string& key) const {
@@ -119,6 +173,8 @@ ExperimentFile read_experiment_file(const std::filesystem::path& path,
   file.attitude = read_attitude(settings);
   file.trace = read_trace_options(settings);
   file.torque_map = read_torque_map(settings, file.attitude);
+  file.light_directions = read_light_directions(settings);
+  file.torque_map_rays = read_torque_map_rays(settings);
   if (settings.has("camera")) file.camera = settings.table("camera");
   for (const char* key : tables_of_others) {
     if (settings.has(key)) settings.raw(key);

@@ -66,8 +66,10 @@ OpticalRun::OpticalRun(const CommandLine& line, const Console& console)
 }
 
 TraceResult OpticalRun::run(const RigidTransform& lab_from_body,
-                            const std::function<void(double)>& progress) const {
+                            const std::function<void(double)>& progress,
+                            std::optional<uint64_t> rays) const {
   TraceOptions options = experiment_.file.trace;
+  options.rays = rays.value_or(options.rays);
   options.threads = threads_;
   options.progress = progress;
   const auto receivers = experiment_.receiver_pointers();

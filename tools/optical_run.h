@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,10 @@ class OpticalRun {
   const TraceableScene& scene() const { return scene_; }
   const Provenance& provenance() const { return provenance_; }
 
-  // Traces at an attitude, with the options of the experiment.
-  TraceResult run(const RigidTransform& lab_from_body,
-                  const std::function<void(double)>& progress) const;
+  // Traces at an attitude, with the options of the experiment but, if given, another number of
+  // rays.
+  TraceResult run(const RigidTransform& lab_from_body, const std::function<void(double)>& progress,
+                  std::optional<uint64_t> rays = {}) const;
 
   // The place of a receiver among experiment().receivers and TraceResult::sums.
   size_t wrench_index() const { return wrench_; }

@@ -4,6 +4,7 @@
 #include "core/constants.h"
 #include "receivers/wrench_table.h"
 #include "tools/array_power.h"
+#include "tools/direction_map.h"
 #include "tools/optical_run.h"
 
 namespace photorque {
@@ -57,9 +58,7 @@ class PowerTable {
   Table table_;
 };
 
-void run_torque_map(const CommandLine& line) {
-  Console console(line);
-  const OpticalRun run(line, console);
+void map_over_attitude(const CommandLine& line, Console& console, const OpticalRun& run) {
   std::optional<ArrayPower> array;
   if (!run.experiment().file.others("array").empty()) array = read_array_power(run);
   const AttitudeGrid& grid = run.experiment().file.torque_map;
@@ -76,8 +75,8 @@ void run_torque_map(const CommandLine& line) {
       const size_t node = wrenches.node(h, t);
       // The same seed everywhere: neighbouring attitudes share their sampling errors, so that
       // differences between them are better known than each.
-      const TraceResult result =
-          run.run(lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]), {});
+      const TraceResult result = run.run(lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]),
+                                         {}, run.experiment().file.torque_map_rays);
       set_node(wrenches, node, run.wrench().total(result.sums[run.wrench_index()]));
       std::optional<Estimate> electric;
       if (array) electric = evaluate(*array, run, result).power_W;
@@ -114,10 +113,20 @@ void run_torque_map(const CommandLine& line) {
   write_results(line, console, product, run.provenance(), rays, wall_s);
 }
 
+void run_torque_map(const CommandLine& line) {
+  Console console(line);
+  const OpticalRun run(line, console);
+  if (run.experiment().file.light_directions) {
+    map_over_direction(line, console, run);
+  } else {
+    map_over_attitude(line, console, run);
+  }
+}
+
 }  // namespace
 
 Verb torque_map_verb() {
-  return {"torque-map", "Force, torque and power over a grid of tilts and headings",
+  return {"torque-map", "Force, torque and power over a grid of attitudes or directions of light",
           run_torque_map};
 }
 

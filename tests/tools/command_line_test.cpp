@@ -137,6 +137,60 @@ TEST_F(CommandLine, TorqueMapCoversTheGrid) {
       << table;
 }
 
+// A number of summary.json or of a CSV's data row.
+std::vector<double> last_row(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line, last;
+  while (std::getline(lines, line)) {
+    if (!line.empty() && line[0] != '#') last = line;
+  }
+  std::vector<double> numbers;
+  std::istringstream cells(last);
+  for (std::string cell; std::getline(cells, cell, ',');) numbers.push_back(std::stod(cell));
+  return numbers;
+}
+
+// The Sun at azimuth 30, elevation 20 deg of the body is a source that shines from there on the
+// body at rest.
+TEST_F(CommandLine, TorqueMapTurnsTheBodyUnderTheSun) {
+  const std::string craft = (scenes / "spacecraft" / "spacecraft.toml").string();
+  ASSERT_EQ(run("torque-map " + craft +
+                " --set torque_map={azimuth_deg=[30],elevation_deg=[20],rays=1048576} --out " +
+                out("turned"))
+                .status,
+            0);
+  const double cos_e = std::cos(20 * M_PI / 180), sin_e = std::sin(20 * M_PI / 180);
+  std::ostringstream direction;
+  direction << "[" << -cos_e * std::cos(M_PI / 6) << "," << -cos_e * std::sin(M_PI / 6) << ","
+            << -sin_e << "]";
+  ASSERT_EQ(run("torque-map " + craft + " --set source[0].direction=" + direction.str() +
+                " --set torque_map={tilt_deg=[0],rays=1048576} --seed 5 --out " + out("moved"))
+                .status,
+            0);
+  const auto turned = last_row(read(folder_ / "turned" / "wrench_table_body.csv"));
+  const auto moved = last_row(read(folder_ / "moved" / "wrench_table_body.csv"));
+  ASSERT_EQ(turned.size(), 14u);
+  ASSERT_EQ(moved.size(), 14u);
+  for (size_t i = 2; i < 8; ++i) {
+    const double sigma = std::hypot(turned[i + 6], moved[i + 6]);
+    EXPECT_GT(sigma, 0.0);
+    EXPECT_NEAR(turned[i], moved[i], 4.0 * sigma) << i;
+  }
+}
+
+TEST_F(CommandLine, TorqueMapOverTheSphereWritesSpad) {
+  const std::string craft = (scenes / "spacecraft" / "spacecraft.toml").string();
+  const Outcome got =
+      run("torque-map " + craft +
+          " --set torque_map.azimuth_step_deg=90"
+          " --set torque_map.elevation_step_deg=45 --set torque_map.rays=8192 --out " +
+          out("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const std::string spad = read(folder_ / "o" / "spacecraft.spo");
+  EXPECT_THAT(spad, HasSubstr("Azimuth"));
+  EXPECT_EQ(last_row(read(folder_ / "o" / "wrench_table_body.csv")).size(), 14u);
+}
+
 struct WrongCall {
   std::string arguments, message;
 };
@@ -148,6 +202,11 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
       {"trace", "experiment"},
       {"fly " + nominal, "fly"},
       {"trace /nowhere/lab.toml", "/nowhere/lab.toml"},
+      {"torque-map " + nominal + " --set torque_map={azimuth_deg=[0],elevation_deg=[0]}", "sun"},
+      {"torque-map " + nominal + " --set torque_map={azimuth_step_deg=7,elevation_deg=[0]}",
+       "whole fraction of 360"},
+      {"torque-map " + nominal + " --set torque_map={azimuth_deg=[0],tilt_deg=[0]}",
+       "beside directions of light"},
       {"trace " + scenes.string(), "folder"},
       {base + "--threads many", "many"},
       {base + "--threads -1", "-1"},
