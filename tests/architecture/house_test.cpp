@@ -23,8 +23,10 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"receivers", {"core", "raytrace"}},
     {"images", {"core"}},
     {"attitude", {"core"}},
+    {"diagnosis", {"core", "attitude"}},
     {"scenes", {"core", "raytrace", "sources", "receivers", "attitude"}},
-    {"tools", {"core", "raytrace", "sources", "receivers", "images", "attitude", "scenes"}},
+    {"tools",
+     {"core", "raytrace", "sources", "receivers", "images", "attitude", "diagnosis", "scenes"}},
 };
 
 // Headers of a library and the one folder that may include them.

@@ -1,0 +1,155 @@
+// What `diagnose` found, as plain data. The engine fills it; the writers of diagnosis.json,
+// improved.toml and report.html read it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/vector.h"
+
+namespace photorque {
+
+enum class Verdict {
+  consistent,       // what differs is noise, or within the uncertainty that the user stated
+  missing_physics,  // the effects named explain all that differs
+  unexplained,      // structure is left after the best known physics
+};
+// As in diagnosis.json.
+std::string name_of(Verdict verdict);
+
+// One key of an experiment file with its fitted numbers, in the unit that the key names.
+struct FittedParameter {
+  std::string key;                 // "dipole_A_m2"
+  std::vector<double> value;       // one number, or an array in the order of the file
+  std::vector<double> sigma = {};  // one standard error of each; 0: was not fitted
+};
+
+// An effect of the catalogue that acts in addition to what the experiment states.
+struct FoundEffect {
+  std::string kind;          // name of a disturbance kind
+  double probability = 0.0;  // that it acts, given the recordings, 0 to 1
+  std::vector<FittedParameter> parameters;
+  std::vector<std::string> indistinguishable_from;  // kinds that explain these data as well
+  std::string explanation;                          // one sentence of physics
+};
+
+// Part of the torque that no known law explains, fitted without a law as a function of one
+// variable.
+struct EmpiricalTorque {
+  std::string variable;                  // "heading", "tilt", "rate", "time", …
+  std::string unit;                      // of `at`: "deg", "rad/s", "s", …
+  bool about_lab_axes = false;           // components along lab axes; otherwise body axes
+  std::vector<double> at;                // rises
+  std::vector<Vec3> torque_N_m;          // at each
+  std::vector<Vec3> standard_error_N_m;  // of each; empty: unknown
+};
+
+// Where recording and belief part.
+struct Where {
+  struct ChannelMisfit {
+    std::string name;              // "gyro_z_rad_s", "attitude_x_arcsec"
+    double chi2_per_sample = 0.0;  // under what was believed; 1 for noise alone
+  };
+  std::vector<ChannelMisfit> channels;  // worst first
+  struct Interval {
+    double from = 0.0, to = 0.0;
+  };
+  std::vector<Interval> intervals_s;  // of the first recording, in order of time
+  std::optional<Interval> band_Hz;
+  struct Dependence {
+    std::string variable;   // tilt, heading, rate, time, charge, command, irradiance, …
+    double strength = 0.0;  // share of the difference that a function of it explains, 0 to 1
+  };
+  std::vector<Dependence> depends_on;  // strongest first
+};
+
+// One explanation among those that were fitted in full.
+struct Alternative {
+  std::vector<std::string> kinds;      // empty: nothing is missing
+  std::string label = {};              // for people when kinds do not say it: "unknown in heading"
+  double log_evidence_relative = 0.0;  // natural logarithm, over that of "nothing is missing"
+  std::optional<double> holdout_chi2_per_sample = {};
+  std::string remark = {};  // why it was not chosen: "would feed energy"
+};
+
+// Recordings against the prediction, numbers never used in the fit.
+struct Holdout {
+  std::map<std::string, double> rms_before, rms_after;  // by channel, in the channel's unit
+  double chi2_per_sample_before = 0.0;
+  double chi2_per_sample_after = 0.0;
+  int64_t samples = 0;
+};
+
+// An experiment that would tell apart what these data cannot.
+struct Manoeuvre {
+  std::vector<std::string> separates;  // kinds
+  std::string text;                    // "spin up to 1 rad/s and let it run down for 600 s"
+  double log_evidence_expected = 0.0;  // by which the right one would lead; 0: not computed
+};
+
+// One channel of one recording over time, in full; the report thins it. All vectors have the length
+// of `time_s`; NaN where there is no number. `measured` may be empty: then only residuals are
+// drawn.
+struct ChannelSeries {
+  std::string name;   // "attitude_x_arcsec"
+  std::string label;  // for people: "Attitude about lab x"
+  std::string unit;   // of measured, before and after
+  std::vector<double> time_s;
+  std::vector<double> measured, before, after;
+  std::string residual_unit;                            // of the two below
+  std::vector<double> residual_before, residual_after;  // measured − model
+  double noise = 0.0;  // one standard deviation of one reading, residual_unit
+};
+struct RecordingSeries {
+  std::string recording;  // file name
+  std::vector<ChannelSeries> channels;
+  std::vector<Where::Interval> held_out_s;  // never used in the fit
+};
+
+// State and length of the first recording, so that improved.toml can fly it again.
+struct Replay {
+  std::string recording;  // path as given: commands and currents are read from it
+  bool has_commands = false;
+  double duration_s = 0.0;
+  double output_rate_Hz = 10.0;
+  std::array<double, 4> initial_attitude = {1, 0, 0, 0};  // w, x, y, z
+  Vec3 initial_rate_rad_s = Vec3::Zero();                 // body axes
+};
+
+// What the files held.
+struct DataQuality {
+  int64_t rows = 0;
+  int64_t used = 0;                         // rows of which a number entered the fit
+  std::map<std::string, int64_t> rejected;  // by reason: "outlier", "gap", "repeated_time", …
+  std::map<std::string, int64_t> mended;    // "flipped_quaternion", …
+  double median_interval_s = 0.0;
+  double jitter_s = 0.0;
+  double longest_gap_s = 0.0;
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::consistent;
+  double confidence = 0.0;  // probability that the verdict and the names are right
+  std::string sentence;     // the finding in one sentence, for the top of the report
+  Where where;
+  std::vector<FoundEffect> effects;
+  std::vector<EmpiricalTorque> empirical;
+  double chi2_per_sample_before = 0.0;
+  double chi2_per_sample_after = 0.0;
+  int64_t samples = 0;  // numbers that were fitted
+  std::optional<Holdout> holdout;
+  std::vector<Alternative> alternatives;  // best first
+  std::vector<Manoeuvre> manoeuvres;
+  // What was believed with an uncertainty, after the fit; keys as "disturbance[0].offset_m".
+  std::vector<FittedParameter> beliefs_refined;
+  std::vector<std::string> warnings;  // "the quaternions look conjugated", …
+  DataQuality data;
+  std::vector<RecordingSeries> series;
+  std::optional<Replay> replay;
+};
+
+}  // namespace photorque
