@@ -151,13 +151,16 @@ PropagationRun read_propagation(const Settings& root) {
   PropagationRun run;
   run.model = std::move(believed.model);
   run.sensors = std::move(believed.sensors);
-  const Settings settings = own_table(root, "propagate", true);
-  run.duration_s = settings.number("duration_s", Range::positive());
+  const Settings settings = own_table(root, "propagate", false);
+  run.duration_s = settings.number_or("duration_s", 600.0, Range::positive());
   run.output_rate_Hz = settings.number_or("output_rate_Hz", 10.0, Range::positive());
   constexpr double most_rows = 2e7;
   if (run.duration_s * run.output_rate_Hz > most_rows) {
     throw settings.error("output_rate_Hz", "more than 20 million rows", "a lower rate");
   }
+  run.history_rows =
+      static_cast<size_t>(settings.integer_or("history_rows", 20000, 2, int64_t{20'000'000}));
+  run.seed = static_cast<uint64_t>(settings.integer_or("seed", 1, 0, INT64_MAX));
   run.options.tolerance =
       settings.number_or("tolerance", run.options.tolerance, {1e-13, 1e-3, false, false});
   run.options.longest_step_s =
@@ -172,7 +175,8 @@ PropagationRun read_propagation(const Settings& root) {
   return run;
 }
 
-PropagationResult propagate(const PropagationRun& run) {
+PropagationResult propagate(const PropagationRun& run,
+                            const std::function<void(double)>& progress) {
   const Dynamics dynamics(run.model);
   const Seen seen{run};
   const double end_s = run.initial.time_s + run.duration_s;
@@ -183,6 +187,7 @@ PropagationResult propagate(const PropagationRun& run) {
   TimeHistory history(dynamics);
   Propagator propagator(dynamics, run.initial, end_s, run.options, {}, events_of(dynamics));
   std::vector<double> y(static_cast<size_t>(dynamics.size()));
+  const size_t thinning = (seen.rows() + run.history_rows - 1) / run.history_rows;
   const auto sink = [&](const Samples& samples) {
     const Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
     for (int i = 0; i < samples.count; ++i) {
@@ -197,8 +202,11 @@ PropagationResult propagate(const PropagationRun& run) {
                     .command_body_N_m = in_lane(now.command_body_N_m, i),
                     .battery_current_A = now.battery_current_A[i],
                     .array_power_W = now.array_power_W[i]});
-      history.add(state, now, i);
+      if (row % thinning == 0) history.add(state, now, i);
       result.states.push_back(state);
+    }
+    if (progress) {
+      progress(static_cast<double>(result.states.size()) / static_cast<double>(seen.rows()));
     }
   };
   sample(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct PropagationRun {
   Sensors sensors;
   PlatformState initial;
   double duration_s = 0.0;
-  double output_rate_Hz = 10.0;  // rows of the recording and of the time history
+  double output_rate_Hz = 10.0;  // rows of the recording
+  size_t history_rows = 20000;   // at most so many, evenly from the recording's
   PropagationOptions options;
   uint64_t seed = 1;
   std::string epoch;  // calendar time of t = 0, ISO 8601, for files that need one
@@ -38,8 +40,9 @@ struct BelievedModel {
 };
 BelievedModel read_attitude_model(const Settings& root);
 
-// The same and [propagate]:
-//   duration_s; output_rate_Hz (default 10); tolerance (default 1e-8); longest_step_s;
+// The same and [propagate], which may be absent:
+//   duration_s (default 600); output_rate_Hz (of the recording, default 10); history_rows (of the
+//     time history at most, default 20000); tolerance (default 1e-8); longest_step_s; seed (1);
 //   initial_attitude = [w, x, y, z], or initial_tilt_deg and initial_heading_deg (default 0), see
 //     lab_from_body_at(); initial_rate_rad_s[3] (default 0); initial_charge_Ah (drawn, default 0);
 //   commands: a CSV with t_s and command_x_N_m … or battery_current_A (relative to the experiment),
@@ -56,7 +59,9 @@ struct PropagationResult {
   Propagator::Statistics statistics;
 };
 
-// Flies the run. It ends early at the bearing's stop (Platform::tilt_limit_rad).
-PropagationResult propagate(const PropagationRun& run);
+// Flies the run. It ends early at the bearing's stop (Platform::tilt_limit_rad). `progress` is
+// called now and then with the share of the duration that is done.
+PropagationResult propagate(const PropagationRun& run,
+                            const std::function<void(double)>& progress = {});
 
 }  // namespace photorque

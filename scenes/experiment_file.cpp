@@ -13,7 +13,8 @@ namespace {
 
 // Tables that optical runs accept as they are; the programs that use them check them.
 constexpr const char* tables_of_others[] = {"array",   "platform",  "environment", "disturbance",
-                                            "sensors", "recording", "published"};
+                                            "sensors", "recording", "published",   "propagate",
+                                            "budget",  "balance"};
 
 void require_ascending(const Settings& settings, std::string_view key,
                        const std::vector<double>& values) {

@@ -7,7 +7,6 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "images/summary.h"
 #include "images/write_product.h"
 #include "sources/beam_shape.h"
 
@@ -175,8 +174,13 @@ void append(Product& product, Product more) {
 
 void write_results(const CommandLine& line, const Console& console, const Product& product,
                    const Provenance& provenance, uint64_t rays, double wall_s) {
+  write_results(line, console, product, provenance, {wall_s, rays});
+}
+
+void write_results(const CommandLine& line, const Console& console, const Product& product,
+                   const Provenance& provenance, const RunCost& cost) {
   const auto folder = line.out_folder();
-  const std::string summary = summary_json(product, provenance, {wall_s, rays});
+  const std::string summary = summary_json(product, provenance, cost);
   const auto files = write_product(product, provenance, folder);
   write_file_whole(folder / "summary.json", summary);
   if (line.json) std::fputs(summary.c_str(), stdout);

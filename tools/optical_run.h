@@ -8,6 +8,7 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
+#include "images/summary.h"
 #include "receivers/flux_map.h"
 #include "receivers/wrench.h"
 #include "scenes/experiment.h"
@@ -60,5 +61,8 @@ void append(Product& product, Product more);
 // --json prints the summary.
 void write_results(const CommandLine& line, const Console& console, const Product& product,
                    const Provenance& provenance, uint64_t rays, double wall_s);
+// The same for a command that traces nothing.
+void write_results(const CommandLine& line, const Console& console, const Product& product,
+                   const Provenance& provenance, const RunCost& cost);
 
 }  // namespace photorque

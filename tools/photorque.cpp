@@ -46,6 +46,10 @@ int run(int argc, char** argv) {
   for (const Verb& verb : verbs) {
     CLI::App* command = app.add_subcommand(verb.name, verb.summary);
     add_options(*command, line);
+    if (verb.takes_recordings) {
+      command->add_option("--recording", line.recordings, "A recording (CSV); may be repeated")
+          ->allow_extra_args(false);
+    }
   }
   if (argc > 1 && argv[1][0] != '-') {
     std::set<std::string> known;

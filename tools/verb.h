@@ -14,12 +14,13 @@ namespace photorque {
 struct CommandLine {
   std::string verb;
   std::filesystem::path experiment;
-  std::vector<std::string> overrides;        // --set, in order
-  std::optional<std::filesystem::path> out;  // --out
-  int threads = 0;                           // 0: all
-  std::optional<uint64_t> seed;              // over the experiment's own
-  bool quiet = false;                        // no text but errors
-  bool json = false;                         // the summary as JSON on standard output
+  std::vector<std::string> overrides;             // --set, in order
+  std::optional<std::filesystem::path> out;       // --out
+  int threads = 0;                                // 0: all
+  std::optional<uint64_t> seed;                   // over the experiment's own
+  bool quiet = false;                             // no text but errors
+  bool json = false;                              // the summary as JSON on standard output
+  std::vector<std::filesystem::path> recordings;  // --recording, of commands that take some
 
   // --out, or out/EXPERIMENT/VERB below the current folder.
   std::filesystem::path out_folder() const;
@@ -32,6 +33,7 @@ struct Verb {
   std::string name;
   std::string summary;  // one sentence for --help
   std::function<void(const CommandLine&)> run;
+  bool takes_recordings = false;
 };
 
 // Every verb named in tools/CMakeLists.txt, in that order.
