@@ -118,6 +118,37 @@ TEST(PhotovoltaicArray, CellPowersAddUpToThePowerDeliveredAndLostInDiodes) {
   }
 }
 
+// Light to watts with one cell in full shade that cannot break down: its substring of 20 is lost,
+// and its bypass diode takes drop times current from the other 80 cells.
+TEST(PhotovoltaicArray, DarkCellWithoutBreakdownCostsItsSubstring) {
+  std::vector<double> irradiance(100, 1000.0);
+  irradiance[37] = 0.0;
+  SettingsNode circuit;
+  circuit.value =
+      SettingsNode::Table{{"breakdown_fraction", number(0.0)}, {"shunt_ohm", number(1e9)}};
+  auto table = ten_by_ten();
+  table["bypass_every"] = whole(20);
+  table["cell_parameters"] = circuit;
+  const ArrayDesign array = design(table);
+  const ArrayResult result = evaluate(array, array_light(10, 10, 0.2, 0.2, irradiance));
+  const CellCurve cell(parameters_at(array.cell, 4e-4, array.temperature_K));
+  const double light_A = responsivity_A_W * 1000.0 * 4e-4;
+  // Largest of I (80 V_cell(I) − 0.5), by a fine grid and its parabola.
+  const auto power_W = [&](double i) { return i * (80.0 * cell.voltage_V(light_A, i) - 0.5); };
+  const double step_A = 1e-5 * light_A;
+  double best_A = 0.9 * light_A;
+  while (power_W(best_A + step_A) > power_W(best_A)) best_A += step_A;
+  const double slope = 0.5 * (power_W(best_A + step_A) - power_W(best_A - step_A));
+  const double bend = power_W(best_A + step_A) + power_W(best_A - step_A) - 2.0 * power_W(best_A);
+  const double expected_W = power_W(best_A) - 0.5 * slope * slope / bend;
+  EXPECT_NEAR(result.power_W.value, expected_W, 1e-9 * expected_W);
+  double lost_V = 0.0;
+  for (size_t i = 0; i < 100; ++i) lost_V += result.cells.voltages_V[i];
+  EXPECT_NEAR(lost_V, result.voltage_V.value, 1e-9 * result.voltage_V.value);
+  EXPECT_LT(result.cells.voltages_V[37], -5.0);
+  EXPECT_LT(std::abs(result.cells.currents_A[37]), 1e-7);
+}
+
 TEST(PhotovoltaicArray, DarkArrayGivesNothingAndDoesNotFail) {
   const ArrayResult result =
       evaluate(design(), array_light(10, 10, 0.2, 0.2, std::vector<double>(100, 0.0)));

@@ -69,7 +69,12 @@ inline Real cell_V(const CellParameters& p, Real photocurrent_A, Real current_A)
 }
 
 inline Real cell_A(const CellParameters& p, Real photocurrent_A, Real voltage_V) {
-  return root(-1e4L, 1e4L, [&](Real i) { return cell_V(p, photocurrent_A, i) - voltage_V; });
+  if (p.series_ohm == 0) return photocurrent_A - dark_A(p, voltage_V);
+  const Real lowest = p.breakdown_fraction == 0 ? -1e6L : Real(p.breakdown_V);
+  const Real v = root(lowest, 3.0L, [&](Real trial) {
+    return photocurrent_A - dark_A(p, trial) - (trial - voltage_V) / p.series_ohm;
+  });
+  return (v - voltage_V) / p.series_ohm;
 }
 
 // Voltage across a diode that carries a forward current ≥ −I_s.
@@ -129,20 +134,18 @@ struct Array {
     for (const auto& string : wiring.strings) sum += string_A(string, voltage_V);
     return sum;
   }
-  // The largest power near a point, by ternary search: x is the current for one string.
-  Real power_near(const ArrayWiring& wiring, double voltage_V, double current_A) const {
-    const bool one = wiring.strings.size() == 1;
-    const auto power = [&](Real x) {
-      return one ? x * string_V(wiring.strings[0], x) : x * array_A(wiring, x);
-    };
-    const Real x = one ? current_A : voltage_V;
-    Real low = x * (1 - 1e-4L), high = x * (1 + 1e-4L);
-    // The power is flat to 1e-9 of itself within 1e-5 of its maximum; 20 rounds come closer.
-    for (int i = 0; i < 20; ++i) {
-      const Real a = low + (high - low) / 3, b = high - (high - low) / 3;
-      (power(a) < power(b) ? low : high) = power(a) < power(b) ? a : b;
-    }
-    return power(0.5L * (low + high));
+  Real power_W(const ArrayWiring& wiring, Real x) const {
+    return x * (wiring.strings.size() == 1 ? string_V(wiring.strings[0], x) : array_A(wiring, x));
+  }
+  // The height of a maximum near x (the current for one string, the voltage for several): vertex of
+  // the parabola through three points. They are apart so little that the next term of the
+  // power's series is below 1e-11 of it.
+  Real power_near(const ArrayWiring& wiring, double x) const {
+    const Real h = 1e-5L;
+    const Real low = power_W(wiring, x * (1 - h)), at = power_W(wiring, x),
+               high = power_W(wiring, x * (1 + h));
+    const Real slope = 0.5L * (high - low), bend = high + low - 2 * at;
+    return at - 0.5L * slope * slope / bend;
   }
 };
 
