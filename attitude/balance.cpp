@@ -244,17 +244,22 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
 
   Plot plot;
   plot.name = "balance_residuals";
-  plot.title = "Camera minus fitted trajectory";
+  plot.title = "Camera minus fitted trajectory, about lab axes";
   plot.x_label = "Time [s]";
-  plot.y_label = "Rotation about lab axes [arcsec]";
-  for (int k = 0; k < 3; ++k) {
+  const auto residuals = [&](int axis) {
     Plot::Curve curve;
-    curve.label = std::string(1, "xyz"[k]);
+    curve.label = std::string(1, "xyz"[axis]);
     curve.markers = true;
     curve.x = result.fit.residual_time_s;
-    for (const Vec3& r : result.fit.camera_residual_rad) curve.y.push_back(r[k] / arcsecond_rad);
-    plot.curves.push_back(std::move(curve));
-  }
+    for (const Vec3& r : result.fit.camera_residual_rad) {
+      curve.y.push_back(r[axis] / arcsecond_rad);
+    }
+    return curve;
+  };
+  plot.y_label = "About x [arcsec]";
+  plot.curves = {residuals(0)};
+  plot.below = {{"About y [arcsec]", {residuals(1)}, false},
+                {"About z [arcsec]", {residuals(2)}, false}};
   product.plots.push_back(std::move(plot));
   return product;
 }

@@ -148,7 +148,7 @@ class Reader {
     const double time_s = *time * columns_[time_column_].to_SI;
     if (!recording_.time_s.empty() && time_s <= recording_.time_s.back()) {
       if (time_s == recording_.time_s.back()) {
-        ++report.repeated_times;
+        if (++report.repeated_times == 1) report.first_repeated_line = lines_.number();
       } else if (++report.backward_times == 1) {
         report.first_backward_line = lines_.number();
       }
@@ -284,8 +284,12 @@ Schedule read_command_file(const std::filesystem::path& path) {
   const Recording recording = read_recording(path);
   const RecordingReport& report = recording.report;
   if (report.backward_times + report.repeated_times > 0) {
-    throw InputError({path.string(), static_cast<int>(report.first_backward_line)}, "t_s",
-                     "times that do not rise", "commands in order of time");
+    const int64_t line = report.backward_times == 0 ? report.first_repeated_line
+                         : report.repeated_times == 0
+                             ? report.first_backward_line
+                             : std::min(report.first_repeated_line, report.first_backward_line);
+    throw InputError({path.string(), static_cast<int>(line)}, "t_s", "times that do not rise",
+                     "commands in order of time");
   }
   for (const char* name :
        {"command_x_N_m", "command_y_N_m", "command_z_N_m", "battery_current_A"}) {

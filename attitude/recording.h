@@ -33,6 +33,7 @@ struct RecordingReport {
   int64_t repeated_times = 0;     // the same time again: left out
   int64_t backward_times = 0;     // earlier than a row before: left out
   int64_t first_backward_line = 0;
+  int64_t first_repeated_line = 0;
   int64_t empty_cells = 0;          // cells
   int64_t unreadable_cells = 0;     // cells that hold no number: emptied
   int64_t outlier_cells = 0;        // cells of measured channels: emptied

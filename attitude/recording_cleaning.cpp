@@ -38,27 +38,60 @@ double noise_level(const std::vector<double>& x) {
   return sigma_per_mad * middle_of(size.begin(), size.end()) / std::sqrt(20.0);
 }
 
-// Rows whose value stands out; `x` may hold NaN.
-std::vector<size_t> outlying_rows(const std::vector<double>& x) {
+// What a value is off from the parabola through the three before it (direction −1) or after it
+// (+1): a spike is off from both by the same, a step from one only. NaN near gaps and ends.
+double off_parabola(const std::vector<double>& x, size_t i, int direction) {
+  const auto at = [&](int steps) {
+    const auto j = static_cast<std::ptrdiff_t>(i) + direction * steps;
+    return j < 0 || j >= static_cast<std::ptrdiff_t>(x.size()) ? nan : x[static_cast<size_t>(j)];
+  };
+  return at(0) - 3 * at(1) + 3 * at(2) - at(3);
+}
+
+// Stands out from smooth motion, however fast.
+bool stands_out_of_motion(const std::vector<double>& x, size_t i, double noise) {
+  constexpr size_t reach = 10;
+  constexpr double threshold = 6.0;
+  const double before = off_parabola(x, i, -1), after = off_parabola(x, i, +1);
+  const double off = before * after > 0.0 ? std::min(std::abs(before), std::abs(after)) : 0.0;
+  if (!(off > threshold * std::sqrt(20.0) * noise)) return false;
+  // Where the motion itself is rough the parabolas miss it.
+  std::array<double, 2 * reach + 1> rough{};
+  size_t count = 0;
+  for (size_t j = i - std::min(i, reach); j < std::min(x.size(), i + reach + 1); ++j) {
+    const double size = std::abs(off_parabola(x, j, -1));
+    if (std::isfinite(size)) rough[count++] = size;
+  }
+  const auto end = rough.begin() + static_cast<std::ptrdiff_t>(count);
+  return off > threshold * sigma_per_mad * middle_of(rough.begin(), end);
+}
+
+// Stands out from its six neighbours, which hardly move; finds pairs, too.
+bool stands_out_of_rest(const std::vector<double>& x, size_t i, double noise) {
   constexpr size_t reach = 3;
   constexpr double threshold = 12.0;
+  std::array<double, 2 * reach> neighbours{};
+  size_t count = 0;
+  for (size_t j = i - std::min(i, reach); j < std::min(x.size(), i + reach + 1); ++j) {
+    if (j != i && std::isfinite(x[j])) neighbours[count++] = x[j];
+  }
+  if (count < reach + 1) return false;
+  const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(count);
+  const double middle = middle_of(neighbours.begin(), end);
+  const double off = std::abs(x[i] - middle);
+  if (off <= threshold * noise) return false;
+  std::transform(neighbours.begin(), end, neighbours.begin(),
+                 [middle](double value) { return std::abs(value - middle); });
+  return off > threshold * sigma_per_mad * middle_of(neighbours.begin(), end);
+}
+
+// Rows whose value stands out; `x` may hold NaN.
+std::vector<size_t> outlying_rows(const std::vector<double>& x) {
   const double noise = noise_level(x);
   std::vector<size_t> rows;
-  std::array<double, 2 * reach> neighbours{};
   for (size_t i = 0; i < x.size(); ++i) {
     if (!std::isfinite(x[i])) continue;
-    size_t count = 0;
-    for (size_t j = i - std::min(i, reach); j < std::min(x.size(), i + reach + 1); ++j) {
-      if (j != i && std::isfinite(x[j])) neighbours[count++] = x[j];
-    }
-    if (count < reach + 1) continue;
-    const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(count);
-    const double middle = middle_of(neighbours.begin(), end);
-    if (std::abs(x[i] - middle) <= threshold * noise) continue;
-    std::transform(neighbours.begin(), end, neighbours.begin(),
-                   [middle](double value) { return std::abs(value - middle); });
-    const double spread = sigma_per_mad * middle_of(neighbours.begin(), end);
-    if (std::abs(x[i] - middle) > threshold * spread) rows.push_back(i);
+    if (stands_out_of_motion(x, i, noise) || stands_out_of_rest(x, i, noise)) rows.push_back(i);
   }
   return rows;
 }

@@ -1,6 +1,7 @@
 #include "attitude/run.h"
 
 #include <cmath>
+#include <optional>
 
 #include "attitude/time_history.h"
 #include "core/transform.h"
@@ -28,13 +29,14 @@ Schedule read_schedule(const Settings& settings) {
     return read_command_file(beside_experiment(settings, settings.text("commands")));
   }
   Schedule schedule;
+  std::optional<double> before_s;
   for (const Settings& command : settings.tables("command")) {
     const double time_s = command.number("time_s");
-    if (!schedule.time_s.empty() && time_s <= schedule.time_s.back()) {
-      throw command.error(
-          "time_s", std::to_string(time_s) + " after " + std::to_string(schedule.time_s.back()),
-          "commands in order of time");
+    if (before_s && time_s <= *before_s) {
+      throw command.error("time_s", std::to_string(time_s) + " after " + std::to_string(*before_s),
+                          "commands in order of time");
     }
+    before_s = time_s;
     schedule.append(time_s, {command.vector3_or("torque_N_m", Vec3::Zero()),
                              command.number_or("battery_current_A", 0.0)});
   }

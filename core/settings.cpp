@@ -394,8 +394,11 @@ size_t Settings::choice(std::string_view key, const std::vector<std::string>& ch
     if (it != choices.end()) return static_cast<size_t>(it - choices.begin());
     const std::string hint = nearest(*s, {choices.begin(), choices.end()});
     if (!hint.empty()) {
+      // A long list would hide the hint.
+      const std::string known =
+          choices.size() > 10 ? "one of " + std::to_string(choices.size()) + " names" : expected;
       throw InputError(node.where, full_name(key), describe(node),
-                       expected + " (did you mean \"" + hint + "\"?)");
+                       known + " (did you mean \"" + hint + "\"?)");
     }
   }
   throw InputError(node.where, full_name(key), describe(node), expected);

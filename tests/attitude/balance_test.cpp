@@ -1,0 +1,126 @@
+#include "attitude/balance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "attitude/run.h"
+#include "core/errors.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+constexpr double true_offset_m[3] = {2e-5, -1e-5, -3e-4};
+
+std::vector<MovingMass> masses() {
+  MovingMass mass;
+  mass.mass_kg = 0.25;
+  mass.lead_m = 2e-3;
+  mass.step_angle_rad = 1.8 * degree_rad;
+  return eight_masses(mass);
+}
+
+// Ten minutes of an unbalanced tabletop with drag and a biased gyro, as the contract's sensors see
+// it, and what is believed of it: no unbalance, drag and bias within their uncertainty.
+BalanceRun unbalanced(bool with_gyro, uint64_t seed) {
+  const SettingsNode offset = numbers({true_offset_m[0], true_offset_m[1], true_offset_m[2]});
+  PropagationRun truth;
+  truth.model = with(bench_model(), "static_unbalance", {{"offset_m", offset}});
+  truth.model = with(truth.model, "bearing_drag", {{"coefficient_N_m_s", node(1.5e-5)}});
+  truth.model = with(truth.model, "gyro_bias", {{"bias_rad_s", numbers({1e-3, -5e-4, 2e-4})}});
+  truth.model.schedule.append(100.0, {{2e-4, 0, 1e-4}, 0.0});
+  truth.model.schedule.append(110.0, {});
+  truth.sensors = perfect_sensors();
+  truth.sensors.camera = Sensors::Camera{};
+  truth.sensors.gyro->noise_rad_s = 2e-4;
+  if (!with_gyro) truth.sensors.gyro.reset();
+  truth.duration_s = 600.0;
+  truth.output_rate_Hz = 10.0;
+  truth.seed = seed;
+  truth.initial = state_of(truth.model, turned(0.2, {1, 1, 0}), {0.01, -0.01, 0.1});
+
+  BalanceRun run;
+  run.model = with(bench_model(), "bearing_drag",
+                   {{"coefficient_N_m_s", table({{"value", node(1e-5)}, {"sigma", node(1e-5)}})}});
+  run.model =
+      with(run.model, "gyro_bias",
+           {{"bias_rad_s",
+             table({{"value", numbers({0, 0, 0})}, {"sigma", numbers({1e-3, 1e-3, 1e-3})}})}});
+  run.sensors = truth.sensors;
+  run.masses = masses();
+  run.recording = propagate(truth).recording;
+  run.model.schedule = run.recording.schedule();
+  return run;
+}
+
+TEST(Balance, FindsTheOffsetWithinItsErrors) {
+  for (const uint64_t seed : {1u, 2u, 3u}) {
+    const BalanceResult result = balance(unbalanced(true, seed));
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_LT(std::abs(result.offset_body_m[k] - true_offset_m[k]), 4 * result.sigma_m[k]);
+      EXPECT_LT(result.sigma_m[k], 5e-9);
+    }
+    // 36,000 numbers: one standard error of chi² per sample is 0.0075.
+    EXPECT_NEAR(result.fit.chi2_per_sample, 1.0, 0.03);
+  }
+}
+
+TEST(Balance, ACameraAloneSuffices) {
+  const BalanceResult result = balance(unbalanced(false, 4));
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LT(std::abs(result.offset_body_m[k] - true_offset_m[k]), 4 * result.sigma_m[k]);
+  }
+}
+
+TEST(Balance, MomentumGivesAStartWithoutOne) {
+  const BalanceRun run = unbalanced(true, 5);
+  const Vec3 offset_m = offset_from_momentum_m(
+      run.model.platform, run.model.environment.gravity_lab_m_s2, run.recording);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(offset_m[k], true_offset_m[k], 1e-6);
+}
+
+// After the masses have moved, half a step of each axis may be left: the paper's 1.79e-7 m is such
+// a half step.
+TEST(Balance, LeavesNoMoreThanTheStepsMust) {
+  const BalanceRun run = unbalanced(true, 6);
+  const BalanceResult result = balance(run);
+  EXPECT_NEAR(result.resolution_m, 1.79e-7, 0.01e-7);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LE(std::abs(result.command.left_over_m[k]), result.resolution_m * 1.0001);
+  }
+  Vec3 moved_m = Vec3::Zero();
+  for (size_t i = 0; i < run.masses.size(); ++i) {
+    moved_m += static_cast<double>(result.command.steps[i]) *
+               run.masses[i].com_step_m(run.model.platform.mass_kg);
+  }
+  EXPECT_LT((result.offset_body_m + moved_m - result.command.left_over_m).norm(), 1e-12);
+  const Product product = balance_product(run, result);
+  EXPECT_EQ(product.tables[0].columns[1].values[2], result.offset_body_m.z());
+  EXPECT_EQ(product.tables[1].columns[4].values.size(), 8u);
+}
+
+TEST(Balance, RefusesRecordingsWithoutAttitude) {
+  BalanceRun run = unbalanced(true, 7);
+  std::erase_if(run.recording.channels, [](const Channel& c) { return c.name == "q_w"; });
+  EXPECT_THROW(balance(run), InputError);
+  EXPECT_THROW(fit_trajectory(run.model, run.sensors, run.recording, {}), InputError);
+}
+
+// Standard errors mean what they say: over many recordings the estimates scatter by them.
+TEST(TrajectoryFit, StandardErrorsAreTheScatterOfTheEstimates) {
+  constexpr int runs = 24;
+  double squares = 0.0;
+  for (int i = 0; i < runs; ++i) {
+    const BalanceResult result = balance(unbalanced(true, static_cast<uint64_t>(100 + i)));
+    for (int k = 0; k < 3; ++k) {
+      const double pull = (result.offset_body_m[k] - true_offset_m[k]) / result.sigma_m[k];
+      squares += pull * pull;
+    }
+  }
+  // 72 squared pulls, nearly independent: mean 1, standard error √(2/72) = 0.17.
+  EXPECT_NEAR(squares / (3 * runs), 1.0, 0.6);
+}
+
+}  // namespace
+}  // namespace photorque

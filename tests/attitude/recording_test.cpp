@@ -1,0 +1,288 @@
+#include "attitude/recording.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "attitude/text_lines.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "tests/attitude/settings_bench.h"
+
+namespace photorque {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class File {
+ public:
+  explicit File(const std::string& bytes, const std::string& ending = ".csv")
+      : path_(
+            std::filesystem::path(testing::TempDir()) /
+            ("recording_" + std::to_string(::getpid()) + "_" + std::to_string(next_++) + ending)) {
+    std::ofstream(path_, std::ios::binary) << bytes;
+  }
+  ~File() { std::filesystem::remove(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  static inline int next_ = 0;
+  std::filesystem::path path_;
+};
+
+Recording read(const std::string& text, const RecordingOptions& options = {}) {
+  const File file(text);
+  return read_recording(file.path(), options);
+}
+
+std::string complaint(const std::string& text, const RecordingOptions& options = {}) {
+  const File file(text);
+  try {
+    read_recording(file.path(), options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+const std::vector<double>& values(const Recording& recording, std::string_view name) {
+  return recording.find(name)->values;
+}
+
+TEST(Recording, WrittenAndReadBackIsTheSameToTheBit) {
+  Recording recording;
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> normal;
+  for (const char* name : {"gyro_x_rad_s", "battery_current_A", "anything_else"}) {
+    recording.channels.push_back({name, {}});
+  }
+  for (int i = 0; i < 500; ++i) {
+    recording.time_s.push_back(0.1 * i);
+    for (Channel& channel : recording.channels) channel.values.push_back(normal(engine));
+  }
+  recording.channels[2].values[7] = NAN;
+  for (const char* ending : {".csv", ".csv.gz"}) {
+    const File file("", ending);
+    write_recording(file.path(), recording, {"made by a test", "two lines"});
+    const Recording back = read_recording(file.path());
+    EXPECT_EQ(back.time_s, recording.time_s);
+    EXPECT_EQ(back.report.preamble_lines, 2);
+    EXPECT_EQ(back.report.empty_cells, 1);
+    for (size_t c = 0; c < recording.channels.size(); ++c) {
+      EXPECT_EQ(back.channels[c].name, recording.channels[c].name);
+      EXPECT_THAT(back.channels[c].values, testing::Pointwise(testing::NanSensitiveDoubleEq(),
+                                                              recording.channels[c].values));
+    }
+  }
+}
+
+TEST(Recording, CompressedFilesAreSmallerAndRepeatable) {
+  const std::string text(100000, 'x');
+  EXPECT_LT(gzip(text).size(), 1000u);
+  EXPECT_EQ(gzip(text), gzip(text));
+}
+
+TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
+  const Recording r = read(
+      "\xef\xbb\xbfLab notebook, 3 May\r\n# a comment, with commas\r\n"
+      "t_s;\"gyro_x_rad_s\"; battery_current_A \r\n"
+      "0.0;1;5\r\n"
+      "0.1;;5\r\n"       // an empty cell
+      "0.1;2;5\r\n"      // the same time again
+      "0.2;abc;nan\r\n"  // no number; empty by its word
+      "\r\n# another comment\r\n"
+      "0.15;3;5\r\n"       // earlier than before
+      ";3;5\r\n"           // no time
+      "0.3;+1e-3;5;9\r\n"  // a cell too many
+      "0.4;4e0;6\r\n"
+      "2.0;5;6\r\n"  // after a gap
+      "2.1;6");      // torn off
+  EXPECT_THAT(r.time_s, ElementsAre(0.0, 0.1, 0.2, 0.4, 2.0));
+  EXPECT_EQ(values(r, "gyro_x_rad_s")[0], 1.0);
+  EXPECT_TRUE(std::isnan(values(r, "gyro_x_rad_s")[1]));
+  EXPECT_TRUE(std::isnan(values(r, "gyro_x_rad_s")[2]));
+  EXPECT_EQ(values(r, "gyro_x_rad_s")[3], 4.0);
+  const RecordingReport& report = r.report;
+  EXPECT_EQ(report.preamble_lines, 4);
+  EXPECT_EQ(report.rows_read, 10);
+  EXPECT_EQ(report.rows_kept, 5);
+  EXPECT_EQ(report.repeated_times, 1);
+  EXPECT_EQ(report.backward_times, 1);
+  EXPECT_EQ(report.first_backward_line, 10);
+  EXPECT_EQ(report.rows_without_time, 1);
+  EXPECT_EQ(report.malformed_rows, 2);
+  EXPECT_EQ(report.empty_cells, 2);
+  EXPECT_EQ(report.unreadable_cells, 1);
+  ASSERT_EQ(report.gaps.size(), 1u);
+  EXPECT_EQ(report.gaps[0].from_s, 0.4);
+  EXPECT_EQ(report.gaps[0].to_s, 2.0);
+  EXPECT_THAT(report.text(), HasSubstr("1 gaps"));
+  // What was read, kept and left out adds up.
+  EXPECT_EQ(report.rows_read, report.rows_kept + report.repeated_times + report.backward_times +
+                                  report.rows_without_time + report.malformed_rows);
+}
+
+TEST(Recording, ColumnsMayHaveOtherNamesAndUnits) {
+  RecordingOptions options;
+  options.columns = {{"t_ms", "Stamp"}, {"gyro_z_deg_s", "wz"}};
+  const Recording r = read("Stamp,wz,gyro_x_rpm\n1000,90,60\n1500,180,30\n", options);
+  EXPECT_THAT(r.time_s, ElementsAre(1.0, 1.5));
+  EXPECT_THAT(values(r, "gyro_z_rad_s"),
+              ElementsAre(testing::DoubleEq(pi / 2), testing::DoubleEq(pi)));
+  EXPECT_DOUBLE_EQ(values(r, "gyro_x_rad_s")[0], 2 * pi);
+  const RecordingOptions from_file = read_recording_options(settings_of(
+      table({{"columns", table({{"t_ms", node("Stamp")}, {"gyro_z_deg_s", node("wz")}})}})));
+  EXPECT_EQ(from_file.columns, options.columns);
+}
+
+TEST(Recording, FlippedAndBadQuaternionsAreMended) {
+  std::string text = "t_s,q_w,q_x,q_y,q_z\n";
+  for (int i = 0; i < 100; ++i) {
+    const double angle = 0.01 * i, sign = i % 3 == 1 ? -1.001 : 1.001;
+    text += std::to_string(0.1 * i) + "," + std::to_string(sign * std::cos(angle)) + "," +
+            std::to_string(sign * std::sin(angle)) + ",0," + (i == 50 ? "0.9" : "0") + "\n";
+  }
+  const Recording r = read(text);
+  EXPECT_EQ(r.report.flipped_quaternions, 33);
+  EXPECT_EQ(r.report.bad_quaternions, 1);
+  for (size_t i = 0; i < r.rows(); ++i) {
+    if (i == 50) {
+      EXPECT_TRUE(std::isnan(values(r, "q_w")[i]));
+      continue;
+    }
+    EXPECT_NEAR(values(r, "q_w")[i], std::cos(0.01 * static_cast<double>(i)), 2e-6);
+    EXPECT_NEAR(values(r, "q_x")[i], std::sin(0.01 * static_cast<double>(i)), 2e-6);
+  }
+}
+
+// Spikes go; noise, steps and fast motion stay.
+TEST(Recording, OutliersAreFoundAndNothingElse) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> noise(0.0, 2e-4);
+  std::string text = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 0.01 * i;
+    const double spike = i % 500 == 123 ? 0.5 : 0.0;
+    const double x = std::sin(3 * t) + spike + noise(engine);
+    const double y = (t < 10 ? 0.1 : -0.2) + noise(engine);
+    const double z = 20 * std::sin(15 * t) + noise(engine);
+    text += std::to_string(t) + "," + std::to_string(x) + "," + std::to_string(y) + "," +
+            std::to_string(z) + "\n";
+  }
+  const Recording r = read(text);
+  EXPECT_EQ(r.report.outlier_cells, 4);
+  EXPECT_EQ(r.report.outliers.at("gyro_x_rad_s"), 4);
+  for (const size_t row : {123u, 623u, 1123u, 1623u}) {
+    EXPECT_TRUE(std::isnan(values(r, "gyro_x_rad_s")[row]));
+  }
+  RecordingOptions keep;
+  keep.remove_outliers = false;
+  EXPECT_EQ(read(text, keep).report.outlier_cells, 0);
+}
+
+TEST(Recording, JitterAndIntervalAreMeasured) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> jitter(0.0, 1e-3);
+  std::string text = "t_s,gyro_x_rad_s\n";
+  for (int i = 0; i < 5000; ++i) text += std::to_string(0.1 * i + jitter(engine)) + ",0\n";
+  const RecordingReport report = read(text).report;
+  EXPECT_NEAR(report.median_interval_s, 0.1, 2e-4);
+  // The difference of two jittered times.
+  EXPECT_NEAR(report.jitter_s, std::sqrt(2.0) * 1e-3, 6e-5);
+}
+
+TEST(Recording, HeldChannelsBecomeASchedule) {
+  const Schedule schedule = read(
+                                "t_s,command_x_N_m,command_z_N_m,battery_current_A\n"
+                                "0,0,0,2\n1,1e-3,0,2\n2,1e-3,,2\n3,1e-3,5e-4,\n4,1e-3,5e-4,2\n")
+                                .schedule();
+  EXPECT_THAT(schedule.time_s, ElementsAre(0.0, 1.0, 3.0));
+  EXPECT_EQ(schedule.at(0.999).command_body_N_m.x(), 0.0);
+  EXPECT_EQ(schedule.at(1.0).command_body_N_m.x(), 1e-3);
+  EXPECT_EQ(schedule.at(100.0).command_body_N_m.z(), 5e-4);
+  EXPECT_EQ(schedule.at(100.0).battery_current_A, 2.0);
+  EXPECT_EQ(schedule.at(-1.0).battery_current_A, 0.0);
+}
+
+TEST(Recording, HopelessFilesAreRefusedInOneLine) {
+  EXPECT_THAT(complaint(""), HasSubstr("expected a header with t_s"));
+  EXPECT_THAT(complaint("a,b\n1,2\n"), HasSubstr("t_s"));
+  EXPECT_THAT(complaint("t_s,gyro_x_rad_s\n"), HasSubstr("0 usable rows"));
+  EXPECT_THAT(complaint("t_s,gyro_x_rad_s\n1,2\n"), HasSubstr("1 usable rows"));
+  EXPECT_THAT(complaint("t_s,gyro_x_rad_s\n1,nan\n2,\n"), HasSubstr("no number in any channel"));
+  EXPECT_THAT(complaint("t_s,a,a\n1,2,3\n2,3,4\n"), HasSubstr("twice"));
+  EXPECT_THAT(complaint("t_s,,a\n1,2,3\n2,3,4\n"), HasSubstr("without a name"));
+  EXPECT_THAT(complaint("t_s,a\n5,1\n4,1\n3,1\n2,1\n"), HasSubstr("times that fall in 3 rows"));
+  RecordingOptions small;
+  small.most_cells = 10;
+  std::string long_file = "t_s,a\n";
+  for (int i = 0; i < 6; ++i) long_file += std::to_string(i) + ",1\n";
+  EXPECT_THAT(complaint(long_file, small), HasSubstr("more than 10 numbers"));
+  EXPECT_THAT(complaint("t_s,a\n" + std::string(3 << 20, '1')), HasSubstr("megabyte"));
+  for (const std::string& text :
+       {std::string("a,b\n1,2\n"), std::string("t_s,a\n5,1\n4,1\n3,1\n")}) {
+    const std::string line = complaint(text);
+    EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 0);
+  }
+  EXPECT_THROW(read_recording("/no/such/file.csv"), InputError);
+  EXPECT_THROW(read_recording(testing::TempDir()), InputError);
+}
+
+TEST(Recording, DamagedCompressedFilesAreRefused) {
+  std::string text = "t_s,a\n";
+  for (int i = 0; i < 5000; ++i)
+    text += std::to_string(i) + "," + std::to_string(i * i % 997) + "\n";
+  const std::string whole = gzip(text);
+  const File good(whole, ".csv.gz");
+  EXPECT_EQ(read_recording(good.path()).rows(), 5000u);
+  const File cut(whole.substr(0, whole.size() / 2), ".csv.gz");
+  EXPECT_THROW(read_recording(cut.path()), InputError);
+  std::string broken = whole;
+  for (size_t i = whole.size() / 2; i < whole.size() / 2 + 20; ++i) broken[i] = '\x55';
+  const File damaged(broken, ".csv.gz");
+  EXPECT_THROW(read_recording(damaged.path()), InputError);
+}
+
+TEST(Commands, MustBeInOrderAndCommandSomething) {
+  const auto complaint_of = [](const std::string& text) -> std::string {
+    const File file(text);
+    try {
+      read_command_file(file.path());
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_EQ(complaint_of("t_s,command_x_N_m\n0,1\n1,0\n"), "none");
+  EXPECT_THAT(complaint_of("t_s,command_x_N_m\n0,1\n2,0\n1,0\n"),
+              HasSubstr(":4: t_s: found times that do not rise"));
+  EXPECT_THAT(complaint_of("t_s,command_x_N_m\n0,1\n1,0\n1,2\n"), HasSubstr(":4: t_s"));
+  EXPECT_THAT(complaint_of("t_s,gyro_x_rad_s\n0,1\n1,0\n"), HasSubstr("no command"));
+}
+
+TEST(Recording, SharedRecordingsAreRead) {
+  const std::filesystem::path folder =
+      std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/recordings";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not at hand";
+  int read_files = 0;
+  for (const char* set : {"throw_flywheel", "racquet_tumble", "wheel_coastdown"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder / set)) {
+      const Recording recording = read_recording(entry.path());
+      EXPECT_GT(recording.report.rows_kept, 30);
+      // A few repeated stamps and glitches at the most.
+      EXPECT_GT(recording.report.rows_kept, 0.98 * recording.report.rows_read) << entry.path();
+      EXPECT_LT(recording.report.outlier_cells, 0.02 * 3 * recording.report.rows_read)
+          << entry.path() << recording.report.text();
+      ++read_files;
+    }
+  }
+  EXPECT_GT(read_files, 10);
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,296 @@
+#include "attitude/run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+using testing::HasSubstr;
+
+SettingsNode rows(const std::vector<std::vector<double>>& matrix) {
+  std::vector<SettingsNode> all;
+  for (const auto& row : matrix) all.push_back(numbers(row));
+  return list(std::move(all));
+}
+
+// The form of the experiments in the contract.
+SettingsNode experiment() {
+  return table(
+      {{"platform", table({{"topology", node("tabletop")},
+                           {"mass_kg", node(8.7)},
+                           {"inertia_kg_m2", rows({{0.116, 0, 0}, {0, 0.12, 0}, {0, 0, 0.183}})}})},
+       {"environment", table({{"gravity_m_s2", node(9.80665)},
+                              {"magnetic_field_T", numbers({1.6e-6, 2e-5, -3.7e-5})},
+                              {"latitude_deg", node(45.5)}})},
+       {"disturbance", list({table({{"kind", node("static_unbalance")},
+                                    {"offset_m", table({{"value", numbers({-9e-7, -3e-6, -4e-5})},
+                                                        {"sigma", numbers({5e-7, 5e-7, 3e-6})}})}}),
+                             table({{"kind", node("bearing_drag")},
+                                    {"coefficient_N_m_s",
+                                     table({{"value", node(9e-6)}, {"sigma", node(2e-6)}})}})})},
+       {"sensors", table({{"camera", table({{"noise_arcsec", numbers({37, 37, 12})}})},
+                          {"gyro", table({{"noise_rad_s", node(2e-4)},
+                                          {"bias_rad_s",
+                                           table({{"value", numbers({0, 0, 0})},
+                                                  {"sigma", numbers({1e-3, 1e-3, 1e-3})}})}})}})},
+       {"propagate", table({{"duration_s", node(30.0)},
+                            {"initial_tilt_deg", node(10.0)},
+                            {"initial_rate_rad_s", numbers({0, 0, 0.05})}})}});
+}
+
+SettingsNode& at(SettingsNode& root, const std::string& first, const std::string& second) {
+  return std::get<SettingsNode::Table>(
+      std::get<SettingsNode::Table>(root.value)[first].value)[second];
+}
+
+std::string complaint(const std::function<void(SettingsNode&)>& change) {
+  SettingsNode root = experiment();
+  change(root);
+  try {
+    read_propagation(settings_of(root));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Experiment, OfTheContractIsReadWhole) {
+  const PropagationRun run = read_propagation(settings_of(experiment()));
+  EXPECT_EQ(run.model.platform.topology, Topology::tabletop);
+  EXPECT_EQ(run.model.platform.mass_kg, 8.7);
+  EXPECT_EQ(run.model.environment.gravity_lab_m_s2.z(), -9.80665);
+  EXPECT_NEAR(run.model.environment.earth_rate_lab_rad_s.z(),
+              7.292115e-5 * std::sin(45.5 * degree_rad), 1e-18);
+  ASSERT_EQ(run.model.disturbances.size(), 3u);
+  const Parameter& z = run.model.disturbances[0].parameters[2];
+  EXPECT_EQ(z.key, "offset_m");
+  EXPECT_EQ(z.component, 2);
+  EXPECT_EQ(z.value, -4e-5);
+  EXPECT_EQ(z.sigma, 3e-6);
+  EXPECT_EQ(run.model.disturbances[2].kind, "gyro_bias");
+  EXPECT_EQ(run.model.disturbances[2].parameters[1].sigma, 1e-3);
+  EXPECT_NEAR(run.sensors.camera->noise_rad.z(), 12 * arcsecond_rad, 1e-18);
+  EXPECT_NEAR(tilt_rad(run.initial), 10 * degree_rad, 1e-15);
+}
+
+TEST(Experiment, WrongInputIsOneClearLine) {
+  EXPECT_EQ(complaint([](SettingsNode&) {}), "none");
+  EXPECT_THAT(complaint([](SettingsNode& r) {
+                at(r, "platform", "inertia_kg_m2") = rows({{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.3}});
+              }),
+              HasSubstr("platform.inertia_kg_m2: found principal moments 0.1, 0.1, 0.3, expected "
+                        "moments that obey the triangle inequality"));
+  EXPECT_THAT(
+      complaint([](SettingsNode& r) {
+        at(r, "platform", "inertia_kg_m2") = rows({{0.1, 0.05, 0}, {0, 0.1, 0}, {0, 0, 0.1}});
+      }),
+      HasSubstr("symmetric"));
+  EXPECT_THAT(complaint([](SettingsNode& r) { at(r, "platform", "mass_kg") = node(-7.0); }),
+              HasSubstr("platform.mass_kg: found -7, expected a number > 0"));
+  EXPECT_THAT(complaint([](SettingsNode& r) {
+                at(r, "propagate", "initial_attitude") = numbers({1, 1, 0, 0});
+              }),
+              HasSubstr("propagate.initial_attitude: found a quaternion of norm 1.41"));
+  EXPECT_THAT(complaint([](SettingsNode& r) {
+                const auto command = [](double t) {
+                  return table({{"time_s", node(t)}, {"torque_N_m", numbers({1e-4, 0, 0})}});
+                };
+                at(r, "propagate", "command") = list({command(1.0), command(3.0), command(2.0)});
+              }),
+              HasSubstr("propagate.command[2].time_s"));
+  EXPECT_THAT(complaint([](SettingsNode& r) {
+                std::get<SettingsNode::Table>(
+                    std::get<SettingsNode::Array>(
+                        std::get<SettingsNode::Table>(r.value)["disturbance"].value)[1]
+                        .value)["kind"] = node("baring_drag");
+              }),
+              HasSubstr("did you mean \"bearing_drag\"?"));
+  EXPECT_THAT(
+      complaint([](SettingsNode& r) {
+        auto& platform =
+            std::get<SettingsNode::Table>(std::get<SettingsNode::Table>(r.value)["platform"].value);
+        platform["mass"] = platform["mass_kg"];
+        platform.erase("mass_kg");
+      }),
+      HasSubstr("platform.mass: found a key without a unit of mass, expected the key mass_kg"));
+  EXPECT_THAT(complaint([](SettingsNode& r) { at(r, "environment", "gravty_m_s2") = node(9.8); }),
+              HasSubstr("perhaps \"gravity_m_s2\""));
+  EXPECT_THAT(complaint([](SettingsNode& r) { at(r, "propagate", "duration_s") = node(0.0); }),
+              HasSubstr("propagate.duration_s"));
+  EXPECT_THAT(complaint([](SettingsNode& r) { at(r, "propagate", "output_rate_Hz") = node(1e7); }),
+              HasSubstr("20 million"));
+  EXPECT_THAT(complaint([](SettingsNode& r) {
+                at(r, "propagate", "commands") = node("no_such_commands.csv");
+              }),
+              HasSubstr("no_such_commands.csv"));
+}
+
+TEST(Run, GivesHistoryPlotsAndRecording) {
+  const PropagationResult result = propagate(read_propagation(settings_of(experiment())));
+  EXPECT_EQ(result.recording.rows(), 301u);
+  EXPECT_NE(result.recording.find("gyro_z_rad_s"), nullptr);
+  EXPECT_EQ(result.recording.find("command_x_N_m"), nullptr);
+  const Table& history = result.product.tables.front();
+  EXPECT_EQ(history.name, "time_history");
+  std::set<std::string> columns, plots;
+  for (const Table::Column& column : history.columns) {
+    EXPECT_EQ(column.values.size(), 301u) << column.name;
+    columns.insert(column.name);
+  }
+  for (const Plot& plot : result.product.plots) plots.insert(plot.name);
+  for (const char* name : {"t_s", "q_w", "tilt_deg", "heading_deg", "rate_z_rad_s",
+                           "torque_static_unbalance_x_N_m", "torque_bearing_drag_z_N_m"}) {
+    EXPECT_TRUE(columns.contains(name)) << name;
+  }
+  for (const char* name :
+       {"tilt", "heading", "rates", "torques", "torque_static_unbalance", "torque_bearing_drag"}) {
+    EXPECT_TRUE(plots.contains(name)) << name;
+  }
+  EXPECT_FALSE(columns.contains("torque_gyro_bias_x_N_m"));
+}
+
+// Drag alone: the spin falls as exp(−c t/I), and so do the torque and the recorded rate.
+TEST(Run, SpinDecaysAsItsClosedForm) {
+  SettingsNode root = experiment();
+  std::get<SettingsNode::Table>(root.value)["disturbance"] =
+      table({{"kind", node("bearing_drag")}, {"coefficient_N_m_s", node(2e-3)}});
+  std::get<SettingsNode::Table>(root.value).erase("sensors");
+  at(root, "propagate", "initial_tilt_deg") = node(0.0);
+  const PropagationResult result = propagate(read_propagation(settings_of(root)));
+  const Table& history = result.product.tables.front();
+  const auto column = [&](const std::string& name) {
+    for (const Table::Column& c : history.columns) {
+      if (c.name == name) return c.values;
+    }
+    return std::vector<double>{};
+  };
+  for (size_t i = 0; i < result.recording.rows(); ++i) {
+    const double rate = 0.05 * std::exp(-2e-3 / 0.183 * result.recording.time_s[i]);
+    EXPECT_NEAR(result.recording.find("gyro_z_rad_s")->values[i], rate, 1e-13);
+    EXPECT_NEAR(column("torque_bearing_drag_z_N_m")[i], -2e-3 * rate, 1e-15);
+  }
+}
+
+TEST(Run, EndsAtTheTiltStop) {
+  SettingsNode root = experiment();
+  at(root, "platform", "tilt_limit_deg") = node(12.0);
+  at(root, "propagate", "initial_rate_rad_s") = numbers({0, 0.05, 0});
+  const PropagationResult result = propagate(read_propagation(settings_of(root)));
+  ASSERT_EQ(result.events.size(), 1u);
+  EXPECT_LT(result.recording.time_s.back(), result.events[0].time_s + 1e-12);
+  EXPECT_LT(result.recording.rows(), 30u);
+}
+
+// The load draws what the array does not deliver; the array follows the cosine of the tilt, which
+// swings as the pendulum does. In the mean over a full turn about a level axis nothing is left.
+TEST(Power, ChargeIsTheIntegralOfTheBalance) {
+  AttitudeModel model;
+  model.platform.inertia_kg_m2 = Vec3(0.1, 0.1, 0.1).asDiagonal();
+  model.platform.battery_voltage_V = 20.0;
+  model = with(model, "power_balance", {{"load_W", node(15.0)}, {"array_power_W", node(30.0)}});
+  // A steady tilting at 0.01 rad/s: ∫ 30 cos(0.01 t) dt = 3000 sin(0.01 t).
+  const PlatformState end = flown(model, state_of(model, Quat::Identity(), {0.01, 0, 0}), 100.0);
+  EXPECT_NEAR(end.charge_drawn_C, (15.0 * 100.0 - 3000.0 * std::sin(1.0)) / 20.0, 1e-9);
+}
+
+TEST(Power, TableIsMetAtItsPointsAndStaysBetweenThem) {
+  const std::vector<double> tilts = {0, 10, 20, 30}, powers = {30, 29, 22, 22};
+  AttitudeModel model;
+  model = with(model, "power_balance",
+               {{"load_W", node(0.0)}, {"tilt_deg", numbers(tilts)}, {"power_W", numbers(powers)}});
+  const Dynamics dynamics(model);
+  const auto power_at = [&](double tilt_deg) {
+    const PlatformState state = state_of(model, turned(tilt_deg * degree_rad, {1, 1, 0}));
+    std::vector<Lanes> y;
+    for (const double x : to_vector(state)) y.emplace_back(x);
+    return dynamics.at(0.0, {}, y.data()).array_power_W[3];
+  };
+  for (size_t i = 0; i < tilts.size(); ++i) EXPECT_NEAR(power_at(tilts[i]), powers[i], 1e-9);
+  for (double tilt = 0.5; tilt < 40; tilt += 0.5) {
+    EXPECT_LE(power_at(tilt), power_at(tilt - 0.5) + 1e-9);
+    EXPECT_GE(power_at(tilt), 22.0 - 1e-9);
+  }
+}
+
+AttitudeModel wheeled(std::vector<std::pair<std::string, SettingsNode>> more = {}) {
+  AttitudeModel model;
+  model.platform.inertia_kg_m2 = Vec3(0.11, 0.12, 0.19).asDiagonal();
+  model.environment.gravity_lab_m_s2.setZero();
+  std::vector<std::pair<std::string, SettingsNode>> entries = {{"gain_N_m_per_rad", node(2e-3)},
+                                                               {"gain_N_m_s", node(2.2e-2)},
+                                                               {"wheel_inertia_kg_m2", node(1e-4)},
+                                                               {"largest_torque_N_m", node(2e-3)},
+                                                               {"largest_rate_rad_s", node(500.0)}};
+  entries.insert(entries.end(), more.begin(), more.end());
+  return with(model, "wheel_control", entries);
+}
+
+Vec3 whole_momentum_lab(const AttitudeModel& model, const PlatformState& state) {
+  Vec3 body = model.platform.inertia_kg_m2 * state.rate_body_rad_s;
+  for (int k = 0; k < 3; ++k) {
+    // The wheels' rates are absolute, and their axial inertia is part of the platform's.
+    body[k] += 1e-4 * (state.extra[static_cast<size_t>(k)] - state.rate_body_rad_s[k]);
+  }
+  return state.lab_from_body * body;
+}
+
+TEST(Wheels, TurnThePlatformToItsTargetAndKeepTheMomentum) {
+  const AttitudeModel model =
+      wheeled({{"target_axis", numbers({1, 2, 3})}, {"target_angle_deg", node(40.0)}});
+  const PlatformState start = state_of(model, turned(-1.0, {3, 1, 0}), {0.01, -0.02, 0.03});
+  const Vec3 momentum = whole_momentum_lab(model, start);
+  const PlatformState end = flown(model, start, 600.0, 1e-10);
+  EXPECT_LT(end.lab_from_body.angularDistance(turned(40 * degree_rad, {1, 2, 3})), 1e-6);
+  EXPECT_LT(end.rate_body_rad_s.norm(), 1e-7);
+  EXPECT_LT((whole_momentum_lab(model, end) - momentum).norm(), 1e-12 * momentum.norm());
+}
+
+// Feedback without an integral stays off by what the wheels' friction takes: at rest the wheel
+// turns on only while the motor gives c ω + τ, and the motor gives 2 k sin(error/2).
+TEST(Wheels, FrictionLeavesTheErrorThatItsTorqueNeeds) {
+  const AttitudeModel model = wheeled({{"viscous_N_m_s", node(1e-6)}, {"dry_N_m", node(2e-6)}});
+  const PlatformState start = state_of(model, Quat::Identity(), {0, 0, 0.03});
+  const PlatformState end = flown(model, start, 300.0, 1e-10);
+  const double friction_N_m = 1e-6 * end.extra[2] + 2e-6;
+  const double error_rad = 2.0 * std::asin(friction_N_m / (2.0 * 2e-3));
+  EXPECT_GT(end.extra[2], 40.0);
+  EXPECT_NEAR(2.0 * std::asin(std::abs(end.lab_from_body.z())), error_rad, 0.02 * error_rad);
+}
+
+TEST(Wheels, SaturateInTorqueAndRate) {
+  // A large error: the motors give what they can.
+  const AttitudeModel model =
+      wheeled({{"target_axis", numbers({0, 0, 1})}, {"target_angle_deg", node(179.0)}});
+  const PlatformState start = state_of(model, Quat::Identity());
+  EXPECT_NEAR(torque_body_N_m(model, start).norm(), 2e-3, 0.2 * 2e-3);
+  EXPECT_LT(torque_body_N_m(model, start).norm(), 2e-3);
+  // A wheel at its largest rate takes no more.
+  PlatformState spun = start;
+  spun.extra[2] = -520.0;
+  EXPECT_LT(std::abs(torque_body_N_m(model, spun).z()), 1e-6);
+  spun.extra[2] = 520.0;
+  EXPECT_GT(std::abs(torque_body_N_m(model, spun).z()), 1.5e-3);
+}
+
+TEST(Cases, SharedExperimentsNeedNoOtherKeys) {
+  // What the experiments of the shared cases hold beside the contract's example: nothing. Their
+  // recordings are checked where files are read.
+  const std::filesystem::path folder =
+      std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/cases/02";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not at hand";
+  const Recording recording = read_recording(folder / "run1.csv.gz");
+  EXPECT_EQ(recording.rows(), 4000u);
+  EXPECT_EQ(recording.report.outlier_cells, 0);
+}
+
+}  // namespace
+}  // namespace photorque
