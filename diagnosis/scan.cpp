@@ -1,0 +1,233 @@
+#include "diagnosis/scan.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "diagnosis/screen.h"
+
+namespace photorque {
+namespace {
+
+double end_s(const std::vector<Observation>& runs) {
+  double end = 0.0;
+  for (const Observation& seen : runs) end = std::max(end, seen.time_s.back());
+  return end;
+}
+
+double longest_s(const std::vector<Observation>& runs) {
+  double longest = 0.0;
+  for (const Observation& seen : runs) longest = std::max(longest, seen.duration_s());
+  return longest;
+}
+
+// Indices of the `most` largest values that are larger than both neighbours.
+std::vector<size_t> peaks(const std::vector<double>& value, size_t most) {
+  std::vector<size_t> found;
+  for (size_t i = 0; i < value.size(); ++i) {
+    const bool rises = i == 0 || value[i] >= value[i - 1];
+    const bool falls = i + 1 == value.size() || value[i] > value[i + 1];
+    if (rises && falls) found.push_back(i);
+  }
+  std::sort(found.begin(), found.end(), [&](size_t a, size_t b) { return value[a] > value[b]; });
+  if (found.size() > most) found.resize(most);
+  return found;
+}
+
+// Power of the whitened residuals of all channels of one run on an even grid of frequencies.
+void add_power(const Prediction& prediction, const Observation& seen, double step_Hz,
+               std::vector<double>& power) {
+  const size_t blocks = prediction.residual.size();
+  std::vector<std::complex<double>> phasor(blocks, 1.0), turn(blocks);
+  for (size_t i = 0; i < blocks; ++i) {
+    turn[i] = std::polar(1.0, 2.0 * pi * step_Hz * seen.time_s[i]);
+  }
+  std::array<std::vector<double>, 6> channel;
+  for (size_t k = 0; k < 6; ++k) {
+    for (const WhiteRow& row : prediction.residual) {
+      const double r = row[static_cast<Eigen::Index>(k)];
+      channel[k].push_back(std::isfinite(r) ? r : 0.0);
+    }
+  }
+  for (double& at : power) {
+    std::array<std::complex<double>, 6> sum{};
+    for (size_t i = 0; i < blocks; ++i) {
+      phasor[i] *= turn[i];
+      for (size_t k = 0; k < 6; ++k) sum[k] += channel[k][i] * phasor[i];
+    }
+    for (const auto& s : sum) at += std::norm(s) / static_cast<double>(blocks);
+  }
+}
+
+Disturbance with(const Disturbance& like, size_t parameter, double value) {
+  Disturbance d = like;
+  d.parameters[parameter].value = value;
+  return d;
+}
+
+// The jump in the centre of mass at each of a grid of instants.
+std::vector<Disturbance> mass_shift_starts(const Candidate& c, const Trial& parent,
+                                           const std::vector<Observation>& runs) {
+  constexpr size_t count = 60;
+  const double last_s = end_s(runs), first_s = runs.front().time_s.front();
+  std::vector<ScoreGroup> groups;
+  for (size_t i = 1; i < count; ++i) {
+    const double at_s = first_s + (last_s - first_s) * static_cast<double>(i) / count;
+    groups.push_back({{with(c.start, 0, at_s)}, {1, 2, 3}});
+  }
+  const std::vector<Score> scores = score(parent.fit, runs, groups);
+  std::vector<double> gain;
+  for (const Score& s : scores) gain.push_back(s.gain);
+  std::vector<Disturbance> starts;
+  for (const size_t i : peaks(gain, 3)) {
+    Disturbance d = groups[i].disturbances.front();
+    for (Eigen::Index k = 0; k < scores[i].estimate.size() && k < 3; ++k) {
+      d.parameters[static_cast<size_t>(1 + k)].value = scores[i].estimate[k];
+    }
+    starts.push_back(d);
+  }
+  return starts;
+}
+
+// amplitude · sin(2π f t + φ): sine and cosine are scored as two disturbances with phases 0 and
+// π/2; one phase for all axes is the best matrix of rank one.
+std::vector<Disturbance> sinusoid_starts(const Candidate& c, const Trial& parent,
+                                         const std::vector<Observation>& runs,
+                                         const std::vector<double>& frequencies_Hz) {
+  std::vector<ScoreGroup> groups;
+  for (const double f_Hz : frequencies_Hz) {
+    const Disturbance sine = with(c.start, 3, f_Hz);
+    groups.push_back({{sine, with(sine, 4, pi / 2)}, {0, 1, 2}});
+  }
+  const std::vector<Score> scores = score(parent.fit, runs, groups);
+  std::vector<Disturbance> starts;
+  for (size_t i = 0; i < groups.size(); ++i) {
+    if (scores[i].estimate.size() != 6) continue;
+    Eigen::Matrix<double, 3, 2> amplitude;
+    amplitude.col(0) = scores[i].estimate.head<3>();
+    amplitude.col(1) = scores[i].estimate.tail<3>();
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(amplitude, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Vec3 vector = svd.singularValues()[0] * svd.matrixU().col(0);
+    Disturbance d = groups[i].disturbances.front();
+    for (int k = 0; k < 3; ++k) d.parameters[static_cast<size_t>(k)].value = vector[k];
+    d.parameters[4].value = std::atan2(svd.matrixV()(1, 0), svd.matrixV()(0, 0));
+    starts.push_back(d);
+  }
+  return starts;
+}
+
+// A light appendage on each axis, at each of a grid of frequencies.
+std::vector<Disturbance> flexible_mode_starts(const Candidate& c, const Trial& parent,
+                                              const std::vector<Observation>& runs) {
+  const double interval_s = longest_s(runs) / static_cast<double>(runs.front().blocks());
+  const double highest_Hz = std::min(5.0, 0.5 / interval_s);
+  std::vector<Disturbance> modes;
+  std::vector<double> gain;
+  for (double f_Hz = std::max(0.02, 2.0 / longest_s(runs)); f_Hz < highest_Hz; f_Hz *= 1.5) {
+    std::vector<ScoreGroup> groups;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      Disturbance d = with(c.start, 3, f_Hz);
+      for (size_t k = 0; k < 3; ++k) {
+        d.parameters[k].value = k == axis ? 1.0 : 0.0;
+        d.states[1].per_body_rate[static_cast<Eigen::Index>(k)] = d.parameters[k].value;
+      }
+      d.parameters[5].value *= 1e-3;
+      groups.push_back({{d}, {5}});
+    }
+    const std::vector<Score> scores = score(parent.fit, runs, groups);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      Disturbance d = groups[axis].disturbances.front();
+      if (scores[axis].estimate.size() == 1) {
+        d.parameters[5].value = std::clamp(scores[axis].estimate[0], 0.1 * c.start.parameters[5].value,
+                                           10.0 * c.start.parameters[5].value);
+      }
+      modes.push_back(d);
+      gain.push_back(scores[axis].estimate.size() == 1 && scores[axis].estimate[0] > 0.0
+                         ? scores[axis].gain
+                         : 0.0);
+    }
+  }
+  std::vector<size_t> order(modes.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return gain[a] > gain[b]; });
+  std::vector<Disturbance> starts;
+  for (size_t i = 0; i < std::min<size_t>(2, order.size()); ++i) {
+    if (gain[order[i]] > 4.0) starts.push_back(modes[order[i]]);
+  }
+  return starts;
+}
+
+// Slow sinusoids excite the platform's own motion; there the slopes of the whole trajectory tell
+// more than the residual's power.
+std::vector<double> slow_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
+                                        double highest_Hz, size_t most) {
+  const double step_Hz = 0.5 / longest_s(runs);
+  std::vector<double> frequency_Hz;
+  std::vector<ScoreGroup> groups;
+  const Effect effect{"periodic_torque",
+                      {{"torque_N_m", {0, 0, 0}}, {"frequency_Hz", {1}}, {"phase", {0}}},
+                      ""};
+  const DisturbanceContext context{at.best.model.platform, at.best.model.environment};
+  const Disturbance tone = disturbance_of(effect, context);
+  for (double f_Hz = step_Hz; f_Hz < highest_Hz; f_Hz += step_Hz) {
+    frequency_Hz.push_back(f_Hz);
+    const Disturbance sine = with(tone, 3, f_Hz);
+    groups.push_back({{sine, with(sine, 4, pi / 2)}, {0, 1, 2}});
+  }
+  std::vector<double> gain;
+  for (const Score& s : score(at, runs, groups)) gain.push_back(s.gain);
+  std::vector<double> result;
+  for (const size_t i : peaks(gain, most)) {
+    if (gain[i] > 20.0) result.push_back(frequency_Hz[i]);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
+                                        size_t most) {
+  const double step_Hz = 0.25 / longest_s(runs);
+  double interval_s = longest_s(runs);
+  for (const Observation& seen : runs) {
+    interval_s = std::min(interval_s, seen.duration_s() / static_cast<double>(seen.blocks() - 1));
+  }
+  const double slow_Hz = std::min(0.2, 100.0 / longest_s(runs));
+  std::vector<double> power(static_cast<size_t>(0.5 / interval_s / step_Hz), 0.0);
+  PredictionOptions options;
+  options.keep_residuals = true;
+  for (size_t run = 0; run < runs.size(); ++run) {
+    const Dynamics dynamics(at.best.model_of(run, runs[run]));
+    try {
+      add_power(predict(dynamics, at.best.runs[run].initial, runs[run], {}, options), runs[run],
+                step_Hz, power);
+    } catch (const NumericalError&) {
+      return {};
+    }
+  }
+  std::vector<double> result = slow_frequencies_Hz(at, runs, slow_Hz, most / 2);
+  const auto slow = std::min(power.size(), static_cast<size_t>(slow_Hz / step_Hz));
+  std::fill(power.begin(), power.begin() + static_cast<std::ptrdiff_t>(slow), 0.0);
+  for (const size_t i : peaks(power, most)) {
+    // Power 1 for each channel is noise; the largest of thousands stays below this.
+    if (power[i] > 20.0) result.push_back(static_cast<double>(i + 1) * step_Hz);
+  }
+  return result;
+}
+
+std::vector<Disturbance> starts_of(const Candidate& candidate, const Trial& parent,
+                                   const std::vector<Observation>& runs,
+                                   const std::vector<double>& lines_Hz) {
+  const std::string& kind = candidate.effect.kind;
+  if (kind == "mass_shift") return mass_shift_starts(candidate, parent, runs);
+  if (kind == "periodic_torque" || kind == "floor_vibration") {
+    return sinusoid_starts(candidate, parent, runs, lines_Hz);
+  }
+  if (kind == "flexible_mode") return flexible_mode_starts(candidate, parent, runs);
+  return {candidate.start};
+}
+
+}  // namespace photorque

@@ -1,0 +1,27 @@
+// Score tests: how much χ² would fall if a disturbance were added whose parameters now stand at
+// zero effect, computed from slopes at the present fit alone, everything already fitted projected
+// out.
+#pragma once
+
+#include "diagnosis/fit.h"
+
+namespace photorque {
+
+struct Score {
+  double gain = 0.0;         // expected fall of χ²
+  Eigen::VectorXd estimate;  // expected change of the parameters
+  Eigen::MatrixXd information;  // inverse covariance of the estimate
+};
+
+// One group of parameters that would enter together.
+struct ScoreGroup {
+  std::vector<Disturbance> disturbances;
+  std::vector<int> parameters = {};  // of each disturbance; empty: all
+};
+
+// All groups in one pass (some in several, so that memory stays bounded). A group that cannot be
+// propagated has gain 0.
+std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
+                         const std::vector<ScoreGroup>& groups);
+
+}  // namespace photorque

@@ -1,0 +1,255 @@
+#include "diagnosis/trial.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/run.h"
+#include "diagnosis/belief.h"
+
+namespace photorque {
+namespace {
+
+// Far wider than any effect: keeps what the data do not determine from running away, no more.
+constexpr double fit_prior_widths = 30.0;
+// Of one effect of the catalogue among all, and of one empirical law.
+constexpr double log_prior_effect = -3.4;      // 1/30
+constexpr double log_prior_empirical = -5.0;
+
+Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) {
+  Candidate c;
+  c.label = effect.kind;
+  c.effect = effect;
+  c.start = disturbance_of(effect, context);
+  for (const Parameter& parameter : c.start.parameters) {
+    // A fixed detail of the law (where a rubbing contact begins to creep) is not fitted.
+    const auto key = std::find_if(effect.keys.begin(), effect.keys.end(),
+                                  [&](const EffectKey& k) { return k.key == parameter.key; });
+    c.scale.push_back(key == effect.keys.end() ? 0.0 : key->scale);
+    c.lowest.push_back(key == effect.keys.end() ? -1e308 : key->lowest);
+    c.highest.push_back(key == effect.keys.end() ? 1e308 : key->highest);
+    c.searched.push_back(key != effect.keys.end() && key->searched);
+  }
+  return c;
+}
+
+Candidate candidate_of(const EmpiricalLaw& law) {
+  Candidate c;
+  c.label = "unknown in " + law.variable + ": " + law.description;
+  c.variable = law.variable;
+  c.start = law.disturbance;
+  const size_t n = law.disturbance.parameters.size();
+  c.scale.assign(n, law.scale);
+  c.lowest.assign(n, -1e308);
+  c.highest.assign(n, 1e308);
+  c.searched.assign(n, false);
+  return c;
+}
+
+bool is_fitted(const Candidate& c, size_t p) {
+  return c.scale[p] > 0.0;
+}
+
+// ln p(θ) |H|^(−1/2) of the Laplace approximation. The fit's own prior is far wider than what is
+// believed of an effect's size; here it is replaced by one of the expected size, or of the size
+// found where that is larger.
+double log_evidence(const Trial& trial, const std::vector<Candidate>& all) {
+  const Fit& fit = trial.fit;
+  if (!std::isfinite(fit.chi2)) return -1e300;
+  Eigen::MatrixXd hessian = fit.hessian;
+  double result = -0.5 * fit.chi2;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const Candidate& c = all[trial.candidates[i]];
+    result += c.empirical() ? log_prior_empirical : log_prior_effect;
+    const std::vector<Eigen::Index> where = shared_indices(trial, i);
+    size_t k = 0;
+    double squares = 0.0;
+    int count = 0;
+    for (size_t p = 0; p < c.scale.size(); ++p) {
+      if (!is_fitted(c, p) || c.searched[p]) continue;
+      const double value =
+          fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value / c.scale[p];
+      squares += value * value;
+      ++count;
+    }
+    const double grown = count > 0 ? std::max(1.0, std::sqrt(squares / count)) : 1.0;
+    if (count > 0) result -= 0.5 * std::min<double>(count, squares);
+    for (size_t p = 0; p < c.scale.size(); ++p) {
+      if (!is_fitted(c, p)) continue;
+      const double sigma = c.scale[p] * (c.searched[p] ? 1.0 : grown);
+      const double wide = c.scale[p] * fit_prior_widths;
+      const Eigen::Index at = fit.first_shared + where[k++];
+      hessian(at, at) += 1.0 / (sigma * sigma) - 1.0 / (wide * wide);
+      result -= std::log(sigma);
+      if (c.lowest[p] == 0.0 && !c.searched[p]) result += std::log(2.0);  // half of a Gaussian
+    }
+    for (size_t s = 0; s < c.start.states.size(); ++s) {
+      result -= static_cast<double>(fit.best.runs.size()) * std::log(0.01);  // prior of its start
+    }
+  }
+  const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd scaled =
+      scale.cwiseInverse().asDiagonal() * hessian * scale.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd d = scaled.ldlt().vectorD();
+  for (Eigen::Index i = 0; i < d.size(); ++i) {
+    result -= 0.5 * std::log(std::max(d[i], 1e-12)) + std::log(scale[i]);
+  }
+  return result;
+}
+
+std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) {
+  if (!std::isfinite(trial.fit.chi2)) return "cannot be propagated";
+  const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const Candidate& c = all[trial.candidates[i]];
+    const std::vector<Eigen::Index> where = shared_indices(trial, i);
+    size_t k = 0;
+    for (size_t p = 0; p < c.scale.size(); ++p) {
+      if (!is_fitted(c, p)) continue;
+      const Eigen::Index at = where[k++];
+      const double value =
+          trial.fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value;
+      const double sigma = std::sqrt(std::max(0.0, covariance(at, at)));
+      if (value < c.lowest[p] - 2.0 * sigma || value > c.highest[p] + 2.0 * sigma) {
+        return c.label + " would have the wrong sign";
+      }
+    }
+  }
+  double drag = 0.0;
+  bool has_drag = false;
+  for (const Disturbance& d : trial.fit.best.model.disturbances) {
+    if (d.kind != "bearing_drag") continue;
+    has_drag = true;
+    for (const Parameter& p : d.parameters) drag += p.value;
+  }
+  if (has_drag && drag < -1e-6) return "the bearing's drag would feed energy";
+  return "";
+}
+
+void judge(Trial& trial, const std::vector<Candidate>& all) {
+  trial.log_evidence = log_evidence(trial, all);
+  trial.objection = objection_to(trial, all);
+}
+
+}  // namespace
+
+std::vector<Candidate> all_candidates(const BelievedModel& believed,
+                                      const std::vector<Observation>& runs) {
+  const DisturbanceContext context{believed.model.platform, believed.model.environment};
+  double duration_s = 0.0, charge_C = 0.0;
+  bool has_commands = false;
+  for (const Observation& seen : runs) {
+    duration_s = std::max(duration_s, seen.time_s.back());
+    const Observation last = seen.part(seen.blocks() - 1, seen.blocks());
+    charge_C = std::max(charge_C, std::abs(last.initial_charge_C));
+    for (const Held& held : seen.schedule.held) {
+      has_commands = has_commands || held.command_body_N_m.norm() > 0.0;
+    }
+  }
+  std::vector<Candidate> all;
+  for (const Effect& effect : catalogue(believed.model.platform)) {
+    if (effect.needs == "command" && !has_commands) continue;
+    if (effect.needs == "charge" && charge_C == 0.0) continue;
+    const bool field = believed.model.environment.magnetic_field_lab_T.norm() > 0.0;
+    if (!field && (effect.kind == "magnetic_dipole" || effect.kind == "eddy_damping")) continue;
+    // A law without parameters acts already or not.
+    const auto& acting = believed.model.disturbances;
+    const bool acts = std::any_of(acting.begin(), acting.end(),
+                                  [&](const Disturbance& d) { return d.kind == effect.kind; });
+    if (effect.keys.empty() && acts) continue;
+    all.push_back(candidate_of(effect, context));
+  }
+  const double torque_N_m = 5e-6;
+  for (const EmpiricalLaw& law : empirical_laws(duration_s, charge_C, has_commands, torque_N_m)) {
+    all.push_back(candidate_of(law));
+  }
+  return all;
+}
+
+std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which) {
+  std::vector<Eigen::Index> result;
+  Eigen::Index shared = 0;
+  for (const Free& f : trial.fit.best.free) {
+    if (f.per_run) continue;
+    if (f.disturbance == trial.disturbances[which]) result.push_back(shared);
+    ++shared;
+  }
+  return result;
+}
+
+Trial believed_trial(const Fit& belief) {
+  Trial trial;
+  trial.fit = belief;
+  trial.log_evidence = log_evidence(trial, {});
+  return trial;
+}
+
+Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t candidate,
+             const Disturbance& start, const std::vector<Observation>& runs,
+             const FitSettings& settings) {
+  const Candidate& c = all[candidate];
+  Trial trial;
+  trial.candidates = parent.candidates;
+  trial.disturbances = parent.disturbances;
+  Hypothesis h = parent.fit.best;
+  const size_t index = add_disturbance(h, start);
+  trial.candidates.push_back(candidate);
+  trial.disturbances.push_back(index);
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (!is_fitted(c, p)) continue;
+    Free f{index, static_cast<int>(p)};
+    f.mean = c.searched[p] ? start.parameters[p].value : 0.0;
+    f.sigma = fit_prior_widths * c.scale[p];
+    if (c.searched[p]) {
+      f.lowest = c.lowest[p];
+      f.highest = c.highest[p];
+    }
+    h.free.push_back(f);
+  }
+  trial.fit = fit(h, runs, settings);
+  judge(trial, all);
+  return trial;
+}
+
+Trial refit(const Trial& trial, const std::vector<Candidate>& all,
+            const std::vector<Observation>& runs, const std::vector<RunStart>& starts,
+            const FitSettings& settings) {
+  Trial result = trial;
+  Hypothesis h = trial.fit.best;
+  h.runs = starts;
+  result.fit = fit(h, runs, settings);
+  judge(result, all);
+  return result;
+}
+
+double significance(const Trial& trial, const std::vector<Candidate>& all, size_t which) {
+  const Candidate& c = all[trial.candidates[which]];
+  const std::vector<Eigen::Index> where = shared_indices(trial, which);
+  const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
+  std::vector<std::pair<Eigen::Index, double>> linear;
+  size_t k = 0;
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (!is_fitted(c, p)) continue;
+    const Eigen::Index at = where[k++];
+    if (c.searched[p]) continue;
+    linear.emplace_back(
+        at, trial.fit.best.model.disturbances[trial.disturbances[which]].parameters[p].value);
+  }
+  const auto n = static_cast<Eigen::Index>(linear.size());
+  if (n == 0) return 0.0;
+  Eigen::MatrixXd C(n, n);
+  Eigen::VectorXd theta(n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    theta[a] = linear[static_cast<size_t>(a)].second;
+    for (Eigen::Index b = 0; b < n; ++b) {
+      C(a, b) =
+          covariance(linear[static_cast<size_t>(a)].first, linear[static_cast<size_t>(b)].first);
+    }
+  }
+  const Eigen::VectorXd scale = C.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * C * scale.asDiagonal();
+  const Eigen::VectorXd scaled = scale.cwiseProduct(theta);
+  return std::sqrt(std::max(0.0, scaled.dot(correlation.ldlt().solve(scaled))));
+}
+
+}  // namespace photorque

@@ -1,0 +1,60 @@
+// Candidates that may explain what is left, and models that contain some of them, fitted in full.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/catalogue.h"
+#include "diagnosis/empirical.h"
+#include "diagnosis/fit.h"
+
+namespace photorque {
+
+// An effect of the catalogue, or an empirical law.
+struct BelievedModel;  // attitude/run.h
+
+struct Candidate {
+  std::string label;  // "magnetic_dipole", "unknown in heading: 3 periods a turn"
+  std::string variable;  // of an empirical law; empty: an effect of the catalogue
+  Effect effect;         // empty kind for an empirical law
+  Disturbance start;
+  std::vector<double> scale;  // of each parameter
+  std::vector<double> lowest, highest;
+  std::vector<bool> searched;
+
+  bool empirical() const { return !variable.empty(); }
+};
+std::vector<Candidate> all_candidates(const BelievedModel& believed,
+                                      const std::vector<Observation>& runs);
+
+// The believed model and some candidates.
+struct Trial {
+  std::vector<size_t> candidates;    // in the order in which they were added
+  std::vector<size_t> disturbances;  // where each stands in the model
+  Fit fit;
+  // Natural logarithm of the evidence but for a constant that all trials on the same runs share:
+  // Laplace's approximation (MacKay, Information Theory, Inference, and Learning Algorithms, 2003,
+  // eq. 28.5), with the prior probability of the candidates' names.
+  double log_evidence = 0.0;
+  std::string objection;  // why physics forbids it; empty: nothing
+};
+
+Trial believed_trial(const Fit& belief);
+
+// Adds a candidate, its parameters starting from `start`, and fits.
+Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t candidate,
+             const Disturbance& start, const std::vector<Observation>& runs,
+             const FitSettings& settings = {});
+
+// The same trial on other or more runs: shared parameters start from the fitted ones.
+Trial refit(const Trial& trial, const std::vector<Candidate>& all,
+            const std::vector<Observation>& runs, const std::vector<RunStart>& starts,
+            const FitSettings& settings = {});
+
+// Significance of the candidate added last: the square root of θᵀ C⁻¹ θ.
+double significance(const Trial& trial, const std::vector<Candidate>& all, size_t which);
+
+// Indices of a candidate's parameters among the shared ones of the fit.
+std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which);
+
+}  // namespace photorque
