@@ -50,6 +50,14 @@ int run(int argc, char** argv) {
       command->add_option("--recording", line.recordings, "A recording (CSV); may be repeated")
           ->allow_extra_args(false);
     }
+    if (verb.takes_holdouts) {
+      command->add_option("--holdout", line.holdouts, "A recording kept back to judge by; as above")
+          ->allow_extra_args(false);
+    }
+    if (verb.takes_cases) {
+      command->add_option("--cases", line.cases, "Score this folder of cases instead of new ones");
+      command->add_flag("--only-make", line.only_make, "Make the cases, diagnose nothing");
+    }
   }
   if (argc > 1 && argv[1][0] != '-') {
     std::set<std::string> known;

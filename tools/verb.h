@@ -21,6 +21,9 @@ struct CommandLine {
   bool quiet = false;                             // no text but errors
   bool json = false;                              // the summary as JSON on standard output
   std::vector<std::filesystem::path> recordings;  // --recording, of commands that take some
+  std::vector<std::filesystem::path> holdouts;    // --holdout, recordings kept back from a fit
+  std::optional<std::filesystem::path> cases;     // --cases, a folder of concealed cases
+  bool only_make = false;                         // --only-make: the cases, nothing more
 
   // --out, or out/EXPERIMENT/VERB below the current folder.
   std::filesystem::path out_folder() const;
@@ -34,6 +37,8 @@ struct Verb {
   std::string summary;  // one sentence for --help
   std::function<void(const CommandLine&)> run;
   bool takes_recordings = false;
+  bool takes_holdouts = false;
+  bool takes_cases = false;
 };
 
 // Every verb named in tools/CMakeLists.txt, in that order.

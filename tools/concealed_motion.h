@@ -1,0 +1,80 @@
+// The moving platform of `prove`: what really happens in a concealed case.
+//
+// A second implementation of the catalogue, so that `diagnose` is not tried on its own equations.
+// It shares no code with folder attitude: the laws are written again in plain arithmetic, every
+// case is integrated by the classical Runge–Kutta method with fixed steps, and nothing is
+// differentiated. Shared are the formulas themselves (the catalogue and its conventions), physical
+// constants, and the hash that makes random numbers.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace photorque {
+
+using Triple = std::array<double, 3>;
+
+// An effect with its numbers in SI units, keys as in an experiment file.
+struct ConcealedEffect {
+  std::string kind;
+  std::map<std::string, std::vector<double>> parameters;
+};
+
+// What holds from its time to the next.
+struct ConcealedCommand {
+  double time_s = 0.0;
+  Triple torque_N_m = {};
+  double battery_current_A = 0.0;
+};
+
+struct ConcealedStart {
+  std::array<double, 4> attitude = {1, 0, 0, 0};  // w, x, y, z: lab from body
+  Triple rate_rad_s = {};                         // body axes
+};
+
+// Everything that acts.
+struct ConcealedWorld {
+  double mass_kg = 1.0;
+  std::array<Triple, 3> inertia_kg_m2 = {};
+  double gravity_m_s2 = 9.80665;
+  Triple magnetic_field_T = {};  // lab: east, north, up
+  double latitude_rad = 0.0;
+  Triple offset_m = {};     // of the centre of mass
+  double drag_N_m_s = 0.0;  // of the bearing
+  Triple gyro_bias_rad_s = {};
+  std::vector<ConcealedEffect> effects;
+};
+
+// What noiseless instruments read, and the state behind it.
+struct ConcealedMoment {
+  double time_s = 0.0;
+  std::array<double, 4> attitude = {1, 0, 0, 0};  // true
+  std::array<double, 4> camera = {1, 0, 0, 0};    // misaligned; not delayed
+  Triple rate_rad_s = {};
+  Triple gyro_rad_s = {};
+};
+
+// Kinds that act here: the catalogue but for radiation_pressure (which needs a traced table) and
+// stepper_quantization (which is an offset like any other), and five laws outside of it:
+//   heading_cogging (torque_N_m, periods, phase): about the vertical, n periods a turn of heading;
+//   tilt_cubed (coefficient_N_m): pulls back with the cube of the tilt;
+//   slow_random_torque (torque_N_m[3] rms about lab axes, time_s correlation, seed);
+//   exponential_decay (torque_N_m[3] body, time_s);
+//   pulsed_torque (torque_N_m[3] body, period_s): on for the first third of each period.
+std::vector<std::string> concealed_kinds();
+bool is_outside_catalogue(const std::string& kind);
+// Multiplies what makes the effect strong: torques, offsets, gains, not times or frequencies.
+void scale_effect(ConcealedEffect& effect, double by);
+double concealed_latency_s(const ConcealedWorld& world);
+
+// Noiseless readings at `times_s` (rising, not before `from_s`, where the motion starts). Steps of
+// at most `step_s` that end at every jump; the error falls with its fourth power: 1e-9 rad for
+// 0.01 s and rates below 1 rad/s. NumericalError for an unknown kind and when the motion diverges.
+std::vector<ConcealedMoment> concealed_motion(const ConcealedWorld& world,
+                                              const std::vector<ConcealedCommand>& commands,
+                                              const ConcealedStart& start, double from_s,
+                                              const std::vector<double>& times_s, double step_s);
+
+}  // namespace photorque
