@@ -34,8 +34,9 @@ void require_spectrum_inside(const Settings& source, const Beam& beam, const Ban
   throw source.error("", outside.str(), "[scene] bands_nm that hold all of it");
 }
 
-std::vector<Beam> make_beams(const ExperimentFile& file, const Scene& scene,
-                             std::vector<std::string>& notices) {
+// Notices and the files that the sources read go to the model's.
+std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
+  const Scene& scene = model.scene;
   if (file.sources.empty())
     throw file.settings.error("source", "nothing", "at least one [[source]]");
   const std::vector<SourceKind> kinds = all_source_kinds();
@@ -43,7 +44,11 @@ std::vector<Beam> make_beams(const ExperimentFile& file, const Scene& scene,
   for (const Settings& source : file.sources) {
     const SourceContext context{
         .scene_radius_m = scene.radius_m(),
-        .notice = [&](const std::string& line) { notices.push_back(source.name() + ": " + line); }};
+        .notice =
+            [&](const std::string& line) { model.notices.push_back(source.name() + ": " + line); },
+        .folder = file.path.parent_path(),
+        .input = [&](const std::string& name,
+                     const std::string& hash) { model.inputs.emplace_back(name, hash); }};
     const SourceKind& kind = kinds[source.choice("kind", names_of(kinds))];
     for (Beam& beam : kind.make(source, context)) {
       require_spectrum_inside(source, beam, scene.bands);
@@ -142,7 +147,7 @@ Experiment resolve_experiment(ExperimentFile file) {
       {.bands = file.bands, .materials = file.materials, .metres_per_unit = file.metres_per_unit});
   require_triangles(model.scene, *file.scene_file);
 
-  std::vector<Beam> beams = make_beams(file, model.scene, model.notices);
+  std::vector<Beam> beams = make_beams(file, model);
   std::vector<NamedReceiver> receivers = make_receivers(file, model.scene);
   const Camera camera = read_camera(file, model.scene.radius_m());
   file.settings.finish();

@@ -1,6 +1,7 @@
 // How a `[[source]]` of an experiment becomes beams.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,6 +17,10 @@ struct SourceContext {
   // Told, in one line, of what is legal but cannot be meant (a beam that no optics can make). May
   // be empty.
   std::function<void(const std::string&)> notice;
+  // Relative paths of files that a source names start here: the folder of the experiment.
+  std::filesystem::path folder = {};
+  // Told the name and the content hash of every file read, for the provenance. May be empty.
+  std::function<void(const std::string& name, const std::string& hash)> input = {};
 };
 
 // One kind of source: `kind = "led"`.

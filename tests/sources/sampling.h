@@ -1,15 +1,18 @@
 // What the tests of sources share: settings made by hand, and rays from Sobol points.
 #pragma once
 
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/files.h"
 #include "core/settings.h"
 #include "core/sobol.h"
 #include "raytrace/emitter.h"
+#include "sources/ray_set.h"
 #include "sources/source_kind.h"
 
 namespace photorque::test {
@@ -79,6 +82,24 @@ inline std::vector<Ray> rays_of(const Emitter& emitter, uint32_t count, uint64_t
     }
   }
   return rays;
+}
+
+// A context whose folder holds the file that an example may name: even rays of a Gaussian lamp.
+inline SourceContext with_files() {
+  // A folder for each test: they may run side by side.
+  const auto* running = testing::UnitTest::GetInstance()->current_test_info();
+  SourceContext context;
+  context.folder = std::filesystem::path(testing::TempDir()) /
+                   (std::string(running->test_suite_name()) + "_" + running->name());
+  const std::filesystem::path file = context.folder / "lamp.tm25ray";
+  if (std::filesystem::exists(file)) return context;
+  RaySet set;
+  const auto lamp = make_beams("led", kind_called("led").example).front().emitter;
+  for (const Ray& ray : rays_of(*lamp, 65536)) {
+    set.rays.push_back({ray.origin_m, ray.direction, 1.0, 0.0});
+  }
+  write_file_whole(file, write_tm25(set));
+  return context;
 }
 
 // Angles from +z, ascending.
