@@ -29,6 +29,17 @@ class Query {
   void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
     rtcIntersect16(valid, scene, &rays, &arguments_);
   }
+  // Sets tfar to −∞ where something is hit.
+  static void occluded(RTCScene scene, const int* valid, RTCRay8& rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    rtcOccluded8(valid, scene, &rays, &arguments);
+  }
+  static void occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    rtcOccluded16(valid, scene, &rays, &arguments);
+  }
 
  private:
   RTCIntersectArguments arguments_;
@@ -47,6 +58,17 @@ class Query {
   void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
     rtcIntersect16(valid, scene, &context_, &rays);
   }
+  // Sets tfar to −∞ where something is hit.
+  static void occluded(RTCScene scene, const int* valid, RTCRay8& rays) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded8(valid, scene, &context, &rays);
+  }
+  static void occluded(RTCScene scene, const int* valid, RTCRay16& rays) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded16(valid, scene, &context, &rays);
+  }
 
  private:
   RTCIntersectContext context_;
@@ -58,10 +80,12 @@ struct PacketType;
 template <>
 struct PacketType<8> {
   using type = RTCRayHit8;
+  using shadow = RTCRay8;
 };
 template <>
 struct PacketType<16> {
   using type = RTCRayHit16;
+  using shadow = RTCRay16;
 };
 
 }  // namespace embree_seam

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/sobol.h"
 #include "core/spectrum.h"
@@ -45,12 +47,25 @@ class Emitter {
   virtual double relative_intensity(double angle_rad) const = 0;
 };
 
+// An aperture that shines alike from all its points, with the emitter's relative_intensity() about
+// the axis: a disc at z = 0, or an area so far away that only directions matter. What lets the
+// light on a surface be gathered from the surface's side (see disc_light.h).
+struct UniformAperture {
+  double radius_m = 0.0;  // > 0; infinite for parallel light, whose rays fill a plane normal to
+                          // each direction
+  double exitance_W_m2 = 0.0;  // power over the area of the aperture
+  // Where the relative intensity jumps or changes its law, rising; the last is where it ends, 0 for
+  // collimated light.
+  std::vector<double> edges_rad;
+};
+
 // An emitter placed in the laboratory.
 struct Beam {
   std::string name;
   std::shared_ptr<const Emitter> emitter;
   RigidTransform lab_from_emitter;
   Spectrum spectrum;
+  std::optional<UniformAperture> aperture = std::nullopt;  // none: rays only
 };
 
 }  // namespace photorque

@@ -35,13 +35,15 @@ double sum_bands(std::span<const double> bin, size_t channel, size_t first_band,
 FluxLayer layer(const SurfaceGrid& grid, size_t bands, const BinSums& sums, Replicates replicates,
                 size_t channel, size_t first_band, size_t last_band) {
   const size_t stride = bands * channels;
+  const size_t bounced = grid.bins() * stride;
   const auto count = static_cast<size_t>(replicates.count);
   std::vector<double> totals(count, 0.0), values(count);
   FluxLayer result;
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
     for (size_t r = 0; r < count; ++r) {
-      const auto all = sums.of(replicates.first + static_cast<int>(r));
-      values[r] = sum_bands(all.subspan(bin * stride, stride), channel, first_band, last_band);
+      const auto all = sums.of(replicates.first + static_cast<int>(r)).subspan(bin * stride);
+      values[r] = sum_bands(all, channel, first_band, last_band) +
+                  sum_bands(all.subspan(bounced), channel, first_band, last_band);
       totals[r] += values[r];
     }
     const Estimate power_W = estimate(values);
@@ -107,17 +109,22 @@ FluxMapReceiver::FluxMapReceiver(std::string name, const Scene& scene, SurfaceGr
     : name_(std::move(name)), grid_(std::move(grid)), bands_(scene.bands), binner_(scene, grid_) {}
 
 size_t FluxMapReceiver::bins() const {
-  return grid_.bins() * static_cast<size_t>(bands_.count()) * channels;
+  return 2 * grid_.bins() * static_cast<size_t>(bands_.count()) * channels;
+}
+
+size_t FluxMapReceiver::entry(size_t bin, size_t band) const {
+  return (bin * static_cast<size_t>(bands_.count()) + band) * channels;
 }
 
 void FluxMapReceiver::score(const Hits& hits, std::span<double> sums) const {
   BinnedHits binned;
   binner_.bin(hits, binned);
   const auto bands = static_cast<size_t>(bands_.count());
+  const size_t offset = hits.depth[0] == 0 ? 0 : direct_entries();
   for (size_t band = 0; band < bands; ++band) {
     const double* in = hits.incident_W[band].data();
     const double* kept = hits.absorbed_W[band].data();
-    double* base = sums.data() + band * channels;
+    double* base = sums.data() + offset + band * channels;
     for_each_binned(binned, [=](size_t hit, size_t index) {
       Eigen::Map<Vec2>(base + index * bands * channels) += Vec2(in[hit], kept[hit]);
     });
@@ -135,8 +142,9 @@ FluxMap FluxMapReceiver::flux_map(const BinSums& sums, int replicate) const {
 std::vector<double> FluxMapReceiver::incident_W(std::span<const double> bins) const {
   const auto bands = static_cast<size_t>(bands_.count());
   std::vector<double> power_W;
-  for (size_t first = 0; first < bins.size(); first += bands * channels) {
-    power_W.push_back(sum_bands(bins.subspan(first, bands * channels), incident, 0, bands));
+  for (size_t first = 0; first < direct_entries(); first += bands * channels) {
+    power_W.push_back(sum_bands(bins.subspan(first), incident, 0, bands) +
+                      sum_bands(bins.subspan(direct_entries() + first), incident, 0, bands));
   }
   return power_W;
 }

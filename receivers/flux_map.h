@@ -29,14 +29,20 @@ struct FluxMap {
 };
 
 // `kind = "flux_map"`. Bins: for every bin of the grid and every band, the incident and then the
-// absorbed power [W].
+// absorbed power [W]; first of the light straight from the emitters, then, in the same order, of
+// the light that has met a surface before.
 class FluxMapReceiver final : public Receiver {
  public:
   // `grid` must have been laid over `scene`.
   FluxMapReceiver(std::string name, const Scene& scene, SurfaceGrid grid);
 
   size_t bins() const override;
+  // Hits that are scored together must be of one depth.
   void score(const Hits& hits, std::span<double> sums) const override;
+  // Entries of direct light, at the front of bins(): incident power in a band of a bin of the grid
+  // at entry(bin, band), absorbed power after it.
+  size_t direct_entries() const { return bins() / 2; }
+  size_t entry(size_t bin, size_t band) const;
   // Maps "irradiance_NAME" and "absorbed_NAME" [W/m²] (also per band when there are several), power
   // on the surface and absorbed by it [W], area [m²], and the statistics.
   Product product(const BinSums& sums) const override;

@@ -41,8 +41,16 @@ ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums) {
                    grid.area_m2,
                    {}};
   light.power_W = {grid.bins() * static_cast<size_t>(light.bands), sums.replicates, {}};
-  // Incident and absorbed power take turns in the receiver's bins.
-  for (size_t i = 0; i < sums.sums.size(); i += 2) light.power_W.sums.push_back(sums.sums[i]);
+  const size_t bounced = receiver.direct_entries();
+  for (int r = 0; r < sums.replicates; ++r) {
+    const auto all = sums.of(r);
+    for (size_t bin = 0; bin < grid.bins(); ++bin) {
+      for (size_t band = 0; band < static_cast<size_t>(light.bands); ++band) {
+        const size_t incident = receiver.entry(bin, band);
+        light.power_W.sums.push_back(all[incident] + all[bounced + incident]);
+      }
+    }
+  }
   return light;
 }
 

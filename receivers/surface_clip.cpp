@@ -46,11 +46,11 @@ Halves cut(const Piece& piece, int axis, double at) {
 }
 
 // Of the whole triangle, whose barycentric coordinates enclose an area of one half.
-double area_fraction(const Piece& piece) {
+double area_fraction(std::span<const Vec2> piece) {
   double twice_area = 0.0;
-  for (size_t i = 2; i < piece.count; ++i) {
-    const Vec2 a = piece.corner[i - 1].barycentric - piece.corner[0].barycentric;
-    const Vec2 b = piece.corner[i].barycentric - piece.corner[0].barycentric;
+  for (size_t i = 2; i < piece.size(); ++i) {
+    const Vec2 a = piece[i - 1] - piece[0];
+    const Vec2 b = piece[i] - piece[0];
     twice_area += a.x() * b.y() - a.y() * b.x();
   }
   return std::max(0.0, twice_area);
@@ -81,15 +81,25 @@ void slice(Piece rest, int axis, int size, const Take& take) {
 
 }  // namespace
 
-void split_over_cells(const std::array<Vec2, 3>& corners, int width, int height,
-                      const std::function<void(int, int, double)>& add) {
+void clip_to_cells(const std::array<Vec2, 3>& corners, int width, int height,
+                   const std::function<void(int, int, std::span<const Vec2>)>& add) {
   Piece triangle;
   triangle.add({corners[0], {0, 0}});
   triangle.add({corners[1], {1, 0}});
   triangle.add({corners[2], {0, 1}});
   slice(triangle, 0, width, [&](int column, const Piece& strip) {
-    slice(strip, 1, height,
-          [&](int row, const Piece& part) { add(column, row, area_fraction(part)); });
+    slice(strip, 1, height, [&](int row, const Piece& part) {
+      std::array<Vec2, 12> weights;
+      for (size_t i = 0; i < part.count; ++i) weights[i] = part.corner[i].barycentric;
+      add(column, row, std::span(weights).first(part.count));
+    });
+  });
+}
+
+void split_over_cells(const std::array<Vec2, 3>& corners, int width, int height,
+                      const std::function<void(int, int, double)>& add) {
+  clip_to_cells(corners, width, height, [&](int column, int row, std::span<const Vec2> piece) {
+    add(column, row, area_fraction(piece));
   });
 }
 

@@ -36,6 +36,14 @@ double AngularDistribution::intensity_per_flux(double angle_rad) const {
   return sum;
 }
 
+std::vector<double> AngularDistribution::edges_rad() const {
+  std::vector<double> edges;
+  for (const Part& part : parts_) edges.push_back(part.profile.end_rad);
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
 double AngularDistribution::relative_intensity(double angle_rad) const {
   return std::min(1.0, intensity_per_flux(angle_rad) / brightest_);
 }

@@ -25,6 +25,9 @@ class AngularDistribution {
   // Radiant intensity over its maximum, in [0, 1].
   double relative_intensity(double angle_rad) const;
 
+  // Where a profile ends, rising; the last is where all light ends.
+  std::vector<double> edges_rad() const;
+
   // Flux over the largest intensity [sr]: the solid angle that a beam as bright would fill evenly.
   double effective_solid_angle_sr() const { return 1.0 / brightest_; }
 

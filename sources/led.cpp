@@ -23,7 +23,8 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   const Vec3 direction = read_direction(settings, position_m);
   const double power_W = settings.number("power_W", Range::positive());
   const Lamp lamp = read_lamp(settings, context, name, power_W);
-  return {{name, lamp.emitter, frame_looking_along(direction, position_m), lamp.spectrum}};
+  return {{name, lamp.emitter, frame_looking_along(direction, position_m), lamp.spectrum,
+           lamp.aperture}};
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   for (size_t i = 0; i < placement.positions_m.size(); ++i) {
     beams.push_back({name + "[" + std::to_string(i) + "]", lamp.emitter,
                      frame_looking_along(placement.directions[i], placement.positions_m[i]),
-                     lamp.spectrum});
+                     lamp.spectrum, lamp.aperture});
   }
   return beams;
 }

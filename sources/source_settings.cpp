@@ -114,8 +114,10 @@ Lamp read_lamp(const Settings& settings, const SourceContext& context, const std
         etendue_notice(name, *die, diameter_m, directions.effective_solid_angle_sr());
     if (notice && context.notice) context.notice(*notice);
   }
+  const double radius_m = 0.5 * diameter_m;
+  UniformAperture aperture{radius_m, power_W / (pi * radius_m * radius_m), directions.edges_rad()};
   return {std::make_shared<DiscLamp>(power_W, diameter_m, std::move(directions)),
-          read_line_spectrum(settings, usual_led_fwhm_m)};
+          read_line_spectrum(settings, usual_led_fwhm_m), std::move(aperture)};
 }
 
 }  // namespace photorque

@@ -40,6 +40,7 @@ Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m);
 struct Lamp {
   std::shared_ptr<const Emitter> emitter;
   Spectrum spectrum;
+  UniformAperture aperture;
 };
 Lamp read_lamp(const Settings& settings, const SourceContext& context, const std::string& name,
                double power_W);

@@ -14,6 +14,7 @@
 // normal to the axis is E = L π sin²α, and the power of all rays L · 2π(1 − cos α) · πR² = E πR² /
 // cos²(α/2).
 #include <cmath>
+#include <limits>
 
 #include "core/constants.h"
 #include "sources/block_maps.h"
@@ -86,8 +87,11 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
     throw settings.error("kind", "\"sun\" over a scene without extent", "a scene to shine on");
   }
   const double radius_m = margin * context.scene_radius_m;
-  return {{name, std::make_shared<Sun>(irradiance_W_m2, angular_radius_rad, radius_m),
-           frame_looking_along(direction, -radius_m * direction), spectrum}};
+  auto sun = std::make_shared<Sun>(irradiance_W_m2, angular_radius_rad, radius_m);
+  const double exitance_W_m2 = sun->power_W() / (pi * radius_m * radius_m);
+  return {{name, std::move(sun), frame_looking_along(direction, -radius_m * direction), spectrum,
+           UniformAperture{
+               std::numeric_limits<double>::infinity(), exitance_W_m2, {angular_radius_rad}}}};
 }
 
 }  // namespace
