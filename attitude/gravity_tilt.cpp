@@ -12,14 +12,11 @@ struct GravityTilt final : LawOf<GravityTilt> {
     const Vec3Of<T> turn(own.parameter(0), own.parameter(1), T(0.0));
     const T angle = length(turn);
     const Vec3Of<T> axis = turn / angle;
-    now.gravity_lab_m_s2 = rotated(now.gravity_lab_m_s2, axis, angle);
-    now.up_lab = rotated(now.up_lab, axis, angle);
-  }
-
-  // Rodrigues' formula.
-  template <class T>
-  static Vec3Of<T> rotated(const Vec3Of<T>& v, const Vec3Of<T>& axis, const T& angle) {
-    return cos(angle) * v + sin(angle) * axis.cross(v) + (T(1.0) - cos(angle)) * axis.dot(v) * axis;
+    const T cosine = cos(angle), sine = sin(angle);
+    // Rodrigues' formula.
+    for (Vec3Of<T>* v : {&now.gravity_lab_m_s2, &now.up_lab}) {
+      *v = Vec3Of<T>(cosine * *v + sine * axis.cross(*v) + (T(1.0) - cosine) * axis.dot(*v) * axis);
+    }
   }
 };
 

@@ -66,7 +66,42 @@ Quad shifted_sin(const Quad& x, long long quarters) {
   return (quarter & 2) != 0 ? -value : value;
 }
 
+// Arctangent on [−tan π/8, tan π/8], error below 2e-16. Source: S. L. Moshier, Cephes (atan.c).
+Quad atan_kernel(const Quad& x) {
+  const Quad z = x * x;
+  const Quad p = -6.485021904942025371773e1 +
+                 z * (-1.228866684490136173410e2 +
+                      z * (-7.500855792314704667340e1 +
+                           z * (-1.615753718733365076637e1 + z * -8.750608600031904122785e-1)));
+  const Quad q = 1.945506571482613964425e2 +
+                 z * (4.853903996359136964868e2 +
+                      z * (4.328810604912902668951e2 +
+                           z * (1.650270098316988542046e2 + z * (2.485846490142306297962e1 + z))));
+  return x + x * z * (p / q);
+}
+
+// Of the smaller over the larger size, then mirrored into the octant.
+Quad quad_atan2(const Quad& y, const Quad& x) {
+  constexpr double tan_eighth_turn = 0.41421356237309503;  // tan π/8
+  constexpr double quarter_pi = 0x1.921fb54442d18p-1, quarter_pi_rest = 0x1.1a62633145c07p-55;
+  const Quad zero{};
+  const Quad size_x = x > zero ? x : -x, size_y = y > zero ? y : -y;
+  const Bits steep = size_y > size_x;
+  const Quad large = steep ? size_y : size_x, small = steep ? size_x : size_y;
+  const Bits beyond = small > tan_eighth_turn * large;
+  const Quad over = beyond ? small - large : small, under = beyond ? small + large : large;
+  const Quad folded = atan_kernel(over / (under == zero ? under + 1.0 : under));
+  Quad angle = beyond ? quarter_pi + (folded + quarter_pi_rest) : folded;
+  angle = steep ? 2.0 * quarter_pi - (angle - 2.0 * quarter_pi_rest) : angle;
+  angle = x < zero ? 4.0 * quarter_pi - (angle - 4.0 * quarter_pi_rest) : angle;
+  return y < zero ? -angle : angle;
+}
+
 }  // namespace
+
+Lanes atan2(const Lanes& y, const Lanes& x) {
+  return {quad_atan2(y.low, x.low), quad_atan2(y.high, x.high)};
+}
 
 Lanes sin(const Lanes& x) {
   if (!is_reducible(x)) return each_lane(x, [](double a) { return std::sin(a); });

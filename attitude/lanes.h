@@ -89,11 +89,8 @@ inline Lanes log(const Lanes& x) {
   return each_lane(x, [](double a) { return std::log(a); });
 }
 Lanes pow(const Lanes& x, double exponent);
-inline Lanes atan2(const Lanes& y, const Lanes& x) {
-  Lanes angle;
-  for (int i = 0; i < Lanes::count; ++i) angle.set(i, std::atan2(y[i], x[i]));
-  return angle;
-}
+// Good to three units in the last place for finite numbers; 0 for two zeros, whatever their signs.
+Lanes atan2(const Lanes& y, const Lanes& x);
 
 // a where x ≥ bound, b elsewhere; lane by lane.
 inline Lanes where_at_least(const Lanes& x, double bound, const Lanes& a, const Lanes& b) {

@@ -142,7 +142,10 @@ void Sensitivity::solve(const CollocationStep& step, const Held& held) {
   }
   const Lanes weighted_h_s = h_s_ * Lanes(gauss::weights);
   std::vector<Lanes> stages(start_.size()), rates(start_.size());
-  Settling settling(1e-16, 1e-13);
+  // Linear, and of the same contraction as the stages, which have settled: it will, however the
+  // mixed units of the components swell the first changes.
+  constexpr int patience = 25;
+  Settling settling(1e-16, 1e-13, patience);
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     for (size_t i = 0; i < start_.size(); ++i) {
       stages[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);

@@ -14,8 +14,10 @@ class Settling {
   enum class Verdict { go_on, settled, failed };
 
   // What is left after a change shall be below `settled`; when changes below `rounding` stop
-  // falling, rounding is all that is left.
-  Settling(double settled, double rounding) : settled_(settled), rounding_(rounding) {}
+  // falling, rounding is all that is left. After `patience` changes in a row without a new smallest
+  // one the iteration has failed.
+  Settling(double settled, double rounding, int patience = 6)
+      : settled_(settled), rounding_(rounding), patience_(patience) {}
 
   Verdict judge(double change) {
     if (!std::isfinite(change)) return Verdict::failed;
@@ -25,7 +27,7 @@ class Settling {
     rises_ = change < best_ ? 0 : rises_ + 1;
     best_ = std::min(best_, change);
     if (rises_ >= 2 && change < rounding_) return Verdict::settled;
-    if (rises_ >= 6) return Verdict::failed;
+    if (rises_ >= patience_) return Verdict::failed;
     before_ = std::isfinite(previous_) ? contraction : 1.0;
     previous_ = change;
     return Verdict::go_on;
@@ -33,6 +35,7 @@ class Settling {
 
  private:
   double settled_, rounding_;
+  int patience_;
   double previous_ = std::numeric_limits<double>::infinity();
   double best_ = std::numeric_limits<double>::infinity();
   double before_ = 1.0;  // the contraction before

@@ -35,6 +35,28 @@ TEST(Lanes, SineAndCosineAgreeWithTheLibrary) {
   EXPECT_TRUE(std::isnan(sin(Lanes(NAN))[0]));
 }
 
+TEST(Lanes, ArctangentAgreesWithTheLibrary) {
+  std::mt19937_64 engine(2);
+  std::uniform_real_distribution<double> exponent(-12.0, 12.0), sign(-1.0, 1.0);
+  const auto any = [&] { return std::copysign(std::pow(10.0, exponent(engine)), sign(engine)); };
+  for (int i = 0; i < 20000; ++i) {
+    Lanes x, y;
+    for (int k = 0; k < Lanes::count; ++k) {
+      x.set(k, any());
+      y.set(k, i % 2 == 0 ? any() : x[k] * sign(engine) * 3.0);
+    }
+    const Lanes angle = atan2(y, x);
+    for (int k = 0; k < Lanes::count; ++k) {
+      EXPECT_LE(units_in_last_place(angle[k], std::atan2(y[k], x[k])), 3.0) << y[k] << " " << x[k];
+    }
+  }
+  for (const double x : {-2.0, 0.0, 2.0}) {
+    for (const double y : {-2.0, 0.0, 2.0}) EXPECT_EQ(atan2(Lanes(y), x)[3], std::atan2(y, x));
+  }
+  EXPECT_TRUE(std::isnan(atan2(Lanes(NAN), 1.0)[0]));
+  EXPECT_TRUE(std::isnan(atan2(Lanes(1.0), NAN)[0]));
+}
+
 TEST(Lanes, SelectionsWorkLaneByLane) {
   Lanes x;
   for (int k = 0; k < Lanes::count; ++k) x.set(k, k - 3.5);
