@@ -1,0 +1,69 @@
+// Scores of diagnoses against what was concealed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/product.h"
+
+namespace photorque {
+
+// What happened in one case.
+struct CaseScore {
+  std::string name, family;  // as in truth.json; family "case" where that names none
+  std::string true_verdict, verdict;
+  std::vector<std::string> true_kinds, kinds;
+  double chi2_gain = 0.0;  // what the data can show of the concealed effects; NaN: not stated
+  bool answered = false;   // a diagnosis.json was written
+  std::string failure;     // what the program said instead
+  bool verdict_right = false;
+  // Verdict and set of names are among those that the truth accepts.
+  bool right = false;
+  // The same when every named effect may be swapped for one that it calls indistinguishable.
+  bool right_within_group = false;
+  bool false_alarm = false;       // something named or "unexplained" where nothing is missing
+  bool wrong_name = false;        // an effect named that neither acts nor is accepted
+  bool dependence_right = false;  // of an unknown law: the first variable named is the right one
+  double confidence = 0.0;
+  std::vector<std::pair<double, bool>>
+      claims;                 // probability stated of each name, and whether right
+  std::vector<double> pulls;  // (fitted − true) / sigma
+  double holdout_chi2 = 0.0, oracle_chi2 = 0.0;  // per number, after; NaN: unknown
+  double wall_s = 0.0;
+};
+
+// Reads truth.json of `truth_folder`, and diagnosis.json of `diagnosis_folder` and, where there is
+// one, of `oracle_folder`. InputError when truth.json cannot be understood; a diagnosis that cannot
+// counts as no answer.
+CaseScore score_case(const std::filesystem::path& truth_folder,
+                     const std::filesystem::path& diagnosis_folder,
+                     const std::filesystem::path& oracle_folder);
+
+// k of n as a share with its interval of 95 % (E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209).
+struct Share {
+  int hits = 0, of = 0;
+  double low() const;
+  double high() const;
+};
+
+// The headline counts: one row per question, "aim" in words.
+struct ProofRow {
+  std::string question;
+  Share share;
+  std::string aim;
+};
+std::vector<ProofRow> proof_rows(const std::vector<CaseScore>& scores);
+
+// Rows by family and kind: how many, right, verdict right, wrong names.
+Table proof_by_kind(const std::vector<CaseScore>& scores);
+// One row per case.
+Table proof_cases(const std::vector<CaseScore>& scores);
+// Stated probability, in five bins, beside the share that was right.
+Table proof_reliability(const std::vector<CaseScore>& scores);
+// The headline counts as a table, and figures of pulls, held-out error and time.
+Table proof_summary(const std::vector<CaseScore>& scores);
+std::vector<Quantity> proof_quantities(const std::vector<CaseScore>& scores);
+
+}  // namespace photorque
