@@ -5,8 +5,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -17,6 +15,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "photovoltaic_bisection.h"
+#include "photovoltaic_ivcurves.h"
 #include "photovoltaic_reference.h"
 #include "receivers/photovoltaic_batch.h"
 #include "receivers/photovoltaic_table.h"
@@ -81,79 +80,35 @@ TEST(PhotovoltaicCell, MatchesBisectionInExtendedPrecision) {
   }
 }
 
-// --- cwhanse/ivcurves: curves computed with 40 digits (residuals below 1e-16 A)
-// --------------------
-
-std::string read_all(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-// The quoted numbers of the array called `key` in the curve that starts at `from`.
-std::vector<double> quoted_array(const std::string& json, const std::string& key, size_t from) {
-  const size_t start = json.find('[', json.find('"' + key + '"', from));
-  const size_t end = json.find(']', start);
-  std::vector<double> values;
-  for (size_t quote = json.find('"', start); quote < end;) {
-    const size_t close = json.find('"', quote + 1);
-    values.push_back(std::stod(json.substr(quote + 1, close - quote - 1)));
-    quote = json.find('"', close + 1);
-  }
-  return values;
-}
-
-double quoted_number(const std::string& json, const std::string& key, size_t from) {
-  const size_t colon = json.find(':', json.find('"' + key + '"', from));
-  const size_t quote = json.find('"', colon);
-  return std::stod(json.substr(quote + 1, json.find('"', quote + 1) - quote - 1));
-}
-
+// cwhanse/ivcurves: curves computed with 40 digits (residuals below 1e-16 A).
 TEST(PhotovoltaicCell, ReproducesThePublishedHighPrecisionCurves) {
-  const auto folder = reference::folder() / "ivcurves";
-  const std::string json = read_all(folder / "case1.json");
-  if (json.empty()) GTEST_SKIP() << "no ivcurves beside this source tree";
-  std::ifstream csv(folder / "case1.csv");
-  std::string line;
-  std::getline(csv, line);
-  size_t at = json.find("\"IV Curves\""), curves = 0;
+  const std::vector<ivcurves::Curve> curves = ivcurves::read("case1");
+  if (curves.empty()) GTEST_SKIP() << "no ivcurves beside this source tree";
+  EXPECT_EQ(curves.size(), 32u);
   double worst = 0.0;
-  while (std::getline(csv, line)) {
-    std::stringstream cells(line);
-    std::vector<double> c;
-    for (std::string x; std::getline(cells, x, ',');) c.push_back(std::stod(x));
-    CellParameters p;
-    p.saturation_1_A = c[2];
-    p.series_ohm = c[3];
-    p.shunt_ohm = c[4];
-    p.ideality_1 = c[5] * c[6];
-    const CellCurve cell(p);
-    at = json.find("\"Index\"", at + 1);
-    const auto voltages = quoted_array(json, "Voltages", at),
-               currents = quoted_array(json, "Currents", at);
-    ASSERT_EQ(voltages.size(), 100u);
-    ASSERT_EQ(currents.size(), 100u);
-    const double isc = quoted_number(json, "i_sc", at), voc = quoted_number(json, "v_oc", at);
-    const auto compare = [&](double found, double expected, double scale) {
-      worst = std::max(worst, std::abs(found - expected) / scale);
-    };
+  const auto compare = [&](double found, double expected, double scale) {
+    worst = std::max(worst, std::abs(found - expected) / scale);
+  };
+  for (const ivcurves::Curve& c : curves) {
+    const CellCurve cell(c.truth.parameters());
+    const double light_A = c.truth.photocurrent_A;
+    ASSERT_EQ(c.voltage_V.size(), 100u);
     for (size_t i = 0; i < 100; ++i) {
-      compare(cell.current_A(c[1], voltages[i]), currents[i], isc);
-      compare(cell.voltage_V(c[1], currents[i]), voltages[i], voc);
+      compare(cell.current_A(light_A, c.voltage_V[i]), c.current_A[i], c.short_circuit_A);
+      compare(cell.voltage_V(light_A, c.current_A[i]), c.voltage_V[i], c.open_circuit_V);
     }
-    const CellOperatingPoint best = cell.maximum_power(c[1]);
-    compare(cell.short_circuit_A(c[1]), isc, isc);
-    compare(cell.open_circuit_V(c[1]), voc, voc);
-    compare(best.power_W(), quoted_number(json, "p_mp", at), best.power_W());
-    compare(best.voltage_V, quoted_number(json, "v_mp", at), best.voltage_V);
-    compare(best.current_A, quoted_number(json, "i_mp", at), best.current_A);
-    compare(cell.current_A(c[1], 0.5 * voc), quoted_number(json, "i_x", at), isc);
-    ++curves;
+    const CellOperatingPoint best = cell.maximum_power(light_A);
+    compare(cell.short_circuit_A(light_A), c.short_circuit_A, c.short_circuit_A);
+    compare(cell.open_circuit_V(light_A), c.open_circuit_V, c.open_circuit_V);
+    compare(best.power_W(), c.maximum_W, c.maximum_W);
+    compare(best.voltage_V, c.maximum_V, c.maximum_V);
+    compare(best.current_A, c.maximum_A, c.maximum_A);
+    compare(cell.current_A(light_A, 0.5 * c.open_circuit_V), c.half_A, c.short_circuit_A);
   }
-  EXPECT_EQ(curves, 32u);
   EXPECT_LE(worst, 1e-12);
-  RecordProperty("worst_relative_error", std::to_string(worst));
+  std::stringstream text;
+  text << worst;
+  RecordProperty("worst_relative_error", text.str());
 }
 
 // --- random parameters --------------------------------------------------------------------------

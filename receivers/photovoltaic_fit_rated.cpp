@@ -1,0 +1,144 @@
+// Fits of datasheet figures.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "receivers/photovoltaic_fit_parts.h"
+
+namespace photorque {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+enum Parameter { saturation, scale, series, shunt, count };
+
+CellCurve circuit(const VectorXd& x) {
+  return CellCurve(single_diode(std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]),
+                                std::exp(-x[shunt])));
+}
+
+void check(std::span<const RatedPoint> points) {
+  if (points.empty()) throw InputError({}, "datasheet", "no points", "at least one");
+  for (const RatedPoint& p : points) {
+    const bool good = p.irradiance_W_m2 > 0 && p.temperature_K > 0 &&
+                      p.short_circuit_A > p.maximum_A && p.maximum_A > 0 &&
+                      p.open_circuit_V > p.maximum_V && p.maximum_V > 0;
+    const double fill = p.maximum_A * p.maximum_V / (p.short_circuit_A * p.open_circuit_V);
+    if (!good || fill < 0.25) {
+      throw InputError({}, "datasheet", "figures that no cell can have",
+                       "0.25 I_sc V_oc < I_mp V_mp with I_mp < I_sc and V_mp < V_oc");
+    }
+    if (std::abs(p.temperature_K - points[0].temperature_K) > 0.5) {
+      throw InputError({}, "datasheet", "points at different temperatures",
+                       "one temperature; slopes say how it changes");
+    }
+  }
+}
+
+VectorXd relative_errors(std::span<const RatedPoint> points, const VectorXd& x) {
+  VectorXd errors = VectorXd::Constant(3 * static_cast<Index>(points.size()),
+                                       std::numeric_limits<double>::infinity());
+  if (!reasonable(x)) return errors;
+  const CellCurve cell = circuit(x);
+  Index row = 0;
+  for (const RatedPoint& p : points) {
+    const double light_A = cell.photocurrent_A(p.short_circuit_A);
+    const CellOperatingPoint best = cell.maximum_power(light_A);
+    errors[row++] = cell.open_circuit_V(light_A) / p.open_circuit_V - 1.0;
+    errors[row++] = best.current_A / p.maximum_A - 1.0;
+    errors[row++] = best.voltage_V / p.maximum_V - 1.0;
+  }
+  return errors;
+}
+
+LeastSquaresFit fit(std::span<const RatedPoint> points, double guess_V) {
+  const RatedPoint& first = points[0];
+  LeastSquaresFit best;
+  best.squares = std::numeric_limits<double>::infinity();
+  const bool fixed_scale = points.size() == 1;
+  for (const double blunter : {1.0, 1.5}) {
+    for (const double resistive : {0.3, 3.0}) {
+      const double a = guess_V * (fixed_scale ? 1.0 : blunter);
+      VectorXd start(Index{count});
+      start << std::log(first.short_circuit_A) - first.open_circuit_V / a, std::log(a),
+          std::log(0.02 * resistive * first.open_circuit_V / first.short_circuit_A),
+          std::log(0.01 * first.short_circuit_A / first.open_circuit_V);
+      // Without a second point a weak pull keeps n V_t where it was guessed.
+      const auto residuals = [&](const VectorXd& x) {
+        VectorXd all = relative_errors(points, x);
+        if (!fixed_scale) return all;
+        all.conservativeResize(all.size() + 1);
+        all[all.size() - 1] = x[scale] - std::log(guess_V);
+        return all;
+      };
+      const LeastSquaresFit trial = least_squares(start, with_differences(residuals));
+      if (trial.squares < best.squares) best = trial;
+    }
+  }
+  return best;
+}
+
+// E₀ with which V_oc changes as the datasheet says, over the next 10 kelvin.
+double gap_eV(const CellModel& model, double light_A, double slope_V_K) {
+  constexpr double step_K = 10.0;
+  const double temperature_K = model.reference.temperature_K;
+  const double wanted_V = CellCurve(model.reference).open_circuit_V(light_A) + step_K * slope_V_K;
+  double low = 0.01, high = 20.0;
+  for (int i = 0; i < 60; ++i) {
+    CellModel trial = model;
+    trial.gap_eV = std::midpoint(low, high);
+    const double v =
+        CellCurve(parameters_at(trial, 1.0, temperature_K + step_K)).open_circuit_V(light_A);
+    (v > wanted_V ? low : high) = trial.gap_eV;
+  }
+  return std::midpoint(low, high);
+}
+
+}  // namespace
+
+RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
+                          double ideality_guess_V) {
+  check(points);
+  if (!(ideality_guess_V > 0)) {
+    throw InputError({}, "datasheet", "n V_t = " + std::to_string(ideality_guess_V),
+                     "a number > 0");
+  }
+  const LeastSquaresFit best = fit(points, ideality_guess_V);
+  const VectorXd& x = best.parameters;
+  const VectorXd error = (best.covariance.diagonal() * best.variance()).cwiseSqrt();
+  const RatedPoint& first = points[0];
+  const double temperature_K = first.temperature_K;
+  RatedFit result;
+  result.diode = {{0.0, 0.0},
+                  exponential(x[saturation], error[saturation]),
+                  exponential(x[scale], error[scale]),
+                  exponential(x[series], error[series]),
+                  exponential(-x[shunt], error[shunt])};
+  result.model.reference = result.diode.parameters(temperature_K);
+  const double light_A = CellCurve(result.model.reference).photocurrent_A(first.short_circuit_A);
+  result.diode.photocurrent_A = {light_A, 0.0};
+  result.model.gap_eV = gap_eV(result.model, light_A * (1.0 + 10.0 * slopes.short_circuit_1_K),
+                               slopes.open_circuit_1_K * first.open_circuit_V);
+  result.model.photocurrent_slope_1_K = slopes.short_circuit_1_K;
+  result.short_circuit_A_m2_W = first.short_circuit_A / first.irradiance_W_m2;
+  result.rms = std::sqrt(relative_errors(points, x).squaredNorm() /
+                         (3.0 * static_cast<double>(points.size())));
+  return result;
+}
+
+RatedPoint RatedFit::predict(double irradiance_W_m2, double temperature_K) const {
+  const CellCurve cell(parameters_at(model, 1.0, temperature_K));
+  const double short_circuit_A =
+      short_circuit_A_m2_W * irradiance_W_m2 * photocurrent_factor(model, temperature_K);
+  const double light_A = cell.photocurrent_A(short_circuit_A);
+  const CellOperatingPoint best = cell.maximum_power(light_A);
+  return {irradiance_W_m2, temperature_K, short_circuit_A, cell.open_circuit_V(light_A),
+          best.current_A,  best.voltage_V};
+}
+
+}  // namespace photorque

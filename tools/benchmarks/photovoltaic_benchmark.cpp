@@ -1,0 +1,173 @@
+// Time of the solar array's curve and maxima, and of maximum power points of single cells.
+//
+//   photovoltaic_benchmark --benchmark_min_time=1 --benchmark_repetitions=5
+//
+// The time that counts is `user_s_per_item`, user CPU time, which other programs on the machine
+// disturb least.
+#include <benchmark/benchmark.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/random.h"
+#include "receivers/photovoltaic_batch.h"
+#include "receivers/photovoltaic_curve.h"
+#include "receivers/photovoltaic_design.h"
+
+namespace photorque {
+namespace {
+
+double user_s() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+}
+
+void report(benchmark::State& state, double start_user_s, double items_per_round) {
+  const double items = items_per_round * static_cast<double>(state.iterations());
+  const double spent_s = user_s() - start_user_s;
+  state.counters["user_us_per_item"] = 1e6 * spent_s / items;
+  state.counters["items_per_user_s"] = items / spent_s;
+}
+
+CellParameters cell() {
+  for (const NamedCell& known : known_cells()) {
+    if (known.name == "silicon_two_diode") return known.model.reference;
+  }
+  return {};
+}
+
+Diode diode(Diode::Kind kind) {
+  Diode d;
+  d.kind = kind;
+  return d;
+}
+
+// 10 × 10 photocurrents of up to 6 A. A spot beside the centre; a slope with ripples that make
+// every cell different; and half the array in shade.
+std::vector<double> light_A(const std::string& map) {
+  std::vector<double> light;
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 10; ++column) {
+      const double x = (column - 5.7) / 6.0, y = (row - 4.1) / 6.0;
+      const double ripple = 0.02 * std::sin(2.3 * row + 1.1 * column);
+      double sun = std::exp(-x * x - y * y);
+      if (map == "slope") sun = 0.4 + 0.06 * row + ripple;
+      if (map == "shade") sun = row < 5 ? 0.9 + ripple : 0.25 + ripple;
+      light.push_back(6.0 * sun);
+    }
+  }
+  return light;
+}
+
+// 100 cells: five substrings of 20 in one string, or ten strings of ten, with real diodes
+// (junctions) or ideal ones. Building the network, its whole curve in 200 steps and all maxima are
+// in the time; the table of the cell type, which does not depend on the light, is not.
+void hundred_cells(benchmark::State& state, const std::string& map, int strings, Diode::Kind kind,
+                   int intervals) {
+  RegularWiring options;
+  options.strings = strings;
+  options.bypass_every = strings == 1 ? 20 : 10;
+  options.bypass = diode(kind);
+  if (strings > 1) options.blocking = diode(kind);
+  const ArrayWiring wiring = regular_wiring(10, 10, options);
+  const CellTables tables(100, std::make_shared<const DiodeVoltageTable>(CellCurve(cell()), 20.0));
+  const std::vector<double> light = light_A(map);
+  const double start = user_s();
+  size_t maxima = 0;
+  for (auto _ : state) {
+    const ArrayCurve curve(wiring, tables, light);
+    const ArrayCurve::Scan scan = curve.scan(intervals);
+    maxima = scan.maxima.size();
+    benchmark::DoNotOptimize(scan.points.data());
+  }
+  report(state, start, 1.0);
+  state.counters["maxima"] = static_cast<double>(maxima);
+}
+
+struct Batch {
+  std::vector<double> light_A, saturation_A, scale_V, series_ohm, shunt_S, voltage_V, current_A;
+};
+
+// Cells as a Monte Carlo over technologies and light would draw them.
+Batch make_batch(size_t count) {
+  Batch b;
+  for (size_t i = 0; i < count; ++i) {
+    const auto draw = [&](uint64_t d) { return unit_interval(hash_words(5, i, d)); };
+    b.light_A.push_back(0.05 + 9.0 * draw(0));
+    b.saturation_A.push_back(std::pow(10.0, -12.0 + 5.0 * draw(1)));
+    b.scale_V.push_back(0.0257 * (1.0 + 0.5 * draw(2)));
+    b.series_ohm.push_back(0.01 * draw(3));
+    b.shunt_S.push_back(std::pow(10.0, -4.0 + 3.0 * draw(4)));
+  }
+  b.voltage_V.resize(count);
+  b.current_A.resize(count);
+  return b;
+}
+
+void single_cells(benchmark::State& state) {
+  constexpr size_t count = 10000;
+  Batch b = make_batch(count);
+  const double start = user_s();
+  for (auto _ : state) {
+    maximum_power_points({b.light_A, b.saturation_A, b.scale_V, b.series_ohm, b.shunt_S},
+                         b.voltage_V, b.current_A);
+    benchmark::DoNotOptimize(b.voltage_V.data());
+  }
+  report(state, start, static_cast<double>(count));
+}
+
+void single_cell_alone(benchmark::State& state) {
+  const CellCurve curve(cell());
+  const double start = user_s();
+  double light = 5.0;
+  for (auto _ : state) {
+    light = light > 8.0 ? 1.0 : light + 0.01;
+    benchmark::DoNotOptimize(curve.maximum_power(light));
+  }
+  report(state, start, 1.0);
+}
+
+void cell_table(benchmark::State& state) {
+  const CellCurve curve(cell());
+  const double start = user_s();
+  for (auto _ : state) {
+    const DiodeVoltageTable table(curve, 20.0);
+    benchmark::DoNotOptimize(table.pieces());
+  }
+  report(state, start, 1.0);
+}
+
+BENCHMARK(single_cells);
+BENCHMARK(single_cell_alone);
+BENCHMARK(cell_table);
+
+}  // namespace
+
+void register_arrays() {
+  for (const char* map : {"spot", "slope", "shade"}) {
+    for (const int strings : {1, 10}) {
+      for (const auto kind : {Diode::Kind::clamp, Diode::Kind::junction}) {
+        for (const int intervals : {1, 200}) {
+          const std::string name = std::string("hundred_cells/") + map +
+                                   (strings == 1 ? "/series" : "/parallel") +
+                                   (kind == Diode::Kind::clamp ? "/ideal" : "/junction") +
+                                   (intervals == 1 ? "/maxima" : "/curve_and_maxima");
+          benchmark::RegisterBenchmark(name.c_str(), hundred_cells, map, strings, kind, intervals);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace photorque
+
+int main(int count, char** words) {
+  photorque::register_arrays();
+  benchmark::Initialize(&count, words);
+  benchmark::RunSpecifiedBenchmarks();
+}
