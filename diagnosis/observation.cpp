@@ -39,43 +39,40 @@ struct Columns {
   }
 };
 
-// Sums over the rows of one block. Attitudes are averaged as rotations from the first of them;
-// their times are averaged with them, so that the mean belongs to the mean time.
+// Weighted sums over readings that become one. Attitudes are averaged as rotations from the first
+// of them, and the block stands at their mean time, because they move.
 struct Block {
   double first_time_s = 0.0;
   double time_sum_s = 0.0;
-  int64_t rows = 0;
+  int64_t readings = 0;
   Quat reference = Quat::Identity();
   Vec3 rotation_sum = Vec3::Zero();
   double attitude_time_sum_s = 0.0;
-  int64_t attitudes = 0;
+  double attitude_rows = 0.0;
   Vec3 gyro_sum = Vec3::Zero();
-  Vec3 gyro_time_sum_s = Vec3::Zero();
   Vec3 gyro_rows = Vec3::Zero();
 
-  void add(double time_s, const Columns& columns, size_t row) {
-    if (rows == 0) first_time_s = time_s;
-    time_sum_s += time_s;
-    ++rows;
-    const Quat q = columns.attitude(row);
-    if (std::isfinite(q.norm())) {
-      if (attitudes == 0) reference = q.normalized();
-      rotation_sum += rotation_vector(q.normalized() * reference.conjugate());
-      attitude_time_sum_s += time_s;
-      ++attitudes;
+  void add(const Observation& from, size_t i) {
+    if (readings == 0) first_time_s = from.time_s[i];
+    time_sum_s += from.time_s[i];
+    ++readings;
+    const double rows = from.attitude_rows[i];
+    if (rows > 0.0) {
+      if (attitude_rows == 0.0) reference = from.attitude[i];
+      rotation_sum += rows * rotation_vector(from.attitude[i] * reference.conjugate());
+      attitude_time_sum_s += rows * from.time_s[i];
+      attitude_rows += rows;
     }
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const double rate = columns.rate(static_cast<size_t>(k), row);
-      if (!std::isfinite(rate)) continue;
-      gyro_sum[k] += rate;
-      gyro_time_sum_s[k] += time_s;
-      gyro_rows[k] += 1.0;
+    for (int k = 0; k < 3; ++k) {
+      if (!(from.gyro_rows[i][k] > 0.0)) continue;
+      gyro_sum[k] += from.gyro_rows[i][k] * from.gyro_rad_s[i][k];
+      gyro_rows[k] += from.gyro_rows[i][k];
     }
   }
 
   Quat mean_attitude() const {
-    if (attitudes == 0) return Quat(NAN, NAN, NAN, NAN);
-    const Vec3 mean = rotation_sum / static_cast<double>(attitudes);
+    if (attitude_rows == 0.0) return Quat(NAN, NAN, NAN, NAN);
+    const Vec3 mean = rotation_sum / attitude_rows;
     const double angle = mean.norm();
     if (angle == 0.0) return reference;
     return (Quat(Eigen::AngleAxisd(angle, mean / angle)) * reference).normalized();
@@ -83,15 +80,12 @@ struct Block {
 };
 
 void append(Observation& seen, const Block& block) {
-  if (block.rows == 0) return;
-  const double n = static_cast<double>(block.rows);
-  // Where some rows lack the attitude, the block stands at the attitudes' mean time: they move.
-  const double time_s = block.attitudes > 0
-                            ? block.attitude_time_sum_s / static_cast<double>(block.attitudes)
-                            : block.time_sum_s / n;
-  seen.time_s.push_back(time_s);
+  if (block.readings == 0) return;
+  seen.time_s.push_back(block.attitude_rows > 0.0
+                            ? block.attitude_time_sum_s / block.attitude_rows
+                            : block.time_sum_s / static_cast<double>(block.readings));
   seen.attitude.push_back(block.mean_attitude());
-  seen.attitude_rows.push_back(static_cast<double>(block.attitudes));
+  seen.attitude_rows.push_back(block.attitude_rows);
   seen.gyro_rows.push_back(block.gyro_rows);
   Vec3 rate = Vec3::Constant(NAN);
   for (int k = 0; k < 3; ++k) {
@@ -116,31 +110,46 @@ Observation observe(const Recording& recording, const std::string& name, size_t 
   seen.has_gyro = columns.has_gyro;
   seen.rows = static_cast<int64_t>(recording.rows());
   seen.row_interval_s = recording.report.median_interval_s;
-
-  const size_t rows = recording.rows();
-  const double duration_s = recording.time_s.back() - recording.time_s.front();
-  const double block_s =
-      rows > most_blocks ? duration_s / static_cast<double>(most_blocks) : 0.0;
-  Block block;
-  for (size_t row = 0; row < rows; ++row) {
-    const double time_s = recording.time_s[row];
-    // Half a row of slack, so that rounding of the times does not make uneven blocks.
-    const double end_s = block.first_time_s + block_s - 0.5 * seen.row_interval_s;
-    if (block.rows > 0 && time_s > end_s) {
-      append(seen, block);
-      block = {};
-    }
-    block.add(time_s, columns, row);
+  seen.time_s = recording.time_s;
+  size_t attitudes = 0;
+  for (size_t row = 0; row < recording.rows(); ++row) {
+    const Quat q = columns.attitude(row).normalized();
+    const bool complete = q.coeffs().allFinite();
+    attitudes += complete ? 1 : 0;
+    seen.attitude.push_back(q);
+    seen.attitude_rows.push_back(complete ? 1.0 : 0.0);
+    const Vec3 rate(columns.rate(0, row), columns.rate(1, row), columns.rate(2, row));
+    seen.gyro_rad_s.push_back(rate);
+    seen.gyro_rows.push_back(rate.unaryExpr([](double x) { return std::isfinite(x) ? 1.0 : 0.0; }));
   }
-  append(seen, block);
-
-  const auto attitudes = std::count_if(seen.attitude_rows.begin(), seen.attitude_rows.end(),
-                                       [](double count) { return count > 0.0; });
-  if (static_cast<size_t>(attitudes) < fewest_attitudes) {
+  if (attitudes < fewest_attitudes) {
     throw InputError({name, 0}, "q_w", std::to_string(attitudes) + " complete attitudes",
                      "at least " + std::to_string(fewest_attitudes));
   }
-  return seen;
+  return seen.averaged(most_blocks);
+}
+
+Observation Observation::averaged(size_t most_blocks) const {
+  if (blocks() <= most_blocks) return *this;
+  Observation result = *this;
+  result.time_s.clear();
+  result.attitude.clear();
+  result.attitude_rows.clear();
+  result.gyro_rad_s.clear();
+  result.gyro_rows.clear();
+  const double block_s = duration_s() / static_cast<double>(most_blocks);
+  Block block;
+  for (size_t i = 0; i < blocks(); ++i) {
+    // Half a row of slack, so that rounding of the times does not make uneven blocks.
+    const double end_s = block.first_time_s + block_s - 0.5 * row_interval_s;
+    if (block.readings > 0 && time_s[i] > end_s) {
+      append(result, block);
+      block = {};
+    }
+    block.add(*this, i);
+  }
+  append(result, block);
+  return result;
 }
 
 Observation Observation::part(size_t first, size_t last) const {

@@ -37,6 +37,8 @@ struct Observation {
   double duration_s() const { return time_s.back() - time_s.front(); }
   // The blocks [first, last) alone, the charge drawn before them counted.
   Observation part(size_t first, size_t last) const;
+  // Neighbours averaged until about `most_blocks` are left: as good for what is slow against them.
+  Observation averaged(size_t most_blocks) const;
 };
 
 // About `most_blocks` blocks at most; a recording with fewer rows keeps them all. InputError when

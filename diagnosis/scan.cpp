@@ -12,10 +12,20 @@
 namespace photorque {
 namespace {
 
+// Of a scan's peak, to be worth a fit: chance alone reaches less in most scans.
+constexpr double least_gain = 14.0;
+
 double end_s(const std::vector<Observation>& runs) {
   double end = 0.0;
   for (const Observation& seen : runs) end = std::max(end, seen.time_s.back());
   return end;
+}
+
+// What is slow is scanned as well on averages, and faster.
+std::vector<Observation> coarse(const std::vector<Observation>& runs) {
+  std::vector<Observation> result;
+  for (const Observation& seen : runs) result.push_back(seen.averaged(1200));
+  return result;
 }
 
 double longest_s(const std::vector<Observation>& runs) {
@@ -71,7 +81,7 @@ Disturbance with(const Disturbance& like, size_t parameter, double value) {
 // The jump in the centre of mass at each of a grid of instants.
 std::vector<Disturbance> mass_shift_starts(const Candidate& c, const Trial& parent,
                                            const std::vector<Observation>& runs) {
-  constexpr size_t count = 60;
+  constexpr size_t count = 40;
   const double last_s = end_s(runs), first_s = runs.front().time_s.front();
   std::vector<ScoreGroup> groups;
   for (size_t i = 1; i < count; ++i) {
@@ -82,7 +92,8 @@ std::vector<Disturbance> mass_shift_starts(const Candidate& c, const Trial& pare
   std::vector<double> gain;
   for (const Score& s : scores) gain.push_back(s.gain);
   std::vector<Disturbance> starts;
-  for (const size_t i : peaks(gain, 3)) {
+  for (const size_t i : peaks(gain, 2)) {
+    if (gain[i] < least_gain) continue;
     Disturbance d = groups[i].disturbances.front();
     for (Eigen::Index k = 0; k < scores[i].estimate.size() && k < 3; ++k) {
       d.parameters[static_cast<size_t>(1 + k)].value = scores[i].estimate[k];
@@ -155,7 +166,7 @@ std::vector<Disturbance> flexible_mode_starts(const Candidate& c, const Trial& p
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return gain[a] > gain[b]; });
   std::vector<Disturbance> starts;
   for (size_t i = 0; i < std::min<size_t>(2, order.size()); ++i) {
-    if (gain[order[i]] > 4.0) starts.push_back(modes[order[i]]);
+    if (gain[order[i]] > least_gain) starts.push_back(modes[order[i]]);
   }
   return starts;
 }
@@ -164,7 +175,7 @@ std::vector<Disturbance> flexible_mode_starts(const Candidate& c, const Trial& p
 // more than the residual's power.
 std::vector<double> slow_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
                                         double highest_Hz, size_t most) {
-  const double step_Hz = 0.5 / longest_s(runs);
+  const double step_Hz = 0.7 / longest_s(runs);
   std::vector<double> frequency_Hz;
   std::vector<ScoreGroup> groups;
   const Effect effect{"periodic_torque",
@@ -181,7 +192,7 @@ std::vector<double> slow_frequencies_Hz(const Fit& at, const std::vector<Observa
   for (const Score& s : score(at, runs, groups)) gain.push_back(s.gain);
   std::vector<double> result;
   for (const size_t i : peaks(gain, most)) {
-    if (gain[i] > 20.0) result.push_back(frequency_Hz[i]);
+    if (gain[i] > least_gain) result.push_back(frequency_Hz[i]);
   }
   return result;
 }
@@ -190,6 +201,7 @@ std::vector<double> slow_frequencies_Hz(const Fit& at, const std::vector<Observa
 
 std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
                                         size_t most) {
+  const std::vector<Observation> slow_runs = coarse(runs);
   const double step_Hz = 0.25 / longest_s(runs);
   double interval_s = longest_s(runs);
   for (const Observation& seen : runs) {
@@ -208,7 +220,7 @@ std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observa
       return {};
     }
   }
-  std::vector<double> result = slow_frequencies_Hz(at, runs, slow_Hz, most / 2);
+  std::vector<double> result = slow_frequencies_Hz(at, slow_runs, slow_Hz, most / 2);
   const auto slow = std::min(power.size(), static_cast<size_t>(slow_Hz / step_Hz));
   std::fill(power.begin(), power.begin() + static_cast<std::ptrdiff_t>(slow), 0.0);
   for (const size_t i : peaks(power, most)) {
@@ -222,7 +234,7 @@ std::vector<Disturbance> starts_of(const Candidate& candidate, const Trial& pare
                                    const std::vector<Observation>& runs,
                                    const std::vector<double>& lines_Hz) {
   const std::string& kind = candidate.effect.kind;
-  if (kind == "mass_shift") return mass_shift_starts(candidate, parent, runs);
+  if (kind == "mass_shift") return mass_shift_starts(candidate, parent, coarse(runs));
   if (kind == "periodic_torque" || kind == "floor_vibration") {
     return sinusoid_starts(candidate, parent, runs, lines_Hz);
   }

@@ -20,6 +20,7 @@ std::vector<int> parameters_of(const ScoreGroup& group, const Disturbance& d) {
 // gᵀ S⁻¹ g in the space that the data determine at all.
 Score solve(const Eigen::MatrixXd& S, const Eigen::VectorXd& g, const Eigen::VectorXd& before) {
   Score score;
+  if (g.size() == 0) return score;
   // Scaled by what the information would be with nothing projected out: what is left below 1e-8 of
   // it is rounding.
   const Eigen::VectorXd scale =
@@ -48,6 +49,8 @@ void score_batch(const Fit& at, const std::vector<Observation>& runs,
   for (size_t g = first; g < last; ++g) {
     begin.push_back(static_cast<Eigen::Index>(extra.size()));
     for (const Disturbance& d : groups[g].disturbances) {
+      // It would act at once.
+      if (d.parameters.empty()) continue;
       const size_t index = add_disturbance(h, d);
       for (const int p : parameters_of(groups[g], d)) extra.push_back({index, p});
     }

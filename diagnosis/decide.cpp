@@ -1,0 +1,96 @@
+#include "diagnosis/decide.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.h"
+#include "diagnosis/whiteness.h"
+
+namespace photorque {
+namespace {
+
+// Evidence by which something must beat the belief before it is said: odds of 1 in 90, on top of
+// the prior odds against each name.
+constexpr double least_log_odds = 4.5;
+// Of a named effect.
+constexpr double least_significance = 4.0;
+// Of the structure left, before the best physics is called insufficient.
+constexpr double most_excess_sigma = 6.0;
+
+bool has_empirical(const Trial& t, const std::vector<Candidate>& all) {
+  return std::any_of(t.candidates.begin(), t.candidates.end(),
+                     [&](size_t c) { return all[c].empirical(); });
+}
+
+bool is_significant(const Trial& t, const std::vector<Candidate>& all) {
+  for (size_t i = 0; i < t.candidates.size(); ++i) {
+    const Candidate& c = all[t.candidates[i]];
+    if (c.start.parameters.empty() || c.effect.kind == "flexible_mode") continue;
+    if (significance(t, all, i) < least_significance) return false;
+  }
+  return true;
+}
+
+double excess_sigma(const Trial& t, const std::vector<Observation>& runs) {
+  try {
+    return whiteness(residuals_of(t.fit, runs)).excess_sigma;
+  } catch (const NumericalError&) {
+    return 1e9;
+  }
+}
+
+std::vector<double> posterior(const std::vector<Trial>& trials) {
+  double best = -1e300;
+  for (const Trial& t : trials) {
+    if (t.objection.empty()) best = std::max(best, t.log_evidence);
+  }
+  std::vector<double> p;
+  double sum = 0.0;
+  for (const Trial& t : trials) {
+    p.push_back(t.objection.empty() ? std::exp(t.log_evidence - best) : 0.0);
+    sum += p.back();
+  }
+  for (double& x : p) x /= sum;
+  return p;
+}
+
+}  // namespace
+
+Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& all,
+                const std::vector<Observation>& runs) {
+  Decision d;
+  d.probability = posterior(trials);
+  const double none = trials.front().log_evidence;
+  size_t physics = 0, empirical = 0;
+  for (size_t i = 1; i < trials.size(); ++i) {
+    const Trial& t = trials[i];
+    if (!t.objection.empty() || t.log_evidence < none + least_log_odds) continue;
+    if (!is_significant(t, all)) continue;
+    size_t& best = has_empirical(t, all) ? empirical : physics;
+    if (best == 0 || t.log_evidence > trials[best].log_evidence) best = i;
+  }
+  d.physics = physics;
+  const double physics_evidence = physics == 0 ? none : trials[physics].log_evidence;
+  const bool law_unknown =
+      empirical != 0 && trials[empirical].log_evidence > physics_evidence + least_log_odds;
+  const bool structure_left = excess_sigma(trials[physics], runs) > most_excess_sigma;
+  if (law_unknown || structure_left) {
+    d.verdict = Verdict::unexplained;
+    d.chosen = law_unknown ? empirical : physics;
+    for (size_t i = 0; i < trials.size(); ++i) {
+      if (has_empirical(trials[i], all)) d.confidence += d.probability[i];
+    }
+    if (structure_left) d.confidence = std::max(d.confidence, 0.95);
+  } else if (physics != 0) {
+    d.verdict = Verdict::missing_physics;
+    d.chosen = physics;
+    // The same names with another parametrisation are the same answer.
+    d.confidence = d.probability[physics];
+  } else {
+    d.verdict = Verdict::consistent;
+    d.confidence = d.probability.front();
+  }
+  return d;
+}
+
+}  // namespace photorque

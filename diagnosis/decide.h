@@ -1,0 +1,21 @@
+// The verdict: from the evidence of all trials, what physics allows, and whether noise is left.
+#pragma once
+
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/trial.h"
+
+namespace photorque {
+
+struct Decision {
+  Verdict verdict = Verdict::consistent;
+  double confidence = 0.0;   // posterior probability of the verdict and the names
+  size_t chosen = 0;         // index of the trial whose model is kept
+  size_t physics = 0;        // index of the best trial of physics alone (0: the belief)
+  std::vector<double> probability;  // of each trial
+};
+
+// Trial 0 is the belief.
+Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& all,
+                const std::vector<Observation>& runs);
+
+}  // namespace photorque
