@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "scenes/gltf_compression.h"
 #include "scenes/gltf_container.h"
 #include "scenes/gltf_schema.h"
 
@@ -26,6 +27,9 @@ constexpr std::array harmless_extensions = {"KHR_materials_",
                                             "KHR_xmp",
                                             "KHR_xmp_",
                                             "KHR_animation_pointer",
+                                            "KHR_draco_mesh_compression",
+                                            "KHR_mesh_quantization",
+                                            "EXT_meshopt_compression",
                                             "EXT_mesh_manifold",
                                             "EXT_mesh_gpu_instancing",
                                             "AGI_articulations",
@@ -184,6 +188,7 @@ Document read_document(const std::string& bytes, const std::string& file, const 
   if (document.json.contains("buffers")) {
     for (json& buffer : document.json["buffers"]) buffer.erase("uri");  // may be most of the file
   }
+  decompress(&document, budget);
   document.model = typed_model(document);
   return document;
 }

@@ -40,21 +40,14 @@ bool is_degenerate(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).norm() <= rounding * longest;
 }
 
-// Accessors without bytes are zeros by the specification. For positions and indices that is what a
-// model looks like whose only geometry is compressed; it must not pass for one without triangles.
-void refuse_absent_bytes(const Document& document, const tinygltf::Primitive& primitive,
-                         const std::string& where, const nlohmann::json& json) {
-  const auto has_bytes = [&](int index) {
-    const tinygltf::Accessor& accessor = document.model.accessors[static_cast<size_t>(index)];
-    return accessor.bufferView >= 0 || accessor.sparse.isSparse;
-  };
-  const auto extensions = json.find("extensions");
-  if (extensions != json.end() && extensions->contains("KHR_draco_mesh_compression") &&
-      !has_bytes(primitive.attributes.at("POSITION"))) {
-    throw document.wrong(where + "/extensions", "geometry by KHR_draco_mesh_compression only",
-                         "uncompressed accessors");
-  }
-  if (primitive.indices >= 0 && !has_bytes(primitive.indices)) {
+// Accessors without bytes are zeros by the specification. For indices that is what a model looks
+// like whose geometry is packed in a way that this program does not know; it must not pass for one
+// without triangles.
+void refuse_absent_indices(const Document& document, const tinygltf::Primitive& primitive,
+                           const std::string& where) {
+  if (primitive.indices < 0) return;
+  const auto& accessor = document.model.accessors[static_cast<size_t>(primitive.indices)];
+  if (accessor.bufferView < 0 && !accessor.sparse.isSparse) {
     throw document.wrong(where + "/indices", "an accessor without a bufferView",
                          "indices that are stored");
   }
@@ -161,8 +154,7 @@ std::optional<PrimitiveMesh> GeometryReader::read(int mesh, size_t index) {
     return std::nullopt;
   }
   const std::string where = pointer("meshes", mesh, "primitives", index);
-  refuse_absent_bytes(document_, primitive, where,
-                      document_.json["meshes"][static_cast<size_t>(mesh)]["primitives"][index]);
+  refuse_absent_indices(document_, primitive, where);
   const Vertices vertices(document_, primitive, budget_);
   if (new_index_.size() < vertices.count()) {
     budget_->charge(vertices.count(), sizeof(uint32_t), where);

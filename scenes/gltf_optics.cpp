@@ -78,6 +78,34 @@ std::optional<Settings> extras_of(const Document& document, int index) {
 
 }  // namespace
 
+std::optional<UvTransform> uv_transform(const Document& document, int material) {
+  if (material < 0) return std::nullopt;
+  const auto at = nlohmann::json::json_pointer(pointer("materials", material,
+                                                       "pbrMetallicRoughness", "baseColorTexture",
+                                                       "extensions", "KHR_texture_transform"));
+  if (!document.json.contains(at)) return std::nullopt;
+  const json& extension = document.json[at];
+  if (!extension.is_object()) {
+    throw document.wrong(at.to_string(), describe_json(extension), "an object");
+  }
+  const auto pair_of = [&](const char* key, const Vec2& otherwise) -> Vec2 {
+    const auto found = extension.find(key);
+    if (found == extension.end()) return otherwise;
+    if (!found->is_array() || found->size() != 2 || !(*found)[0].is_number() ||
+        !(*found)[1].is_number()) {
+      throw document.wrong(at.to_string() + pointer(key), describe_json(*found), "two numbers");
+    }
+    return {(*found)[0].get<double>(), (*found)[1].get<double>()};
+  };
+  const json turn = extension.value("rotation", json(0.0));
+  if (!turn.is_number()) {
+    throw document.wrong(at.to_string() + "/rotation", describe_json(turn), "a number");
+  }
+  // v runs downwards: a turn against the clock on the picture is one with it in (u, v).
+  return Eigen::Translation2d(pair_of("offset", Vec2::Zero())) *
+         Eigen::Rotation2Dd(-turn.get<double>()) * Eigen::Scaling(pair_of("scale", Vec2::Ones()));
+}
+
 SettingsNode settings_from_json(const json& value, const InputLocation& where) {
   SettingsNode node;
   node.where = where;

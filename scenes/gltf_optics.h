@@ -3,6 +3,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "core/settings.h"
@@ -48,6 +49,12 @@ MaterialOptics material_optics(const Document& document, int index, int bands,
 // and r by 1 − glossiness. Textures and emission are ignored.
 // It is a stand-in for measured values: drawing colours say little about absorptance.
 OpticalSurface derived_surface(const nlohmann::json& material, int bands, std::string name);
+
+// KHR_texture_transform of the base colour's texture: where on the picture texture coordinates lie,
+// scaled, then turned, then moved. Nothing for a material without one. Exporters that pack texture
+// coordinates into integers unpack them by it. Throws InputError for numbers that are none.
+using UvTransform = Eigen::Affine2d;
+std::optional<UvTransform> uv_transform(const Document& document, int material);
 
 // Whether a texture would change what derived_surface() takes from the factors alone.
 bool has_ignored_texture(const nlohmann::json& material);

@@ -11,6 +11,7 @@
 #include "scenes/gltf_nodes.h"
 #include "scenes/gltf_optics.h"
 #include "scenes/gltf_validation.h"
+#include "scenes/mesh_closure.h"
 
 namespace photorque {
 namespace {
@@ -55,7 +56,7 @@ class Assembly {
       const auto& primitives =
           document_.model.meshes[static_cast<size_t>(placement.mesh)].primitives;
       for (size_t p = 0; p < primitives.size(); ++p) {
-        const std::optional<uint32_t> mesh = mesh_of(placement.mesh, p);
+        const std::optional<uint32_t> mesh = mesh_of(placement.mesh, p, primitives[p].material);
         if (mesh) add_instance(placement, *mesh, primitives[p].material);
       }
     }
@@ -66,18 +67,23 @@ class Assembly {
  private:
   // The mesh of a primitive, read at its first use; nothing if it has no triangles. Primitives that
   // take the same accessors in the same way share one.
-  std::optional<uint32_t> mesh_of(int mesh, size_t index) {
+  std::optional<uint32_t> mesh_of(int mesh, size_t index, int material) {
     const tinygltf::Primitive& primitive =
         document_.model.meshes[static_cast<size_t>(mesh)].primitives[index];
     const auto attribute = [&](const char* name) {
       const auto found = primitive.attributes.find(name);
       return found == primitive.attributes.end() ? -1 : found->second;
     };
+    const std::optional<gltf::UvTransform> transform = gltf::uv_transform(document_, material);
     const auto key = std::tuple(attribute("POSITION"), attribute("TEXCOORD_0"), primitive.indices,
-                                primitive.mode);
+                                primitive.mode, transform ? material : -1);
     const auto known = meshes_.find(key);
     if (known != meshes_.end()) return known->second;
-    return meshes_[key] = read_mesh(mesh, index);
+    const std::optional<uint32_t> read = read_mesh(mesh, index);
+    if (read && transform) {
+      for (Vec2& uv : model_.scene.meshes[*read].uv) uv = *transform * uv;
+    }
+    return meshes_[key] = read;
   }
 
   std::optional<uint32_t> read_mesh(int mesh, size_t index) {
@@ -176,6 +182,8 @@ class Assembly {
            << " m from the body's origin; CAD exports often count millimetres";
       model_.notices.push_back(line.str());
     }
+    const std::string leaks = describe_closure(closure_of(model_.scene));
+    if (!leaks.empty()) model_.notices.push_back(leaks);
     if (document_.json.contains("animations")) {
       model_.notices.emplace_back("animations are ignored: everything is in its rest pose");
     }
@@ -190,7 +198,7 @@ class Assembly {
   gltf::GeometryReader geometry_;
   gltf::MaterialOverrides overrides_;
   GltfModel model_;
-  std::map<std::tuple<int, int, int, int>, std::optional<uint32_t>> meshes_;
+  std::map<std::tuple<int, int, int, int, int>, std::optional<uint32_t>> meshes_;
   std::vector<double> radii_;        // of each mesh about its own origin
   std::map<int, size_t> materials_;  // index in the file → in model_.materials
   std::set<std::string> told_;

@@ -1,5 +1,7 @@
 #include "scenes/gltf_validation.h"
 
+#include <algorithm>
+
 #include "scenes/gltf_accessor.h"
 
 namespace photorque::gltf {
@@ -7,6 +9,12 @@ namespace {
 
 std::string text(uint64_t number) {
   return std::to_string(number);
+}
+
+bool uses_extension(const Document& document, const char* name) {
+  const auto used = document.json.find("extensionsUsed");
+  return used != document.json.end() && used->is_array() &&
+         std::find(used->begin(), used->end(), name) != used->end();
 }
 
 // A row of equal items in a bufferView. Offsets and counts are below 2^53 and strides below 256
@@ -18,7 +26,10 @@ struct Row {
 
 class Checker {
  public:
-  explicit Checker(const Document& document) : document_(document), model_(document.model) {}
+  explicit Checker(const Document& document)
+      : document_(document),
+        model_(document.model),
+        quantized_(uses_extension(document, "KHR_mesh_quantization")) {}
 
   void buffer_view(size_t i) const {
     const tinygltf::BufferView& view = model_.bufferViews[i];
@@ -69,9 +80,9 @@ class Checker {
     const auto position = primitive.attributes.find("POSITION");
     if (position == primitive.attributes.end()) return;
     const tinygltf::Accessor& positions = accessor_of(position->second);
-    if (positions.type != TINYGLTF_TYPE_VEC3 ||
-        positions.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
-      throw wrong(where + "/attributes/POSITION", description(positions), "VEC3 of 5126 (float)");
+    if (positions.type != TINYGLTF_TYPE_VEC3 || !is_coordinate(positions)) {
+      throw wrong(where + "/attributes/POSITION", description(positions),
+                  quantized_ ? "VEC3 of 5120 to 5123 or 5126" : "VEC3 of 5126 (float)");
     }
     for (const auto& [name, attribute] : primitive.attributes) {
       if (accessor_of(attribute).count == positions.count) continue;
@@ -98,6 +109,12 @@ class Checker {
   InputError wrong(const std::string& where, const std::string& found,
                    const std::string& expected) const {
     return document_.wrong(where, found, expected);
+  }
+
+  // Floats, or with KHR_mesh_quantization short integers of any kind.
+  bool is_coordinate(const tinygltf::Accessor& accessor) const {
+    return accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT ||
+           (quantized_ && accessor.componentType <= TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
   }
 
   const tinygltf::Accessor& accessor_of(int index) const {
@@ -160,8 +177,7 @@ class Checker {
     const tinygltf::Accessor& uv = accessor_of(found->second);
     const bool is_integer = uv.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                             uv.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
-    if (uv.type != TINYGLTF_TYPE_VEC2 ||
-        !(uv.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT || (is_integer && uv.normalized))) {
+    if (uv.type != TINYGLTF_TYPE_VEC2 || !(is_coordinate(uv) || (is_integer && uv.normalized))) {
       throw wrong(where + "/attributes/TEXCOORD_0", description(uv),
                   "VEC2 of 5126 (float), or of 5121 or 5123 normalized");
     }
@@ -182,6 +198,7 @@ class Checker {
 
   const Document& document_;
   const tinygltf::Model& model_;
+  bool quantized_;
 };
 
 }  // namespace

@@ -145,17 +145,17 @@ INSTANTIATE_TEST_SUITE_P(
                 "/asset/minVersion: found \"2.1\", expected \"2.0\""},
         Mistake{"required_extension",
                 [](TestModel& m) {
-                  m.json["extensionsRequired"] = {"KHR_materials_ior",
-                                                  "KHR_draco_mesh_compression"};
+                  m.json["extensionsRequired"] = {"KHR_materials_ior", "VENDOR_folded_space"};
                 },
-                "/extensionsRequired/1: found \"KHR_draco_mesh_compression\", expected extensions "
-                "that this program supports"},
-        Mistake{"draco_only",
+                "/extensionsRequired/1: found \"VENDOR_folded_space\", expected extensions that "
+                "this program supports"},
+        Mistake{"draco_without_data",
                 [](TestModel& m) {
                   primitive_of(m)["extensions"]["KHR_draco_mesh_compression"] = json::object();
                   m.json["accessors"][0].erase("bufferView");
                 },
-                "/meshes/0/primitives/0/extensions: found geometry by KHR_draco_mesh_compression"},
+                "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView: found "
+                "nothing, expected a whole number"},
         Mistake{"text_for_number", [](TestModel& m) { m.json["accessors"][0]["count"] = "3"; },
                 "/accessors/0/count: found \"3\", expected an integer >= 1"},
         Mistake{"fraction_for_integer", [](TestModel& m) { m.json["accessors"][0]["count"] = 3.5; },

@@ -1,0 +1,31 @@
+// Whether the surfaces of a scene are closed: where light can slip through that should not.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "raytrace/scene.h"
+
+namespace photorque {
+
+// Counts over all meshes. Vertices at the same place count as one (exporters split them along
+// creases and seams of texture).
+struct MeshClosure {
+  size_t meshes = 0;
+  size_t closed = 0;        // meshes whose every edge joins two triangles
+  size_t open_edges = 0;    // of one triangle only: rims of sheets, or cracks
+  size_t forked_edges = 0;  // of three triangles or more
+  // Open edges on which a vertex of the same mesh lies: the triangles on both sides do not meet at
+  // the same corners, so that rounding leaves gaps (T-junctions).
+  size_t t_junctions = 0;
+  // Meshes with open edges, but fewer than one in twenty: meant to be closed, it seems.
+  size_t almost_closed = 0;
+};
+
+// Meshes with more than 100,000 open edges are not searched for T-junctions.
+MeshClosure closure_of(const Scene& scene);
+
+// One line for people when there are cracks; empty for closed bodies and plain sheets.
+std::string describe_closure(const MeshClosure& closure);
+
+}  // namespace photorque

@@ -1,0 +1,73 @@
+// A lamp from an IES file and the tracer together, against a closed form that neither uses.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "core/constants.h"
+#include "core/files.h"
+#include "raytrace/tracer.h"
+#include "sources/photometric_file.h"
+#include "sources/source_kind.h"
+#include "tests/raytrace/test_scenes.h"
+
+namespace photorque {
+namespace {
+
+// What Lambert's law sends from a point to a square of side 2a at distance z in front of it,
+// centred on the axis: four times the view factor to a rectangle with a corner on the axis. Source:
+// J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.
+double lambert_on_square(double a_over_z) {
+  const double root = std::sqrt(1.0 + a_over_z * a_over_z);
+  return 4.0 * 2.0 * (a_over_z / root) * std::atan(a_over_z / root) / (2.0 * pi);
+}
+
+std::vector<Beam> lamp_over_origin(const std::filesystem::path& folder) {
+  SettingsNode::Table keys;
+  keys["file"].value = "lambert.ies";
+  keys["power_W"].value = 2.0;
+  keys["wavelength_nm"].value = 730.0;
+  keys["position_m"].value = SettingsNode::Array{{0.0, {}}, {0.0, {}}, {1.0, {}}};
+  keys["direction"].value = SettingsNode::Array{{0.0, {}}, {0.0, {}}, {-1.0, {}}};
+  SourceContext context;
+  context.folder = folder;
+  for (const SourceKind& kind : all_source_kinds()) {
+    if (kind.name == "ies") {
+      return kind.make(Settings(std::make_shared<const SettingsNode>(SettingsNode{keys, {}})),
+                       context);
+    }
+  }
+  return {};
+}
+
+TEST(IesLamp, PowerOnASquareMatchesClosedForm) {
+  PhotometricFile file;
+  for (int degrees = 0; degrees <= 90; ++degrees) {
+    file.table.polar_rad.push_back(degrees * degree_rad);
+    file.table.intensity.push_back(std::max(0.0, std::cos(degrees * degree_rad)));
+  }
+  file.table.azimuth_rad = {0.0};
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "measured_lamp_trace_test";
+  write_file_whole(folder / "lambert.ies", write_ies(file));
+  const std::vector<Beam> beams = lamp_over_origin(folder);
+  ASSERT_EQ(beams.size(), 1u);
+  for (const double half : {0.1, 0.5, 2.0}) {
+    Scene scene;
+    testing::add(scene,
+                 testing::rectangle(Vec3::Zero(), Vec3(2 * half, 0, 0), Vec3(0, 2 * half, 0)),
+                 grey_surface("black", 0, 0), "square");
+    const TraceableScene traceable(std::move(scene));
+    TraceOptions options;
+    options.rays = 1 << 21;
+    const Estimate power = trace(traceable, {}, beams, {}, options).ledger.absorbed_W;
+    const double exact = 2.0 * lambert_on_square(half);
+    EXPECT_LE(std::abs(power.value - exact), 4 * power.standard_error) << half;
+    EXPECT_LE(std::abs(power.value - exact), 2e-4) << half;
+    // As if the intensity were even over the half sphere: the solid angle of the square.
+    const double mistaken = 2.0 * 4.0 * std::asin(half * half / (1.0 + half * half)) / (2.0 * pi);
+    EXPECT_GT(std::abs(power.value - mistaken), 10 * power.standard_error) << half;
+  }
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,60 @@
+#include "scenes/mesh_closure.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/raytrace/test_scenes.h"
+
+namespace photorque {
+namespace {
+
+Scene scene_of(Mesh mesh) {
+  Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  return scene;
+}
+
+TEST(MeshClosure, FindsClosedBodiesAndSheets) {
+  const MeshClosure box = closure_of(scene_of(testing::box(Vec3(0, 0, 0), Vec3(1, 2, 3))));
+  EXPECT_EQ(box.closed, 1u);
+  EXPECT_EQ(box.open_edges, 0u);
+  const MeshClosure sheet =
+      closure_of(scene_of(testing::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0))));
+  EXPECT_EQ(sheet.closed, 0u);
+  EXPECT_EQ(sheet.open_edges, 4u);
+  EXPECT_EQ(describe_closure(sheet), "");  // a sheet is no crack
+}
+
+// Two triangles on one side of an edge, one on the other: they share the line, not the corners.
+TEST(MeshClosure, FindsTJunctions) {
+  Mesh mesh;
+  mesh.vertices_m = {{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0, 0}, {1, -1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 4, 3}, {3, 4, 1}};
+  const MeshClosure closure = closure_of(scene_of(mesh));
+  EXPECT_EQ(closure.t_junctions, 1u);
+  EXPECT_NE(describe_closure(closure).find("1 of them"), std::string::npos);
+  mesh.vertices_m[3].y() = -0.01;  // away from the edge: a gap that is drawn
+  EXPECT_EQ(closure_of(scene_of(mesh)).t_junctions, 0u);
+}
+
+TEST(MeshClosure, WeldsCornersThatExportersSplit) {
+  Mesh mesh = testing::box(Vec3(0, 0, 0), Vec3(1, 1, 1));
+  Mesh split;
+  for (const auto& triangle : mesh.triangles) {
+    const auto first = static_cast<uint32_t>(split.vertices_m.size());
+    for (const uint32_t corner : triangle) split.vertices_m.push_back(mesh.vertices_m[corner]);
+    split.triangles.push_back({first, first + 1, first + 2});
+  }
+  EXPECT_EQ(closure_of(scene_of(split)).closed, 1u);
+  split.triangles.pop_back();
+  EXPECT_EQ(closure_of(scene_of(split)).open_edges, 3u);
+}
+
+TEST(MeshClosure, CountsEdgesOfThreeTriangles) {
+  Mesh fork;
+  fork.vertices_m = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
+  fork.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+  EXPECT_EQ(closure_of(scene_of(fork)).forked_edges, 1u);
+}
+
+}  // namespace
+}  // namespace photorque
