@@ -52,7 +52,8 @@ Product loss_product(const std::vector<LossStage>& stages) {
                {"power_W", {}, {}},
                {"lost_W", {}, {}},
                {"kept", {}, {}}}};
-  Plot plot{"losses", "Power left after each loss", "stage", "power [W]", {}, false, false, {}};
+  Plot plot{
+      "loss_waterfall", "Power left after each loss", "stage", "power [W]", {}, false, false, {}};
   for (size_t i = 0; i < stages.size(); ++i) {
     const LossStage& stage = stages[i];
     const double before_W = i == 0 ? stage.power_W : stages[i - 1].power_W;

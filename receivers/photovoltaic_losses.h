@@ -32,7 +32,7 @@ struct LossStage {
 // fall from stage to stage; the ratios multiply to the whole.
 std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs& inputs);
 
-// Table "losses", the plot "losses" and one quantity per stage.
+// Table "losses", the plot "loss_waterfall" and one quantity per stage.
 Product loss_product(const std::vector<LossStage>& stages);
 
 // Of the irradiance on some cells.

@@ -16,16 +16,20 @@ ArrayPower read_array_power(const OpticalRun& run) {
   ArrayPower array;
   array.flux_map = run.flux_map_index(tables[0].text_or("receiver", ""));
   array.design = read_array_design(tables[0]);
+  array.report = read_array_report(tables[0]);
   tables[0].finish();
 
   std::vector<WeighedSpectrum> spectra;
   for (const Beam& beam : experiment.beams) {
     spectra.push_back({beam.spectrum, beam.emitter->power_W()});
   }
-  const BandValues responsivity =
-      band_responsivity_A_W(array.design.efficiency, experiment.scene.bands, spectra);
-  array.responsivity_A_W.assign(responsivity.begin(),
-                                responsivity.begin() + experiment.scene.bands.count());
+  const Bands& bands = experiment.scene.bands;
+  const auto over_bands = [&](const QuantumEfficiency& efficiency) {
+    const BandValues values = band_responsivity_A_W(efficiency, bands, spectra);
+    return std::vector<double>(values.begin(), values.begin() + bands.count());
+  };
+  array.responsivity_A_W = over_bands(array.design.efficiency);
+  array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
   return array;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "receivers/photovoltaic_array.h"
+#include "tools/array_report.h"
 #include "tools/optical_run.h"
 
 namespace photorque {
@@ -12,8 +13,10 @@ namespace photorque {
 // The `[array]` of an experiment, ready to be evaluated after each trace.
 struct ArrayPower {
   ArrayDesign design;
-  size_t flux_map = 0;                   // place among the receivers
-  std::vector<double> responsivity_A_W;  // per band of the scene
+  size_t flux_map = 0;                         // place among the receivers
+  std::vector<double> responsivity_A_W;        // per band of the scene
+  std::vector<double> ideal_responsivity_A_W;  // were every photon converted
+  ArrayReport report;
 };
 
 // Reads `[array]`; its key `receiver` names the flux map that holds the cells (default: the first

@@ -1,5 +1,6 @@
 // photorque power: trace, then the solar array.
 #include "tools/array_power.h"
+#include "tools/array_report.h"
 #include "tools/published.h"
 
 namespace photorque {
@@ -17,6 +18,7 @@ void run_power(const CommandLine& line) {
   print_array(console, power, result);
   Product product = run.product(result);
   append(product, array_power_product(power, result));
+  append(product, report_array(console, run, array, result, power));
   Table table =
       compare_published(published, run.experiment().file.attitude.tilt_rad, product, console);
   if (!table.columns.empty()) product.tables.push_back(std::move(table));
