@@ -20,8 +20,8 @@ inline constexpr const char* faint = "#d5d9de";
 }  // namespace report_colour
 
 struct ChartLine {
-  std::string colour;
-  std::vector<double> x, y;  // gaps where not finite
+  std::string colour = {};
+  std::vector<double> x = {}, y = {};  // gaps where not finite
   bool dots = false;
   bool dashed = false;
   double width = 1.4;
@@ -30,13 +30,13 @@ struct ChartLine {
 
 // One pair of axes.
 struct LineChart {
-  std::string y_label, x_label;
+  std::string y_label = {}, x_label = {};
   double height = 170.0;
   bool with_x_axis = true;
-  std::vector<ChartLine> lines;                   // later ones on top
-  std::vector<std::pair<double, double>> shaded;  // intervals of x
-  std::string shade_label;
-  std::vector<double> levels;  // dashed horizontal lines
+  std::vector<ChartLine> lines = {};                   // later ones on top
+  std::vector<std::pair<double, double>> shaded = {};  // intervals of x
+  std::string shade_label = {};
+  std::vector<double> levels = {};  // dashed horizontal lines
   // Fits y to the central part of the values, so that one outlier does not flatten the rest.
   bool robust_range = false;
 };
@@ -45,7 +45,7 @@ struct LineChart {
 std::string line_chart_svg(const LineChart& chart, const std::string& title);
 
 struct Bar {
-  std::string label;  // left of the bar
+  std::string label = {};  // left of the bar
   double value = 0.0;
   std::string note = {};  // right of it
   bool chosen = false;
