@@ -153,7 +153,12 @@ Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const
                    const std::vector<Variable>& variables, const PredictionOptions& options) {
   const size_t blocks = std::min(options.blocks, seen.blocks());
   Comparison comparison(seen, variables.size(), options.keep_residuals);
-  Propagator propagator(dynamics, initial, seen.time_s[blocks - 1], options.propagation, variables);
+  PropagationOptions propagation = options.propagation;
+  // A trial of parameters that make the motion run away is not worth its steps.
+  constexpr double steps_per_second = 12.0;
+  propagation.most_steps =
+      2000 + static_cast<int64_t>(steps_per_second * (seen.time_s[blocks - 1] - initial.time_s));
+  Propagator propagator(dynamics, initial, seen.time_s[blocks - 1], propagation, variables);
   sample(
       propagator, blocks, [&](size_t i) { return seen.time_s[i]; },
       [&](const Samples& samples) {

@@ -24,7 +24,7 @@ double end_s(const std::vector<Observation>& runs) {
 // What is slow is scanned as well on averages, and faster.
 std::vector<Observation> coarse(const std::vector<Observation>& runs) {
   std::vector<Observation> result;
-  for (const Observation& seen : runs) result.push_back(seen.averaged(1200));
+  for (const Observation& seen : runs) result.push_back(seen.averaged(800));
   return result;
 }
 
@@ -81,7 +81,7 @@ Disturbance with(const Disturbance& like, size_t parameter, double value) {
 // The jump in the centre of mass at each of a grid of instants.
 std::vector<Disturbance> mass_shift_starts(const Candidate& c, const Trial& parent,
                                            const std::vector<Observation>& runs) {
-  constexpr size_t count = 40;
+  constexpr size_t count = 30;
   const double last_s = end_s(runs), first_s = runs.front().time_s.front();
   std::vector<ScoreGroup> groups;
   for (size_t i = 1; i < count; ++i) {
@@ -134,10 +134,10 @@ std::vector<Disturbance> sinusoid_starts(const Candidate& c, const Trial& parent
 std::vector<Disturbance> flexible_mode_starts(const Candidate& c, const Trial& parent,
                                               const std::vector<Observation>& runs) {
   const double interval_s = longest_s(runs) / static_cast<double>(runs.front().blocks());
-  const double highest_Hz = std::min(5.0, 0.5 / interval_s);
+  const double highest_Hz = std::min(3.0, 0.5 / interval_s);
   std::vector<Disturbance> modes;
   std::vector<double> gain;
-  for (double f_Hz = std::max(0.02, 2.0 / longest_s(runs)); f_Hz < highest_Hz; f_Hz *= 1.5) {
+  for (double f_Hz = std::max(0.02, 2.0 / longest_s(runs)); f_Hz < highest_Hz; f_Hz *= 1.7) {
     std::vector<ScoreGroup> groups;
     for (size_t axis = 0; axis < 3; ++axis) {
       Disturbance d = with(c.start, 3, f_Hz);
@@ -238,7 +238,7 @@ std::vector<Disturbance> starts_of(const Candidate& candidate, const Trial& pare
   if (kind == "periodic_torque" || kind == "floor_vibration") {
     return sinusoid_starts(candidate, parent, runs, lines_Hz);
   }
-  if (kind == "flexible_mode") return flexible_mode_starts(candidate, parent, runs);
+  if (kind == "flexible_mode") return flexible_mode_starts(candidate, parent, coarse(runs));
   return {candidate.start};
 }
 

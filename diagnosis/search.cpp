@@ -23,7 +23,7 @@ bool is_linear(const Candidate& c) {
 
 // The runs averaged over blocks: enough for what is slow, and several times faster.
 std::vector<Observation> coarse(const std::vector<Observation>& runs) {
-  constexpr size_t blocks = 1500;
+  constexpr size_t blocks = 1000;
   std::vector<Observation> result;
   for (const Observation& seen : runs) result.push_back(seen.averaged(blocks));
   return result;
@@ -57,7 +57,9 @@ std::vector<Trial> extend_by_tasks(const Trial& parent, const std::vector<Candid
                                    const std::vector<Observation>& runs, int threads) {
   std::vector<Trial> trials(tasks.size());
   parallel_for(tasks.size(), threads, [&](size_t i) {
-    trials[i] = extend(parent, all, tasks[i].candidate, tasks[i].start, runs);
+    FitSettings settings;
+    settings.most_iterations = 12;
+    trials[i] = extend(parent, all, tasks[i].candidate, tasks[i].start, runs, settings);
   });
   std::vector<Trial> best;
   for (Trial& trial : trials) {
@@ -75,7 +77,7 @@ std::vector<Trial> extend_by_tasks(const Trial& parent, const std::vector<Candid
 std::vector<Trial> extend_by_each(const Trial& parent, const std::vector<Candidate>& all,
                                   const std::vector<size_t>& candidates,
                                   const std::vector<Observation>& runs, int threads) {
-  constexpr size_t most_refits = 6;
+  constexpr size_t most_refits = 4;
   const std::vector<Observation> slow_runs = coarse(runs);
   std::vector<double> lines_Hz;
   std::vector<size_t> worth_it;
@@ -144,8 +146,11 @@ std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
   for (int effects = 1; effects <= options.most_effects; ++effects) {
     std::vector<Trial> found;
     for (const Trial& parent : parents) {
+      // Empirical laws compete alone and beside the best physics.
+      const bool with_empirical = effects <= 2 && &parent == &parents.front();
       std::vector<size_t> others;
       for (size_t c = 0; c < all.size(); ++c) {
+        if (all[c].empirical() && !with_empirical) continue;
         if (!contains(parent, all, c)) others.push_back(c);
       }
       for (Trial& t : extend_by_each(parent, all, others, runs, options.threads)) {
@@ -154,7 +159,7 @@ std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
     }
     // The best physics goes on, and the next best while the best leaves structure behind; when
     // nothing gained, nothing more will.
-    constexpr size_t most_parents = 3;
+    const size_t most_parents = effects == 1 ? 2 : 1;
     constexpr double explained_sigma = 5.0;
     std::vector<Trial> next;
     for (const size_t i : by_evidence(found)) {

@@ -46,7 +46,9 @@ Whiteness whiteness(const std::vector<Prediction>& residuals) {
     std::vector<double> differences;
     for (const Prediction& p : residuals) {
       const std::vector<double> r = channel(p, k);
-      for (size_t i = 1; i < r.size(); ++i) differences.push_back(std::abs(r[i] - r[i - 1]));
+      for (size_t i = 1; i + 1 < r.size(); ++i) {
+        differences.push_back(std::abs(r[i - 1] - 2.0 * r[i] + r[i + 1]));
+      }
       for (size_t i = 0; i + neighbours <= r.size(); i += neighbours) {
         double mean = 0.0;
         for (size_t j = i; j < i + neighbours; ++j) mean += r[j];
@@ -55,9 +57,9 @@ Whiteness whiteness(const std::vector<Prediction>& residuals) {
       }
     }
     if (differences.size() < 50) continue;
-    // The median of |x| is 0.6745 σ, and differences have twice the variance.
+    // The median of |x| is 0.6745 σ, and second differences have six times the variance.
     result.noise_ratio[static_cast<size_t>(k)] =
-        median(std::move(differences)) / (0.67449 * std::sqrt(2.0));
+        median(std::move(differences)) / (0.67449 * std::sqrt(6.0));
   }
   if (means == 0) return result;
   variance = 2.0 / static_cast<double>(means);
@@ -81,19 +83,18 @@ bool correct_noise(const Whiteness& found, std::vector<Observation>& runs) {
 }
 
 int64_t drop_outliers(const std::vector<Prediction>& residuals, std::vector<Observation>& runs) {
-  constexpr double furthest = 6.0;
-  constexpr size_t reach = 3;
+  constexpr double furthest = 9.0;
   int64_t dropped = 0;
   for (size_t run = 0; run < runs.size(); ++run) {
     const std::vector<WhiteRow>& rows = residuals[run].residual;
-    for (size_t i = 0; i < rows.size(); ++i) {
+    for (size_t i = 2; i + 2 < rows.size(); ++i) {
       for (Eigen::Index k = 0; k < 6; ++k) {
-        if (!std::isfinite(rows[i][k])) continue;
-        std::vector<double> around;
-        for (size_t j = i - std::min(i, reach); j < std::min(rows.size(), i + reach + 1); ++j) {
-          if (j != i && std::isfinite(rows[j][k])) around.push_back(rows[j][k]);
-        }
-        if (around.size() < 3 || std::abs(rows[i][k] - median(around)) < furthest) continue;
+        const auto r = [&](size_t j) { return rows[j][k]; };
+        // What both sides and either side alone expect here: one bad neighbour does not decide, and
+        // a residual that runs away steadily is no outlier.
+        const std::vector<double> expected = {0.5 * (r(i - 1) + r(i + 1)),
+                                              2.0 * r(i - 1) - r(i - 2), 2.0 * r(i + 1) - r(i + 2)};
+        if (!(std::abs(r(i) - median(expected)) > furthest)) continue;
         ++dropped;
         // An attitude is right or wrong as a whole.
         if (k < 3) runs[run].attitude_rows[i] = 0.0;

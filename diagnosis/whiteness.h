@@ -12,8 +12,8 @@ namespace photorque {
 std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs);
 
 struct Whiteness {
-  // Standard deviation of each channel (camera x, y, z, gyro x, y, z) from the differences of
-  // neighbours: the noise itself, over that which was assumed. 1 where there are no readings.
+  // Standard deviation of each channel (camera x, y, z, gyro x, y, z) from the second
+  // differences of neighbours: the noise itself, over that which was assumed. 1 where there are no readings.
   std::array<double, 6> noise_ratio{1, 1, 1, 1, 1, 1};
   // χ² of the means of some twenty neighbours over their number: 1 for white noise, much more where
   // structure is left. `excess_sigma` is its distance from 1 in standard errors.
@@ -26,8 +26,8 @@ Whiteness whiteness(const std::vector<Prediction>& residuals);
 // Returns whether any was.
 bool correct_noise(const Whiteness& found, std::vector<Observation>& runs);
 
-// Drops readings that stand out from their neighbours' residuals by more than six standard
-// deviations. Returns their number.
+// Drops readings that stand out from what their neighbours' residuals lead to by more than nine
+// standard deviations. Returns their number.
 int64_t drop_outliers(const std::vector<Prediction>& residuals, std::vector<Observation>& runs);
 
 }  // namespace photorque
