@@ -4,50 +4,19 @@
 // then a monotone cubic between knots. The table is a sum of planes, I = Σ_j hat_j(azimuth)
 // I_j(polar), with hats that fall linearly to the neighbouring planes. A ray chooses a plane by its
 // share of the flux, an azimuth within the hat by inverting its quadratic, and a polar angle by the
-// plane's own distribution. That is tabulated at cells so fine that within them the intensity is
-// linear in the rise 1 − cos θ to `cell_error` of the flux; every cell holds its exact flux
-// (Gauss–Legendre with 8 nodes on cubics times a sine: rounding), and a quadratic is inverted
-// within it.
+// plane's PlaneSampler.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "sources/block_maps.h"
 #include "sources/intensity_table.h"
+#include "sources/plane_sampler.h"
 
 namespace photorque {
 
-// The distribution of the polar angle in one plane, for equal-share sampling.
-class PlaneSampler {
- public:
-  // Knots of the plane's cubic: angles, intensities and slopes of one length.
-  PlaneSampler(const std::vector<double>& polar_rad, const double* intensity, const double* slope);
-
-  // ∫ I sin θ dθ over the plane, ≥ 0.
-  double flux() const { return flux_; }
-  // 1 − cos θ below which a share ∈ (0, 1) of the flux lies. Only where flux() > 0.
-  double rise(double share) const;
-
- private:
-  struct Cell {
-    double before;     // share of the flux below the cell
-    double rise;       // of its lower edge
-    double width;      // in rise
-    double low, high;  // share per rise at its edges
-  };
-  struct Curve;
-  void add(const Curve& curve, double low_rad, double high_rad, double plane_flux, int depth);
-
-  double flux_ = 0.0;
-  std::vector<Cell> cells_;
-  std::vector<uint32_t> first_cell_;  // for evenly spaced shares
-};
-
 class TabulatedIntensity {
  public:
-  static constexpr double cell_error = 1e-8;
-
   // The caller has checked the table as IntensityTable demands.
   explicit TabulatedIntensity(IntensityTable table);
 

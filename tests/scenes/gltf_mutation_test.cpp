@@ -185,5 +185,31 @@ TEST(GltfMutations, BitsFlippedInExportersFiles) {
   flip_bits({std::istreambuf_iterator<char>(in), {}}, "a.glb", 1000);
 }
 
+TEST(GltfMutations, BitsFlippedInPackedFiles) {
+  const std::filesystem::path models =
+      std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/models";
+  if (!std::filesystem::exists(models)) GTEST_SKIP() << "no " << models;
+  const auto bytes_of = [&](const char* file) {
+    std::ifstream in(models / file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  flip_bits(bytes_of("in/BoxMeshopt.glb"), "a.glb", 1000);
+  // The document is good, the Draco streams of its buffer are not.
+  const std::string text = bytes_of("2CylinderEngine_draco/2CylinderEngine.gltf");
+  const std::string good = bytes_of("2CylinderEngine_draco/2CylinderEngine.bin");
+  size_t refused = 0;
+  for (uint64_t i = 0; i < 40; ++i) {
+    std::string bad = good;
+    const uint64_t bit = hash_words(i, 3) % (8 * bad.size());
+    bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
+    try {
+      read_gltf_bytes(text, "a.gltf", [&](const std::string&) { return bad; });
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0u);
+}
+
 }  // namespace
 }  // namespace photorque

@@ -1,12 +1,15 @@
 // A lamp from an IES file and the tracer together, against a closed form that neither uses.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "core/constants.h"
 #include "core/files.h"
+#include "core/provenance.h"
 #include "raytrace/tracer.h"
+#include "scenes/experiment.h"
 #include "sources/photometric_file.h"
 #include "sources/source_kind.h"
 #include "tests/raytrace/test_scenes.h"
@@ -40,16 +43,39 @@ std::vector<Beam> lamp_over_origin(const std::filesystem::path& folder) {
   return {};
 }
 
-TEST(IesLamp, PowerOnASquareMatchesClosedForm) {
+// Lambert's law in steps of one degree, written as a file.
+std::filesystem::path lambert_file(const std::string& folder) {
   PhotometricFile file;
   for (int degrees = 0; degrees <= 90; ++degrees) {
     file.table.polar_rad.push_back(degrees * degree_rad);
     file.table.intensity.push_back(std::max(0.0, std::cos(degrees * degree_rad)));
   }
   file.table.azimuth_rad = {0.0};
-  const auto folder = std::filesystem::path(::testing::TempDir()) / "measured_lamp_trace_test";
-  write_file_whole(folder / "lambert.ies", write_ies(file));
-  const std::vector<Beam> beams = lamp_over_origin(folder);
+  const auto path = std::filesystem::path(::testing::TempDir()) / folder / "lambert.ies";
+  write_file_whole(path, write_ies(file));
+  return path;
+}
+
+TEST(IesLamp, IsFoundBesideTheExperimentAndHashedAmongItsInputs) {
+  const auto file = lambert_file("ies_beside_experiment");
+  const auto scene = std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/stasis.gltf";
+  const auto toml = file.parent_path() / "lamp.toml";
+  write_file_whole(toml, "[scene]\nfile = \"" + scene.string() +
+                             "\"\n[[source]]\nkind = \"ies\"\nfile = \"lambert.ies\"\n"
+                             "power_W = 3\nwavelength_nm = 730\nposition_m = [0, 0, 2]\n"
+                             "direction = [0, 0, -1]\n");
+  const Experiment experiment = read_experiment(toml);
+  ASSERT_EQ(experiment.beams.size(), 1u);
+  EXPECT_EQ(experiment.beams[0].emitter->power_W(), 3.0);
+  const std::pair<std::string, std::string> input{"lambert.ies", content_hash(read_file(file))};
+  EXPECT_NE(std::find(experiment.inputs.begin(), experiment.inputs.end(), input),
+            experiment.inputs.end());
+  EXPECT_THROW(read_experiment(toml, std::vector<std::string>{"source[0].file=other.ies"}),
+               InputError);
+}
+
+TEST(IesLamp, PowerOnASquareMatchesClosedForm) {
+  const std::vector<Beam> beams = lamp_over_origin(lambert_file("ies_on_a_square").parent_path());
   ASSERT_EQ(beams.size(), 1u);
   for (const double half : {0.1, 0.5, 2.0}) {
     Scene scene;

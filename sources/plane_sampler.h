@@ -1,0 +1,49 @@
+// Polar angles drawn from one plane of an intensity table.
+//
+// Method. The distribution is tabulated at cells so fine that within them the intensity is linear
+// in the rise 1 − cos θ to `cell_error` of the plane's flux. Every cell holds its exact flux
+// (Gauss–Legendre with 8 nodes on cubics times a sine: rounding), and a quadratic is inverted in
+// it.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace photorque {
+
+// 1 − cos θ, with its relative precision near the axis.
+inline double rise_at(double polar_rad) {
+  const double sine = std::sin(0.5 * polar_rad);
+  return 2.0 * sine * sine;
+}
+
+// The distribution of the polar angle in one plane, for equal-share sampling.
+class PlaneSampler {
+ public:
+  static constexpr double cell_error = 1e-8;
+
+  // Knots of the plane's cubic: angles, intensities and slopes of one length.
+  PlaneSampler(const std::vector<double>& polar_rad, const double* intensity, const double* slope);
+
+  // ∫ I sin θ dθ over the plane, ≥ 0.
+  double flux() const { return flux_; }
+  // 1 − cos θ below which a share ∈ (0, 1) of the flux lies. Only where flux() > 0.
+  double rise(double share) const;
+
+ private:
+  struct Cell {
+    double before;     // share of the flux below the cell
+    double rise;       // of its lower edge
+    double width;      // in rise
+    double low, high;  // share per rise at its edges
+  };
+  struct Curve;
+  void add(const Curve& curve, double low_rad, double high_rad, double plane_flux, int depth);
+
+  double flux_ = 0.0;
+  std::vector<Cell> cells_;
+  std::vector<uint32_t> first_cell_;  // for evenly spaced shares
+};
+
+}  // namespace photorque
