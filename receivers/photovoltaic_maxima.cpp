@@ -14,21 +14,15 @@ class ArrayCurve::Search {
 
   Scan run() {
     if (curve_.end_x_ == 0.0) return {{ArrayPoint{}}, {}};
-    Node low = curve_.make_node(), high = curve_.make_node();
+    Node low = curve_.make_node(), high = curve_.make_node(), at = curve_.make_node();
     for (const Piece& piece : curve_.pieces()) {
-      const double width = piece.high_x - piece.low_x;
-      const int steps =
-          std::max(1, static_cast<int>(std::ceil(intervals_ * width / curve_.end_x_)));
       curve_.evaluate(piece.low_x, piece.regimes, low, coarse);
+      high = low;  // the start of its strings' solutions
+      curve_.evaluate(piece.high_x, piece.regimes, high, coarse);
+      search(low, high, piece, 0);
       if (scan_.points.empty()) add_point(low);
-      for (int i = 1; i <= steps; ++i) {
-        high = low;  // the start of its strings' solutions
-        const double x = i == steps ? piece.high_x : piece.low_x + width * i / steps;
-        curve_.evaluate(x, piece.regimes, high, coarse);
-        add_point(high);
-        search(low, high, piece, 0);
-        std::swap(low, high);
-      }
+      add_points_between(piece, low, at);
+      add_point(high);
     }
     std::ranges::sort(scan_.points, {}, &ArrayPoint::voltage_V);
     std::ranges::sort(scan_.maxima, {}, &ArrayPoint::voltage_V);
@@ -103,6 +97,16 @@ class ArrayCurve::Search {
     });
     // Along the tangent from the last trial, 1e-10 away.
     scan_.maxima.push_back(curve_.point(x, at.y - (x - at.x) * at.slope));
+  }
+
+  void add_points_between(const Piece& piece, const Node& low, Node& at) {
+    const double width = piece.high_x - piece.low_x;
+    const int steps = std::max(1, static_cast<int>(std::ceil(intervals_ * width / curve_.end_x_)));
+    if (steps > 1) at = low;
+    for (int i = 1; i < steps; ++i) {
+      curve_.evaluate(piece.low_x + width * i / steps, piece.regimes, at, coarse);
+      add_point(at);
+    }
   }
 
   void add_point(const Node& node) {
