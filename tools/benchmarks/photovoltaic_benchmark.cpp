@@ -65,7 +65,7 @@ std::vector<double> light_A(const std::string& map) {
 }
 
 // 100 cells: five substrings of 20 in one string, or ten strings of ten, with real diodes
-// (junctions) or ideal ones. Building the network, its whole curve in 200 steps and all maxima are
+// (junctions) or ideal ones. Building the network, its whole curve in 100 steps and all maxima are
 // in the time; the table of the cell type, which does not depend on the light, is not.
 void hundred_cells(benchmark::State& state, const std::string& map, int strings, Diode::Kind kind,
                    int intervals) {
@@ -152,7 +152,7 @@ void register_arrays() {
   for (const char* map : {"spot", "slope", "shade"}) {
     for (const int strings : {1, 10}) {
       for (const auto kind : {Diode::Kind::clamp, Diode::Kind::junction}) {
-        for (const int intervals : {1, 200}) {
+        for (const int intervals : {1, 100}) {
           const std::string name = std::string("hundred_cells/") + map +
                                    (strings == 1 ? "/series" : "/parallel") +
                                    (kind == Diode::Kind::clamp ? "/ideal" : "/junction") +
