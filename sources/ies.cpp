@@ -74,7 +74,8 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   for (const std::string& line : file.notices) {
     if (context.notice) context.notice(name + ": " + line);
   }
-  return place_lamps(settings, name, lamp, read_line_spectrum(settings, usual_led_fwhm_m));
+  return place_lamps(settings, name, lamp, read_line_spectrum(settings, usual_led_fwhm_m),
+                     uniform_aperture(*lamp));
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ SourceFile read_source_file(const Settings& settings, const SourceContext& conte
 }
 
 std::vector<Beam> place_lamps(const Settings& settings, const std::string& name,
-                              const std::shared_ptr<const Emitter>& lamp,
-                              const Spectrum& spectrum) {
+                              const std::shared_ptr<const Emitter>& lamp, const Spectrum& spectrum,
+                              const std::optional<UniformAperture>& aperture) {
   const bool several = settings.has("positions_m");
   if (several && settings.has("position_m")) {
     throw settings.error("positions_m", "also position_m", "only one of the two");
@@ -34,7 +34,7 @@ std::vector<Beam> place_lamps(const Settings& settings, const std::string& name,
   for (size_t i = 0; i < positions_m.size(); ++i) {
     const Vec3 direction = read_direction(settings, positions_m[i]);
     beams.push_back({several ? name + "[" + std::to_string(i) + "]" : name, lamp,
-                     frame_looking_along(direction, positions_m[i]) * turn, spectrum});
+                     frame_looking_along(direction, positions_m[i]) * turn, spectrum, aperture});
   }
   return beams;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,9 @@ SourceFile read_source_file(const Settings& settings, const SourceContext& conte
 
 // One lamp at position_m, called `name`, or the same lamp at each of positions_m, called name[0],
 // name[1] …; each looks along `direction` or at aim_m, turned by turn_deg (default 0) about its
-// beam.
+// beam. `aperture` as in Beam.
 std::vector<Beam> place_lamps(const Settings& settings, const std::string& name,
-                              const std::shared_ptr<const Emitter>& lamp, const Spectrum& spectrum);
+                              const std::shared_ptr<const Emitter>& lamp, const Spectrum& spectrum,
+                              const std::optional<UniformAperture>& aperture = std::nullopt);
 
 }  // namespace photorque

@@ -80,6 +80,27 @@ double PhotometricLamp::relative_intensity(double angle_rad) const {
   return std::min(1.0, mean / largest_average_);
 }
 
+std::optional<UniformAperture> uniform_aperture(const PhotometricLamp& lamp) {
+  const IntensityTable& table = lamp.intensity().table();
+  const Opening& opening = lamp.opening();
+  const bool disc = opening.shape == Opening::Shape::ellipse && opening.x_m == opening.y_m;
+  if (!disc || table.pole != Pole::beam || table.planes() > 1) return std::nullopt;
+  size_t dark = table.polar_rad.size();  // the first of the angles from which on nothing shines
+  while (table.intensity[dark - 1] <= 0.0) --dark;
+  const double end_rad = table.polar_rad[std::min(dark, table.polar_rad.size() - 1)];
+  if (end_rad > 0.5 * pi * (1.0 + 1e-12) || end_rad <= 0.0) return std::nullopt;
+  const double radius_m = 0.5 * opening.x_m;
+  UniformAperture aperture{radius_m, lamp.power_W() / (pi * radius_m * radius_m), {}};
+  if (table.polar_rad.front() > 0.0) aperture.edges_rad.push_back(table.polar_rad.front());
+  // Octaves of the beam's width, so that its core is resolved however far the table goes on.
+  for (double edge_rad = full_width_rad(lamp, 0.5); edge_rad > 0.0 && edge_rad < 0.9 * end_rad;
+       edge_rad *= 2.0) {
+    if (edge_rad > table.polar_rad.front()) aperture.edges_rad.push_back(edge_rad);
+  }
+  aperture.edges_rad.push_back(std::min(end_rad, 0.5 * pi));
+  return aperture;
+}
+
 std::optional<std::string> coarseness_notice(const PhotometricLamp& lamp) {
   constexpr double allowed = 2e-3;
   const auto [straight, zonal] = lamp.intensity().coarseness();

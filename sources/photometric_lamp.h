@@ -23,6 +23,7 @@ class PhotometricLamp : public Emitter {
   double relative_intensity(double angle_rad) const override;
 
   const TabulatedIntensity& intensity() const { return intensity_; }
+  const Opening& opening() const { return opening_; }
 
  private:
   double round_average(double angle_rad) const;
@@ -34,6 +35,10 @@ class PhotometricLamp : public Emitter {
   std::vector<double> average_;
   double largest_average_ = 0.0;
 };
+
+// The lamp as an aperture that light can be gathered from: a disc whose table is the same all round
+// the beam and shines forwards only; nothing for others.
+std::optional<UniformAperture> uniform_aperture(const PhotometricLamp& lamp);
 
 // One line when the angles of a table are so far apart that its flux depends on how it is read
 // between them by more than 0.2 %: with the numbers, and the spacing that would do.

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "core/constants.h"
+#include "raytrace/disc_light.h"
 #include "sampling.h"
 #include "sources/beam_shape.h"
 #include "sources/monotone_cubic.h"
@@ -186,6 +187,43 @@ TEST(TabulatedIntensity, TablesThatAreTooCoarseAreNamedWithTheirError) {
   const PhotometricLamp coarse(1.0, {}, TabulatedIntensity(axial(0.25 * deg, 30 * deg, beam)));
   EXPECT_NEAR(coarse.intensity().coarseness().straight, std::pow(0.25 * deg / sigma, 2) / 12, 2e-5);
   EXPECT_THAT(coarseness_notice(coarse).value_or(""), testing::HasSubstr("0.25 deg apart"));
+}
+
+// A disc of radius R that shines by Lambert's law with exitance M lights a point of its axis at z
+// with M R²/(R² + z²) (J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors,
+// B-12); a narrow beam from a small disc with power times intensity per flux over z².
+TEST(PhotometricLamp, CanBeGatheredFromAsADisc) {
+  const Opening disc{Opening::Shape::ellipse, 0.4, 0.4};
+  const PhotometricLamp lambert(
+      2.0, disc, TabulatedIntensity(axial(deg, 90 * deg, [](double t) { return std::cos(t); })));
+  const auto aperture = uniform_aperture(lambert);
+  ASSERT_TRUE(aperture.has_value());
+  for (const double z : {0.1, 0.5, 2.0}) {
+    const double expected = 2.0 / (pi * 0.04) * 0.04 / (0.04 + z * z);
+    EXPECT_NEAR(DiscLight(lambert, *aperture).irradiance_W_m2(Vec3(0, 0, z), -Vec3::UnitZ()),
+                expected, 2e-5 * expected);
+  }
+  const double sigma = 1.5 * deg / std::sqrt(2 * std::numbers::ln2);
+  const PhotometricLamp narrow(1.0, {Opening::Shape::ellipse, 1e-4, 1e-4},
+                               TabulatedIntensity(axial(0.1 * deg, 90 * deg, [&](double t) {
+                                 return std::exp(-0.5 * t * t / (sigma * sigma));
+                               })));
+  const double expected = 1.0 / gaussian_flux(sigma);
+  EXPECT_NEAR(
+      DiscLight(narrow, *uniform_aperture(narrow)).irradiance_W_m2(Vec3(0, 0, 1), -Vec3::UnitZ()),
+      expected, 2e-5 * expected);
+}
+
+TEST(PhotometricLamp, IsNoDiscWithSidesOrACornerOrLightBehind) {
+  const Opening disc{Opening::Shape::ellipse, 0.4, 0.4};
+  const auto lambert = axial(deg, 90 * deg, [](double t) { return std::cos(t); });
+  const Opening square{Opening::Shape::rectangle, 0.4, 0.4};
+  EXPECT_FALSE(uniform_aperture(PhotometricLamp(1.0, square, TabulatedIntensity(lambert))));
+  const auto sided =
+      planes(8, 90 * deg, [](double t, double c) { return std::cos(t) * (1.5 + std::cos(c)); });
+  EXPECT_FALSE(uniform_aperture(PhotometricLamp(1.0, disc, TabulatedIntensity(sided))));
+  const auto behind = axial(deg, 120 * deg, [](double) { return 1.0; });
+  EXPECT_FALSE(uniform_aperture(PhotometricLamp(1.0, disc, TabulatedIntensity(behind))));
 }
 
 }  // namespace
