@@ -1,6 +1,7 @@
 #include "receivers/photovoltaic_tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -60,6 +61,7 @@ class Controller {
       sweep_point_ = 0;
       since_sweep_s_ = 0.0;
       settled_ = 0;
+      recent_W_ = {};
       voltage_V_ = best_.voltage_V > 0 ? best_.voltage_V : voltage_V_;
       return;
     }
@@ -68,14 +70,24 @@ class Controller {
 
   void perturb(const Sample& now) {
     const double change_W = now.power_W() - last_.power_W();
-    // The first steps after a sweep compare with a point of the sweep.
-    const bool jumped = std::abs(change_W) > tracker_.rescan_fraction * last_.power_W();
-    if (tracker_.kind == Tracker::Kind::global_scan && ++settled_ > 3 && jumped) {
+    if (tracker_.kind == Tracker::Kind::global_scan && light_changed(now.power_W())) {
       begin_sweep();
       return;
     }
     if (change_W < 0.0) direction_ = -direction_;
     move(direction_);
+  }
+
+  // The largest of three powers in a row is that at the maximum, wherever the steps around it fall.
+  // It is compared with what it was just after the last sweep.
+  bool light_changed(double power_W) {
+    recent_W_[settled_ % 3] = power_W;
+    const double most_W = *std::ranges::max_element(recent_W_);
+    if (++settled_ <= 3) {
+      reference_W_ = most_W;
+      return false;
+    }
+    return std::abs(most_W - reference_W_) > tracker_.rescan_fraction * reference_W_;
   }
 
   void incremental_conductance(const Sample& now) {
@@ -99,7 +111,9 @@ class Controller {
   double direction_ = -1.0;
   Sample last_, best_;
   int sweep_point_ = 0;  // 0: not sweeping
-  int settled_ = 0;
+  size_t settled_ = 0;   // decisions since the last sweep
+  std::array<double, 3> recent_W_{};
+  double reference_W_ = 0.0;
   double since_sweep_s_ = 0.0;
 };
 

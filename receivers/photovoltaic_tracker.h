@@ -26,8 +26,8 @@ struct Tracker {
     // Step towards dI/dV = −I/V (K. H. Hussein et al., IEE Proc. 142, 59 (1995)); stands still
     // there.
     incremental_conductance,
-    // Perturb and observe; whenever the power changes by `rescan_fraction` within one period, and
-    // at the start, first sweep the whole range and continue at the best point.
+    // Perturb and observe; at the start, and whenever the power has changed by `rescan_fraction`
+    // since the last sweep, sweep the whole range and continue at the best point.
     global_scan,
     // Sweep the whole range every `sweep_every_s` and stay at the best voltage between.
     periodic_sweep,
