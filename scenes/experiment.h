@@ -39,6 +39,14 @@ struct DirectionGrid {
   std::vector<double> azimuth_rad;    // ascending in [−π, π], from x towards y, at least one
 };
 
+// [trace]: how much work the light on surfaces is worth.
+struct TraceEffort {
+  bool gather = true;  // direct light from the surface's side where that is possible; else by rays
+  // More rays until every bin above a tenth of its map's peak has this relative standard error,
+  std::optional<double> target_error;
+  std::optional<double> max_time_s;  // or until the next round would end later than this
+};
+
 // [camera]: where a picture is taken from. Lab frame, z up in the picture.
 struct Camera {
   Vec3 position_m = Vec3::Zero();
@@ -69,6 +77,7 @@ struct ExperimentFile {
 
   Attitude attitude;
   TraceOptions trace;
+  TraceEffort effort;
   AttitudeGrid torque_map;
   std::optional<DirectionGrid> light_directions;  // instead of torque_map
   std::optional<uint64_t> torque_map_rays;        // per attitude or direction; else trace.rays

@@ -63,6 +63,22 @@ TraceOptions read_trace_options(const Settings& root) {
   return options;
 }
 
+TraceEffort read_effort(const Settings& root) {
+  TraceEffort effort;
+  if (!root.has("trace")) return effort;
+  const Settings table = root.table("trace");
+  if (table.has("direct")) effort.gather = table.choice("direct", {"gather", "rays"}) == 0;
+  if (table.has("target_error")) {
+    effort.target_error = table.number("target_error", {1e-6, 1.0, false, false});
+  }
+  if (table.has("max_time_s")) effort.max_time_s = table.number("max_time_s", Range::positive());
+  if (effort.max_time_s && !effort.target_error) {
+    throw table.error("max_time_s", "a limit without a target",
+                      "also target_error: only then are rays added");
+  }
+  return effort;
+}
+
 AttitudeGrid read_torque_map(const Settings& root, const Attitude& attitude) {
   AttitudeGrid grid{{attitude.tilt_rad}, {attitude.heading_rad}};
   if (!root.has("torque_map")) return grid;
@@ -173,6 +189,7 @@ ExperimentFile read_experiment_file(const std::filesystem::path& path,
   file.receivers = settings.tables("receiver");
   file.attitude = read_attitude(settings);
   file.trace = read_trace_options(settings);
+  file.effort = read_effort(settings);
   file.torque_map = read_torque_map(settings, file.attitude);
   file.light_directions = read_light_directions(settings);
   file.torque_map_rays = read_torque_map_rays(settings);

@@ -103,8 +103,8 @@ void map_over_direction(const CommandLine& line, Console& console, const Optical
         continue;
       }
       const Vec3 towards_body = towards_light({grid.elevation_rad[e], grid.azimuth_rad[a]});
-      const TraceResult result = run.run(lab_from_body_with_sun(towards_body, sun.towards_lab), {},
-                                         run.experiment().file.torque_map_rays);
+      const OpticalResult result = run.run(lab_from_body_with_sun(towards_body, sun.towards_lab),
+                                           {}, run.experiment().file.torque_map_rays);
       set_node(table, node, run.wrench().total(result.sums[run.wrench_index()]));
       rays += result.rays;
       wall_s += result.wall_s;

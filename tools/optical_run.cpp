@@ -1,6 +1,7 @@
 #include "tools/optical_run.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -64,15 +65,33 @@ OpticalRun::OpticalRun(const CommandLine& line, const Console& console)
   for (const std::string& text : beam_shape_lines(experiment_.beams)) console.line("  " + text);
 }
 
-TraceResult OpticalRun::run(const RigidTransform& lab_from_body,
-                            const std::function<void(double)>& progress,
-                            std::optional<uint64_t> rays) const {
+OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
+                              const std::function<void(double)>& progress,
+                              std::optional<uint64_t> rays) const {
+  constexpr uint64_t most_rays = 1ull << 38;
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed_s = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const TraceEffort& effort = experiment_.file.effort;
   TraceOptions options = experiment_.file.trace;
   options.rays = rays.value_or(options.rays);
   options.threads = threads_;
   options.progress = progress;
   const auto receivers = experiment_.receiver_pointers();
-  return trace(scene_, lab_from_body, experiment_.beams, receivers, options);
+  for (;; options.rays *= 2) {
+    const double before_s = elapsed_s();
+    OpticalResult result{trace(scene_, lab_from_body, experiment_.beams, receivers, options), {}};
+    if (effort.gather) {
+      result.direct = gather_into(experiment_, scene_, lab_from_body, options, result);
+    }
+    result.worst_bin_error = worst_bin_error(experiment_, result);
+    result.wall_s = elapsed_s();
+    const double next_s = 2.0 * (result.wall_s - before_s);
+    const bool reached = !effort.target_error || result.worst_bin_error <= *effort.target_error;
+    const bool late = effort.max_time_s && result.wall_s + next_s > *effort.max_time_s;
+    if (reached || late || 2 * options.rays > most_rays) return result;
+  }
 }
 
 size_t OpticalRun::flux_map_index(const std::string& name) const {
@@ -96,7 +115,7 @@ const FluxMapReceiver& OpticalRun::flux_map(size_t index) const {
   return dynamic_cast<const FluxMapReceiver&>(*experiment_.receivers[index].receiver);
 }
 
-Product OpticalRun::product(const TraceResult& result) const {
+Product OpticalRun::product(const OpticalResult& result) const {
   const Ledger& ledger = result.ledger;
   Product product;
   product.quantities = {
@@ -108,6 +127,10 @@ Product OpticalRun::product(const TraceResult& result) const {
       {"momentum_disagreement_sigma",
        {momentum_disagreement(ledger, result.sums[wrench_], wrench()), 0.0}},
   };
+  for (const DirectLight& direct : result.direct) {
+    product.quantities.push_back({"direct_on_" + direct.name + "_W", direct.gathered_W});
+    product.quantities.push_back({"direct_by_rays_on_" + direct.name + "_W", direct.rays_W});
+  }
   Table parts{"absorbed_by_part", "Power absorbed by each part", {}};
   parts.columns = {{"part", {}, {}}, {"absorbed_W", {}, {}}, {"standard_error_W", {}, {}}};
   for (size_t i = 0; i < ledger.absorbed_by_instance_W.size(); ++i) {
@@ -122,7 +145,7 @@ Product OpticalRun::product(const TraceResult& result) const {
   return product;
 }
 
-void print_trace(const Console& console, const OpticalRun& run, const TraceResult& result) {
+void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result) {
   const Ledger& ledger = result.ledger;
   const auto row = [&](const std::string& name, const Estimate& power) {
     const double percent = 100.0 * power.value / ledger.emitted_W;
@@ -156,6 +179,13 @@ void print_trace(const Console& console, const OpticalRun& run, const TraceResul
   console.line("  momentum: surfaces and rays differ by at most " +
                show(momentum_disagreement(ledger, result.sums[run.wrench_index()], run.wrench())) +
                " standard errors");
+  for (const DirectLight& direct : result.direct) {
+    console.line("  direct light on " + direct.name + ": gathered and by rays differ by " +
+                 show(std::abs(direct.difference_sigma)) + " standard errors in all, " +
+                 show(std::sqrt(direct.mean_square)) + " (rms) in a bin");
+  }
+  console.line("  largest standard error of a bin above a tenth of the peak: " +
+               show(100.0 * result.worst_bin_error) + " %");
   console.line("  " + std::to_string(result.rays) + " rays, " + std::to_string(result.segments) +
                " segments in " + show(result.wall_s) + " s (" +
                show(static_cast<double>(result.segments) / result.wall_s / 1e6) +

@@ -13,8 +13,15 @@
 #include "receivers/wrench.h"
 #include "scenes/experiment.h"
 #include "tools/console.h"
+#include "tools/direct_light.h"
 
 namespace photorque {
+
+// What a run found: the trace, the direct light of its flux maps gathered where possible.
+struct OpticalResult : TraceResult {
+  std::vector<DirectLight> direct;  // by flux map; empty where rays alone had to do
+  double worst_bin_error = 0.0;     // see worst_bin_error()
+};
 
 // An experiment made ready to trace: its scene built once, its receivers, and always a wrench over
 // the whole scene ("body", added if the experiment names none).
@@ -28,9 +35,10 @@ class OpticalRun {
   const Provenance& provenance() const { return provenance_; }
 
   // Traces at an attitude, with the options of the experiment but, if given, another number of
-  // rays.
-  TraceResult run(const RigidTransform& lab_from_body, const std::function<void(double)>& progress,
-                  std::optional<uint64_t> rays = {}) const;
+  // rays; goes on with twice the rays until the experiment's target error or time is reached.
+  OpticalResult run(const RigidTransform& lab_from_body,
+                    const std::function<void(double)>& progress,
+                    std::optional<uint64_t> rays = {}) const;
 
   // The place of a receiver among experiment().receivers and TraceResult::sums.
   size_t wrench_index() const { return wrench_; }
@@ -41,7 +49,7 @@ class OpticalRun {
   const FluxMapReceiver& flux_map(size_t index) const;
 
   // Ledger, shapes of the sources, and the product of every receiver.
-  Product product(const TraceResult& result) const;
+  Product product(const OpticalResult& result) const;
 
  private:
   Experiment experiment_;
@@ -52,7 +60,7 @@ class OpticalRun {
 };
 
 // Where the light went and what it did, as text.
-void print_trace(const Console& console, const OpticalRun& run, const TraceResult& result);
+void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result);
 
 // Adds the items of `more` to `product`.
 void append(Product& product, Product more);

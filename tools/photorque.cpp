@@ -18,6 +18,13 @@ std::filesystem::path CommandLine::out_folder() const {
 std::vector<std::string> CommandLine::all_overrides() const {
   std::vector<std::string> all = overrides;
   if (seed) all.push_back("trace.seed=" + std::to_string(*seed));
+  const auto add = [&all](const char* key, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%s=%.17g", key, value);
+    all.emplace_back(text);
+  };
+  if (target_error) add("trace.target_error", *target_error);
+  if (max_time_s) add("trace.max_time_s", *max_time_s);
   return all;
 }
 
@@ -46,6 +53,13 @@ int run(int argc, char** argv) {
   for (const Verb& verb : verbs) {
     CLI::App* command = app.add_subcommand(verb.name, verb.summary);
     add_options(*command, line);
+    if (verb.traces_light) {
+      command->add_option("--target-error", line.target_error,
+                          "Add rays until every bin above a tenth of the peak has this relative "
+                          "standard error (0.01: 1 %)");
+      command->add_option("--max-time", line.max_time_s,
+                          "Stop adding rays before this many seconds have passed");
+    }
     if (verb.takes_recordings) {
       command->add_option("--recording", line.recordings, "A recording (CSV); may be repeated")
           ->allow_extra_args(false);

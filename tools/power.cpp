@@ -11,7 +11,7 @@ void run_power(const CommandLine& line) {
   const OpticalRun run(line, console);
   const ArrayPower array = read_array_power(run);
   const auto published = read_published(run.experiment().file.others("published"));
-  const TraceResult result = run.run(run.experiment().lab_from_body, console.progress("tracing"));
+  const OpticalResult result = run.run(run.experiment().lab_from_body, console.progress("tracing"));
   console.done();
   const ArrayResult power = evaluate(array, run, result);
   print_trace(console, run, result);
@@ -29,7 +29,7 @@ void run_power(const CommandLine& line) {
 
 Verb power_verb() {
   return {"power", "Trace, then the solar array: current-voltage curve and maximum power point",
-          run_power};
+          run_power, true};
 }
 
 }  // namespace photorque

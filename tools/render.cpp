@@ -106,7 +106,7 @@ void run_render(const CommandLine& line) {
   Console console(line);
   const OpticalRun run(line, console);
   const Experiment& experiment = run.experiment();
-  const TraceResult result = run.run(experiment.lab_from_body, console.progress("tracing"));
+  const OpticalResult result = run.run(experiment.lab_from_body, console.progress("tracing"));
   console.done();
   const SceneView view = make_view(run, result, line.threads);
 
@@ -134,7 +134,7 @@ void run_render(const CommandLine& line) {
 
 Verb render_verb() {
   return {"render", "A picture of the scene with the irradiance painted on its receivers",
-          run_render};
+          run_render, true};
 }
 
 }  // namespace photorque

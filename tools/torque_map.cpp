@@ -75,8 +75,8 @@ void map_over_attitude(const CommandLine& line, Console& console, const OpticalR
       const size_t node = wrenches.node(h, t);
       // The same seed everywhere: neighbouring attitudes share their sampling errors, so that
       // differences between them are better known than each.
-      const TraceResult result = run.run(lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]),
-                                         {}, run.experiment().file.torque_map_rays);
+      const OpticalResult result = run.run(lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]),
+                                           {}, run.experiment().file.torque_map_rays);
       set_node(wrenches, node, run.wrench().total(result.sums[run.wrench_index()]));
       std::optional<Estimate> electric;
       if (array) electric = evaluate(*array, run, result).power_W;
@@ -127,7 +127,7 @@ void run_torque_map(const CommandLine& line) {
 
 Verb torque_map_verb() {
   return {"torque-map", "Force, torque and power over a grid of attitudes or directions of light",
-          run_torque_map};
+          run_torque_map, true};
 }
 
 }  // namespace photorque

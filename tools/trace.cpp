@@ -9,7 +9,7 @@ void run_trace(const CommandLine& line) {
   Console console(line);
   const OpticalRun run(line, console);
   const auto published = read_published(run.experiment().file.others("published"));
-  const TraceResult result = run.run(run.experiment().lab_from_body, console.progress("tracing"));
+  const OpticalResult result = run.run(run.experiment().lab_from_body, console.progress("tracing"));
   console.done();
   print_trace(console, run, result);
   Product product = run.product(result);
@@ -23,7 +23,7 @@ void run_trace(const CommandLine& line) {
 
 Verb trace_verb() {
   return {"trace", "Irradiance on every receiver, where the power went, radiation force and torque",
-          run_trace};
+          run_trace, true};
 }
 
 }  // namespace photorque

@@ -20,6 +20,8 @@ struct CommandLine {
   std::optional<uint64_t> seed;                   // over the experiment's own
   bool quiet = false;                             // no text but errors
   bool json = false;                              // the summary as JSON on standard output
+  std::optional<double> target_error;             // --target-error, of commands that trace
+  std::optional<double> max_time_s;               // --max-time, likewise
   std::vector<std::filesystem::path> recordings;  // --recording, of commands that take some
   std::vector<std::filesystem::path> holdouts;    // --holdout, recordings kept back from a fit
   std::optional<std::filesystem::path> cases;     // --cases, a folder of concealed cases
@@ -36,6 +38,7 @@ struct Verb {
   std::string name;
   std::string summary;  // one sentence for --help
   std::function<void(const CommandLine&)> run;
+  bool traces_light = false;  // --target-error, --max-time
   bool takes_recordings = false;
   bool takes_holdouts = false;
   bool takes_cases = false;

@@ -191,6 +191,37 @@ TEST_F(CommandLine, TorqueMapOverTheSphereWritesSpad) {
   EXPECT_EQ(last_row(read(folder_ / "o" / "wrench_table_body.csv")).size(), 14u);
 }
 
+double value_in(const std::string& summary, const std::string& key, const char* field) {
+  const size_t at = summary.find(field, summary.find("\"" + key + "\""));
+  return std::stod(summary.substr(summary.find(':', at) + 1));
+}
+
+TEST_F(CommandLine, DirectLightIsTheSameGatheredAndByRays) {
+  const Outcome got = run("trace " + nominal +
+                          " --set attitude.tilt_deg=30 --set trace.rays=1048576 --out " + out("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("gathered and by rays differ by"));
+  const std::string summary = read(folder_ / "o" / "summary.json");
+  const double gathered = value_in(summary, "direct_on_solar_array_W", "\"value\"");
+  const double rays = value_in(summary, "direct_by_rays_on_solar_array_W", "\"value\"");
+  const double error = value_in(summary, "direct_by_rays_on_solar_array_W", "\"standard_error\"");
+  EXPECT_GT(gathered, 10.0);
+  EXPECT_GT(error, 0.0);
+  EXPECT_NEAR(gathered, rays, 4 * error + 1e-5 * gathered);
+}
+
+TEST_F(CommandLine, RaysAreAddedUntilTheTargetErrorIsReached) {
+  const std::string base = "trace " + nominal + " --set trace.rays=4096 --set trace.direct=rays";
+  ASSERT_EQ(run(base + " --out " + out("few")).status, 0);
+  ASSERT_EQ(run(base + " --target-error 0.2 --max-time 60 --out " + out("more")).status, 0);
+  const auto error = [&](const char* name) {
+    return value_in(read(folder_ / name / "summary.json"), "relative_error_solar_array",
+                    "\"value\"");
+  };
+  EXPECT_GT(error("few"), 0.2);
+  EXPECT_LT(error("more"), 0.2);
+}
+
 struct WrongCall {
   std::string arguments, message;
 };
@@ -202,6 +233,9 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
       {"trace", "experiment"},
       {"fly " + nominal, "fly"},
       {"trace /nowhere/lab.toml", "/nowhere/lab.toml"},
+      {"trace " + nominal + " --max-time 5", "target_error"},
+      {"trace " + nominal + " --target-error 2", "target_error"},
+      {"trace " + nominal + " --set trace.direct=magic", "gather"},
       {"torque-map " + nominal + " --set torque_map={azimuth_deg=[0],elevation_deg=[0]}", "sun"},
       {"torque-map " + nominal + " --set torque_map={azimuth_step_deg=7,elevation_deg=[0]}",
        "whole fraction of 360"},
