@@ -1,15 +1,20 @@
-// Speed of the forward tracer without bounces, beside a bare Embree loop over the same sorted rays.
+// Speed of the forward tracer without bounces, beside a bare Embree loop over the same sorted rays,
+// and of maps gathered from the surface's side.
 //
 // Case A: a disc of 0.4 m, pillbox of 1.5 deg, over a 0.5 m square of 100 × 100 bins with a box
 // between. Case B: 50 LEDs of 3 deg over a plate of 20,000 triangles with posts.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "raytrace/find_hits.h"
 #include "receivers/flux_map.h"
+#include "receivers/gather.h"
+#include "scenes/experiment.h"
 #include "sources/source_kind.h"
 
 namespace photorque {
@@ -163,6 +168,60 @@ void bare_embree(benchmark::State& state, const Case& which) {
       benchmark::Counter(static_cast<double>(rays) / 1e6, benchmark::Counter::kIsRate);
 }
 
+// Root mean square over the bins above a tenth of the peak of relative standard error.
+double rms_error(const FluxMapReceiver& map, const BinSums& direct) {
+  std::vector<Estimate> bins;
+  double peak = 0.0;
+  for (size_t bin = 0; bin < map.grid().bins(); ++bin) {
+    bins.push_back(direct.estimate(map.entry(bin, 0)));
+    peak = std::max(peak, bins.back().value);
+  }
+  double squares = 0.0;
+  int lit = 0;
+  for (const Estimate& bin : bins) {
+    if (bin.value < 0.1 * peak) continue;
+    squares += bin.standard_error * bin.standard_error / (bin.value * bin.value);
+    ++lit;
+  }
+  return std::sqrt(squares / lit);
+}
+
+// The map of direct light alone, from the surface's side: everything from beams to errors of bins.
+void gather(benchmark::State& state, const TraceableScene& scene, const FluxMapReceiver& map,
+            const RigidTransform& lab_from_body, std::span<const Beam> beams) {
+  GatherOptions options;
+  options.threads = static_cast<int>(state.range(0));
+  options.points = static_cast<int>(state.range(1));
+  Gathered gathered;
+  for (auto _ : state) gathered = gather_direct(scene, lab_from_body, beams, map, options);
+  state.counters["rms_error_%"] = 100.0 * rms_error(map, gathered.direct);
+  state.counters["shadow_rays"] = static_cast<double>(gathered.shadow_rays);
+  state.counters["shaded_pairs"] = static_cast<double>(gathered.shaded_pairs);
+}
+
+void gather(benchmark::State& state, const Case& which) {
+  const TraceableScene scene(which.scene, false);
+  gather(state, scene, flux_map(which.scene), {}, which.beams);
+}
+
+void case_a_gather(benchmark::State& state) {
+  gather(state, case_a());
+}
+void case_b_gather(benchmark::State& state) {
+  gather(state, case_b());
+}
+void stasis_30_deg_gather(benchmark::State& state) {
+  const Experiment stasis =
+      read_experiment(std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml");
+  const TraceableScene scene(stasis.scene);
+  for (const NamedReceiver& named : stasis.receivers) {
+    const auto* map = dynamic_cast<const FluxMapReceiver*>(named.receiver.get());
+    if (map == nullptr) continue;
+    gather(state, scene, *map, lab_from_body_at(30 * degree_rad, 0.0), stasis.beams);
+    return;
+  }
+}
+
 void case_a_forward(benchmark::State& state) {
   forward(state, case_a());
 }
@@ -176,6 +235,18 @@ void case_b_bare_embree(benchmark::State& state) {
   bare_embree(state, case_b());
 }
 
+// Threads, points per replicate in what may be shaded.
+BENCHMARK(case_a_gather)
+    ->Args({1, 16})
+    ->Args({2, 16})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(case_b_gather)->Args({1, 1})->Args({2, 1})->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(stasis_30_deg_gather)
+    ->Args({1, 16})
+    ->Args({2, 16})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(case_a_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(case_a_bare_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(case_b_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
