@@ -1,0 +1,143 @@
+// improved.toml: what the user wrote, and what was found, read back by the program itself.
+#include "diagnosis/improved.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "attitude/run.h"
+#include "scenes/toml_reader.h"
+#include "tests/diagnosis/sample_diagnosis.h"
+
+namespace photorque {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string written = R"(# My laboratory, as I know it.
+[platform]
+topology = "tabletop"
+mass_kg = 8.7   # weighed twice
+inertia_kg_m2 = [[0.116, 0, 0], [0, 0.119, 0], [0, 0, 0.183]]
+
+[environment]
+magnetic_field_T = [1.5e-6, 2e-5, -3.7e-5]
+
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = { value = [-8.7e-7, -2.7e-6, -4.3e-5], sigma = [5e-7, 5e-7, 3e-6] }
+
+[sensors.camera]
+noise_arcsec = [37, 37, 12]
+
+[sensors.gyro]
+noise_rad_s = 2e-4)";
+
+Settings read(const std::string& text) {
+  return Settings(std::make_shared<const SettingsNode>(parse_toml(text, "improved.toml")));
+}
+
+TEST(Improved, KeepsTheUsersTextToTheLastComment) {
+  EXPECT_THAT(improved_experiment(written, sample_diagnosis(), "."), StartsWith(written + "\n"));
+}
+
+TEST(Improved, ActsWithTheFittedNumbersAndTheirErrors) {
+  const std::string text = improved_experiment(written, sample_diagnosis(), ".");
+  const AttitudeModel model = read_attitude_model(read(text)).model;
+  ASSERT_GE(model.disturbances.size(), 3u);
+  const Disturbance& dipole = model.disturbances[1];
+  ASSERT_EQ(dipole.kind, "magnetic_dipole");
+  const double value[] = {0.0126, 0.0288, -0.0193}, sigma[] = {2e-4, 3e-4, 1.1e-3};
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(dipole.parameters[i].value, value[i]);
+    EXPECT_DOUBLE_EQ(dipole.parameters[i].sigma, sigma[i]);
+  }
+  const Disturbance& latency = model.disturbances[2];
+  ASSERT_EQ(latency.kind, "attitude_latency");
+  EXPECT_DOUBLE_EQ(latency.parameters[0].value, 0.08);
+}
+
+TEST(Improved, FliesTheFirstRecordingAgain) {
+  const std::string text = improved_experiment(written, sample_diagnosis(), ".");
+  const PropagationRun run = read_propagation(read(text));
+  EXPECT_DOUBLE_EQ(run.duration_s, 200.0);
+  EXPECT_DOUBLE_EQ(run.initial.rate_body_rad_s.z(), 0.1);
+  EXPECT_EQ(propagate(run).recording.rows(), 2001u);
+}
+
+TEST(Improved, LeavesAFlightOfTheUsersAlone) {
+  const std::string own = written + "\n[propagate]\nduration_s = 5\n";
+  const PropagationRun run =
+      read_propagation(read(improved_experiment(own, sample_diagnosis(), ".")));
+  EXPECT_DOUBLE_EQ(run.duration_s, 5.0);
+}
+
+// Every effect that a diagnosis may name, as it would be written.
+TEST(Improved, HoldsEveryKindWithNumbers) {
+  const std::vector<std::pair<std::string, std::vector<FittedParameter>>> found = {
+      {"static_unbalance", {{"offset_m", {1e-6, 2e-6, 3e-6}, {1e-8, 1e-8, 1e-8}}}},
+      {"mass_shift", {{"time_s", {31.0}, {0.1}}, {"offset_m", {1e-6, 0, 0}, {1e-8, 1e-8, 1e-8}}}},
+      {"battery_discharge", {{"shift_m_per_Ah", {1e-6, 0, 0}, {1e-8, 1e-8, 1e-8}}}},
+      {"elastic_sag", {{"compliance_s2", {1e-8, 1e-8, 1e-8}, {1e-9, 1e-9, 1e-9}}}},
+      {"bearing_drag", {{"coefficient_N_m_s", {1e-5}, {1e-7}}}},
+      {"turbine_torque", {{"torque_N_m", {1e-6}, {1e-8}}}},
+      {"dry_friction", {{"torque_N_m", {1e-6}, {1e-8}}}},
+      {"air_friction", {{"coefficient", {1e-5}, {1e-7}}}},
+      {"air_pressure_drag", {{"coefficient_N_m_s2", {1e-4}, {1e-6}}}},
+      {"room_draft", {{"torque_lab_N_m", {1e-6, 0, 0}, {1e-8, 1e-8, 1e-8}}}},
+      {"eddy_damping", {{"coefficient_N_m_s_per_T2", {1e3}, {1e2}}}},
+      {"gravity_gradient", {}},
+      {"earth_rotation", {}},
+      {"rotor_momentum", {{"momentum_N_m_s", {1e-3, 0, 0}, {1e-5, 1e-5, 1e-5}}}},
+      {"tether", {{"stiffness_N_m_per_rad", {1e-5}, {1e-7}}}},
+      {"floor_vibration",
+       {{"acceleration_m_s2", {0.01, 0, 0}, {1e-3, 1e-3, 1e-3}},
+        {"frequency_Hz", {0.7}, {1e-4}},
+        {"phase", {0.3}, {0.01}}}},
+      {"periodic_torque",
+       {{"torque_N_m", {1e-5, 0, 0}, {1e-7, 1e-7, 1e-7}},
+        {"frequency_Hz", {0.7}, {1e-4}},
+        {"phase", {0.3}, {0.01}}}},
+      {"flexible_mode",
+       {{"axis", {0, 0, 1}, {0, 0.01, 0.01}},
+        {"frequency_Hz", {0.7}, {1e-4}},
+        {"damping", {0.01}, {1e-3}},
+        {"inertia_kg_m2", {0.01}, {1e-4}}}},
+      {"actuator_gain", {{"gain_error", {0.1}, {0.01}}}},
+      {"inertia_error",
+       {{"delta_kg_m2", {1e-3, 0, 0, 0, 0, 0}, {1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4}}}},
+      {"gravity_tilt", {{"tilt_rad", {1e-3, 0}, {1e-5, 1e-5}}}},
+      {"gyro_bias", {{"bias_rad_s", {1e-3, 0, 0}, {1e-5, 1e-5, 1e-5}}}},
+      {"gyro_scale", {{"scale", {1e-3, 0, 0}, {1e-5, 1e-5, 1e-5}}}},
+      {"gyro_misalignment", {{"misalignment_rad", {1e-3, 0, 0}, {1e-5, 1e-5, 1e-5}}}},
+      {"camera_misalignment", {{"misalignment_rad", {1e-3, 0, 0}, {1e-5, 1e-5, 1e-5}}}},
+  };
+  for (const auto& [kind, parameters] : found) {
+    Diagnosis d = sample_diagnosis();
+    d.effects = {{kind, 0.9, parameters, {}, ""}};
+    const std::string text = improved_experiment(written, d, ".");
+    EXPECT_NO_THROW({
+      const AttitudeModel model = read_attitude_model(read(text)).model;
+      EXPECT_EQ(model.disturbances.at(1).kind, kind);
+    }) << kind;
+  }
+}
+
+TEST(Improved, SaysThatAnEmpiricalTorqueDoesNotAct) {
+  Diagnosis d = sample_diagnosis();
+  d.effects.clear();
+  d.empirical = {{"heading", "deg", false, {0, 90}, {Vec3(1e-6, 0, 0), Vec3(2e-6, 0, 0)}, {}}};
+  const std::string text = improved_experiment(written, d, ".");
+  EXPECT_THAT(text, HasSubstr("does not act here"));
+  EXPECT_EQ(read_attitude_model(read(text)).model.disturbances.size(), 1u);
+}
+
+// A sentence with a line break must not become a line of its own.
+TEST(Improved, CommentsStayComments) {
+  Diagnosis d = sample_diagnosis();
+  d.sentence = "one\nmass_kg = 3";
+  EXPECT_NO_THROW(read(improved_experiment(written, d, ".")));
+}
+
+}  // namespace
+}  // namespace photorque
