@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "attitude/ccsds_epoch.h"
 #include "attitude/igrf.h"
 
 namespace photorque {
@@ -17,6 +18,27 @@ double dry_air_viscosity_Pa_s(double temperature_K) {
          (temperature_K + sutherland_K);
 }
 
+// date = 2025-06-30, or a decimal year.
+double read_year(const Settings& igrf) {
+  constexpr Range known{1900.0, 2035.0, false, false};
+  if (igrf.has("date_year")) return igrf.number("date_year", known);
+  if (!igrf.has("date")) throw igrf.error("date", "nothing", "a date");
+  if (igrf.raw("date").is_number()) return igrf.number("date", known);
+  const std::string date = igrf.text("date");
+  const auto day = parse_epoch(date.find('T') == std::string::npos ? date + "T00:00:00" : date);
+  const auto year = day ? parse_epoch(date.substr(0, 4) + "-001T00:00:00") : std::nullopt;
+  const auto next =
+      year ? parse_epoch(std::to_string(std::stoi(date.substr(0, 4)) + 1) + "-001T00:00:00")
+           : std::nullopt;
+  if (!next) throw igrf.error("date", "\"" + date + "\"", "a date like 2025-06-30");
+  const double decimal_year =
+      std::stoi(date.substr(0, 4)) + day->seconds_since(*year) / next->seconds_since(*year);
+  if (decimal_year < known.low || decimal_year > known.high) {
+    throw igrf.error("date", date, "a date from 1900 to 2035");
+  }
+  return decimal_year;
+}
+
 Vec3 read_field_lab_T(const Settings& settings) {
   const bool measured = settings.has("magnetic_field_T");
   if (!settings.has("igrf")) {
@@ -24,7 +46,7 @@ Vec3 read_field_lab_T(const Settings& settings) {
   }
   if (measured) throw settings.error("igrf", "a field beside magnetic_field_T", "one of the two");
   const Settings igrf = settings.table("igrf");
-  const GeomagneticModel model(igrf.number("date_year", {1900.0, 2035.0, false, false}));
+  const GeomagneticModel model(read_year(igrf));
   return model.lab_T(GeodeticPosition{igrf.number("latitude_deg", {-pi / 2, pi / 2, false, false}),
                                       igrf.number("longitude_deg"),
                                       igrf.number_or("height_m", 0.0)});

@@ -1,6 +1,7 @@
 #include "attitude/run.h"
 
 #include <cmath>
+#include <deque>
 #include <optional>
 
 #include "attitude/time_history.h"
@@ -94,27 +95,26 @@ double camera_delay_s(const Dynamics& dynamics, const PlatformState& state) {
   return dynamics.at(state.time_s, {}, y.data()).camera_delay_s[0];
 }
 
-Quat attitude_in_lane(const Samples& samples, int lane) {
-  return Quat(samples.y[0][lane], samples.y[1][lane], samples.y[2][lane], samples.y[3][lane])
-      .normalized();
-}
-
-// What a camera with latency sees: attitudes at rows' times less the delay (not before the start),
-// from a run of its own. Empty without delay.
-std::vector<Quat> delayed_attitudes(const Dynamics& dynamics, const PropagationRun& run,
-                                    double end_s) {
-  const double delay_s = camera_delay_s(dynamics, run.initial);
-  if (!(delay_s > 0.0)) return {};
+// The times at which a run is looked at: its rows and, for a camera with latency, what it sees in
+// them (not before the start). In order; of two equal times what is seen comes first.
+struct Look {
+  double time_s;
+  bool is_row;
+};
+std::vector<Look> looks(const PropagationRun& run, double delay_s) {
   const Seen seen{run};
-  std::vector<Quat> attitudes;
-  Propagator propagator(dynamics, run.initial, end_s, run.options);
-  sample(
-      propagator, seen.rows(),
-      [&](size_t row) { return std::max(run.initial.time_s, seen.time_s(row) - delay_s); },
-      [&](const Samples& samples) {
-        for (int i = 0; i < samples.count; ++i) attitudes.push_back(attitude_in_lane(samples, i));
-      });
-  return attitudes;
+  std::vector<Look> all;
+  size_t next_seen = 0;
+  for (size_t row = 0; row < seen.rows(); ++row) {
+    const double time_s = seen.time_s(row);
+    for (; delay_s > 0.0 && next_seen < seen.rows(); ++next_seen) {
+      const double seen_s = std::max(run.initial.time_s, seen.time_s(next_seen) - delay_s);
+      if (seen_s > time_s) break;
+      all.push_back({seen_s, false});
+    }
+    all.push_back({time_s, true});
+  }
+  return all;
 }
 
 Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
@@ -180,39 +180,49 @@ PropagationRun read_propagation(const Settings& root) {
 PropagationResult propagate(const PropagationRun& run,
                             const std::function<void(double)>& progress) {
   const Dynamics dynamics(run.model);
-  const Seen seen{run};
+  const size_t rows = Seen{run}.rows();
   const double end_s = run.initial.time_s + run.duration_s;
-  const std::vector<Quat> delayed = delayed_attitudes(dynamics, run, end_s);
+  const double delay_s = camera_delay_s(dynamics, run.initial);
+  const std::vector<Look> times = looks(run, delay_s);
 
   PropagationResult result;
   Recorder recorder(run.sensors, run.seed);
   TimeHistory history(dynamics);
   Propagator propagator(dynamics, run.initial, end_s, run.options, {}, events_of(dynamics));
   std::vector<double> y(static_cast<size_t>(dynamics.size()));
-  const size_t thinning = (seen.rows() + run.history_rows - 1) / run.history_rows;
+  std::deque<Quat> on_the_way;  // seen by the camera, not yet reported
+  const size_t thinning = (rows + run.history_rows - 1) / run.history_rows;
   const auto sink = [&](const Samples& samples) {
     const Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
     for (int i = 0; i < samples.count; ++i) {
       for (size_t c = 0; c < y.size(); ++c) y[c] = samples.y[c][i];
       const PlatformState state = to_state(samples.time_s[i], y);
-      const size_t row = samples.first + static_cast<size_t>(i);
+      if (!times[samples.first + static_cast<size_t>(i)].is_row) {
+        on_the_way.push_back(state.lab_from_body);
+        continue;
+      }
+      Quat seen = state.lab_from_body;
+      if (!on_the_way.empty()) {
+        seen = on_the_way.front();
+        on_the_way.pop_front();
+      }
       recorder.add({.time_s = state.time_s,
-                    .lab_from_body_seen = delayed.empty() ? state.lab_from_body : delayed[row],
+                    .lab_from_body_seen = seen,
                     .heading_rad = heading_rad(state),
                     .gyro_rad_s = in_lane(now.gyro_rad_s, i),
                     .camera_error_rad = in_lane(now.camera_error_rad, i),
                     .command_body_N_m = in_lane(now.command_body_N_m, i),
                     .battery_current_A = now.battery_current_A[i],
                     .array_power_W = now.array_power_W[i]});
-      if (row % thinning == 0) history.add(state, now, i);
+      if (result.states.size() % thinning == 0) history.add(state, now, i);
       result.states.push_back(state);
     }
     if (progress) {
-      progress(static_cast<double>(result.states.size()) / static_cast<double>(seen.rows()));
+      progress(static_cast<double>(result.states.size()) / static_cast<double>(rows));
     }
   };
   sample(
-      propagator, seen.rows(), [&](size_t row) { return seen.time_s(row); }, sink);
+      propagator, times.size(), [&](size_t i) { return times[i].time_s; }, sink);
   result.recording = recorder.finish();
   result.events = propagator.events();
   result.statistics = propagator.statistics();

@@ -69,16 +69,23 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
   return c;
 }
 
-// For a logarithmic axis.
-void keep_positive(Plot::Curve& curve) {
-  size_t kept = 0;
-  for (size_t i = 0; i < curve.y.size(); ++i) {
-    if (!(curve.y[i] > 0.0)) continue;
-    curve.x[kept] = curve.x[i];
-    curve.y[kept++] = curve.y[i];
+// The largest of every stretch, for a logarithmic axis: what swings through zero shows its swing.
+// Values below `least` are left out.
+Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
+                     const std::vector<double>& size, double least) {
+  constexpr size_t most = 240;
+  const size_t stretches = std::min(most, x.size());
+  Plot::Curve c;
+  c.label = label;
+  for (size_t s = 0; s < stretches; ++s) {
+    const size_t begin = s * x.size() / stretches, end = (s + 1) * x.size() / stretches;
+    const double largest = *std::max_element(size.begin() + static_cast<std::ptrdiff_t>(begin),
+                                             size.begin() + static_cast<std::ptrdiff_t>(end));
+    if (!(largest >= least) || largest == 0.0) continue;
+    c.x.push_back(0.5 * (x[begin] + x[end - 1]));
+    c.y.push_back(largest);
   }
-  curve.x.resize(kept);
-  curve.y.resize(kept);
+  return c;
 }
 
 bool any_nonzero(const std::vector<double>& values) {
@@ -191,19 +198,30 @@ Product TimeHistory::product(const std::vector<Event>& events,
     add_plot("array_power", "Power of the solar array", "Power [W]",
              {curve("array", t, values(power))});
   }
-  std::vector<Plot::Curve> all;
+  std::vector<size_t> shown;
+  std::vector<std::vector<double>> sizes;
+  double largest_N_m = 0.0;
   for (size_t i = 0; i < acting_.size(); ++i) {
     const size_t x = first_torque_ + 3 * i;
-    const std::vector<double> size = magnitudes(values(x), values(x + 1), values(x + 2));
+    std::vector<double> size = magnitudes(values(x), values(x + 1), values(x + 2));
     if (!any_nonzero(size)) continue;
-    all.push_back(curve(labels_[i], t, size));
+    largest_N_m = std::max(largest_N_m, *std::max_element(size.begin(), size.end()));
+    shown.push_back(i);
+    sizes.push_back(std::move(size));
     add_plot(
         "torque_" + labels_[i], "Torque of " + labels_[i], "Torque, body axes [N m]",
         {curve("x", t, values(x)), curve("y", t, values(x + 1)), curve("z", t, values(x + 2))});
   }
-  if (!all.empty()) {
-    for (Plot::Curve& one : all) keep_positive(one);
-    add_plot("torques", "Size of every torque", "Torque [N m]", std::move(all));
+  if (!shown.empty()) {
+    // Below this share of the largest torque nothing is to be seen of a platform.
+    constexpr double least_share = 1e-9;
+    std::vector<Plot::Curve> all;
+    for (size_t i = 0; i < shown.size(); ++i) {
+      all.push_back(envelope(labels_[shown[i]], t, sizes[i], least_share * largest_N_m));
+    }
+    std::erase_if(all, [](const Plot::Curve& one) { return one.x.empty(); });
+    add_plot("torques", "Size of every torque, largest within each 240th of the flight",
+             "Torque [N m]", std::move(all));
     product.plots.back().y_log = true;
   }
 

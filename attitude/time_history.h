@@ -17,8 +17,8 @@ class TimeHistory {
   void add(const PlatformState& state, const Dynamics::Instants& now, int lane);
 
   // Tables "time_history" and "events"; plots "tilt", "heading", "rates", "charge" and "power"
-  // (where there are any), "torques" (magnitudes of all) and one for each disturbance. Curves are
-  // thinned to a few thousand points that keep every extreme.
+  // (where there are any), "torques" (largest sizes of all) and one for each disturbance. Curves
+  // are thinned to a few thousand points that keep every extreme.
   Product product(const std::vector<Event>& events, const Propagator::Statistics& statistics) const;
 
  private:

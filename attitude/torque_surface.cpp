@@ -59,6 +59,88 @@ TorqueSurface::TorqueSurface(const WrenchTable& table) : table_(single_valued(ta
     around.pop_back();
     table_.torque_body_N_m.resize(table_.nodes());
   }
+  for (size_t polar = 0; polar + 1 < table_.polar_rad.size(); ++polar) {
+    for (size_t i = 0; i < around.size() - (closed_ ? 0 : 1); ++i) {
+      patches_.push_back(fit_patch(polar, i));
+    }
+  }
+}
+
+double TorqueSurface::width_around_rad(size_t i) const {
+  const std::vector<double>& nodes = table_.around_rad;
+  return i + 1 < nodes.size() ? nodes[i + 1] - nodes[i] : nodes.front() + 2.0 * pi - nodes.back();
+}
+
+// The surface is a cubic in both angles within a cell: sixteen values determine it.
+TorqueSurface::Patch TorqueSurface::fit_patch(size_t polar, size_t around) const {
+  constexpr double coefficients[4][4] = {// of the cubic through values at 0, 1/3, 2/3, 1
+                                         {1.0, 0.0, 0.0, 0.0},
+                                         {-5.5, 9.0, -4.5, 1.0},
+                                         {9.0, -22.5, 18.0, -4.5},
+                                         {-4.5, 13.5, -13.5, 4.5}};
+  const double polar_rad = table_.polar_rad[polar];
+  const double height_rad = table_.polar_rad[polar + 1] - polar_rad;
+  const double width_rad = width_around_rad(around);
+  Patch values, patch;
+  for (size_t j = 0; j < 4; ++j) {
+    for (size_t i = 0; i < 4; ++i) {
+      values[4 * j + i] =
+          through_nodes({polar_rad + height_rad * static_cast<double>(j) / 3.0,
+                         table_.around_rad[around] + width_rad * static_cast<double>(i) / 3.0})
+              .torque_body_N_m;
+    }
+  }
+  patch.fill(Vec3::Zero());
+  for (size_t j = 0; j < 4; ++j) {
+    for (size_t i = 0; i < 4; ++i) {
+      for (size_t k = 0; k < 16; ++k) {
+        patch[4 * j + i] += coefficients[j][k / 4] * coefficients[i][k % 4] * values[k];
+      }
+    }
+  }
+  return patch;
+}
+
+// The cell that holds an angle, which is brought into its range.
+size_t TorqueSurface::cell_around(double& around_rad, bool* held) const {
+  const std::vector<double>& nodes = table_.around_rad;
+  *held = false;
+  if (closed_) {
+    around_rad -= 2.0 * pi * std::floor((around_rad - nodes.front()) / (2.0 * pi));
+    const auto above = std::upper_bound(nodes.begin() + 1, nodes.end(), around_rad);
+    return static_cast<size_t>(above - nodes.begin()) - 1;
+  }
+  around_rad = nodes.front() + std::remainder(around_rad - nodes.front(), 2.0 * pi);
+  if (around_rad < 2.0 * nodes[0] - nodes[1]) around_rad += 2.0 * pi;
+  const double wanted_rad = around_rad;
+  const size_t low = interval(nodes, around_rad, "heading or azimuth");
+  *held = wanted_rad != around_rad;
+  return low;
+}
+
+TorqueSurface::Sample TorqueSurface::at(const TableAngles& angles) const {
+  const std::vector<double>& nodes = table_.polar_rad;
+  double polar_rad = angles.polar_rad, around_rad = angles.around_rad;
+  const size_t low = interval(nodes, polar_rad, "tilt or elevation");
+  bool held_around = false;
+  const size_t cell = cell_around(around_rad, &held_around);
+  const double height_rad = nodes[low + 1] - nodes[low], width_rad = width_around_rad(cell);
+  const double s = (polar_rad - nodes[low]) / height_rad;
+  const double t = (around_rad - table_.around_rad[cell]) / width_rad;
+  const Patch& c = patches_[low * (patches_.size() / (nodes.size() - 1)) + cell];
+  Sample sample{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (size_t j = 4; j-- > 0;) {
+    const Vec3* row = &c[4 * j];
+    const Vec3 value = row[0] + t * (row[1] + t * (row[2] + t * row[3]));
+    const Vec3 slope = row[1] + t * (2.0 * row[2] + 3.0 * t * row[3]);
+    sample.by_polar = sample.torque_body_N_m + s * sample.by_polar;
+    sample.torque_body_N_m = value + s * sample.torque_body_N_m;
+    sample.by_around = slope + s * sample.by_around;
+  }
+  // Beyond an edge its value holds.
+  sample.by_polar *= polar_rad != angles.polar_rad ? 0.0 : 1.0 / height_rad;
+  sample.by_around *= held_around ? 0.0 : 1.0 / width_rad;
+  return sample;
 }
 
 // One row of nodes of equal polar angle, interpolated around.
@@ -113,7 +195,7 @@ TorqueSurface::Row TorqueSurface::ghost_row(bool below, double around_rad,
   return {2.0 * at_edge.value - at_inner.value, 2.0 * at_edge.slope - at_inner.slope};
 }
 
-TorqueSurface::Sample TorqueSurface::at(const TableAngles& angles) const {
+TorqueSurface::Sample TorqueSurface::through_nodes(const TableAngles& angles) const {
   const std::vector<double>& nodes = table_.polar_rad;
   double polar_rad = angles.polar_rad;
   const size_t low = interval(nodes, polar_rad, "tilt or elevation");

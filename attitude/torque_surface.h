@@ -1,7 +1,9 @@
 // A wrench table made smooth: the torque and its slopes between the nodes.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <vector>
 
 #include "core/wrench_table.h"
 
@@ -30,12 +32,20 @@ class TorqueSurface {
   struct Row {
     Vec3 value, slope;
   };
+  // Of one cell between nodes: Σ c[4 j + i] s^j t^i, s and t the shares of its width along the
+  // polar angle and around.
+  using Patch = std::array<Vec3, 16>;
+  Patch fit_patch(size_t polar, size_t around) const;
+  double width_around_rad(size_t around) const;
+  size_t cell_around(double& around_rad, bool* held) const;
+  Sample through_nodes(const TableAngles& angles) const;
   Row row_at(size_t polar, double around_rad) const;
   Row ghost_row(bool below, double around_rad, double* polar_rad) const;
   bool beyond_is_pole(bool below) const;
 
   WrenchTable table_;
-  bool closed_ = false;  // goes all round
+  bool closed_ = false;         // goes all round
+  std::vector<Patch> patches_;  // cell by cell, those of one polar interval together
 };
 
 // Reads a table as the program writes it: a CSV with heading_deg and tilt_deg, or azimuth_deg and
