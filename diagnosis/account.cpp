@@ -156,31 +156,32 @@ std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen,
     EmpiricalTorque torque;
     torque.variable = c.variable;
     const bool heading = c.variable == "heading", tilt = c.variable == "tilt";
-    torque.unit = heading || tilt            ? "deg"
-                  : c.variable == "rate"     ? "rad/s"
-                  : c.variable == "charge"   ? "C"
-                  : c.variable == "command"  ? "N m"
-                                             : "s";
+    torque.unit = heading || tilt           ? "deg"
+                  : c.variable == "rate"    ? "rad/s"
+                  : c.variable == "charge"  ? "C"
+                  : c.variable == "command" ? "N m"
+                                            : "s";
     torque.about_lab_axes = heading;
     std::vector<double> x;
     std::vector<Vec3> y;
     for (const PlatformState& state : flown.states) {
-      const Vec3 body =
-          disturbance_torques_body_N_m(model, state)[chosen.disturbances[i]];
+      const Vec3 body = disturbance_torques_body_N_m(model, state)[chosen.disturbances[i]];
       y.push_back(heading ? Vec3(state.lab_from_body * body) : body);
-      x.push_back(heading                   ? heading_rad(state) / degree_rad
-                  : tilt                    ? tilt_rad(state) / degree_rad
-                  : c.variable == "rate"    ? state.rate_body_rad_s.norm()
-                  : c.variable == "charge"  ? state.charge_drawn_C
-                  : c.variable == "command" ? model.schedule.at(state.time_s).command_body_N_m.norm()
-                                            : state.time_s);
+      x.push_back(heading                  ? heading_rad(state) / degree_rad
+                  : tilt                   ? tilt_rad(state) / degree_rad
+                  : c.variable == "rate"   ? state.rate_body_rad_s.norm()
+                  : c.variable == "charge" ? state.charge_drawn_C
+                  : c.variable == "command"
+                      ? model.schedule.at(state.time_s).command_body_N_m.norm()
+                      : state.time_s);
     }
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
     const double width = (*high - *low) / bins;
     std::vector<Vec3> sum(bins, Vec3::Zero());
     std::vector<double> count(bins, 0.0);
     for (size_t k = 0; k < x.size(); ++k) {
-      const auto bin = std::min(bins - 1, static_cast<size_t>((x[k] - *low) / std::max(width, 1e-300)));
+      const auto bin =
+          std::min(bins - 1, static_cast<size_t>((x[k] - *low) / std::max(width, 1e-300)));
       sum[bin] += y[k];
       count[bin] += 1.0;
     }
@@ -222,9 +223,11 @@ std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects) {
   for (const FoundEffect& effect : effects) {
     for (const std::string& rival : effect.indistinguishable_from) {
       Manoeuvre m{{effect.kind, rival},
-                  "record longer, at larger tilt and over a wider range of rates", 0.0};
+                  "record longer, at larger tilt and over a wider range of rates",
+                  0.0};
       for (const Advice& advice : all) {
-        if (advice.kinds.contains(effect.kind) && advice.kinds.contains(rival)) m.text = advice.text;
+        if (advice.kinds.contains(effect.kind) && advice.kinds.contains(rival))
+          m.text = advice.text;
       }
       result.push_back(std::move(m));
     }

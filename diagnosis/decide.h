@@ -8,9 +8,9 @@ namespace photorque {
 
 struct Decision {
   Verdict verdict = Verdict::consistent;
-  double confidence = 0.0;   // posterior probability of the verdict and the names
-  size_t chosen = 0;         // index of the trial whose model is kept
-  size_t physics = 0;        // index of the best trial of physics alone (0: the belief)
+  double confidence = 0.0;          // posterior probability of the verdict and the names
+  size_t chosen = 0;                // index of the trial whose model is kept
+  size_t physics = 0;               // index of the best trial of physics alone (0: the belief)
   std::vector<double> probability;  // of each trial
 };
 

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "diagnosis/account.h"
 #include "diagnosis/belief.h"
+#include "diagnosis/conventions.h"
 #include "diagnosis/holdout.h"
 #include "diagnosis/locate.h"
 #include "diagnosis/search.h"
@@ -19,6 +20,7 @@ struct Data {
   std::vector<Observation> train, held;
   int64_t outliers = 0;
   bool noise_corrected = false;
+  std::vector<std::string> warnings;
 };
 
 NoiseLevels noise_of(const Sensors& sensors) {
@@ -33,11 +35,14 @@ NoiseLevels noise_of(const Sensors& sensors) {
 }
 
 std::vector<Observation> observe_all(const std::vector<NamedRecording>& recordings,
-                                     const NoiseLevels& noise, size_t most_blocks) {
+                                     const NoiseLevels& noise, size_t most_blocks,
+                                     std::vector<std::string>& warnings) {
   std::vector<Observation> all;
   for (const NamedRecording& r : recordings) {
     all.push_back(observe(r.recording, r.name, most_blocks));
     all.back().noise = noise;
+    const std::string convention = mend_conventions(all.back());
+    if (!convention.empty()) warnings.push_back(r.name + ": " + convention);
   }
   return all;
 }
@@ -46,12 +51,12 @@ Data read_data(const BelievedModel& believed, const std::vector<NamedRecording>&
                const std::vector<NamedRecording>& holdouts, const DiagnoseOptions& options) {
   const NoiseLevels noise = noise_of(believed.sensors);
   Data data;
-  data.train = observe_all(recordings, noise, options.most_blocks);
-  data.held = observe_all(holdouts, noise, options.most_blocks);
+  data.train = observe_all(recordings, noise, options.most_blocks, data.warnings);
+  data.held = observe_all(holdouts, noise, options.most_blocks, data.warnings);
   if (!data.held.empty()) return data;
   for (Observation& seen : data.train) {
-    const auto cut = static_cast<size_t>((1.0 - options.holdout_share) *
-                                         static_cast<double>(seen.blocks()));
+    const auto cut =
+        static_cast<size_t>((1.0 - options.holdout_share) * static_cast<double>(seen.blocks()));
     data.held.push_back(seen.part(cut, seen.blocks()));
     seen = seen.part(0, cut);
   }
@@ -104,9 +109,8 @@ void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>
   });
   for (size_t i = 0; i < trials.size(); ++i) {
     const auto at = std::find(leaders.begin(), leaders.end(), i);
-    trials[i].log_evidence += at == leaders.end()
-                                  ? shift.front()
-                                  : shift[static_cast<size_t>(at - leaders.begin())];
+    trials[i].log_evidence +=
+        at == leaders.end() ? shift.front() : shift[static_cast<size_t>(at - leaders.begin())];
   }
 }
 
@@ -190,9 +194,11 @@ Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecordi
   d.alternatives = alternatives(trials, all);
   d.manoeuvres = manoeuvres(d.effects);
   d.beliefs_refined = refined_beliefs(chosen);
+  d.warnings = data.warnings;
   if (data.noise_corrected) {
-    d.warnings.push_back("the noise of the readings is not what the experiment states: the level "
-                         "found in the recording was used");
+    d.warnings.push_back(
+        "the noise of the readings is not what the experiment states: the level "
+        "found in the recording was used");
   }
   d.data = quality_of(recordings, holdouts, data);
   for (size_t run = 0; run < data.train.size(); ++run) {

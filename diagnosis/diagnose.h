@@ -20,9 +20,9 @@ struct NamedRecording {
 };
 
 struct DiagnoseOptions {
-  int threads = 0;             // 0: all
-  int most_effects = 3;        // that may be found together
-  size_t most_blocks = 6000;   // into which each recording is averaged
+  int threads = 0;              // 0: all
+  int most_effects = 3;         // that may be found together
+  size_t most_blocks = 6000;    // into which each recording is averaged
   double holdout_share = 0.25;  // of each recording, its end, kept back when there is no holdout
   // Called with what begins; may be empty.
   std::function<void(const std::string&)> progress;

@@ -145,11 +145,11 @@ template <class LawType, class... Arguments>
 EmpiricalLaw law(const std::string& variable, const std::string& description, size_t coefficients,
                  double scale, Arguments&&... arguments) {
   const std::vector<double> zeros(coefficients, 0.0);
-  EmpiricalLaw result{variable, description,
-                      make_disturbance<LawType>({fixed_parameter("coefficient", zeros)},
-                                                Stage::torque, {},
-                                                std::forward<Arguments>(arguments)...),
-                      scale};
+  EmpiricalLaw result{
+      variable, description,
+      make_disturbance<LawType>({fixed_parameter("coefficient", zeros)}, Stage::torque, {},
+                                std::forward<Arguments>(arguments)...),
+      scale};
   result.disturbance.kind = "empirical_" + variable;
   return result;
 }
@@ -164,8 +164,7 @@ std::vector<EmpiricalLaw> empirical_laws(double duration_s, double charge_C, boo
                                        torque_N_m, order));
   }
   for (int power = 2; power <= 5; ++power) {
-    all.push_back(
-        law<TiltPower>("tilt", "power " + std::to_string(power), 2, torque_N_m, power));
+    all.push_back(law<TiltPower>("tilt", "power " + std::to_string(power), 2, torque_N_m, power));
   }
   for (const double power : {1.0, 2.0, 3.0, 4.0}) {
     all.push_back(law<RatePower>("rate", "power " + std::to_string(static_cast<int>(power)), 3,

@@ -182,11 +182,12 @@ Hypothesis stepped(const Hypothesis& from, const Eigen::VectorXd& step) {
 
 // Marquardt's step: the damping acts in the scale of each variable.
 Eigen::VectorXd damped_step(const NormalSums& sums, double damping) {
-  const Eigen::VectorXd scale =
-      sums.matrix.diagonal().cwiseSqrt().unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
+  const Eigen::VectorXd scale = sums.matrix.diagonal().cwiseSqrt().unaryExpr(
+      [](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
   Eigen::MatrixXd scaled = scale.asDiagonal() * sums.matrix * scale.asDiagonal();
   scaled.diagonal().array() += damping;
-  return scale.cwiseProduct(scaled.ldlt().solve(Eigen::VectorXd(scale.cwiseProduct(sums.gradient))));
+  return scale.cwiseProduct(
+      scaled.ldlt().solve(Eigen::VectorXd(scale.cwiseProduct(sums.gradient))));
 }
 
 class Fitter {
@@ -266,8 +267,8 @@ AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
 }
 
 Eigen::MatrixXd Fit::shared_covariance() const {
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt().unaryExpr(
-      [](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
+  const Eigen::VectorXd scale =
+      hessian.diagonal().cwiseSqrt().unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
   const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
   const Eigen::MatrixXd inverse =
       scaled.ldlt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));

@@ -19,7 +19,7 @@ struct Free {
   int parameter = 0;
   double mean = 0.0;
   double sigma = std::numeric_limits<double>::infinity();  // > 0
-  bool per_run = false;  // every run has its own value
+  bool per_run = false;                                    // every run has its own value
   // The fit does not leave these.
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();

@@ -61,8 +61,7 @@ Fit fly(const Fit& fitted, const std::vector<Observation>& runs) {
   return fit(h, runs, settings);
 }
 
-Holdout compare_holdout(const Fit& before, const Fit& after,
-                        const std::vector<Observation>& runs) {
+Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<Observation>& runs) {
   Holdout result;
   result.samples = after.samples;
   result.chi2_per_sample_before = before.chi2_per_sample();

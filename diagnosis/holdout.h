@@ -10,8 +10,7 @@ namespace photorque {
 // biases within their stated uncertainty) is taken from them.
 Fit fly(const Fit& fitted, const std::vector<Observation>& runs);
 
-Holdout compare_holdout(const Fit& before, const Fit& after,
-                        const std::vector<Observation>& runs);
+Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<Observation>& runs);
 
 // Readings and models over time for plots: the run `run` of two fits of the same runs.
 RecordingSeries series_of(const Fit& before, const Fit& after, const Observation& seen, size_t run);

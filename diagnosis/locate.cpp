@@ -54,8 +54,8 @@ std::vector<Where::Interval> intervals(const Prediction& p, const Observation& s
     const double n = static_cast<double>(count);
     if (count < 20 || sum < n + 5.0 * std::sqrt(2.0 * n)) continue;
     const double from_s = seen.time_s[first], to_s = seen.time_s[last - 1];
-    const bool touches = !result.empty() && w > 0 &&
-                         result.back().to >= seen.time_s[first == 0 ? 0 : first - 1];
+    const bool touches =
+        !result.empty() && w > 0 && result.back().to >= seen.time_s[first == 0 ? 0 : first - 1];
     if (touches) {
       result.back().to = to_s;
     } else {

@@ -56,8 +56,8 @@ class Slopes {
       : count_(sensitivity.variables().size()),
         samples_(samples),
         readings_(Dynamics::reading_count * count_) {
-    sensitivity.readings(samples.time_s, samples.held, samples.y.data(),
-                         samples.derivatives.data(), readings_.data());
+    sensitivity.readings(samples.time_s, samples.held, samples.y.data(), samples.derivatives.data(),
+                         readings_.data());
   }
 
   // The camera sees the attitude, its own misalignment, and all of it late.
@@ -86,7 +86,10 @@ class Slopes {
 class Comparison {
  public:
   Comparison(const Observation& seen, size_t variables, bool keep)
-      : seen_(seen), sums_(variables), slope_(6, static_cast<Eigen::Index>(variables)), keep_(keep) {
+      : seen_(seen),
+        sums_(variables),
+        slope_(6, static_cast<Eigen::Index>(variables)),
+        keep_(keep) {
     slope_.setZero();
   }
 
@@ -155,7 +158,7 @@ Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const
   Comparison comparison(seen, variables.size(), options.keep_residuals);
   PropagationOptions propagation = options.propagation;
   // A trial of parameters that make the motion run away is not worth its steps.
-  constexpr double steps_per_second = 12.0;
+  constexpr double steps_per_second = 40.0;
   propagation.most_steps =
       2000 + static_cast<int64_t>(steps_per_second * (seen.time_s[blocks - 1] - initial.time_s));
   Propagator propagator(dynamics, initial, seen.time_s[blocks - 1], propagation, variables);

@@ -35,10 +35,9 @@ struct PredictionOptions {
   bool keep_residuals = false;
 };
 
-// `variables` may be empty. Residuals are taken at the linearised attitude error; the camera's delay
-// counts to first order. Throws NumericalError when the model cannot be propagated.
-Prediction predict(const Dynamics& dynamics, const PlatformState& initial,
-                   const Observation& seen, const std::vector<Variable>& variables,
-                   const PredictionOptions& options = {});
+// `variables` may be empty. Residuals are taken at the linearised attitude error; the camera's
+// delay counts to first order. Throws NumericalError when the model cannot be propagated.
+Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const Observation& seen,
+                   const std::vector<Variable>& variables, const PredictionOptions& options = {});
 
 }  // namespace photorque

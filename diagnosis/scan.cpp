@@ -109,18 +109,21 @@ std::vector<Disturbance> sinusoid_starts(const Candidate& c, const Trial& parent
                                          const std::vector<Observation>& runs,
                                          const std::vector<double>& frequencies_Hz) {
   std::vector<ScoreGroup> groups;
+  std::vector<Score> scores;
   for (const double f_Hz : frequencies_Hz) {
     const Disturbance sine = with(c.start, 3, f_Hz);
     groups.push_back({{sine, with(sine, 4, pi / 2)}, {0, 1, 2}});
+    // Each alone: fast ones make short steps for all that share their pass.
+    scores.push_back(score(parent.fit, runs, {groups.back()}).front());
   }
-  const std::vector<Score> scores = score(parent.fit, runs, groups);
   std::vector<Disturbance> starts;
   for (size_t i = 0; i < groups.size(); ++i) {
-    if (scores[i].estimate.size() != 6) continue;
+    if (scores[i].estimate.size() != 6 || scores[i].gain < least_gain) continue;
     Eigen::Matrix<double, 3, 2> amplitude;
     amplitude.col(0) = scores[i].estimate.head<3>();
     amplitude.col(1) = scores[i].estimate.tail<3>();
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(amplitude, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(amplitude,
+                                                Eigen::ComputeThinU | Eigen::ComputeThinV);
     const Vec3 vector = svd.singularValues()[0] * svd.matrixU().col(0);
     Disturbance d = groups[i].disturbances.front();
     for (int k = 0; k < 3; ++k) d.parameters[static_cast<size_t>(k)].value = vector[k];
@@ -152,8 +155,9 @@ std::vector<Disturbance> flexible_mode_starts(const Candidate& c, const Trial& p
     for (size_t axis = 0; axis < 3; ++axis) {
       Disturbance d = groups[axis].disturbances.front();
       if (scores[axis].estimate.size() == 1) {
-        d.parameters[5].value = std::clamp(scores[axis].estimate[0], 0.1 * c.start.parameters[5].value,
-                                           10.0 * c.start.parameters[5].value);
+        d.parameters[5].value =
+            std::clamp(scores[axis].estimate[0], 0.1 * c.start.parameters[5].value,
+                       10.0 * c.start.parameters[5].value);
       }
       modes.push_back(d);
       gain.push_back(scores[axis].estimate.size() == 1 && scores[axis].estimate[0] > 0.0
@@ -178,9 +182,8 @@ std::vector<double> slow_frequencies_Hz(const Fit& at, const std::vector<Observa
   const double step_Hz = 0.7 / longest_s(runs);
   std::vector<double> frequency_Hz;
   std::vector<ScoreGroup> groups;
-  const Effect effect{"periodic_torque",
-                      {{"torque_N_m", {0, 0, 0}}, {"frequency_Hz", {1}}, {"phase", {0}}},
-                      ""};
+  const Effect effect{
+      "periodic_torque", {{"torque_N_m", {0, 0, 0}}, {"frequency_Hz", {1}}, {"phase", {0}}}, ""};
   const DisturbanceContext context{at.best.model.platform, at.best.model.environment};
   const Disturbance tone = disturbance_of(effect, context);
   for (double f_Hz = step_Hz; f_Hz < highest_Hz; f_Hz += step_Hz) {

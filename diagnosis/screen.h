@@ -8,8 +8,8 @@
 namespace photorque {
 
 struct Score {
-  double gain = 0.0;         // expected fall of χ²
-  Eigen::VectorXd estimate;  // expected change of the parameters
+  double gain = 0.0;            // expected fall of χ²
+  Eigen::VectorXd estimate;     // expected change of the parameters
   Eigen::MatrixXd information;  // inverse covariance of the estimate
 };
 

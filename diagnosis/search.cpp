@@ -38,8 +38,8 @@ std::vector<size_t> promising(const Trial& parent, const std::vector<Candidate>&
   if (parent.fit.chi2_per_sample() > good_chi2_per_sample) return candidates;
   std::vector<ScoreGroup> groups;
   for (const size_t c : candidates) {
-    groups.push_back({is_linear(all[c]) ? std::vector<Disturbance>{all[c].start}
-                                        : std::vector<Disturbance>{}});
+    groups.push_back(
+        {is_linear(all[c]) ? std::vector<Disturbance>{all[c].start} : std::vector<Disturbance>{}});
   }
   const std::vector<Score> scores = score(parent.fit, slow_runs, groups);
   std::vector<size_t> result;
@@ -86,14 +86,13 @@ std::vector<Trial> extend_by_each(const Trial& parent, const std::vector<Candida
     if (i == 1) worth_it = promising(parent, all, candidates, slow_runs);
   });
   std::vector<std::vector<Disturbance>> starts(worth_it.size());
-  parallel_for(worth_it.size(), threads, [&](size_t i) {
-    starts[i] = starts_of(all[worth_it[i]], parent, runs, lines_Hz);
-  });
+  parallel_for(worth_it.size(), threads,
+               [&](size_t i) { starts[i] = starts_of(all[worth_it[i]], parent, runs, lines_Hz); });
   std::vector<Task> slow, fast;
   for (size_t i = 0; i < worth_it.size(); ++i) {
     const std::string& kind = all[worth_it[i]].effect.kind;
-    const bool is_fast = kind == "periodic_torque" || kind == "floor_vibration" ||
-                         kind == "flexible_mode";
+    const bool is_fast =
+        kind == "periodic_torque" || kind == "floor_vibration" || kind == "flexible_mode";
     for (const Disturbance& start : starts[i]) {
       (is_fast ? fast : slow).push_back({worth_it[i], start});
     }
@@ -103,9 +102,8 @@ std::vector<Trial> extend_by_each(const Trial& parent, const std::vector<Candida
   // Their evidence counts as what they gain over the parent on the same averages.
   const double rough_parent = refit(parent, all, slow_runs, parent.fit.best.runs).log_evidence;
   for (Trial& t : rough) t.log_evidence += parent.log_evidence - rough_parent;
-  std::stable_sort(rough.begin(), rough.end(), [](const Trial& a, const Trial& b) {
-    return a.log_evidence > b.log_evidence;
-  });
+  std::stable_sort(rough.begin(), rough.end(),
+                   [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
   const size_t refits = std::min(most_refits, rough.size());
   parallel_for(refits, threads,
                [&](size_t i) { rough[i] = refit(rough[i], all, runs, rough[i].fit.best.runs); });

@@ -6,7 +6,7 @@
 namespace photorque {
 
 struct SearchOptions {
-  int threads = 0;      // 0: all
+  int threads = 0;       // 0: all
   int most_effects = 3;  // together
 };
 

@@ -13,7 +13,7 @@ namespace {
 // Far wider than any effect: keeps what the data do not determine from running away, no more.
 constexpr double fit_prior_widths = 30.0;
 // Of one effect of the catalogue among all, and of one empirical law.
-constexpr double log_prior_effect = -3.4;      // 1/30
+constexpr double log_prior_effect = -3.4;  // 1/30
 constexpr double log_prior_empirical = -5.0;
 
 Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) {
@@ -177,6 +177,27 @@ std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which) {
   return result;
 }
 
+namespace {
+
+// Where a fit went astray, its parameters are no start: back to what is believed and to what was
+// seen at the beginning of each run.
+void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observation>& runs) {
+  std::vector<double> own;
+  for (const Free& f : h.free) {
+    const auto& found = parent.disturbances;
+    if (f.per_run) {
+      own.push_back(f.mean);
+    } else if (std::find(found.begin(), found.end(), f.disturbance) == found.end()) {
+      h.value(f) = f.mean;
+    }
+  }
+  for (size_t run = 0; run < runs.size(); ++run) {
+    h.runs[run] = {first_state(h.model, runs[run]), own};
+  }
+}
+
+}  // namespace
+
 Trial believed_trial(const Fit& belief) {
   Trial trial;
   trial.fit = belief;
@@ -192,6 +213,12 @@ Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t cand
   trial.candidates = parent.candidates;
   trial.disturbances = parent.disturbances;
   Hypothesis h = parent.fit.best;
+  FitSettings how = settings;
+  constexpr double astray_chi2_per_sample = 20.0;
+  if (parent.fit.chi2_per_sample() > astray_chi2_per_sample) {
+    start_again(h, parent, runs);
+    how.windows = {0.06, 0.25, 1.0};
+  }
   const size_t index = add_disturbance(h, start);
   trial.candidates.push_back(candidate);
   trial.disturbances.push_back(index);
@@ -206,7 +233,7 @@ Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t cand
     }
     h.free.push_back(f);
   }
-  trial.fit = fit(h, runs, settings);
+  trial.fit = fit(h, runs, how);
   judge(trial, all);
   return trial;
 }

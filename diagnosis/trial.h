@@ -14,7 +14,7 @@ namespace photorque {
 struct BelievedModel;  // attitude/run.h
 
 struct Candidate {
-  std::string label;  // "magnetic_dipole", "unknown in heading: 3 periods a turn"
+  std::string label;     // "magnetic_dipole", "unknown in heading: 3 periods a turn"
   std::string variable;  // of an empirical law; empty: an effect of the catalogue
   Effect effect;         // empty kind for an empirical law
   Disturbance start;

@@ -13,7 +13,8 @@ std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observati
 
 struct Whiteness {
   // Standard deviation of each channel (camera x, y, z, gyro x, y, z) from the second
-  // differences of neighbours: the noise itself, over that which was assumed. 1 where there are no readings.
+  // differences of neighbours: the noise itself, over that which was assumed. 1 where there are no
+  // readings.
   std::array<double, 6> noise_ratio{1, 1, 1, 1, 1, 1};
   // χ² of the means of some twenty neighbours over their number: 1 for white noise, much more where
   // structure is left. `excess_sigma` is its distance from 1 in standard errors.

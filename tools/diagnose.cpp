@@ -72,8 +72,7 @@ void run_diagnose(const CommandLine& line) {
   const std::string json = diagnosis_json(diagnosis, provenance);
   const std::string improved =
       improved_experiment(read_file(line.experiment), diagnosis, fs::absolute(out));
-  const std::string report =
-      report_html(diagnosis, line.experiment.stem().string(), provenance);
+  const std::string report = report_html(diagnosis, line.experiment.stem().string(), provenance);
   write_file_whole(out / "improved.toml", improved);
   write_file_whole(out / "report.html", report);
   write_file_whole(out / "diagnosis.json", json);

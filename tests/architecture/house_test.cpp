@@ -31,9 +31,17 @@ const std::map<std::string, std::set<std::string>> allowed = {
 
 // Headers of a library and the one folder that may include them.
 const std::vector<std::pair<std::string, std::string>> only_place = {
-    {"tbb/", "core"},     {"xxhash.h", "core"},    {"embree", "raytrace"},
-    {"toml++", "scenes"}, {"tiny_gltf", "scenes"}, {"OpenImageIO/", "images"},
-    {"cairo", "images"},  {"CLI/", "tools"},       {"zlib.h", "attitude"},
+    {"tbb/", "core"},
+    {"xxhash.h", "core"},
+    {"embree", "raytrace"},
+    {"toml++", "scenes"},
+    {"tiny_gltf", "scenes"},
+    {"draco/", "scenes"},
+    {"meshoptimizer", "scenes"},
+    {"OpenImageIO/", "images"},
+    {"cairo", "images"},
+    {"CLI/", "tools"},
+    {"zlib.h", "attitude"},
 };
 
 struct Include {

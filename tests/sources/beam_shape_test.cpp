@@ -99,7 +99,8 @@ TEST(BeamShape, OfParallelLightIsCollimated) {
 TEST(BeamShape, LinesAndTableNameEveryDifferentEmitterOnce) {
   std::vector<Beam> beams;
   for (const SourceKind& kind : all_source_kinds()) {
-    for (Beam& beam : kind.make(test::settings_of(kind.example), test::with_files())) beams.push_back(beam);
+    for (Beam& beam : kind.make(test::settings_of(kind.example), test::with_files()))
+      beams.push_back(beam);
   }
   const Table table = beam_shape_table(beams);
   const auto lines = beam_shape_lines(beams);

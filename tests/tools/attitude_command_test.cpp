@@ -1,0 +1,227 @@
+// The commands budget, propagate and balance as a user meets them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::string program = std::string(PHOTORQUE_BINARY_DIR) + "/photorque";
+const fs::path source = PHOTORQUE_SOURCE_DIR;
+const std::string stasis = (source / "scenes/stasis/attitude.toml").string();
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+std::string read(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class AttitudeCommands : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("photorque_attitude_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command = program + " " + arguments + " >" + (folder_ / "stdout").string() +
+                                " 2>" + (folder_ / "stderr").string();
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "stdout"),
+            read(folder_ / "stderr")};
+  }
+  std::string at(const std::string& name) const { return (folder_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(at(name)) << text;
+    return at(name);
+  }
+  std::map<std::string, std::string> files(const std::string& name) const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::directory_iterator(folder_ / name)) {
+      all[entry.path().filename()] = read(entry.path());
+    }
+    return all;
+  }
+
+  fs::path folder_;
+};
+
+constexpr const char* pendulum = R"([platform]
+topology = "tabletop"
+mass_kg = 8.0
+inertia_kg_m2 = [[0.11, 0, 0], [0, 0.12, 0], [0, 0, 0.19]]
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = [2e-6, -1e-6, -3e-5]
+[[disturbance]]
+kind = "bearing_drag"
+coefficient_N_m_s = 1.5e-5
+[sensors.camera]
+noise_arcsec = [37, 37, 12]
+[sensors.gyro]
+noise_rad_s = 2e-4
+[propagate]
+duration_s = 400
+initial_tilt_deg = 6
+initial_rate_rad_s = [0.01, -0.005, 0.08]
+[balance]
+moving_mass_kg = 0.25
+lead_mm = 2
+)";
+
+double value(const json& summary, const std::string& name) {
+  return summary.at(name).at("value").get<double>();
+}
+
+TEST_F(AttitudeCommands, PropagateWritesWhatTheContractNames) {
+  const Outcome got =
+      run("propagate " + stasis + " --set propagate.duration_s=30 --out " + at("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const auto all = files("o");
+  for (const char* name : {"summary.json", "time_history.csv", "recording.csv", "attitude.aem",
+                           "tilt.png", "tilt.svg", "heading.png", "rates.svg", "torques.png",
+                           "torque_static_unbalance.png", "torque_radiation_pressure.svg"}) {
+    EXPECT_TRUE(all.contains(name)) << name;
+  }
+  EXPECT_THAT(all.at("recording.csv"), HasSubstr("\nt_s,q_w,q_x,q_y,q_z,gyro_x_rad_s"));
+  EXPECT_THAT(all.at("attitude.aem"), HasSubstr("CCSDS_AEM_VERS = 1.0"));
+  EXPECT_THAT(all.at("recording.csv"), HasSubstr("light_torque.csv:"));
+}
+
+TEST_F(AttitudeCommands, PropagateGivesTheSameFilesAgain) {
+  std::vector<std::map<std::string, std::string>> runs;
+  for (const std::string name : {"a", "b", "c"}) {
+    const std::string seed = name == "c" ? " --seed 2" : "";
+    ASSERT_EQ(run("propagate " + write("p.toml", pendulum) + seed + " --out " + at(name)).status,
+              0);
+    runs.push_back(files(name));
+    runs.back().erase("summary.json");  // holds the time it took
+  }
+  EXPECT_TRUE(runs[0] == runs[1]);
+  EXPECT_NE(runs[0].at("recording.csv"), runs[2].at("recording.csv"));
+}
+
+// A recording that propagate made, given to balance, gives back the offset that made it; the steps
+// leave at most about one step along each axis.
+TEST_F(AttitudeCommands, BalanceFindsTheOffsetThatMadeTheRecording) {
+  const std::string experiment = write("p.toml", pendulum);
+  ASSERT_EQ(run("propagate " + experiment + " --out " + at("p")).status, 0);
+  const Outcome got =
+      run("balance " + experiment + " --recording " + at("p") +
+          "/recording.csv --set disturbance[0].offset_m=[0,0,0] --json --out " + at("b"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const json summary = json::parse(got.out);
+  const std::map<std::string, double> truth = {
+      {"offset_x_m", 2e-6}, {"offset_y_m", -1e-6}, {"offset_z_m", -3e-5}};
+  for (const auto& [name, offset_m] : truth) {
+    const double sigma_m = summary.at(name).at("standard_error").get<double>();
+    EXPECT_NEAR(value(summary, name), offset_m, 4.5 * sigma_m) << name;
+    EXPECT_LT(sigma_m, 2e-8) << name;
+  }
+  EXPECT_NEAR(value(summary, "chi2_per_sample"), 1.0, 0.05);
+  // Half a step of 200 on 2 mm with 0.25 kg of 8 kg.
+  EXPECT_NEAR(value(summary, "resolution_m"), 0.5 * 1e-5 * 0.25 / 8.0, 1e-12);
+  EXPECT_LT(value(summary, "left_by_steps_m"), 2 * std::sqrt(3.0) * 1.5625e-7);
+  EXPECT_TRUE(files("b").contains("balance_residuals.png"));
+}
+
+TEST_F(AttitudeCommands, BudgetRanksAndComparesWithThePaper) {
+  const Outcome got = run("budget " + stasis + " --out " + at("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const size_t unbalance = got.out.find("static_unbalance"), light = got.out.find("radiation_pr");
+  EXPECT_LT(unbalance, light);
+  EXPECT_THAT(got.out, HasSubstr("com_resolution_m"));
+  EXPECT_THAT(got.out, HasSubstr("Faraday's constant"));
+  const auto all = files("o");
+  for (const char* name : {"budget.csv", "paper_figures.csv", "elastic_torque_by_tilt.png",
+                           "elastic_torque_by_tilt.svg", "torque_by_tilt.png"}) {
+    EXPECT_TRUE(all.contains(name)) << name;
+  }
+}
+
+TEST_F(AttitudeCommands, WrongInputIsOneLineAndExitTwo) {
+  struct Case {
+    const char *from, *to, *message;
+  };
+  const std::vector<Case> cases = {
+      {"[[0.11, 0, 0], [0, 0.12, 0], [0, 0, 0.19]]", "[[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.3]]",
+       ":4: platform.inertia_kg_m2: found principal moments 0.1, 0.1, 0.3"},
+      {"mass_kg = 8.0", "mass_kg = -8.0", ":3: platform.mass_kg: found -8, expected a number > 0"},
+      {"mass_kg = 8.0", "mass = 8.0", "platform.mass: found a key without a unit of mass"},
+      {"initial_tilt_deg = 6", "initial_attitude = [1, 1, 0, 0]",
+       "propagate.initial_attitude: found a quaternion of norm 1.41"},
+      {"duration_s = 400", "duration_s = 400\ncommand = [{ time_s = 3 }, { time_s = 2 }]",
+       "propagate.command[1].time_s"},
+      {"\"bearing_drag\"", "\"baring_drag\"", "did you mean \"bearing_drag\"?"},
+      {"[sensors.camera]", "[sensor.camera]", "expected a known key, perhaps \"sensors\""},
+      {"noise_arcsec", "noise_parsec", "sensors.camera.noise_parsec"},
+  };
+  for (const Case& c : cases) {
+    std::string text = pendulum;
+    text.replace(text.find(c.from), std::string(c.from).size(), c.to);
+    const Outcome got = run("propagate " + write("p.toml", text) + " --out " + at("o"));
+    EXPECT_EQ(got.status, 2) << c.to;
+    EXPECT_THAT(got.err, HasSubstr(c.message));
+    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+    EXPECT_FALSE(fs::exists(at("o"))) << c.to;
+  }
+  const std::string experiment = write("p.toml", pendulum);
+  EXPECT_EQ(run("balance " + experiment).status, 2);
+  EXPECT_EQ(run("balance " + experiment + " --recording /no/such.csv").status, 2);
+  EXPECT_EQ(run("propagate " + experiment + " --set propagate.commands=no_such.csv").status, 2);
+  write("c.csv", "t_s,command_x_N_m\n0,0\n2,1e-4\n1,0\n");
+  const Outcome unsorted = run("propagate " + experiment + " --set propagate.commands=c.csv");
+  EXPECT_EQ(unsorted.status, 2);
+  EXPECT_THAT(unsorted.err, HasSubstr("c.csv:4: t_s"));
+}
+
+// Recordings that another program made, in another language, with another integrator: with the
+// concealed effect of each case put into the experiment, the whole trajectory fits to its noise.
+TEST_F(AttitudeCommands, RecordingsOfAnotherSimulatorFitToTheirNoise) {
+  const fs::path cases = source / "../shared/cases";
+  if (!fs::exists(cases)) GTEST_SKIP() << cases << " is not at hand";
+  int compared = 0;
+  for (const auto& entry : fs::directory_iterator(cases)) {
+    if (!fs::exists(entry.path() / "truth.json")) continue;
+    const json truth = json::parse(read(entry.path() / "truth.json"));
+    if (truth.at("verdict") == "unexplained") continue;
+    std::string text = read(entry.path() / "experiment.toml");
+    for (const json& effect : truth.at("effects")) {
+      text += "\n[[disturbance]]\n";
+      for (const auto& [key, number] : effect.items()) {
+        const std::string name = key == "attitude_latency_s" ? "latency_s" : key;
+        text += name + " = " + number.dump() + "\n";
+      }
+    }
+    text += "[balance]\nmoving_mass_kg = 0.25\nlead_mm = 2\n";
+    const Outcome got = run("balance " + write("case.toml", text) + " --recording " +
+                            (entry.path() / "run1.csv.gz").string() + " --json --out " + at("o"));
+    ASSERT_EQ(got.status, 0) << entry.path() << got.err;
+    // Some 28,000 numbers: the standard error of chi² per sample is √(2/28000) = 0.0085.
+    EXPECT_NEAR(value(json::parse(got.out), "chi2_per_sample"), 1.0, 5 * 0.0085) << entry.path();
+    ++compared;
+  }
+  EXPECT_GE(compared, 11);
+}
+
+}  // namespace
