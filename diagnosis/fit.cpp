@@ -108,6 +108,18 @@ void add_priors(const Hypothesis& h, const Layout& layout, NormalSums& sums) {
   }
 }
 
+// A sinusoid of no amplitude yet does not show in the error by which the propagator chooses its
+// steps, but its slopes have to be resolved: a step is no longer than its period, to 3e-4 of them.
+double longest_step_s(const AttitudeModel& model) {
+  double longest_s = infinity;
+  for (const Disturbance& d : model.disturbances) {
+    for (const Parameter& p : d.parameters) {
+      if (p.key == "frequency_Hz" && p.value > 0.0) longest_s = std::min(longest_s, 1.0 / p.value);
+    }
+  }
+  return longest_s;
+}
+
 Evaluation evaluate(const Hypothesis& h, const std::vector<Observation>& runs,
                     const std::vector<Free>& extra, bool with_slopes, double share,
                     double tolerance) {
@@ -117,6 +129,7 @@ Evaluation evaluate(const Hypothesis& h, const std::vector<Observation>& runs,
   result.sums = {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), 0.0, 0};
   PredictionOptions options;
   options.propagation.tolerance = tolerance;
+  options.propagation.longest_step_s = longest_step_s(h.model);
   const std::vector<Variable> variables =
       with_slopes ? variables_of(h, extra) : std::vector<Variable>();
   try {
