@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "raytrace/finish_interaction.h"
 
 namespace photorque {
 namespace {
@@ -99,15 +100,8 @@ void send_on(const InteractionContext& context, const SobolSequence& sequence,
   const Vec3 onward = lobe == Lobe::specular  ? mirrored(direction, normal)
                       : lobe == Lobe::diffuse ? lambertian_direction(normal, point[1], point[2])
                                               : direction;
-  double total = 0.0;
-  for (int b = 0; b < hits.bands; ++b) total += power_W[b];
-  if (total < context.cutoff_W) {
-    ledger.truncated_W += total;
-    ledger.release(position, onward, total);
-    return;
-  }
-  next.rays.push_back(make_ray(position + lift * normal, onward, buffer.sample[i]));
-  next.power_W.insert(next.power_W.end(), power_W.begin(), power_W.begin() + hits.bands);
+  go_on(context, hits.bands, {position, position + lift * normal, onward, buffer.sample[i]},
+        power_W, ledger, next);
 }
 
 using Lane = Eigen::Map<Eigen::ArrayXd>;
@@ -168,10 +162,13 @@ void LedgerSums::add(const LedgerSums& other) {
 }
 
 void LedgerSums::release(const Vec3& at_m, const Vec3& direction, double power_W) {
-  const Vec3 force = direction * (power_W / speed_of_light_m_s);
-  const Vec3 torque = at_m.cross(force);
+  release_momentum(at_m, direction * (power_W / speed_of_light_m_s));
+}
+
+void LedgerSums::release_momentum(const Vec3& at_m, const Vec3& force_N) {
+  const Vec3 torque = at_m.cross(force_N);
   for (size_t k = 0; k < 3; ++k) {
-    momentum_out[k] += force[static_cast<Eigen::Index>(k)];
+    momentum_out[k] += force_N[static_cast<Eigen::Index>(k)];
     momentum_out[3 + k] += torque[static_cast<Eigen::Index>(k)];
   }
 }
@@ -181,11 +178,26 @@ double LedgerSums::absorbed_W(size_t instance) const {
   return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
+void go_on(const InteractionContext& context, int bands, const Departure& departure,
+           const BandValues& power_W, LedgerSums& ledger, Continuation& next) {
+  double total = 0.0;
+  for (int b = 0; b < bands; ++b) total += power_W[b];
+  if (total < context.cutoff_W) {
+    ledger.truncated_W += total;
+    ledger.release(departure.hit_m, departure.direction, total);
+    return;
+  }
+  next.rays.push_back(make_ray(departure.origin_m, departure.direction, departure.sample));
+  next.power_W.insert(next.power_W.end(), power_W.begin(), power_W.begin() + bands);
+}
+
 void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger,
               Continuation& next) {
   Hits& hits = buffer.hits;
   const Scene& scene = context.scene->scene;
+  const bool finishes = !context.scene->finish.empty();
   absorb(*context.scene, buffer);
+  if (finishes) absorb_by_angle(*context.scene, buffer);
   take_momentum(context, buffer, ledger);
   for (int b = 0; b < hits.bands; ++b) {
     for (int i = 0; i < hits.count; ++i) {
@@ -196,6 +208,7 @@ void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& 
   SobolStream stream = context.stream;
   stream.group = static_cast<uint32_t>(context.depth) + 1u;
   const SobolSequence sequence(stream);
+  if (finishes) settle_finishes(context, sequence, buffer, ledger, next);
   for (int i = 0; i < hits.count; ++i) {
     if (!(buffer.left_W[i] > 0.0)) continue;
     const Instance& instance = scene.instances[hits.instance[i]];

@@ -37,6 +37,7 @@ struct LedgerSums {
   void add(const LedgerSums& other);
   // A ray with this power leaves for good through `at_m`.
   void release(const Vec3& at_m, const Vec3& direction, double power_W);
+  void release_momentum(const Vec3& at_m, const Vec3& force_N);
 };
 
 struct InteractionContext {
@@ -45,6 +46,18 @@ struct InteractionContext {
   int depth = 0;          // of all hits in the buffer
   double cutoff_W = 0.0;  // rays with less than this are truncated
 };
+
+// A ray on its way from a hit.
+struct Departure {
+  Vec3 hit_m;     // where it was reflected
+  Vec3 origin_m;  // a little off the surface
+  Vec3 direction;
+  uint32_t sample;
+};
+
+// Appends the ray to `next`, or ends it if it carries less than the cutoff.
+void go_on(const InteractionContext& context, int bands, const Departure& departure,
+           const BandValues& power_W, LedgerSums& ledger, Continuation& next);
 
 // Settles all hits of the buffer: fills absorbed_W and force_N, adds to the ledger and appends the
 // rays that go on to `next`. The lobe and direction of a ray come from its own Sobol point of group

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/errors.h"
@@ -83,6 +84,18 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   }
 }
 
+void gather_finishes(TraceableScene::Data& data) {
+  const Scene& scene = data.scene;
+  if (std::none_of(scene.surfaces.begin(), scene.surfaces.end(),
+                   [](const OpticalSurface& surface) { return surface.finish != nullptr; })) {
+    return;
+  }
+  for (const Instance& instance : scene.instances) {
+    data.finish.push_back(scene.surfaces[instance.back_surface].finish.get());
+    data.finish.push_back(scene.surfaces[instance.front_surface].finish.get());
+  }
+}
+
 void bound(TraceableScene::Data& data) {
   Eigen::AlignedBox3d box;
   for (const Instance& instance : data.scene.instances) {
@@ -115,6 +128,7 @@ TraceableScene::TraceableScene(Scene scene, bool leak_safe) : data_(std::make_un
   rtcSetSceneFlags(data_->embree, leak_safe ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   rtcSetSceneBuildQuality(data_->embree, RTC_BUILD_QUALITY_MEDIUM);
   for (const Instance& instance : data_->scene.instances) add_instance(*data_, instance);
+  gather_finishes(*data_);
   bound(*data_);
   rtcCommitScene(data_->embree);
   if (rtcGetDeviceError(data_->device) != RTC_ERROR_NONE) {

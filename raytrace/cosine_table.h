@@ -1,0 +1,54 @@
+// Functions of the cosine of an angle with the normal, as tables.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace photorque {
+
+// `Count` functions of a cosine in [0, 1], as Catmull-Rom cubics of the cosine's root between nodes
+// that are even in it, so that grazing angles have most of them.
+template <size_t Count>
+class CosineTable {
+ public:
+  using Values = std::array<double, Count>;
+
+  explicit CosineTable(const std::function<Values(double cosine)>& function) {
+    for (size_t i = 0; i <= intervals; ++i) nodes_.push_back(function(node_cosine(i)));
+  }
+
+  Values operator()(double cosine) const {
+    const double place = std::sqrt(std::max(cosine, 0.0)) * static_cast<double>(intervals);
+    const size_t i = std::min(static_cast<size_t>(place), intervals - 1);
+    const double t = place - static_cast<double>(i);
+    const Values &a = nodes_[i], &b = nodes_[i + 1];
+    const Values &before = nodes_[i > 0 ? i - 1 : 0], &after = nodes_[std::min(i + 2, intervals)];
+    Values values;
+    for (size_t k = 0; k < Count; ++k) {
+      const double rise_a = i > 0 ? 0.5 * (b[k] - before[k]) : b[k] - a[k];
+      const double rise_b = i + 1 < intervals ? 0.5 * (after[k] - a[k]) : b[k] - a[k];
+      const double bend = rise_a + rise_b - 2.0 * (b[k] - a[k]);
+      values[k] = a[k] + t * (rise_a + t * (b[k] - a[k] - rise_a - bend + t * bend));
+    }
+    return values;
+  }
+
+  static constexpr size_t intervals = 96;
+  // Node 0 is just above the horizon, where the functions of grazing light have their limit.
+  static double node_cosine(size_t i) {
+    const double root = static_cast<double>(i) / static_cast<double>(intervals);
+    return i == 0 ? 1e-9 : root * root;
+  }
+
+ private:
+  std::vector<Values> nodes_;
+};
+
+// ∫ 2 μ g(μ) dμ over [0, 1]: the mean of g over light that comes evenly from everywhere. By
+// Simpson's rule in the root of μ, for functions that are smooth in it or read from a table.
+double even_mean(const std::function<double(double cosine)>& g);
+
+}  // namespace photorque
