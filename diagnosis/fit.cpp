@@ -312,6 +312,16 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
   return state;
 }
 
+std::vector<RunStart> seen_starts(const Hypothesis& h, const std::vector<Observation>& runs) {
+  std::vector<double> own;
+  for (const Free& f : h.free) {
+    if (f.per_run) own.push_back(f.mean);
+  }
+  std::vector<RunStart> starts;
+  for (const Observation& seen : runs) starts.push_back({first_state(h.model, seen), own});
+  return starts;
+}
+
 Fit fit(const Hypothesis& start, const std::vector<Observation>& runs,
         const FitSettings& settings) {
   return Fitter(start, runs, settings).run();

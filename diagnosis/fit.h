@@ -70,6 +70,9 @@ struct FitSettings {
 // A start of every run from what was seen at its beginning.
 PlatformState first_state(const AttitudeModel& model, const Observation& seen);
 
+// Such starts of all runs, their own parameters at what is believed.
+std::vector<RunStart> seen_starts(const Hypothesis& h, const std::vector<Observation>& runs);
+
 // Never throws for a model that cannot be propagated at the start: then chi2 is infinite.
 Fit fit(const Hypothesis& start, const std::vector<Observation>& runs,
         const FitSettings& settings = {});

@@ -21,17 +21,12 @@ double end_s(const std::vector<Observation>& runs) {
   return end;
 }
 
-// What is slow is scanned as well on averages, and faster.
-std::vector<Observation> coarse(const std::vector<Observation>& runs) {
-  std::vector<Observation> result;
-  for (const Observation& seen : runs) result.push_back(seen.averaged(800));
-  return result;
-}
-
-double longest_s(const std::vector<Observation>& runs) {
-  double longest = 0.0;
-  for (const Observation& seen : runs) longest = std::max(longest, seen.duration_s());
-  return longest;
+// From the first reading to the last: of several recordings the longest, of the pieces of one all
+// of it. What acts at one frequency keeps its phase from piece to piece.
+double span_s(const std::vector<Observation>& runs) {
+  double start_s = runs.front().time_s.front();
+  for (const Observation& seen : runs) start_s = std::min(start_s, seen.time_s.front());
+  return end_s(runs) - start_s;
 }
 
 // Indices of the `most` largest values that are larger than both neighbours.
@@ -136,11 +131,11 @@ std::vector<Disturbance> sinusoid_starts(const Candidate& c, const Trial& parent
 // A light appendage on each axis, at each of a grid of frequencies.
 std::vector<Disturbance> flexible_mode_starts(const Candidate& c, const Trial& parent,
                                               const std::vector<Observation>& runs) {
-  const double interval_s = longest_s(runs) / static_cast<double>(runs.front().blocks());
+  const double interval_s = runs.front().duration_s() / static_cast<double>(runs.front().blocks());
   const double highest_Hz = std::min(3.0, 0.5 / interval_s);
   std::vector<Disturbance> modes;
   std::vector<double> gain;
-  for (double f_Hz = std::max(0.02, 2.0 / longest_s(runs)); f_Hz < highest_Hz; f_Hz *= 1.7) {
+  for (double f_Hz = std::max(0.02, 2.0 / span_s(runs)); f_Hz < highest_Hz; f_Hz *= 1.7) {
     std::vector<ScoreGroup> groups;
     for (size_t axis = 0; axis < 3; ++axis) {
       Disturbance d = with(c.start, 3, f_Hz);
@@ -179,7 +174,7 @@ std::vector<Disturbance> flexible_mode_starts(const Candidate& c, const Trial& p
 // more than the residual's power.
 std::vector<double> slow_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
                                         double highest_Hz, size_t most) {
-  const double step_Hz = 0.7 / longest_s(runs);
+  const double step_Hz = 0.7 / span_s(runs);
   std::vector<double> frequency_Hz;
   std::vector<ScoreGroup> groups;
   const Effect effect{
@@ -203,14 +198,13 @@ std::vector<double> slow_frequencies_Hz(const Fit& at, const std::vector<Observa
 }  // namespace
 
 std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
-                                        size_t most) {
-  const std::vector<Observation> slow_runs = coarse(runs);
-  const double step_Hz = 0.25 / longest_s(runs);
-  double interval_s = longest_s(runs);
+                                        const std::vector<Observation>& slow_runs, size_t most) {
+  const double step_Hz = 0.25 / span_s(runs);
+  double interval_s = span_s(runs);
   for (const Observation& seen : runs) {
     interval_s = std::min(interval_s, seen.duration_s() / static_cast<double>(seen.blocks() - 1));
   }
-  const double slow_Hz = std::min(0.2, 100.0 / longest_s(runs));
+  const double slow_Hz = std::min(0.2, 100.0 / span_s(runs));
   std::vector<double> power(static_cast<size_t>(0.5 / interval_s / step_Hz), 0.0);
   PredictionOptions options;
   options.keep_residuals = true;
@@ -235,13 +229,14 @@ std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observa
 
 std::vector<Disturbance> starts_of(const Candidate& candidate, const Trial& parent,
                                    const std::vector<Observation>& runs,
+                                   const std::vector<Observation>& slow_runs,
                                    const std::vector<double>& lines_Hz) {
   const std::string& kind = candidate.effect.kind;
-  if (kind == "mass_shift") return mass_shift_starts(candidate, parent, coarse(runs));
+  if (kind == "mass_shift") return mass_shift_starts(candidate, parent, slow_runs);
   if (kind == "periodic_torque" || kind == "floor_vibration") {
     return sinusoid_starts(candidate, parent, runs, lines_Hz);
   }
-  if (kind == "flexible_mode") return flexible_mode_starts(candidate, parent, coarse(runs));
+  if (kind == "flexible_mode") return flexible_mode_starts(candidate, parent, slow_runs);
   return {candidate.start};
 }
 

@@ -9,13 +9,15 @@
 namespace photorque {
 
 // Frequencies at which what is left of a fit has power, strongest first [Hz], at most `most`.
+// `slow_runs` are averages of the runs, as good for what is slow.
 std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
-                                        size_t most = 4);
+                                        const std::vector<Observation>& slow_runs, size_t most = 4);
 
 // Where to start the fit of a candidate added to `parent`: one start, or the most promising ones of
 // a scan. `lines_Hz` are the parent's line_frequencies_Hz().
 std::vector<Disturbance> starts_of(const Candidate& candidate, const Trial& parent,
                                    const std::vector<Observation>& runs,
+                                   const std::vector<Observation>& slow_runs,
                                    const std::vector<double>& lines_Hz);
 
 }  // namespace photorque

@@ -21,11 +21,37 @@ bool is_linear(const Candidate& c) {
          std::none_of(c.searched.begin(), c.searched.end(), [](bool b) { return b; });
 }
 
-// The runs averaged over blocks: enough for what is slow, and several times faster.
-std::vector<Observation> coarse(const std::vector<Observation>& runs) {
-  constexpr size_t blocks = 1000;
-  std::vector<Observation> result;
-  for (const Observation& seen : runs) result.push_back(seen.averaged(blocks));
+// Of a fit, beyond which its slopes say little: the trajectory is elsewhere.
+constexpr double astray_chi2_per_sample = 20.0;
+
+// The runs, or what each was cut into.
+struct Runs {
+  std::vector<Observation> all;
+  size_t pieces = 1;  // of each recording
+
+  // Averaged over blocks: enough for what is slow, and several times faster.
+  std::vector<Observation> averaged() const {
+    constexpr size_t blocks = 1000;
+    std::vector<Observation> result;
+    for (const Observation& seen : all) result.push_back(seen.averaged(blocks / pieces));
+    return result;
+  }
+};
+
+// Every run cut into as many pieces, each of which will have a start of its own.
+Runs cut(const std::vector<Observation>& runs, size_t pieces) {
+  constexpr std::ptrdiff_t fewest_attitudes = 10;
+  Runs result{{}, pieces};
+  for (const Observation& seen : runs) {
+    for (size_t i = 0; i < pieces; ++i) {
+      const size_t first = i * seen.blocks() / pieces, last = (i + 1) * seen.blocks() / pieces;
+      if (first == last) continue;
+      Observation piece = seen.part(first, last);
+      const auto attitudes = std::count_if(piece.attitude_rows.begin(), piece.attitude_rows.end(),
+                                           [](double rows) { return rows > 0.0; });
+      if (attitudes >= fewest_attitudes) result.all.push_back(std::move(piece));
+    }
+  }
   return result;
 }
 
@@ -72,22 +98,24 @@ std::vector<Trial> extend_by_tasks(const Trial& parent, const std::vector<Candid
   return best;
 }
 
-// Every candidate added to `parent`. Slow laws are fitted to averages first; those that come near
-// the best, and all fast ones, to the full runs.
-std::vector<Trial> extend_by_each(const Trial& parent, const std::vector<Candidate>& all,
-                                  const std::vector<size_t>& candidates,
-                                  const std::vector<Observation>& runs, int threads) {
+// Every candidate added to `parent`, whose slopes can be trusted. Slow laws are fitted to averages
+// first; those that come near the best, and all fast ones, to the full runs.
+std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>& all,
+                               const std::vector<size_t>& candidates, const Runs& run_set,
+                               int threads) {
   constexpr size_t most_refits = 4;
-  const std::vector<Observation> slow_runs = coarse(runs);
+  const std::vector<Observation>& runs = run_set.all;
+  const std::vector<Observation> slow_runs = run_set.averaged();
   std::vector<double> lines_Hz;
   std::vector<size_t> worth_it;
   parallel_for(2, threads, [&](size_t i) {
-    if (i == 0) lines_Hz = line_frequencies_Hz(parent.fit, runs);
+    if (i == 0) lines_Hz = line_frequencies_Hz(parent.fit, runs, slow_runs);
     if (i == 1) worth_it = promising(parent, all, candidates, slow_runs);
   });
   std::vector<std::vector<Disturbance>> starts(worth_it.size());
-  parallel_for(worth_it.size(), threads,
-               [&](size_t i) { starts[i] = starts_of(all[worth_it[i]], parent, runs, lines_Hz); });
+  parallel_for(worth_it.size(), threads, [&](size_t i) {
+    starts[i] = starts_of(all[worth_it[i]], parent, runs, slow_runs, lines_Hz);
+  });
   std::vector<Task> slow, fast;
   for (size_t i = 0; i < worth_it.size(); ++i) {
     const std::string& kind = all[worth_it[i]].effect.kind;
@@ -109,6 +137,47 @@ std::vector<Trial> extend_by_each(const Trial& parent, const std::vector<Candida
                [&](size_t i) { rough[i] = refit(rough[i], all, runs, rough[i].fit.best.runs); });
   for (Trial& t : rough) found.push_back(std::move(t));
   return found;
+}
+
+// Every candidate added to a parent that has gone astray. A trajectory far from the readings says
+// little about why, so the runs are cut into pieces, each with a start of its own, in which it
+// stays near them; what explains the pieces best is then fitted to the whole (multiple shooting).
+std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candidate>& all,
+                                    const std::vector<size_t>& candidates,
+                                    const std::vector<Observation>& runs, int threads) {
+  constexpr size_t most_refits = 6;
+  Runs pieces;
+  Trial near;
+  for (const size_t count : {6u, 20u}) {
+    pieces = cut(runs, count);
+    near = refit(parent, all, pieces.all, seen_starts(parent.fit.best, pieces.all));
+    if (near.fit.chi2_per_sample() < astray_chi2_per_sample) break;
+  }
+  std::vector<Trial> found = extend_near(near, all, candidates, pieces, threads);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
+  FitSettings growing;
+  growing.windows = {0.06, 0.25, 1.0};
+  parallel_for(found.size(), threads, [&](size_t i) {
+    Trial& t = found[i];
+    const std::vector<RunStart> starts = seen_starts(t.fit.best, runs);
+    if (i < most_refits) {
+      t = refit(t, all, runs, starts, growing);
+    } else {
+      t.log_evidence += parent.log_evidence - near.log_evidence;
+      t.fit.best.runs = starts;
+    }
+  });
+  return found;
+}
+
+std::vector<Trial> extend_by_each(const Trial& parent, const std::vector<Candidate>& all,
+                                  const std::vector<size_t>& candidates,
+                                  const std::vector<Observation>& runs, int threads) {
+  if (parent.fit.chi2_per_sample() > astray_chi2_per_sample) {
+    return extend_by_pieces(parent, all, candidates, runs, threads);
+  }
+  return extend_near(parent, all, candidates, {runs}, threads);
 }
 
 // One kind acts once, in whatever parametrisation.

@@ -182,18 +182,12 @@ namespace {
 // Where a fit went astray, its parameters are no start: back to what is believed and to what was
 // seen at the beginning of each run.
 void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observation>& runs) {
-  std::vector<double> own;
+  const auto& found = parent.disturbances;
   for (const Free& f : h.free) {
-    const auto& found = parent.disturbances;
-    if (f.per_run) {
-      own.push_back(f.mean);
-    } else if (std::find(found.begin(), found.end(), f.disturbance) == found.end()) {
-      h.value(f) = f.mean;
-    }
+    if (f.per_run) continue;
+    if (std::find(found.begin(), found.end(), f.disturbance) == found.end()) h.value(f) = f.mean;
   }
-  for (size_t run = 0; run < runs.size(); ++run) {
-    h.runs[run] = {first_state(h.model, runs[run]), own};
-  }
+  h.runs = seen_starts(h, runs);
 }
 
 }  // namespace
