@@ -246,13 +246,17 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   plot.name = "balance_residuals";
   plot.title = "Camera minus fitted trajectory, about lab axes";
   plot.x_label = "Time [s]";
+  // More points than these only blot out each other.
+  constexpr size_t most_points = 2000;
+  const size_t rows = result.fit.residual_time_s.size();
+  const size_t every = rows / most_points + 1;
+  if (every > 1) plot.title += ", one row in " + std::to_string(every);
   const auto residuals = [&](int axis) {
     Plot::Curve curve;
-    curve.label = std::string(1, "xyz"[axis]);
     curve.markers = true;
-    curve.x = result.fit.residual_time_s;
-    for (const Vec3& r : result.fit.camera_residual_rad) {
-      curve.y.push_back(r[axis] / arcsecond_rad);
+    for (size_t i = 0; i < rows; i += every) {
+      curve.x.push_back(result.fit.residual_time_s[i]);
+      curve.y.push_back(result.fit.camera_residual_rad[i][axis] / arcsecond_rad);
     }
     return curve;
   };

@@ -80,6 +80,100 @@ std::vector<BearingDatasheet> read_catalogue(const Settings& settings) {
   return catalogue;
 }
 
+// What acts within a second.
+struct Acting {
+  Vec3 largest_body_N_m = Vec3::Zero();
+  Vec3 mean_body_N_m = Vec3::Zero();
+};
+
+// The command and all disturbances' torques at an instant, by disturbance, and what they come to.
+struct Snapshot {
+  std::vector<Vec3> torques_body_N_m;
+  Vec3 angular_acceleration_rad_s2;
+};
+Snapshot snapshot(const Dynamics& dynamics, const PlatformState& state) {
+  std::vector<Lanes> y;
+  for (const double x : to_vector(state)) y.emplace_back(x);
+  std::array<Held, Lanes::count> held;
+  held.fill(dynamics.model().schedule.at(state.time_s));
+  const Dynamics::Instants now = dynamics.at(state.time_s, held, y.data());
+  Snapshot result;
+  for (const Vec3Of<Lanes>& torque : now.torque_body_N_m) {
+    result.torques_body_N_m.emplace_back(torque[0][0], torque[1][0], torque[2][0]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    result.angular_acceleration_rad_s2[k] = now.rates[size_t(component::rate + k)][0];
+  }
+  return result;
+}
+
+// What changes the conditions of others (gravity, field, command, inertia) has no torque of its own
+// but one by what it does to theirs: I times the acceleration with it less that without it.
+Vec3 torque_by_conditions_body_N_m(const AttitudeModel& model, size_t d, const Snapshot& with,
+                                   const PlatformState& state) {
+  if (!model.disturbances[d].states.empty()) return Vec3::Zero();
+  AttitudeModel without = model;
+  without.disturbances.erase(without.disturbances.begin() + static_cast<std::ptrdiff_t>(d));
+  const Snapshot rest = snapshot(Dynamics(std::move(without)), state);
+  return model.platform.inertia_kg_m2 *
+         (with.angular_acceleration_rad_s2 - rest.angular_acceleration_rad_s2);
+}
+
+// Every disturbance within the second that begins with `state`, attitude and rate held: what shakes
+// shows its amplitude, and what is steady is as it is.
+std::vector<Acting> acting_within_a_second(const AttitudeModel& model, const PlatformState& state) {
+  // A prime number: no whole frequency but its multiples falls between the instants.
+  constexpr int instants = 101;
+  const Dynamics dynamics(model);
+  std::vector<Acting> all(model.disturbances.size());
+  for (int i = 0; i < instants; ++i) {
+    PlatformState then = state;
+    then.time_s += static_cast<double>(i) / instants;
+    Snapshot now = snapshot(dynamics, then);
+    for (size_t d = 0; d < all.size(); ++d) {
+      Vec3& torque_N_m = now.torques_body_N_m[d];
+      // Conditions that change within a second are none of ours.
+      if (model.disturbances[d].stage == Stage::conditions) {
+        if (i > 0) continue;
+        torque_N_m = torque_by_conditions_body_N_m(model, d, now, then);
+        all[d] = {torque_N_m, torque_N_m};
+        continue;
+      }
+      all[d].mean_body_N_m += torque_N_m / instants;
+      if (torque_N_m.norm() > all[d].largest_body_N_m.norm()) all[d].largest_body_N_m = torque_N_m;
+    }
+  }
+  return all;
+}
+
+// Read once more, beside the disturbances made of them, which keep a coefficient alone.
+std::vector<AirPart> read_own_air_parts(const Settings& root) {
+  std::vector<AirPart> all;
+  if (!root.has("disturbance")) return all;
+  SettingsNode holder;
+  holder.value = SettingsNode::Table{{"disturbance", root.raw("disturbance")}};
+  const Settings own(std::make_shared<const SettingsNode>(std::move(holder)));
+  for (const Settings& disturbance : own.tables("disturbance")) {
+    if (!disturbance.text("kind").starts_with("air_") || !disturbance.has("part")) continue;
+    const std::vector<AirPart> parts = read_air_parts(disturbance.tables("part"));
+    all.insert(all.end(), parts.begin(), parts.end());
+  }
+  return all;
+}
+
+PaperLight read_light(const Settings& settings) {
+  PaperLight light;
+  if (!settings.has("light")) return light;
+  const Settings s = settings.table("light");
+  light.source_to_cell = s.number_or("source_to_cell", light.source_to_cell, Range::fraction());
+  light.conversion = s.number_or("conversion", light.conversion, Range::fraction());
+  light.power_W = s.number_or("power_W", light.power_W, Range::positive());
+  light.power_at_30_deg_W =
+      s.number_or("power_at_30_deg_W", light.power_at_30_deg_W, Range::positive());
+  light.torque_at_30_deg_N_m = s.vector3_or("torque_at_30_deg_N_m", light.torque_at_30_deg_N_m);
+  return light;
+}
+
 Table budget_table(const Budget& budget) {
   std::map<std::string, PaperFigure> paper;
   for (const PaperFigure& figure : paper_figures()) paper[figure.quantity] = figure;
@@ -132,9 +226,9 @@ Plot tilt_plot(const Budget& budget) {
     PlatformState state = budget.state;
     state.lab_from_body = lab_from_body(tilt_rad, heading_rad);
     state.rate_body_rad_s = state.lab_from_body.conjugate() * rate_lab_rad_s;
-    const std::vector<Vec3> torques = disturbance_torques_body_N_m(budget.model, state);
-    for (size_t d = 0; d < torques.size(); ++d) {
-      const double torque_N_m = torques[d].norm();
+    const std::vector<Acting> acting = acting_within_a_second(budget.model, state);
+    for (size_t d = 0; d < acting.size(); ++d) {
+      const double torque_N_m = acting[d].largest_body_N_m.norm();
       if (!(torque_N_m > 0.0)) continue;  // nothing to draw on a logarithmic axis
       plot.curves[d].x.push_back(tilt_rad / degree_rad);
       plot.curves[d].y.push_back(torque_N_m);
@@ -147,16 +241,19 @@ Plot tilt_plot(const Budget& budget) {
 }  // namespace
 
 Budget make_budget(AttitudeModel model, const PlatformState& state) {
-  Budget budget{std::move(model), state, {}, {}};
-  const std::vector<Vec3> torques = disturbance_torques_body_N_m(budget.model, state);
+  Budget budget{std::move(model), state, {}, {}, {}, {}};
+  const std::vector<Acting> acting = acting_within_a_second(budget.model, state);
   const std::vector<std::string> names = names_of(budget.model.disturbances);
   const Mat3 inverse_inertia = budget.model.platform.inertia_kg_m2.inverse();
-  for (size_t d = 0; d < torques.size(); ++d) {
-    if (budget.model.disturbances[d].stage == Stage::measurement) continue;
-    const double acceleration_rad_s2 = (inverse_inertia * torques[d]).norm();
+  for (size_t d = 0; d < acting.size(); ++d) {
+    const Disturbance& disturbance = budget.model.disturbances[d];
+    // An orbit is where the others act.
+    if (disturbance.stage == Stage::measurement || disturbance.kind == "orbit") continue;
+    const double acceleration_rad_s2 = (inverse_inertia * acting[d].mean_body_N_m).norm();
     const auto angle_after = [&](double t_s) { return 0.5 * acceleration_rad_s2 * t_s * t_s; };
-    budget.entries.push_back({budget.model.disturbances[d].kind, names[d], torques[d],
-                              angle_after(minute_s), angle_after(hour_s), angle_after(day_s)});
+    budget.entries.push_back({budget.model.disturbances[d].kind, names[d],
+                              acting[d].largest_body_N_m, angle_after(minute_s),
+                              angle_after(hour_s), angle_after(day_s)});
   }
   std::stable_sort(budget.entries.begin(), budget.entries.end(),
                    [](const BudgetEntry& a, const BudgetEntry& b) {
@@ -169,19 +266,31 @@ Budget read_budget(const Settings& root) {
   AttitudeModel model = read_attitude_model(root).model;
   if (!root.has("budget")) {
     const PlatformState upright = Dynamics(model).initial_state();
-    return make_budget(std::move(model), upright);
+    Budget budget = make_budget(std::move(model), upright);
+    budget.air_parts = read_own_air_parts(root);
+    return budget;
   }
   const Settings settings = root.table("budget");
   const PlatformState state = read_state(settings, model);
   Budget budget = make_budget(std::move(model), state);
   budget.catalogue = read_catalogue(settings);
+  budget.light = read_light(settings);
+  budget.air_parts = read_own_air_parts(root);
   settings.finish();
   return budget;
 }
 
 Product budget_product(const Budget& budget) {
-  Product product = paper_product();
+  PaperInputs inputs;
+  inputs.light = budget.light;
+  Product product = paper_product(inputs);
   product.tables.insert(product.tables.begin(), budget_table(budget));
+  if (!budget.air_parts.empty()) {
+    const Environment& room = budget.model.environment;
+    product.tables.push_back(air_table(budget.air_parts,
+                                       {room.air_density_kg_m3, room.air_viscosity_Pa_s},
+                                       budget.state.rate_body_rad_s.norm()));
+  }
   product.plots.insert(product.plots.begin(), tilt_plot(budget));
   Vec3 total_N_m = Vec3::Zero();
   for (const BudgetEntry& e : budget.entries) total_N_m += e.torque_body_N_m;

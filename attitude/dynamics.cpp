@@ -202,10 +202,15 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s, const std::array<Held, Lane
   const auto act = [&](size_t d) {
     const Layout& own = layout_[d];
     const Vec3Of<Lanes> before = now.torque_body_N_m;
+    const Mat3Of<Lanes> attached = now.detached_inertia_kg_m2;
     model_.disturbances[d].law->act({parameters_.data() + own.first_parameter, y + own.first_state,
                                      result.rates.data() + own.first_state},
                                     now);
-    result.torque_body_N_m[d] = now.torque_body_N_m - before;
+    // Of a part that swings with the body nothing is felt beside the rigid body's own gyroscopic
+    // torque, which the detached part no longer has.
+    const Vec3Of<Lanes>& w = now.rate_body_rad_s;
+    const Vec3Of<Lanes> carried = Mat3Of<Lanes>(now.detached_inertia_kg_m2 - attached) * w;
+    result.torque_body_N_m[d] = now.torque_body_N_m - before + w.cross(carried);
   };
   run_stages(order_, now, act);
   solve(now, result.rates.data());

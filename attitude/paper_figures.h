@@ -5,6 +5,7 @@
 // how far each figure moves with each of them, and which value would give the paper's.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,8 +13,20 @@
 #include "attitude/air_bearing.h"
 #include "attitude/external_air.h"
 #include "core/product.h"
+#include "core/vector.h"
 
 namespace photorque {
+
+// What tracing rays through the scene gives (commands power and torque-map), which is not done
+// here. NaN: not given.
+struct PaperLight {
+  double source_to_cell = std::numeric_limits<double>::quiet_NaN();     // zero tilt, share
+  double conversion = std::numeric_limits<double>::quiet_NaN();         // zero tilt, share
+  double power_W = std::numeric_limits<double>::quiet_NaN();            // of the array at zero tilt
+  double power_at_30_deg_W = std::numeric_limits<double>::quiet_NaN();  // every cell by itself
+  // On the array, about the centre of rotation, tilted 30 deg about y.
+  Vec3 torque_at_30_deg_N_m = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+};
 
 // What the paper leaves out. Dimensions are those of scenes/stasis/parameters.toml.
 struct PaperInputs {
@@ -46,6 +59,7 @@ struct PaperInputs {
   double supply_gauge_Pa = 5.5e5;
   double inlet_share = 0.85;
   double ball_mass_kg = 0.36;
+  PaperLight light = {};
 };
 
 struct PaperFigure {
@@ -74,10 +88,11 @@ struct PaperAirParts {
 };
 PaperAirParts paper_air_parts(const PaperInputs& inputs = {});
 
-// The drag of an unloaded ball against the drag at the rated gap: by how much a catalogue's drag,
-// measured without load, falls short of eq. 17 at the rated gap.
+// A bearing as PaperInputs assumes it. The drag of an unloaded ball against the drag at the rated
+// gap: by how much a catalogue's drag, measured without load, falls short of eq. 17 there.
 struct UnloadedDrag {
-  double rated_load_N = 0.0;
+  double rated_load_N = 0.0;         // of the film at the rated gap
+  double load_as_published_N = 0.0;  // eq. 7
   double ratio_spring = 0.0;  // the gap opens like a spring of the film's stiffness at rated load
   double ratio_film = 0.0;    // the gap opens until supply and film balance
 };

@@ -46,15 +46,18 @@ EventFunction battery_empty_event(double capacity_C) {
 }
 
 EventFunction eclipse_event(const Dynamics& dynamics) {
-  return {"eclipse", false, false, [&dynamics](const Lanes& time_s, const Lanes* y) {
-            return dynamics.at(time_s, {}, y).illumination - 0.5;
-          }};
+  return {.name = "eclipse_ends",
+          .value = [&dynamics](
+                       const Lanes& time_s,
+                       const Lanes* y) { return dynamics.at(time_s, {}, y).illumination - 0.5; },
+          .falling_name = "eclipse_begins"};
 }
 
 Propagator::Propagator(const Dynamics& dynamics, const PlatformState& initial, double end_s,
                        const PropagationOptions& options, std::vector<Variable> variables,
                        std::vector<EventFunction> events)
     : dynamics_(dynamics),
+      begin_s_(initial.time_s),
       end_s_(end_s),
       options_(options),
       step_(dynamics, initial.time_s, checked_start(dynamics, initial)),
@@ -109,7 +112,20 @@ bool Propagator::advance() {
   return true;
 }
 
+// Gives up early on motions that would need more steps than allowed.
+void Propagator::check_pace() const {
+  constexpr int64_t every = 1 << 16;
+  if (statistics_.steps == 0 || statistics_.steps % every != 0) return;
+  const double pace_s = (step_.start_s() - begin_s_) / static_cast<double>(statistics_.steps);
+  const double left_s = end_s_ - step_.start_s();
+  if (pace_s * static_cast<double>(options_.most_steps - statistics_.steps) < left_s) {
+    throw NumericalError("steps of " + std::to_string(pace_s) + " s on average will not reach " +
+                         std::to_string(end_s_) + " s: the motion is too fast for its duration");
+  }
+}
+
 void Propagator::take_step() {
+  check_pace();
   const double start_s = step_.start_s();
   const double stop_s = next_jump_ < jumps_.size() ? jumps_[next_jump_].time_s : end_s_;
   // A free body's phase shows every bit of its iterations after a day; torques hide them.
@@ -209,7 +225,9 @@ void Propagator::find_events() {
       const double high = is_end ? event.value(step_end_s_, at_end.data())[0] : inside[i];
       const bool rising = low <= 0.0 && high > 0.0, falling = low >= 0.0 && high < 0.0;
       if (rising || (falling && !event.rising_only)) {
-        found.push_back({event.name, locate(event, low_s, high_s), rising});
+        const bool own_name = falling && !event.falling_name.empty();
+        found.push_back(
+            {own_name ? event.falling_name : event.name, locate(event, low_s, high_s), rising});
         if (event.ends_run && (last == nullptr || found.back().time_s < step_end_s_)) {
           last = &event;
           step_end_s_ = found.back().time_s;

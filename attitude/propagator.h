@@ -34,6 +34,7 @@ struct EventFunction {
   bool ends_run = false;
   bool rising_only = false;  // only where the value becomes positive
   std::function<Lanes(const Lanes& time_s, const Lanes* y)> value;
+  std::string falling_name = {};  // where it becomes negative; empty: the same
 };
 struct Event {
   std::string name;
@@ -45,7 +46,7 @@ struct Event {
 EventFunction tilt_event(double limit_rad);
 // The charge drawn reaches `capacity_C`.
 EventFunction battery_empty_event(double capacity_C);
-// The light goes (value falls) or comes back: half of it arrives.
+// "eclipse_begins" and "eclipse_ends": half of the light arrives.
 EventFunction eclipse_event(const Dynamics& dynamics);
 
 class Propagator {
@@ -58,7 +59,7 @@ class Propagator {
              std::vector<EventFunction> events = {});
 
   // Computes the next step; false when the run has ended. NumericalError when the step length falls
-  // below what the time can resolve.
+  // below what the time can resolve, or below what reaches the end in `most_steps`.
   bool advance();
 
   // The last step; its end is the event's time when one ended the run. Held values are those of its
@@ -91,6 +92,7 @@ class Propagator {
   };
   void collect_jumps(double from_s);
   double next_stop_s() const;
+  void check_pace() const;
   void take_step();
   double propose_length(const CollocationStep::Outcome& outcome, double h_s, bool cut) const;
   void cross_jumps();
@@ -99,6 +101,7 @@ class Propagator {
   Lanes fraction(const Lanes& time_s) const;
 
   const Dynamics& dynamics_;
+  double begin_s_;
   double end_s_;
   PropagationOptions options_;
   CollocationStep step_;

@@ -4,11 +4,14 @@
 #include <deque>
 #include <optional>
 
+#include "attitude/ccsds_epoch.h"
 #include "attitude/time_history.h"
 #include "core/transform.h"
 
 namespace photorque {
 namespace {
+
+constexpr double longest_run_s = 1e10;  // three centuries
 
 std::vector<Disturbance> read_own_disturbances(const Settings& root,
                                                const DisturbanceContext& context) {
@@ -27,7 +30,12 @@ std::filesystem::path beside_experiment(const Settings& settings, const std::str
 
 Schedule read_schedule(const Settings& settings) {
   if (settings.has("commands")) {
-    return read_command_file(beside_experiment(settings, settings.text("commands")));
+    const std::string name = settings.text("commands");
+    const std::filesystem::path path = beside_experiment(settings, name);
+    if (!std::filesystem::is_regular_file(path)) {
+      throw settings.error("commands", "\"" + name + "\"", "a file beside the experiment");
+    }
+    return read_command_file(path);
   }
   Schedule schedule;
   std::optional<double> before_s;
@@ -96,10 +104,12 @@ double camera_delay_s(const Dynamics& dynamics, const PlatformState& state) {
 }
 
 // The times at which a run is looked at: its rows and, for a camera with latency, what it sees in
-// them (not before the start). In order; of two equal times what is seen comes first.
+// them. In order; of two equal times what is seen comes first. What lies before the start is looked
+// at there, `before_s` too late.
 struct Look {
   double time_s;
   bool is_row;
+  double before_s = 0.0;
 };
 std::vector<Look> looks(const PropagationRun& run, double delay_s) {
   const Seen seen{run};
@@ -108,13 +118,22 @@ std::vector<Look> looks(const PropagationRun& run, double delay_s) {
   for (size_t row = 0; row < seen.rows(); ++row) {
     const double time_s = seen.time_s(row);
     for (; delay_s > 0.0 && next_seen < seen.rows(); ++next_seen) {
-      const double seen_s = std::max(run.initial.time_s, seen.time_s(next_seen) - delay_s);
+      const double wanted_s = seen.time_s(next_seen) - delay_s;
+      const double seen_s = std::max(run.initial.time_s, wanted_s);
       if (seen_s > time_s) break;
-      all.push_back({seen_s, false});
+      all.push_back({seen_s, false, seen_s - wanted_s});
     }
     all.push_back({time_s, true});
   }
   return all;
+}
+
+// The attitude so long before `state`, turning as it does there.
+Quat attitude_before(const PlatformState& state, double before_s) {
+  const Vec3 turn_rad = state.rate_body_rad_s * before_s;
+  const double angle_rad = turn_rad.norm();
+  if (!(angle_rad > 0.0)) return state.lab_from_body;
+  return state.lab_from_body * Quat(Eigen::AngleAxisd(-angle_rad, turn_rad / angle_rad));
 }
 
 Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
@@ -154,7 +173,7 @@ PropagationRun read_propagation(const Settings& root) {
   run.model = std::move(believed.model);
   run.sensors = std::move(believed.sensors);
   const Settings settings = own_table(root, "propagate", false);
-  run.duration_s = settings.number_or("duration_s", 600.0, Range::positive());
+  run.duration_s = settings.number_or("duration_s", 600.0, {0.0, longest_run_s, true, false});
   run.output_rate_Hz = settings.number_or("output_rate_Hz", 10.0, Range::positive());
   constexpr double most_rows = 2e7;
   if (run.duration_s * run.output_rate_Hz > most_rows) {
@@ -169,6 +188,9 @@ PropagationRun read_propagation(const Settings& root) {
       settings.number_or("longest_step_s", run.options.longest_step_s, Range::positive());
   run.model.schedule = read_schedule(settings);
   run.epoch = settings.text_or("epoch", "2000-01-01T00:00:00");
+  if (!parse_epoch(run.epoch)) {
+    throw settings.error("epoch", "\"" + run.epoch + "\"", "a time as 2000-01-01T12:00:00");
+  }
   run.initial =
       Dynamics(run.model).initial_state(settings.vector3_or("initial_rate_rad_s", Vec3::Zero()));
   run.initial.lab_from_body = read_initial_attitude(settings);
@@ -197,8 +219,9 @@ PropagationResult propagate(const PropagationRun& run,
     for (int i = 0; i < samples.count; ++i) {
       for (size_t c = 0; c < y.size(); ++c) y[c] = samples.y[c][i];
       const PlatformState state = to_state(samples.time_s[i], y);
-      if (!times[samples.first + static_cast<size_t>(i)].is_row) {
-        on_the_way.push_back(state.lab_from_body);
+      const Look& look = times[samples.first + static_cast<size_t>(i)];
+      if (!look.is_row) {
+        on_the_way.push_back(attitude_before(state, look.before_s));
         continue;
       }
       Quat seen = state.lab_from_body;

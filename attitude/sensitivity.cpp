@@ -209,7 +209,15 @@ void Sensitivity::readings(const Lanes& time_s, const std::array<Held, Lanes::co
       for (size_t v = 0; v < count; ++v) readings[r * count + v] += partials[i] * from[v];
     }
   }
+  // What moves masses or exerts torques reaches the instruments through the state alone.
+  const auto reaches_instruments = [&](int variable) {
+    if (variable < 0) return false;
+    const size_t d = variables_[static_cast<size_t>(variable)].disturbance;
+    const Stage stage = dynamics_.model().disturbances[d].stage;
+    return stage != Stage::mass && stage != Stage::torque;
+  };
   for (const ParameterBlock& block : parameter_blocks_) {
+    if (std::none_of(block.variable.begin(), block.variable.end(), reaches_instruments)) continue;
     dynamics_.reading_derivatives(time_s, held, y, block.block, partials.data());
     for (size_t i = 0; i < partials.size(); ++i) {
       const size_t r = i / DualLanes::block, k = i % DualLanes::block;

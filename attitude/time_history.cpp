@@ -39,9 +39,10 @@ constexpr const char* fixed_names[fixed] = {"t_s",
                                             "battery_current_A",
                                             "array_power_W"};
 
-// At most about 4000 points: of every stretch its lowest and its highest, in order of time.
+// At most about 1600 points, as many as a picture has columns to tell apart: of every stretch its
+// lowest and its highest, in order of time.
 void thin(const std::vector<double>& x, const std::vector<double>& y, Plot::Curve& curve) {
-  constexpr size_t most = 4000;
+  constexpr size_t most = 1600;
   if (x.size() <= most) {
     curve.x = x;
     curve.y = y;
@@ -169,7 +170,7 @@ Product TimeHistory::product(const std::vector<Event>& events,
   product.tables.push_back({"time_history", "Attitude, rates, charge and torques", columns_});
   Table happened{"events", "What happened", {{"event", {}, {}}, {"t_s", {}, {}}}};
   for (const Event& event : events) {
-    happened.columns[0].texts.push_back(event.name + (event.rising ? "" : " (falling)"));
+    happened.columns[0].texts.push_back(event.name);
     happened.columns[1].values.push_back(event.time_s);
   }
   if (!events.empty()) product.tables.push_back(happened);
@@ -184,19 +185,22 @@ Product TimeHistory::product(const std::vector<Event>& events,
     plot.curves = std::move(curves);
     product.plots.push_back(std::move(plot));
   };
-  add_plot("tilt", "Tilt", "Tilt [deg]", {curve("tilt", t, values(tilt))});
-  add_plot("heading", "Heading", "Heading [deg]",
-           {curve("heading", t, unwrapped_deg(values(heading)))});
-  add_plot("rates", "Body rates", "Rate [rad/s]",
-           {curve("x", t, values(rate_x)), curve("y", t, values(rate_y)),
-            curve("z", t, values(rate_z))});
+  // Of a long flight curves are bands that hide each other: every axis has its own panel.
+  const auto add_vector_plot = [&](const std::string& name, const std::string& title,
+                                   const std::string& unit, size_t x) {
+    add_plot(name, title, "x [" + unit + "]", {curve("", t, values(x))});
+    product.plots.back().below = {{"y [" + unit + "]", {curve("", t, values(x + 1))}, false},
+                                  {"z [" + unit + "]", {curve("", t, values(x + 2))}, false}};
+  };
+  add_plot("tilt", "Tilt", "Tilt [deg]", {curve("", t, values(tilt))});
+  add_plot("heading", "Heading", "Heading [deg]", {curve("", t, unwrapped_deg(values(heading)))});
+  add_vector_plot("rates", "Body rates", "rad/s", rate_x);
   if (any_nonzero(values(charge))) {
     add_plot("charge", "Charge drawn from the battery", "Charge [Ah]",
-             {curve("charge", t, values(charge))});
+             {curve("", t, values(charge))});
   }
   if (any_nonzero(values(power))) {
-    add_plot("array_power", "Power of the solar array", "Power [W]",
-             {curve("array", t, values(power))});
+    add_plot("array_power", "Power of the solar array", "Power [W]", {curve("", t, values(power))});
   }
   std::vector<size_t> shown;
   std::vector<std::vector<double>> sizes;
@@ -208,9 +212,7 @@ Product TimeHistory::product(const std::vector<Event>& events,
     largest_N_m = std::max(largest_N_m, *std::max_element(size.begin(), size.end()));
     shown.push_back(i);
     sizes.push_back(std::move(size));
-    add_plot(
-        "torque_" + labels_[i], "Torque of " + labels_[i], "Torque, body axes [N m]",
-        {curve("x", t, values(x)), curve("y", t, values(x + 1)), curve("z", t, values(x + 2))});
+    add_vector_plot("torque_" + labels_[i], "Torque of " + labels_[i] + ", body axes", "N m", x);
   }
   if (!shown.empty()) {
     // Below this share of the largest torque nothing is to be seen of a platform.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "core/constants.h"
@@ -68,6 +69,21 @@ TEST(PaperFigures, SpringOpensTheGapAsInThePaperAndTheFilmOpensItFurther) {
   EXPECT_GT(drag.rated_load_N, 100.0);
 }
 
+// Light is traced elsewhere: what was found comes back beside the paper's figures, and nothing
+// else.
+TEST(PaperFigures, OfLightAreThoseGiven) {
+  EXPECT_TRUE(std::isnan(figure("array_power_W").ours));
+  PaperInputs inputs;
+  inputs.light = {0.8, 0.3, 24.0, 20.0, Vec3(0, 2e-9, 0)};
+  std::map<std::string, double> ours;
+  for (const PaperFigure& f : paper_figures(inputs)) ours[f.quantity] = f.ours;
+  EXPECT_EQ(ours.at("source_to_cell_share"), 0.8);
+  EXPECT_EQ(ours.at("conversion_share"), 0.3);
+  EXPECT_EQ(ours.at("array_power_W"), 24.0);
+  EXPECT_EQ(ours.at("array_power_at_30_deg_W"), 20.0);
+  EXPECT_EQ(ours.at("radiation_torque_traced_at_30_deg_N_m"), 2e-9);
+}
+
 TEST(PaperFigures, EveryFigureSaysWhyItDiffers) {
   std::set<std::string> names;
   for (const PaperFigure& f : paper_figures()) {
@@ -79,7 +95,8 @@ TEST(PaperFigures, EveryFigureSaysWhyItDiffers) {
   for (const char* name :
        {"lumped_drag_at_1_rpm_N_m", "cylinder_drag_at_1_rpm_N_m", "cfd_drag_at_1_rpm_N_m",
         "cfd_friction_at_1_rpm_N_m", "radiation_torque_at_30_deg_N_m", "bearing_load_mean_error",
-        "bearing_drag_mean_ratio", "bearing_drag_mean_ratio_with_spring"}) {
+        "bearing_drag_mean_ratio", "bearing_drag_mean_ratio_with_spring", "source_to_cell_share",
+        "conversion_share", "array_power_W", "array_power_at_30_deg_W"}) {
     EXPECT_TRUE(names.contains(name)) << name;
   }
 }
@@ -157,6 +174,65 @@ TEST(Budget, RanksTorquesAndAddsUpAngles) {
   EXPECT_NEAR(by_name.at("turbine_torque").angle_after_day_rad, 0.5e-5 * 86400.0 * 86400.0, 1e-5);
 }
 
+BudgetEntry entry(const Budget& budget, const std::string& name) {
+  for (const BudgetEntry& e : budget.entries) {
+    if (e.name == name) return e;
+  }
+  throw std::runtime_error("no entry " + name);
+}
+
+SettingsNode with_disturbances(SettingsNode root, const std::vector<SettingsNode>& more) {
+  auto& all = std::get<SettingsNode::Array>(
+      std::get<SettingsNode::Table>(root.value).at("disturbance").value);
+  all.insert(all.end(), more.begin(), more.end());
+  return root;
+}
+
+// m r a of the floor's acceleration along x, whose sine is zero at the state's time; it swings
+// about nothing.
+TEST(Budget, WhatShakesCountsWithItsAmplitude) {
+  const SettingsNode floor = table({{"kind", node("floor_vibration")},
+                                    {"acceleration_m_s2", numbers({2e-3, 0, 0})},
+                                    {"frequency_Hz", node(8)}});
+  const BudgetEntry shaken = entry(
+      read_budget(settings_of(with_disturbances(experiment({}), {floor}))), "floor_vibration");
+  EXPECT_NEAR(shaken.torque_body_N_m.norm(), 7 * 1e-7 * 2e-3, 7e-10 * 0.001);
+  EXPECT_LT(shaken.angle_after_minute_rad, 1e-10);
+}
+
+// Gravity that leans by α about x: m r × (g' − g). A product of inertia δ_xz under a spin ω about
+// z: −ω × δI ω, along y.
+TEST(Budget, WhatChangesConditionsCountsByWhatItDoes) {
+  const double tilt_rad = 1e-3, delta_kg_m2 = 2e-3, rate_rad_s = 2 * pi / 60;
+  const SettingsNode gravity =
+      table({{"kind", node("gravity_tilt")}, {"tilt_rad", numbers({tilt_rad, 0})}});
+  const SettingsNode inertia = table(
+      {{"kind", node("inertia_error")}, {"delta_kg_m2", numbers({0, 0, 0, 0, delta_kg_m2, 0})}});
+  const Vec3 offset_m(1e-6, 1e-7, 0);
+  const Vec3 change_m_s2 =
+      standard_gravity_m_s2 * Vec3(0, std::sin(tilt_rad), 1 - std::cos(tilt_rad));
+  const Budget leaning = read_budget(settings_of(with_disturbances(experiment({}), {gravity})));
+  EXPECT_LT(
+      (entry(leaning, "gravity_tilt").torque_body_N_m - 7 * offset_m.cross(change_m_s2)).norm(),
+      1e-15);
+  const Budget spinning =
+      read_budget(settings_of(with_disturbances(experiment({{"spin_rpm", node(1)}}), {inertia})));
+  EXPECT_NEAR(std::abs(entry(spinning, "inertia_error").torque_body_N_m.y()),
+              delta_kg_m2 * rate_rad_s * rate_rad_s, 1e-12);
+}
+
+// An appendage that turns with the body as part of it pulls at nothing.
+TEST(Budget, AnUnbentAppendageIsNoTorque) {
+  const SettingsNode wing = table({{"kind", node("flexible_mode")},
+                                   {"axis", numbers({1, 0, 0})},
+                                   {"frequency_Hz", node(1)},
+                                   {"damping", node(0.02)},
+                                   {"inertia_kg_m2", node(0.001)}});
+  const Budget budget = read_budget(settings_of(
+      with_disturbances(experiment({{"tilt_deg", node(30)}, {"spin_rpm", node(1)}}), {wing})));
+  EXPECT_LT(entry(budget, "flexible_mode").torque_body_N_m.norm(), 1e-18);
+}
+
 TEST(Budget, StateIsTiltHeadingAndRate) {
   const Budget budget = read_budget(settings_of(experiment({{"tilt_deg", node(30)},
                                                             {"heading_deg", node(90)},
@@ -189,6 +265,18 @@ TEST(Budget, ProductHoldsTheTablesAndPlots) {
   EXPECT_EQ(table_named(product, "paper_figures").columns[0].texts.size(), paper_figures().size());
   ASSERT_EQ(product.plots.size(), 2u);
   EXPECT_EQ(product.plots[0].curves.size(), 4u);  // the battery is full: nothing to draw
+}
+
+// A disc of 0.2 m at 1 rpm: R²ω/ν = 278, far below its transition at 2.8e5.
+TEST(Budget, SaysWhetherTheLawsOfAirHoldForTheExperimentsOwnParts) {
+  const SettingsNode friction =
+      table({{"kind", node("air_friction")},
+             {"part", list({table({{"shape", node("disc")}, {"radius_m", node(0.2)}})})}});
+  const Product product = budget_product(
+      read_budget(settings_of(with_disturbances(experiment({{"spin_rpm", node(1)}}), {friction}))));
+  const Table& air = table_named(product, "external_air");
+  EXPECT_NEAR(column(air, "reynolds").values.front(), 278.0, 1.0);
+  EXPECT_EQ(column(air, "law_holds").texts.front(), "yes");
 }
 
 // Figure 5: the tabletop peaks at 45 deg; the dumbbell is sin θ (1 − cos θ) and still rises there.

@@ -80,12 +80,13 @@ TEST(Camera, NoiseIsAboutLabAxesAndOfTheSizeAsked) {
   }
 }
 
+// Also the past before the start, which is taken to have turned as at the start.
 TEST(Camera, WithLatencyReportsThePast) {
   PropagationRun run = spinning(0.2, 20.0, 10.0);
   add_error(run, "attitude_latency", "latency_s", node(0.37));
   const Recording recording = propagate(run).recording;
   for (size_t i = 0; i < recording.rows(); ++i) {
-    const double seen_s = std::max(0.0, recording.time_s[i] - 0.37);
+    const double seen_s = recording.time_s[i] - 0.37;
     EXPECT_NEAR(std::remainder(heading(attitude(recording, i)) - 0.2 * seen_s, 2 * pi), 0.0, 1e-9);
   }
 }
