@@ -143,6 +143,12 @@ std::vector<Acting> acting_within_a_second(const AttitudeModel& model, const Pla
       if (torque_N_m.norm() > all[d].largest_body_N_m.norm()) all[d].largest_body_N_m = torque_N_m;
     }
   }
+  double largest_N_m = 0.0;
+  for (const Acting& one : all) largest_N_m = std::max(largest_N_m, one.largest_body_N_m.norm());
+  constexpr double rounding = 1e-15;
+  for (Acting& one : all) {
+    if (one.largest_body_N_m.norm() < rounding * largest_N_m) one = {};
+  }
   return all;
 }
 

@@ -130,7 +130,7 @@ void Propagator::take_step() {
   const double stop_s = next_jump_ < jumps_.size() ? jumps_[next_jump_].time_s : end_s_;
   // A free body's phase shows every bit of its iterations after a day; torques hide them.
   const bool is_free = dynamics_.model().disturbances.empty();
-  const double settled = (is_free ? 1e-10 : 1e-8) * options_.tolerance;
+  const double settled = (is_free ? 1e-10 : 1e-6) * options_.tolerance;
   for (;;) {
     // Half of what is left rather than nearly all of it: no slivers.
     const double left_s = stop_s - start_s;
