@@ -29,8 +29,7 @@ void print_run(const Console& console, const PropagationRun& run, const Propagat
   if (!result.events.empty()) console.heading("Events");
   for (size_t i = 0; i < std::min(most_events, result.events.size()); ++i) {
     const Event& event = result.events[i];
-    console.line("  " + event.name + (event.rising ? "" : " (falling)") + " at " +
-                 show(event.time_s) + " s");
+    console.line("  " + event.name + " at " + show(event.time_s) + " s");
   }
   if (result.events.size() > most_events) {
     console.line("  and " + std::to_string(result.events.size() - most_events) +

@@ -151,6 +151,7 @@ TEST_F(AttitudeCommands, BudgetRanksAndComparesWithThePaper) {
   const size_t unbalance = got.out.find("static_unbalance"), light = got.out.find("radiation_pr");
   EXPECT_LT(unbalance, light);
   EXPECT_THAT(got.out, HasSubstr("com_resolution_m"));
+  EXPECT_THAT(got.out, HasSubstr("array_power_at_30_deg_W"));
   EXPECT_THAT(got.out, HasSubstr("Faraday's constant"));
   const auto all = files("o");
   for (const char* name : {"budget.csv", "paper_figures.csv", "elastic_torque_by_tilt.png",
@@ -175,6 +176,10 @@ TEST_F(AttitudeCommands, WrongInputIsOneLineAndExitTwo) {
       {"\"bearing_drag\"", "\"baring_drag\"", "did you mean \"bearing_drag\"?"},
       {"[sensors.camera]", "[sensor.camera]", "expected a known key, perhaps \"sensors\""},
       {"noise_arcsec", "noise_parsec", "sensors.camera.noise_parsec"},
+      {"offset_m = [2e-6", "offset_m = [nan", "disturbance[0].offset_m: found nan"},
+      {"duration_s = 400", "duration_s = 1e12", "propagate.duration_s: found 1e+12"},
+      {"duration_s = 400", "epoch = \"yesterday\"", "propagate.epoch: found \"yesterday\""},
+      {"duration_s = 400", "commands = \"none.csv\"", "propagate.commands: found \"none.csv\""},
   };
   for (const Case& c : cases) {
     std::string text = pendulum;
