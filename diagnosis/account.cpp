@@ -113,7 +113,8 @@ std::vector<Alternative> alternatives(const std::vector<Trial>& trials,
   for (const auto& [label, t] : best) {
     Alternative a;
     a.kinds = kinds_of(*t, all);
-    a.label = label.empty() ? "nothing is missing" : label;
+    // Kinds say all of what is physics alone.
+    if (a.kinds.size() != t->candidates.size()) a.label = label;
     a.log_evidence_relative = t->log_evidence - trials.front().log_evidence;
     a.remark = t->objection;
     result.push_back(std::move(a));

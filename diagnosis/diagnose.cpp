@@ -80,7 +80,7 @@ Fit settle(const BelievedModel& believed, Data& data) {
 }
 
 // How well the leaders also explain what was held back: their evidence on all runs together takes
-// the place of that on the fitted ones. The others keep their distance to the best.
+// the place of that on the fitted ones. The others gain over the belief in the ratio of the best.
 void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>& all,
                         const Data& data, int threads) {
   constexpr size_t most_leaders = 8;
@@ -99,18 +99,29 @@ void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>
   std::vector<Observation> joint = data.train;
   joint.insert(joint.end(), data.held.begin(), data.held.end());
   if (std::find(leaders.begin(), leaders.end(), 0u) == leaders.end()) leaders.push_back(0);
+  const int64_t samples = trials.front().fit.samples;
   std::vector<double> shift(leaders.size());
   parallel_for(leaders.size(), threads, [&](size_t k) {
-    const Trial& t = trials[leaders[k]];
+    Trial& t = trials[leaders[k]];
+    // Some were fitted to averages or pieces only.
+    if (t.fit.samples != samples) t = refit(t, all, data.train, t.fit.best.runs);
     const Fit held = fly(t.fit, data.held);
     std::vector<RunStart> starts = t.fit.best.runs;
     starts.insert(starts.end(), held.best.runs.begin(), held.best.runs.end());
     shift[k] = refit(t, all, joint, starts).log_evidence - t.log_evidence;
   });
+  const auto found = [&](size_t i) { return std::find(leaders.begin(), leaders.end(), i); };
+  const auto shift_of = [&](size_t i) {
+    return shift[static_cast<size_t>(found(i) - leaders.begin())];
+  };
+  const double belief = trials.front().log_evidence, belief_shift = shift_of(0);
+  const double gain = trials[leaders.front()].log_evidence - belief;
+  const double more = shift.front() - belief_shift;
+  const double ratio = gain > 0.0 ? std::max(0.0, 1.0 + more / gain) : 1.0;
   for (size_t i = 0; i < trials.size(); ++i) {
-    const auto at = std::find(leaders.begin(), leaders.end(), i);
-    trials[i].log_evidence +=
-        at == leaders.end() ? shift.front() : shift[static_cast<size_t>(at - leaders.begin())];
+    double& evidence = trials[i].log_evidence;
+    evidence = found(i) != leaders.end() ? evidence + shift_of(i)
+                                         : belief + belief_shift + ratio * (evidence - belief);
   }
 }
 

@@ -244,7 +244,9 @@ class Fitter {
       }
       // What the step promises; nothing worth having: done.
       const double promised = step.dot(2.0 * now.sums.gradient - now.sums.matrix * step);
-      if (promised < settings_.converged_gain) return true;
+      // So is what a bad fit could hardly show.
+      constexpr double least_share = 1e-6;
+      if (promised < std::max(settings_.converged_gain, least_share * now.sums.chi2)) return true;
       Hypothesis tried = stepped(now_, step);
       const Evaluation at = evaluate_with_priors(tried, false, share);
       if (!(at.sums.chi2 < now.sums.chi2)) {

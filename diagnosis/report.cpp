@@ -227,15 +227,17 @@ std::string ranking(const Diagnosis& d) {
     if (note.empty() && a.holdout_chi2_per_sample) {
       note = "χ² held out " + plain_number(*a.holdout_chi2_per_sample);
     }
-    bars.push_back({label, a.log_evidence_relative, note, kinds == chosen && a.label.empty()});
+    const bool is_chosen = d.verdict != Verdict::unexplained && kinds == chosen && a.label.empty();
+    bars.push_back({label, a.log_evidence_relative, note, is_chosen});
   }
-  return tag("section",
-             tag("h2", "Ranking of the alternatives") +
-                 tag("p",
-                     "Longer is better; a lead of 3 makes the odds 20 to 1. The chosen one is "
-                     "blue.") +
-                 bar_chart_svg(bars, "log evidence over “nothing missing”",
-                               "Log evidence of the alternatives"));
+  return tag(
+      "section",
+      tag("h2", "Ranking of the alternatives") +
+          tag("p", std::string("Longer is better; a lead of 3 makes the odds 20 to 1.") +
+                       (d.verdict == Verdict::unexplained ? " None of the catalogue was chosen."
+                                                          : " The chosen one is blue.")) +
+          bar_chart_svg(bars, "log evidence over “nothing missing”",
+                        "Log evidence of the alternatives"));
 }
 
 std::string channel_charts(const ChannelSeries& channel, const RecordingSeries& recording) {

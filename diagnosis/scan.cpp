@@ -111,9 +111,13 @@ std::vector<Disturbance> sinusoid_starts(const Candidate& c, const Trial& parent
     // Each alone: fast ones make short steps for all that share their pass.
     scores.push_back(score(parent.fit, runs, {groups.back()}).front());
   }
+  double best = 0.0;
+  for (const Score& s : scores) best = std::max(best, s.gain);
   std::vector<Disturbance> starts;
   for (size_t i = 0; i < groups.size(); ++i) {
-    if (scores[i].estimate.size() != 6 || scores[i].gain < least_gain) continue;
+    constexpr double least_share = 0.1;
+    if (scores[i].estimate.size() != 6) continue;
+    if (scores[i].gain < std::max(least_gain, least_share * best)) continue;
     Eigen::Matrix<double, 3, 2> amplitude;
     amplitude.col(0) = scores[i].estimate.head<3>();
     amplitude.col(1) = scores[i].estimate.tail<3>();

@@ -55,24 +55,27 @@ Runs cut(const std::vector<Observation>& runs, size_t pieces) {
   return result;
 }
 
-// Where the fit is good, the score test foretells well what each candidate would gain: the others
-// need no fit of their own. Where it is bad, all of them do.
+// Where the trajectory is near the readings, the score test foretells what each candidate would
+// gain: those that would gain hardly anything against the best need no fit of their own.
 std::vector<size_t> promising(const Trial& parent, const std::vector<Candidate>& all,
                               const std::vector<size_t>& candidates,
                               const std::vector<Observation>& slow_runs) {
-  constexpr double good_chi2_per_sample = 1.5, least_gain = 5.0;
-  if (parent.fit.chi2_per_sample() > good_chi2_per_sample) return candidates;
+  constexpr double least_gain = 5.0, least_share = 0.02;
+  if (parent.fit.chi2_per_sample() > astray_chi2_per_sample) return candidates;
   std::vector<ScoreGroup> groups;
   for (const size_t c : candidates) {
     groups.push_back(
         {is_linear(all[c]) ? std::vector<Disturbance>{all[c].start} : std::vector<Disturbance>{}});
   }
   const std::vector<Score> scores = score(parent.fit, slow_runs, groups);
+  double best = 0.0;
+  for (const Score& s : scores) best = std::max(best, s.gain);
   std::vector<size_t> result;
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& c = all[candidates[i]];
     const double parameters = static_cast<double>(c.start.parameters.size());
-    if (!is_linear(c) || scores[i].gain > least_gain + parameters) result.push_back(candidates[i]);
+    const bool worth_it = scores[i].gain > std::max(least_gain + parameters, least_share * best);
+    if (!is_linear(c) || worth_it) result.push_back(candidates[i]);
   }
   return result;
 }

@@ -16,6 +16,7 @@ struct Whiteness {
   // differences of neighbours: the noise itself, over that which was assumed. 1 where there are no
   // readings.
   std::array<double, 6> noise_ratio{1, 1, 1, 1, 1, 1};
+  std::array<int64_t, 6> readings{};  // that noise_ratio comes from
   // χ² of the means of some twenty neighbours over their number: 1 for white noise, much more where
   // structure is left. `excess_sigma` is its distance from 1 in standard errors.
   double slow_chi2_per_mean = 1.0;
@@ -23,8 +24,8 @@ struct Whiteness {
 };
 Whiteness whiteness(const std::vector<Prediction>& residuals);
 
-// Gives every channel of the runs the noise that was found, where it is off by more than 5 %.
-// Returns whether any was.
+// Gives every channel of the runs the noise that was found, where it is off by more than 5 % and
+// more than five standard errors. Returns whether any was.
 bool correct_noise(const Whiteness& found, std::vector<Observation>& runs);
 
 // Drops readings that stand out from what their neighbours' residuals lead to by more than nine

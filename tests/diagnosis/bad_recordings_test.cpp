@@ -1,0 +1,58 @@
+// Recordings that hold no motion of a platform are refused in one line that names the channel.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/errors.h"
+#include "diagnosis/diagnose.h"
+#include "diagnosis/observation.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A recording with this header and, from t = 0 on, every tenth of a second this rest of a row.
+Recording recording_of(const std::string& header, const std::string& row, int rows) {
+  const fs::path path = fs::path(testing::TempDir()) / "bad_recording.csv";
+  std::ofstream out(path);
+  out << header << "\n";
+  for (int i = 0; i < rows; ++i) out << 0.1 * i << "," << row << "\n";
+  out.close();
+  return read_recording(path);
+}
+
+std::string refusal_of(const Recording& recording) {
+  try {
+    observe(recording, "run.csv");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BadRecording, WithoutAttitudeNamesTheMissingChannel) {
+  const Recording rates = recording_of("t_s,gyro_x_rad_s", "0.1", 100);
+  EXPECT_EQ(refusal_of(rates),
+            "run.csv: header: found no channel q_w, expected the attitude q_w, q_x, q_y, q_z");
+  const Recording three = recording_of("t_s,q_w,q_x,q_y", "1,0,0", 100);
+  EXPECT_NE(refusal_of(three).find("no channel q_z"), std::string::npos);
+}
+
+TEST(BadRecording, WithHardlyAnyAttitudeIsRefused) {
+  EXPECT_NE(refusal_of(recording_of("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 19)).find("19 complete"),
+            std::string::npos);
+  EXPECT_EQ(refusal_of(recording_of("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 20)), "");
+}
+
+TEST(BadRecording, QuaternionsWithoutLengthAreNoAttitude) {
+  EXPECT_NE(refusal_of(recording_of("t_s,q_w,q_x,q_y,q_z", "0,0,0,0", 200)).find("0 complete"),
+            std::string::npos);
+}
+
+TEST(BadRecording, NoneAtAllIsRefused) {
+  EXPECT_THROW(diagnose({}, {}, {}), InputError);
+}
+
+}  // namespace
+}  // namespace photorque
