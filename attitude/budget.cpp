@@ -226,12 +226,16 @@ Plot tilt_plot(const Budget& budget) {
   const double heading_rad = std::atan2((budget.state.lab_from_body * Vec3::UnitZ()).y(),
                                         (budget.state.lab_from_body * Vec3::UnitZ()).x());
   const Vec3 rate_lab_rad_s = budget.state.lab_from_body * budget.state.rate_body_rad_s;
+  const Dynamics dynamics(budget.model);
   constexpr int steps = 60;
   for (int i = 0; i <= steps; ++i) {
     const double tilt_rad = limit_rad * i / steps;
-    PlatformState state = budget.state;
-    state.lab_from_body = lab_from_body(tilt_rad, heading_rad);
-    state.rate_body_rad_s = state.lab_from_body.conjugate() * rate_lab_rad_s;
+    const Quat attitude = lab_from_body(tilt_rad, heading_rad);
+    // Appendages turn with the body at every tilt.
+    PlatformState state = dynamics.initial_state(attitude.conjugate() * rate_lab_rad_s);
+    state.lab_from_body = attitude;
+    state.time_s = budget.state.time_s;
+    state.charge_drawn_C = budget.state.charge_drawn_C;
     const std::vector<Acting> acting = acting_within_a_second(budget.model, state);
     for (size_t d = 0; d < acting.size(); ++d) {
       const double torque_N_m = acting[d].largest_body_N_m.norm();
