@@ -5,6 +5,8 @@
 #include <set>
 #include <sstream>
 
+#include "raytrace/finish.h"
+#include "raytrace/glass.h"
 #include "scenes/gltf_schema.h"
 
 namespace photorque::gltf {
@@ -59,6 +61,36 @@ double coverage(const json& material, double alpha) {
   const std::string mode = material.value("alphaMode", "OPAQUE");
   if (mode == "BLEND") return alpha;
   return mode == "MASK" && alpha < material.value("alphaCutoff", 0.5) ? 0.0 : 1.0;
+}
+
+// A dielectric that names its index and covers everything: glass over matt ground, or a clear pane.
+std::optional<OpticalSurface> derived_glass(const json& material, int bands,
+                                            const std::string& name) {
+  const json extensions = object_at(material, "extensions");
+  const json pbr = object_at(material, "pbrMetallicRoughness");
+  if (!extensions.contains("KHR_materials_ior") || pbr.value("metallicFactor", 1.0) > 0.0 ||
+      extensions.contains("KHR_materials_pbrSpecularGlossiness")) {
+    return std::nullopt;
+  }
+  const double index = extensions["KHR_materials_ior"].value("ior", 1.5);
+  const double through =
+      object_at(extensions, "KHR_materials_transmission").value("transmissionFactor", 0.0);
+  const double roughness = pbr.value("roughnessFactor", 1.0);
+  const auto color = pbr.value("baseColorFactor", std::vector<double>{1, 1, 1, 1});
+  const bool pane = through == 1.0 && roughness == 0.0;
+  if (index < 1.0 || index > 10.0 || (through > 0.0 && !pane) ||
+      coverage(material, color[3]) < 1.0) {
+    return std::nullopt;
+  }
+  const double bright = std::min(luminance(color), 1.0);
+  OpticalSurface base;
+  base.name = name;
+  for (size_t band = 0; band < static_cast<size_t>(bands); ++band) {
+    (pane ? base.transmitted : base.diffuse)[band] = bright;
+    base.absorbed[band] = 1.0 - bright;
+  }
+  const double alpha = roughness == 0.0 ? 0.0 : std::max(roughness * roughness, 1e-3);
+  return behind_glass(base, index, alpha);
 }
 
 // The extras' table, if there is one.
@@ -137,6 +169,9 @@ OpticalSurface derived_surface(const json& material, int bands, std::string name
   const Grey grey = glossy == extensions.end() ? from_metallic_roughness(material)
                                                : from_specular_glossiness(*glossy);
   const double covered = coverage(material, grey.alpha);
+  if (const std::optional<OpticalSurface> glass = derived_glass(material, bands, name)) {
+    return *glass;
+  }
   OpticalSurface surface;
   surface.name = std::move(name);
   for (size_t band = 0; band < static_cast<size_t>(bands); ++band) {
@@ -201,6 +236,10 @@ std::string describe_surface(const OpticalSurface& surface) {
   text.precision(3);
   text << "absorptance " << surface.absorbed[0] << ", specular " << surface.specular[0]
        << ", diffuse " << surface.diffuse[0] << ", transmittance " << surface.transmitted[0];
+  if (surface.finish) {
+    if (surface.finish->law) text << " at normal incidence";
+    if (!surface.finish->description.empty()) text << "; " << surface.finish->description;
+  }
   return text.str();
 }
 

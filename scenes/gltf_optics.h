@@ -47,6 +47,9 @@ MaterialOptics material_optics(const Document& document, int index, int bands,
 // MASK an alpha below the cutoff leaves the whole surface open. KHR_materials_pbrSpecularGlossiness
 // replaces R by the luminance of its specular colour, D by that of its diffuse colour times 1 − R,
 // and r by 1 − glossiness. Textures and emission are ignored.
+// A dielectric (m = 0) that carries KHR_materials_ior, n from 1 to 10, and covers everything
+// depends on the angle instead, by raytrace/glass.h: glass of index n and roughness r over ground
+// that scatters Y of what enters (t = 0), or a pane that passes Y on a way through (t = 1, r = 0).
 // It is a stand-in for measured values: drawing colours say little about absorptance.
 OpticalSurface derived_surface(const nlohmann::json& material, int bands, std::string name);
 
@@ -62,7 +65,8 @@ bool has_ignored_texture(const nlohmann::json& material);
 // The tree that core/settings reads, from JSON. InputError for null, which settings do not know.
 SettingsNode settings_from_json(const nlohmann::json& value, const InputLocation& where);
 
-// "absorptance 0.83, specular 0.01, diffuse 0.16, transmittance 0" of the first band.
+// "absorptance 0.83, specular 0.01, diffuse 0.16, transmittance 0" of the first band; then the
+// finish in a few words.
 std::string describe_surface(const OpticalSurface& surface);
 
 }  // namespace photorque::gltf

@@ -5,12 +5,17 @@
 #include <cmath>
 #include <sstream>
 
+#include "raytrace/finish.h"
+#include "raytrace/glass.h"
+#include "raytrace/rough_mirror.h"
+#include "raytrace/slope_error.h"
+
 namespace photorque {
 namespace {
 
 constexpr double sum_tolerance = 1e-9;
 
-// One of the four fractions: its key, and where it goes.
+// One of the fractions: its key, and where it goes.
 struct Share {
   const char* key;
   BandValues OpticalSurface::*values;
@@ -36,6 +41,22 @@ BandValues read_share(const Settings& table, const char* key, int bands) {
   return values;
 }
 
+// The share that goes back where it came from, and the surface for it, if the user has one.
+BandValues read_retroreflected(const Settings& table, int bands) {
+  constexpr const char* key = "retroreflectance";
+  return table.has(key) ? read_share(table, key, bands) : BandValues{};
+}
+
+// glTF's roughness as the facets' alpha. Below a thousandth it is a mirror.
+double read_alpha(const Settings& table) {
+  const double roughness = table.number("roughness", {0.0, 1.0, true});
+  return std::max(roughness * roughness, 1e-3);
+}
+
+bool any(const BandValues& values) {
+  return std::any_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
+}
+
 std::string sum_text(double sum, size_t band) {
   std::ostringstream text;
   text.precision(12);
@@ -49,11 +70,80 @@ std::string list(const std::vector<const Share*>& some) {
   return text;
 }
 
+// "roughness 0.3", for notices.
+std::string words(const char* what, double number) {
+  std::ostringstream text;
+  text.precision(3);
+  text << what << " " << number;
+  return text.str();
+}
+
+// Glass in front of `base`, whose fractions are read.
+OpticalSurface read_glass(const Settings& table, const OpticalSurface& base) {
+  const double index = table.number("refractive_index", {1.0, 10.0});
+  const int kinds = int{any(base.diffuse)} + int{any(base.specular)} + int{any(base.transmitted)};
+  if (kinds > 1) {
+    throw table.error("refractive_index", "more than one of specular, diffuse, transmittance",
+                      "at most one of them behind glass");
+  }
+  for (const char* key : {"slope_error_mrad", "retroreflectance"}) {
+    if (table.has(key)) throw table.error(key, "glass in front too", "no refractive_index beside");
+  }
+  if (!table.has("roughness")) return behind_glass(base, index);
+  if (glass_base(base) != GlassBase::matt) {
+    throw table.error("roughness", "specular or transmittance behind glass",
+                      "rough glass over diffuse and absorptance alone");
+  }
+  return behind_glass(base, index, read_alpha(table));
+}
+
+// The lobe of the specular share, if it is none of a mirror.
+void read_lobe(const Settings& table, const OpticalSurface& surface, Finish& finish) {
+  for (const char* key : {"roughness", "slope_error_mrad"}) {
+    if (table.has(key) && !any(surface.specular)) {
+      throw table.error(key, "no specular share", "specular above 0, or refractive_index");
+    }
+  }
+  if (table.has("roughness")) {
+    if (table.has("slope_error_mrad")) {
+      throw table.error("slope_error_mrad", "roughness too", "one of the two");
+    }
+    const double alpha = read_alpha(table);
+    finish.specular = rough_mirror(alpha);
+    finish.description = words("roughness", std::sqrt(alpha));
+  } else if (table.has("slope_error_mrad")) {
+    const double slope_rad = table.number("slope_error_mrad", {1e-6, 0.2});
+    finish.specular = slope_error(slope_rad);
+    finish.description = words("slope error in mrad", 1e3 * slope_rad);
+  }
+}
+
+// Heat radiation of a sheet, on both of its surfaces.
+void read_heat(const Settings& table, SheetOptics& sheet) {
+  const double reemitted = table.number_or("reemitted", 0.0, Range::fraction());
+  const double front = table.number_or("emissivity_front", 1.0, Range::fraction());
+  const double back = table.number_or("emissivity_back", 1.0, Range::fraction());
+  if (reemitted == 0.0) return;
+  if (!(front + back > 0.0)) {
+    throw table.error("emissivity_front", "0 on both sides", "a side that heat can leave from");
+  }
+  const auto heat = [&](OpticalSurface& surface) {
+    Finish finish = surface.finish ? *surface.finish : Finish{};
+    finish.reemitted = reemitted;
+    finish.front_emission = front / (front + back);
+    finish.description += (finish.description.empty() ? "" : ", ") + words("reemitted", reemitted);
+    surface.finish = std::make_shared<const Finish>(std::move(finish));
+  };
+  heat(sheet.front);
+  if (sheet.back) heat(*sheet.back);
+}
+
 }  // namespace
 
 OpticalSurface read_surface(const Settings& table, int bands, std::string name) {
   OpticalSurface surface;
   surface.name = std::move(name);
+  Finish finish;
   std::vector<const Share*> missing;
   for (const Share& share : shares) {
     if (table.has(share.key)) {
@@ -62,9 +152,12 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
       missing.push_back(&share);
     }
   }
-  if (missing.size() == shares.size()) throw table.error("", "no optical property", list(missing));
+  const BandValues retroreflected = read_retroreflected(table, bands);
+  if (missing.size() == shares.size() && !any(retroreflected)) {
+    throw table.error("", "no optical property", list(missing));
+  }
   for (size_t band = 0; band < static_cast<size_t>(bands); ++band) {
-    double sum = 0.0;
+    double sum = retroreflected[band];
     for (const Share& share : shares) sum += (surface.*share.values)[band];
     const bool is_one = std::abs(sum - 1.0) <= sum_tolerance;
     if (missing.size() == 1 && sum < 1.0) {
@@ -77,6 +170,16 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
                             : "a sum of 1, or all but one of " + list(missing) + " too");
     }
     for (const Share& share : shares) (surface.*share.values)[band] /= sum;
+    finish.retroreflected[band] = retroreflected[band] / sum;
+  }
+  if (table.has("refractive_index")) return read_glass(table, surface);
+  read_lobe(table, surface, finish);
+  if (any(finish.retroreflected)) {
+    finish.description += (finish.description.empty() ? "" : ", ") +
+                          words("retroreflectance", finish.retroreflected[0]);
+  }
+  if (!finish.description.empty()) {
+    surface.finish = std::make_shared<const Finish>(std::move(finish));
   }
   return surface;
 }
@@ -84,6 +187,7 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
 SheetOptics read_sheet(const Settings& table, int bands, const std::string& name) {
   SheetOptics sheet{read_surface(table, bands, name), std::nullopt};
   if (table.has("back")) sheet.back = read_surface(table.table("back"), bands, name + " (back)");
+  read_heat(table, sheet);
   return sheet;
 }
 

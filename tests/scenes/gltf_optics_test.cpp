@@ -1,5 +1,6 @@
 // Optical properties from extras, from an experiment's [[material]] and from drawing values.
 #include "gltf_test_model.h"
+#include "raytrace/finish.h"
 #include "scenes/surface_settings.h"
 
 namespace photorque {
@@ -112,6 +113,93 @@ TEST(SurfaceSettings, BackIsATableOfItsOwn) {
   EXPECT_EQ(sheet.back->specular[0], 1.0);
   EXPECT_NO_THROW(both.finish());
   EXPECT_FALSE(read_sheet(settings_of({{"absorptance", node_of(1.0)}}), 1, "x").back);
+}
+
+TEST(SurfaceSettings, RetroreflectanceIsAFifthFraction) {
+  const OpticalSurface sign = read_surface(
+      settings_of({{"retroreflectance", node_of(0.6)}, {"absorptance", node_of(0.4)}}), 1, "sign");
+  ASSERT_TRUE(sign.finish);
+  EXPECT_NEAR(sign.finish->retroreflected[0], 0.6, 1e-15);
+  EXPECT_EQ(sign.specular[0] + sign.diffuse[0] + sign.transmitted[0], 0.0);
+  EXPECT_EQ(read_surface(settings_of({{"retroreflectance", node_of(1.0)}}), 1, "x").absorbed[0], 0);
+}
+
+TEST(SurfaceSettings, PlainSurfacesHaveNoFinish) {
+  EXPECT_FALSE(read_surface(settings_of({{"absorptance", node_of(1.0)}}), 1, "b").finish);
+  EXPECT_FALSE(
+      read_sheet(settings_of({{"absorptance", node_of(1.0)}, {"reemitted", node_of(0.0)}}), 1, "b")
+          .front.finish);
+}
+
+TEST(SurfaceSettings, GlassRoughnessAndSlopesReachTheSurface) {
+  const auto read = [](const SettingsNode::Table& table) {
+    const Settings settings = settings_of(table);
+    const OpticalSurface surface = read_surface(settings, 1, "x");
+    settings.finish();
+    return surface;
+  };
+  const OpticalSurface cell =
+      read({{"absorptance", node_of(1.0)}, {"refractive_index", node_of(1.5)}});
+  ASSERT_TRUE(cell.finish && cell.finish->law);
+  EXPECT_NEAR(cell.absorbed[0], 0.96, 1e-14);  // 4 % by Fresnel
+  const OpticalSurface satin = read(
+      {{"specular", node_of(0.8)}, {"absorptance", node_of(0.2)}, {"roughness", node_of(0.5)}});
+  ASSERT_TRUE(satin.finish && satin.finish->specular);
+  EXPECT_EQ(satin.specular[0], 0.8);
+  // The same lobe as of alpha = 0.25, which is wider than that of a wavy mirror.
+  const OpticalSurface wavy =
+      read({{"specular", node_of(1.0)}, {"slope_error_mrad", node_of(2.0)}});
+  EXPECT_LT(satin.finish->specular->mean_direction(1.0).z(), 0.9);
+  EXPECT_NEAR(1 - wavy.finish->specular->mean_direction(1.0).z(), 4 * 4e-6, 1e-7);
+}
+
+TEST(SurfaceSettings, HeatIsOfTheWholeSheet) {
+  const SettingsNode back{SettingsNode::Table{{"absorptance", node_of(1.0)}}, written_at};
+  const Settings settings = settings_of({{"absorptance", node_of(1.0)},
+                                         {"back", back},
+                                         {"reemitted", node_of(0.9)},
+                                         {"emissivity_front", node_of(0.8)},
+                                         {"emissivity_back", node_of(0.2)}});
+  const SheetOptics sheet = read_sheet(settings, 1, "radiator");
+  settings.finish();
+  for (const OpticalSurface* side : {&sheet.front, &*sheet.back}) {
+    ASSERT_TRUE(side->finish);
+    EXPECT_EQ(side->finish->reemitted, 0.9);
+    EXPECT_NEAR(side->finish->front_emission, 0.8, 1e-15);
+    EXPECT_EQ(side->absorbed[0], 1.0);
+  }
+}
+
+TEST(SurfaceSettings, FinishesThatMakeNoSenseAreRefused) {
+  const auto error = [](SettingsNode::Table table) {
+    return error_of([&] { read_sheet(settings_of(table), 1, "x"); });
+  };
+  const SettingsNode half = node_of(0.5);
+  EXPECT_EQ(error({{"absorptance", node_of(1.0)}, {"refractive_index", node_of(0.5)}}),
+            "experiment.toml:7: material[0].refractive_index: found 0.5, expected a number in "
+            "[1, 10]");
+  EXPECT_THAT(
+      error({{"diffuse", half}, {"specular", half}, {"refractive_index", node_of(1.5)}}),
+      HasSubstr("found more than one of specular, diffuse, transmittance, expected at most"));
+  EXPECT_THAT(
+      error({{"specular", node_of(1.0)}, {"refractive_index", node_of(1.5)}, {"roughness", half}}),
+      HasSubstr("material[0].roughness: found specular or transmittance behind glass"));
+  EXPECT_THAT(error({{"diffuse", node_of(1.0)}, {"roughness", half}}),
+              HasSubstr("found no specular share"));
+  EXPECT_THAT(error({{"specular", node_of(1.0)}, {"roughness", node_of(0.0)}}),
+              HasSubstr("material[0].roughness: found 0, expected a number in (0, 1]"));
+  EXPECT_THAT(
+      error({{"specular", node_of(1.0)}, {"roughness", half}, {"slope_error_mrad", node_of(1.0)}}),
+      HasSubstr("expected one of the two"));
+  EXPECT_THAT(
+      error(
+          {{"retroreflectance", half}, {"absorptance", half}, {"refractive_index", node_of(1.5)}}),
+      HasSubstr("found glass in front too"));
+  EXPECT_THAT(error({{"absorptance", node_of(1.0)},
+                     {"reemitted", node_of(1.0)},
+                     {"emissivity_front", node_of(0.0)},
+                     {"emissivity_back", node_of(0.0)}}),
+              HasSubstr("found 0 on both sides"));
 }
 
 TestModel painted_model(const json& material) {
@@ -261,6 +349,32 @@ INSTANTIATE_TEST_SUITE_P(
                 0.15 + 0.4,
                 0}),
     [](const auto& test) { return test.param.name; });
+
+// KHR_materials_ior on a dielectric: by hand, R = 1/9 at n = 2 and normal incidence; a pane passes
+// 2n/(n² + 1) = 0.8.
+TEST(GltfOptics, IndexOfRefractionMakesGlass) {
+  const auto read = [](double through) {
+    return painted_model({{"name", "cover"},
+                          {"pbrMetallicRoughness",
+                           {{"metallicFactor", 0},
+                            {"roughnessFactor", 0},
+                            {"baseColorFactor", {1, 1, 1, 1}}}},
+                          {"extensions",
+                           {{"KHR_materials_transmission", {{"transmissionFactor", through}}},
+                            {"KHR_materials_ior", {{"ior", 2}}}}}})
+        .read();
+  };
+  const OpticalSurface matt = read(0.0).scene.surfaces.at(0);
+  EXPECT_NEAR(matt.specular[0], 1.0 / 9, 1e-14);
+  EXPECT_NEAR(matt.diffuse[0], 8.0 / 9, 1e-14);
+  ASSERT_TRUE(matt.finish && matt.finish->law);
+  EXPECT_GT(matt.finish->law->shares(0.1, 0).specular, 0.5);
+  const GltfModel pane = read(1.0);
+  EXPECT_NEAR(pane.scene.surfaces.at(0).transmitted[0], 0.8, 1e-14);
+  EXPECT_THAT(pane.notices,
+              Contains(HasSubstr("derived from PBR values: absorptance 0, specular 0.2, diffuse 0, "
+                                 "transmittance 0.8 at normal incidence; glass of index 2")));
+}
 
 TEST(GltfOptics, PrimitivesWithoutMaterialHaveTheDefault) {
   const GltfModel read = triangle_model().read();

@@ -117,6 +117,77 @@ TEST(Sun, CollimatedRaysAreParallel) {
   }
 }
 
+Beam darkened_sun(double angular_radius_deg, double u1, double u2) {
+  SourceContext context;
+  context.scene_radius_m = scene_radius_m;
+  return make_beams("sun",
+                    {{"direction", vector_node(0, 0, -1)},
+                     {"irradiance_W_m2", {1000.0}},
+                     {"angular_radius_deg", {angular_radius_deg}},
+                     {"limb_darkening", {SettingsNode::Array{{u1}, {u2}}}}},
+                    context)
+      .at(0);
+}
+
+TEST(LimbDarkening, KeepsTheIrradianceAndDimsTheEdge) {
+  const double disc_m = 0.2;
+  for (const double radius_deg : {0.2665, 20.0}) {
+    const Beam beam = darkened_sun(radius_deg, 0.47, 0.23);
+    const double power_W = power_through(beam, Vec3::Zero(), Vec3::UnitZ(), disc_m);
+    EXPECT_NEAR(power_W / (1000.0 * pi * disc_m * disc_m), 1.0, 2e-3) << radius_deg;
+    EXPECT_NEAR(beam.emitter->relative_intensity(radius_deg * degree_rad * (1 - 1e-12)), 0.3, 1e-4);
+    EXPECT_EQ(beam.emitter->relative_intensity(0.0), 1.0);
+    EXPECT_EQ(beam.emitter->relative_intensity(1.001 * radius_deg * degree_rad), 0.0);
+  }
+}
+
+// Behind a straight edge a point sees the part of the disc beyond a chord at x radii from the
+// middle. With L = c₀ + c₁ μ + c₂ μ² and s² = 1 − x² a chord sends 2 c₀ s + ½π c₁ s² + 4/3 c₂ s³
+// and the whole disc π (c₀ + ⅔ c₁ + ½ c₂) (small angles).
+TEST(LimbDarkening, PenumbraOfAStraightEdge) {
+  const double u1 = 0.47, u2 = 0.23, c0 = 1 - u1 - u2, c1 = u1 + 2 * u2, c2 = -u2;
+  const Beam beam = darkened_sun(0.2665, u1, u2);
+  constexpr uint32_t count = 1u << 18;
+  const auto rays = test::rays_of(*beam.emitter, count);
+  const double radius = std::sin(0.2665 * degree_rad);
+  const auto seen = [](double x, const auto& chord) {  // substitution x = sin φ, midpoints
+    double sum = 0.0;
+    const double from = -0.5 * pi, to = std::asin(x);
+    for (int i = 0; i < 2000; ++i) {
+      const double cosine = std::cos(from + (to - from) * (i + 0.5) / 2000);
+      sum += chord(cosine) * cosine * (to - from) / 2000;
+    }
+    return sum;
+  };
+  double largest = 0.0;
+  for (const double x : {-0.95, -0.8, -0.4, 0.0, 0.3, 0.7, 0.9}) {
+    const double lit = static_cast<double>(std::count_if(
+                           rays.begin(), rays.end(),
+                           [&](const auto& ray) { return ray.direction.x() < x * radius; })) /
+                       count;
+    const double exact =
+        seen(x,
+             [&](double s) {
+               return 2 * c0 * s + 0.5 * pi * c1 * s * s + 4.0 / 3 * c2 * s * s * s;
+             }) /
+        (pi * (c0 + 2.0 / 3 * c1 + 0.5 * c2));
+    const double even = seen(x, [](double s) { return 2 * s; }) / pi;
+    EXPECT_NEAR(lit, exact, 1e-3) << x;
+    largest = std::max(largest, std::abs(exact - even));
+  }
+  EXPECT_GT(largest, 0.01);  // a disc of even radiance would have been found out
+}
+
+TEST(LimbDarkening, NoneIsTheEvenDiscAndNonsenseIsRefused) {
+  const Beam even = sun(10.0);
+  const Beam none = darkened_sun(10.0, 0.0, 0.0);
+  EXPECT_NEAR(none.emitter->power_W() / even.emitter->power_W(), 1.0, 1e-6);
+  EXPECT_NEAR(describe(*none.emitter).fwhm_rad, describe(*even.emitter).fwhm_rad, 1e-9);
+  EXPECT_THROW(darkened_sun(0.2665, 0.8, 0.3), InputError);
+  EXPECT_THROW(darkened_sun(0.2665, -0.1, 0.3), InputError);
+  EXPECT_THROW(darkened_sun(0.0, 0.4, 0.3), InputError);
+}
+
 TEST(Sun, SaysWhatIsWrong) {
   const SettingsNode::Table table = {{"direction", vector_node(0, 0, -1)}};
   EXPECT_THROW(make_beams("sun", {}), InputError);
