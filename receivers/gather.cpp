@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "raytrace/chebyshev.h"
+#include "raytrace/finish.h"
 #include "receivers/gather_plane.h"
 
 namespace photorque {
@@ -280,12 +281,23 @@ class Gather {
   std::vector<std::vector<ShadedPair>> shaded_;  // per tile, lamp by lamp
 };
 
+// What the surface absorbs depends on the angle of incidence (glass), which bins do not keep.
+bool absorbs_by_angle(const Scene& scene, const SurfaceGrid& grid) {
+  return std::any_of(grid.instances.begin(), grid.instances.end(), [&](uint32_t instance) {
+    const Instance& of = scene.instances[instance];
+    const uint32_t surface = grid.side == Side::back ? of.back_surface : of.front_surface;
+    const Finish* finish = scene.surfaces[surface].finish.get();
+    return finish != nullptr && finish->law != nullptr;
+  });
+}
+
 }  // namespace
 
 bool can_gather(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams) {
   const bool apertures =
       std::all_of(beams.begin(), beams.end(), [](const Beam& b) { return b.aperture.has_value(); });
-  return apertures && grid.side != Side::both && is_flat(scene, grid);
+  return apertures && grid.side != Side::both && is_flat(scene, grid) &&
+         !absorbs_by_angle(scene, grid);
 }
 
 Gathered gather_direct(const TraceableScene& scene, const RigidTransform& lab_from_body,

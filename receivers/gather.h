@@ -37,7 +37,8 @@ struct Gathered {
   double wall_s = 0.0;
 };
 
-// Whether gather_direct() applies: a flat map, one side of it, and beams with uniform apertures.
+// Whether gather_direct() applies: a flat map, one side of it that absorbs the same at every angle
+// (no glass in front), and beams with uniform apertures.
 bool can_gather(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams);
 
 // The light that comes to `map` straight from the beams, at the attitude `lab_from_body`. Surfaces
