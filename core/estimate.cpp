@@ -1,5 +1,7 @@
 #include "core/estimate.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace photorque {
@@ -15,11 +17,13 @@ Estimate estimate_from_replicates(std::span<const double> replicates) {
 }
 
 double student_t_975(int replicates) {
-  // Hill's asymptotic expansion is not accurate below 3 degrees of freedom, so those are tabulated
-  // (Abramowitz & Stegun, table 26.10); above it A&S 26.7.5 is good to 1e-3.
+  // Abramowitz & Stegun, table 26.10; from 6 degrees of freedom on, their expansion 26.7.5 is good
+  // to 1e-3.
+  constexpr std::array tabulated = {12.706, 4.303, 3.182, 2.776, 2.571};
   const int degrees = replicates - 1;
-  if (degrees <= 1) return 12.706;
-  if (degrees == 2) return 4.303;
+  if (degrees <= static_cast<int>(tabulated.size())) {
+    return tabulated[static_cast<size_t>(std::max(degrees, 1) - 1)];
+  }
   const double x = 1.959963985, n = degrees;
   const double x3 = x * x * x, x5 = x3 * x * x, x7 = x5 * x * x;
   return x + (x3 + x) / (4 * n) + (5 * x5 + 16 * x3 + 3 * x) / (96 * n * n) +

@@ -15,6 +15,9 @@ std::string read_file(const fs::path& path, uint64_t largest_bytes) {
   std::error_code failure;
   if (!fs::exists(path, failure)) throw InputError({path.string()}, "", "no such file", "a file");
   if (fs::is_directory(path, failure)) throw InputError({path.string()}, "", "a folder", "a file");
+  if (fs::is_character_file(path, failure) || fs::is_block_file(path, failure)) {
+    throw InputError({path.string()}, "", "a device", "a file");
+  }
   const uint64_t size = fs::file_size(path, failure);
   if (!failure && size > largest_bytes) {
     throw InputError({path.string()}, "", std::to_string(size) + " bytes",
@@ -38,6 +41,10 @@ void write_file_whole(const fs::path& path, const std::function<void(const fs::p
   }
   try {
     write(temporary);
+    // Libraries that write pictures do not all say when the disk is full.
+    if (fs::file_size(temporary, failure) == 0 && !failure) {
+      throw InputError({path.string()}, "", "a write that failed", "space and permission");
+    }
   } catch (...) {
     fs::remove(temporary, failure);
     throw;

@@ -7,8 +7,9 @@
 
 namespace photorque {
 
-// The bytes of a file. InputError when it cannot be read or is larger than `largest_bytes`.
-std::string read_file(const std::filesystem::path& path, uint64_t largest_bytes = 1ull << 32);
+// The bytes of a file. InputError when it is a device, cannot be read or is larger than
+// `largest_bytes`.
+std::string read_file(const std::filesystem::path& path, uint64_t largest_bytes = 1ull << 30);
 
 // Calls `write` with the path of a temporary file in the same folder (same extension) and then
 // renames it to `path`: the file appears whole or not at all. If `write` throws, the temporary is

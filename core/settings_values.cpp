@@ -51,6 +51,12 @@ double Settings::to_number(const SettingsNode& node, std::string_view key, doubl
   }
   const double x = written * factor;
   if (!inside(x, range)) throw InputError(node.where, full_name(key), describe(node), expected);
+  // No laboratory needs more of any unit, and squares and products stay finite.
+  constexpr double largest = 1e30;
+  const std::string& unit = unit_of_key(key).unit;
+  if (!unit.empty() && std::abs(x) > largest) {
+    throw InputError(node.where, full_name(key), describe(node), "at most 1e30 in SI units");
+  }
   return x;
 }
 

@@ -107,11 +107,12 @@ void average(std::vector<Vec3>& values, const std::vector<size_t>& nodes) {
   for (const size_t node : nodes) values[node] = sum / static_cast<double>(nodes.size());
 }
 
-// Standard error of the mean of independent estimates.
+// Root mean square: nodes traced with one seed share their noise, and a mean of copies is no better
+// known than each.
 void average_errors(std::vector<Vec3>& errors, const std::vector<size_t>& nodes) {
   Vec3 squares = Vec3::Zero();
   for (const size_t node : nodes) squares += errors[node].cwiseAbs2();
-  const Vec3 error = squares.cwiseSqrt() / static_cast<double>(nodes.size());
+  const Vec3 error = (squares / static_cast<double>(nodes.size())).cwiseSqrt();
   for (const size_t node : nodes) errors[node] = error;
 }
 

@@ -81,7 +81,8 @@ TickLabels labels_of(const std::vector<double>& ticks) {
 std::string with_power(std::string label, int exponent) {
   if (exponent == 0) return label;
   std::string power = plain_number(std::pow(10.0, exponent > 4 || exponent < -3 ? exponent : 0), 1);
-  power = exponent == -3 ? "10⁻³" : power.substr(power.find("10"));
+  const size_t ten = power.find("10");
+  power = exponent == -3 ? "10⁻³" : ten == std::string::npos ? "×" + power : power.substr(ten);
   const size_t bracket = label.find('[');
   return bracket == std::string::npos ? label + " [" + power + "]"
                                       : label.insert(bracket + 1, power + " ");

@@ -78,7 +78,9 @@ ColourMap cool_warm() {
 }
 
 ColourScale colour_scale(double smallest, double largest, bool signed_values) {
-  if (signed_values) {
+  // Of one sign and far from zero, only their differences are to be seen.
+  const bool one_sided = smallest > 0.5 * largest || largest < 0.5 * smallest;
+  if (signed_values && !one_sided) {
     const double extent = std::max(std::abs(smallest), std::abs(largest));
     const double reach = extent > 0.0 ? extent : 1.0;
     return {-reach, reach, cool_warm()};

@@ -1,5 +1,9 @@
 #include "images/ticks.h"
 
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
 #include "images/text.h"
 
 namespace photorque {
@@ -7,7 +11,7 @@ namespace {
 
 // Ten to an integer power, correctly rounded where std::pow need not be.
 double ten_to(int exponent) {
-  return std::stod("1e" + std::to_string(exponent));
+  return std::strtod(("1e" + std::to_string(exponent)).c_str(), nullptr);
 }
 
 struct Step {

@@ -109,6 +109,16 @@ Lane lane(Hits::Column<double>& column, int count) {
   return {column.data(), count};
 }
 
+// Four partial sums in fixed order: that of Eigen's sum() depends on where the terms lie in memory.
+template <typename Terms>
+double ordered_sum(const Terms& terms) {
+  Eigen::Array4d lanes = Eigen::Array4d::Zero();
+  Eigen::Index i = 0;
+  for (; i + 4 <= terms.size(); i += 4) lanes += terms.template segment<4>(i);
+  for (; i < terms.size(); ++i) lanes[i % 4] += terms.coeff(i);
+  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+}
+
 // absorbed_W and left_W of every hit.
 void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
@@ -139,10 +149,10 @@ void take_momentum(const InteractionContext& context, HitBuffer& buffer, LedgerS
   if (context.depth > 0) return;
   for (size_t k = 0; k < 3; ++k) {
     const size_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-    ledger.momentum_in[k] += lane(hits.force_N[k], n).sum();
-    ledger.momentum_in[3 + k] += (lane(hits.position_m[k1], n) * lane(hits.force_N[k2], n) -
-                                  lane(hits.position_m[k2], n) * lane(hits.force_N[k1], n))
-                                     .sum();
+    ledger.momentum_in[k] += ordered_sum(lane(hits.force_N[k], n));
+    ledger.momentum_in[3 + k] +=
+        ordered_sum(lane(hits.position_m[k1], n) * lane(hits.force_N[k2], n) -
+                    lane(hits.position_m[k2], n) * lane(hits.force_N[k1], n));
   }
 }
 

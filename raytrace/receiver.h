@@ -39,6 +39,9 @@ struct BinSums {
   size_t bins = 0;
   int replicates = 0;
   std::vector<double> sums;  // replicate-major: sums[replicate · bins + bin]
+  // Bound of the relative error that all replicates have in common (of a quadrature), which their
+  // scatter cannot show; joins every standard error.
+  double common_error = 0.0;
 
   std::span<const double> of(int replicate) const {
     return std::span(sums).subspan(static_cast<size_t>(replicate) * bins, bins);
@@ -48,6 +51,9 @@ struct BinSums {
   // Mean and standard error of a linear function of the bins (a total, a moment).
   Estimate estimate(const std::function<double(std::span<const double>)>& linear) const;
 };
+
+// `estimate` with the relative error `common_error` of its value added in quadrature.
+Estimate with_common_error(const Estimate& estimate, double common_error);
 
 // Something with bins that hits add to. Immutable; called from many threads at once.
 class Receiver {

@@ -260,11 +260,14 @@ void check(const TraceOptions& options, std::span<const Beam> beams) {
     throw InputError({"trace"}, key, std::to_string(found), expected);
   };
   if (beams.empty()) throw InputError({"trace"}, "source", "none", "at least one source");
-  if (options.rays < 1 || options.rays > (1ull << 40)) {
-    refuse("rays", static_cast<double>(options.rays), "1 to 2^40");
-  }
   if (options.replicates < 8 || options.replicates > 1024) {
     refuse("replicates", options.replicates, "8 to 1024");
+  }
+  // A sequence has at most 2^31 points.
+  const uint64_t most_rays = static_cast<uint64_t>(options.replicates) << 31;
+  if (options.rays < 1 || options.rays > most_rays) {
+    refuse("rays", static_cast<double>(options.rays),
+           "1 to 2^31 for each of the replicates, " + std::to_string(most_rays));
   }
   if (options.max_depth < 1 || options.max_depth > 65535) {
     refuse("max_depth", options.max_depth, "1 to 65535");

@@ -20,9 +20,9 @@ struct Replicates {
   int count = 0;
 };
 
-Estimate estimate(std::span<const double> values) {
+Estimate estimate(std::span<const double> values, double common_error) {
   if (values.size() == 1) return {values[0], 0.0};
-  return estimate_from_replicates(values);
+  return with_common_error(estimate_from_replicates(values), common_error);
 }
 
 // The sum over the bands [first_band, last_band) of one channel.
@@ -46,14 +46,14 @@ FluxLayer layer(const SurfaceGrid& grid, size_t bands, const BinSums& sums, Repl
                   sum_bands(all.subspan(bounced), channel, first_band, last_band);
       totals[r] += values[r];
     }
-    const Estimate power_W = estimate(values);
+    const Estimate power_W = estimate(values, sums.common_error);
     const double area_m2 = grid.area_m2[bin];
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     result.per_bin_W_m2.push_back(
         area_m2 > 0.0 ? Estimate{power_W.value / area_m2, power_W.standard_error / area_m2}
                       : Estimate{nan, nan});
   }
-  result.power_W = estimate(totals);
+  result.power_W = estimate(totals, sums.common_error);
   return result;
 }
 

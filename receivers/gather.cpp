@@ -217,7 +217,7 @@ class Gather {
   }
 
   BinSums sample(int points, uint64_t& rays) const {
-    BinSums sums{plane_.map().direct_entries(), options_.replicates, {}};
+    BinSums sums{plane_.map().direct_entries(), options_.replicates, {}, quadrature_error};
     for (int r = 0; r < options_.replicates; ++r) {
       sums.sums.insert(sums.sums.end(), open_W_.begin(), open_W_.end());
     }
@@ -257,7 +257,7 @@ class Gather {
         for (size_t band = 0; band < bands; ++band) density[r] += all[map.entry(bin, band)];
         density[r] /= area_m2;
       }
-      bins.push_back(estimate_from_replicates(density));
+      bins.push_back(with_common_error(estimate_from_replicates(density), sums.common_error));
       peak = std::max(peak, bins.back().value);
     }
     double worst = 0.0;

@@ -28,8 +28,12 @@ struct GatherOptions {
   double floor = 0.1;
 };
 
+// Bound of the relative error of what comes by quadrature, see disc_light.h.
+inline constexpr double quadrature_error = 1e-5;
+
 struct Gathered {
-  BinSums direct;         // the direct entries of the flux map, replicate by replicate
+  // The direct entries of the flux map, replicate by replicate; quadrature_error in common.
+  BinSums direct;
   size_t open_pairs = 0;  // of a bin and a beam, by quadrature
   size_t shaded_pairs = 0;
   uint64_t shadow_rays = 0;

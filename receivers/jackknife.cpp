@@ -29,8 +29,9 @@ Estimate jackknife(const BinSums& sums,
   }
   // The pseudo-values count·θ − (count − 1)·θ₍ᵣ₎ have this standard error (Tukey).
   const Estimate spread = estimate_from_replicates(left_out);
-  return {count * statistic(all) - (count - 1.0) * spread.value,
-          (count - 1.0) * spread.standard_error};
+  return with_common_error({count * statistic(all) - (count - 1.0) * spread.value,
+                            (count - 1.0) * spread.standard_error},
+                           sums.common_error);
 }
 
 }  // namespace photorque

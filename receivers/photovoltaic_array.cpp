@@ -96,6 +96,7 @@ Estimates estimate(const PreparedArray& array, const BinSums& sums) {
       squares += (h.value[k] - average) * (h.value[k] - average);
     }
     estimates[k].standard_error = std::sqrt((count - 1.0) / count * squares);
+    estimates[k] = with_common_error(estimates[k], sums.common_error);
   }
   return estimates;
 }

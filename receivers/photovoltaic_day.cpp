@@ -109,7 +109,8 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
 DaySettings read_day(const Settings& s) {
   DaySettings day;
   day.load_W = s.number_or("load_W", day.load_W, Range::not_negative());
-  day.duration_s = s.number_or("duration_s", day.duration_s, Range::positive());
+  constexpr double year_s = 366.0 * 86400.0;
+  day.duration_s = s.number_or("duration_s", day.duration_s, {0.0, year_s, true, false});
   day.lamps_on = s.flag_or("lamps_on", true);
   day.converter_efficiency =
       s.number_or("converter_efficiency", day.converter_efficiency, {0.0, 1.0, true, false});

@@ -124,6 +124,10 @@ VectorXd start_from(const IvSweep& sweep, const SweepNoise& noise) {
     const LeastSquaresFit fit = fit_rounds(std::span(&sweep, 1), noise, start, 2);
     if (fit.squares < best.squares) best = fit;
   }
+  if (best.parameters.size() == 0) {
+    throw InputError({}, "curves", "a sweep and noise that no diode fits",
+                     "a current-voltage curve of a lit cell and its noise");
+  }
   return best.parameters;
 }
 

@@ -109,6 +109,13 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
                      "a number > 0");
   }
   const LeastSquaresFit best = fit(points, ideality_guess_V);
+  if (best.parameters.size() == 0) {
+    throw InputError({}, "datasheet",
+                     std::to_string(points[0].open_circuit_V) +
+                         " V at open circuit, that no diode of n V_t = " +
+                         std::to_string(ideality_guess_V) + " V gives",
+                     "the figures of one cell, or of a module with its cells_in_series");
+  }
   const VectorXd& x = best.parameters;
   const VectorXd error = (best.covariance.diagonal() * best.variance()).cwiseSqrt();
   const RatedPoint& first = points[0];

@@ -132,9 +132,9 @@ double array_power_W(const ArrayDesign& design, const ArrayResult& array, double
   return ArrayCurve(design.wiring, tables, light_A).maximum_power().power_W();
 }
 
-std::vector<Sensitivity> sensitivities(const ArrayDesign& design, const ArrayResult& array) {
+std::vector<ArraySensitivity> sensitivities(const ArrayDesign& design, const ArrayResult& array) {
   const double now_W = array_power_W(design, array, 1.0);
-  std::vector<Sensitivity> all;
+  std::vector<ArraySensitivity> all;
   const auto add = [&](const std::string& change, double light_factor,
                        const std::function<void(ArrayDesign&)>& apply) {
     ArrayDesign changed = design;

@@ -50,12 +50,12 @@ Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring);
 double array_power_W(const ArrayDesign& design, const ArrayResult& array, double light_factor);
 
 // Relative change of the power per change of one thing.
-struct Sensitivity {
+struct ArraySensitivity {
   std::string change;     // "temperature + 1 K"
   double power_W = 0.0;   // with the change
   double relative = 0.0;  // to the power without
 };
-std::vector<Sensitivity> sensitivities(const ArrayDesign& design, const ArrayResult& array);
+std::vector<ArraySensitivity> sensitivities(const ArrayDesign& design, const ArrayResult& array);
 
 // What a known cell makes of monochromatic light of an irradiance: EQE V_oc FF over photon_V.
 struct CellFigures {

@@ -200,6 +200,11 @@ std::vector<TrackerRun> run_trackers(const std::vector<Tracker>& trackers,
   if (trackers.empty() || range == 0.0) return runs;
   const double period_s = trackers.front().period_s;
   const double duration_s = light.time_s.back() - light.time_s.front();
+  constexpr double most_steps = 1e7;
+  if (duration_s / period_s > most_steps) {
+    throw InputError({}, "array.tracker.period_s", std::to_string(period_s) + " s",
+                     "at most ten million periods in the motion");
+  }
   const auto steps = static_cast<int64_t>(std::floor(duration_s / period_s)) + 1;
   for (int64_t k = 0; k < steps; ++k) {
     const double time_s = light.time_s.front() + static_cast<double>(k) * period_s;

@@ -12,9 +12,9 @@ namespace photorque {
 namespace {
 
 // Tables that optical runs accept as they are; the programs that use them check them.
-constexpr const char* tables_of_others[] = {"array",   "platform",  "environment", "disturbance",
-                                            "sensors", "recording", "published",   "propagate",
-                                            "budget",  "balance"};
+constexpr const char* tables_of_others[] = {"array",       "sweep",   "platform",  "environment",
+                                            "disturbance", "sensors", "recording", "published",
+                                            "propagate",   "budget",  "balance"};
 
 void require_ascending(const Settings& settings, std::string_view key,
                        const std::vector<double>& values) {
@@ -53,7 +53,7 @@ TraceOptions read_trace_options(const Settings& root) {
   if (!root.has("trace")) return options;
   const Settings table = root.table("trace");
   options.rays = static_cast<uint64_t>(
-      table.integer_or("rays", static_cast<int64_t>(options.rays), 1, int64_t{1} << 44));
+      table.integer_or("rays", static_cast<int64_t>(options.rays), 1, int64_t{1} << 40));
   options.replicates =
       static_cast<int>(table.integer_or("replicates", options.replicates, 8, 1024));
   options.seed = static_cast<uint64_t>(
@@ -125,7 +125,7 @@ std::optional<uint64_t> read_torque_map_rays(const Settings& root) {
   if (!root.has("torque_map")) return std::nullopt;
   const Settings table = root.table("torque_map");
   if (!table.has("rays")) return std::nullopt;
-  return static_cast<uint64_t>(table.integer("rays", 1, int64_t{1} << 44));
+  return static_cast<uint64_t>(table.integer("rays", 1, int64_t{1} << 40));
 }
 
 std::optional<DirectionGrid> read_light_directions(const Settings& root) {

@@ -53,7 +53,7 @@ ElementLayout layout_of(const tinygltf::Accessor& accessor) {
   return {component, components, columns * column_bytes};
 }
 
-AccessorReader::AccessorReader(const Document& document, int accessor, Budget* budget) {
+AccessorReader::AccessorReader(const Document& document, int accessor, MemoryBudget* budget) {
   const tinygltf::Accessor& from = document.model.accessors[static_cast<size_t>(accessor)];
   const std::string where = pointer("accessors", accessor);
   layout_ = layout_of(from);

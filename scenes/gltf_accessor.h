@@ -24,7 +24,7 @@ class AccessorReader {
  public:
   // Throws InputError when the bytes are absent (a placeholder buffer) or the indices of a sparse
   // accessor do not rise or leave its range.
-  AccessorReader(const Document& document, int accessor, Budget* budget);
+  AccessorReader(const Document& document, int accessor, MemoryBudget* budget);
 
   size_t count() const { return count_; }
 

@@ -78,7 +78,7 @@ std::string excerpt(const std::string& uri) {
 class Loader {
  public:
   Loader(std::optional<std::string_view> binary, bool is_glb, const std::string& file,
-         const GltfOpen& open, Budget* budget)
+         const GltfOpen& open, MemoryBudget* budget)
       : binary_(binary), is_glb_(is_glb), file_(file), open_(open), budget_(budget) {}
 
   Buffers load(const nlohmann::json& list) {
@@ -164,14 +164,14 @@ class Loader {
   bool is_glb_;
   const std::string& file_;
   const GltfOpen& open_;
-  Budget* budget_;
+  MemoryBudget* budget_;
   Buffers loaded_;
 };
 
 }  // namespace
 
 Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_view> binary,
-                     bool is_glb, const std::string& file, const GltfOpen& open, Budget* budget) {
+                     bool is_glb, const std::string& file, const GltfOpen& open, MemoryBudget* budget) {
   const auto list = document.find("buffers");
   if (list == document.end()) return {};
   return Loader(binary, is_glb, file, open, budget).load(*list);

@@ -6,7 +6,7 @@ namespace photorque::gltf {
 
 using nlohmann::json;
 
-void decompress(Document* document, Budget* budget) {
+void decompress(Document* document, MemoryBudget* budget) {
   decode_meshopt_views(document, budget);  // Draco data may lie in a view that it packs
   decode_draco_primitives(document, budget);
 }

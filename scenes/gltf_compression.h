@@ -16,11 +16,11 @@ namespace photorque::gltf {
 // A primitive with Draco data keeps its plain accessors where they have bytes; else it gets
 // POSITION, TEXCOORD_0 and indices from the data, and no other attribute. Throws InputError for
 // data that cannot be decoded or do not match what the document says of them.
-void decompress(Document* document, Budget* budget);
+void decompress(Document* document, MemoryBudget* budget);
 
 // The two codecs; `where` points at the extension for messages.
-void decode_meshopt_views(Document* document, Budget* budget);
-void decode_draco_primitives(Document* document, Budget* budget);
+void decode_meshopt_views(Document* document, MemoryBudget* budget);
+void decode_draco_primitives(Document* document, MemoryBudget* budget);
 
 // An unsigned integer below 2^53 of an extension, which no schema has checked.
 uint64_t extension_number(const Document& document, const nlohmann::json& extension,

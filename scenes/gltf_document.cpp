@@ -45,7 +45,7 @@ bool is_harmless(std::string_view extension) {
 
 // Refuses what would cost more than it can mean, before anything is built from it: deep nesting,
 // and more values than there is memory for. Every value follows one of [ { , : outside a string.
-void check_extent(std::string_view text, const std::string& file, Budget* budget) {
+void check_extent(std::string_view text, const std::string& file, MemoryBudget* budget) {
   constexpr uint64_t bytes_per_value = 256;
   uint64_t values = 0;
   int depth = 0;
@@ -81,7 +81,7 @@ std::string reason(const json::exception& error) {
   return bracket == std::string::npos ? text : text.substr(bracket + 2);
 }
 
-json parse_text(std::string_view text, const std::string& file, Budget* budget) {
+json parse_text(std::string_view text, const std::string& file, MemoryBudget* budget) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) {
     throw InputError({file, 1}, "", "a byte order mark", "JSON text in UTF-8 without one");
@@ -172,7 +172,7 @@ tinygltf::Model typed_model(const Document& document) {
 }  // namespace
 
 Document read_document(const std::string& bytes, const std::string& file, const GltfOpen& open,
-                       Budget* budget) {
+                       MemoryBudget* budget) {
   Container container = open_container(bytes, file);
   Document document;
   document.file = file;

@@ -35,6 +35,6 @@ struct Document {
 // that may change geometry and is not supported. Ranges inside the bytes are not checked here but
 // by gltf_validation.
 Document read_document(const std::string& bytes, const std::string& file, const GltfOpen& open,
-                       Budget* budget);
+                       MemoryBudget* budget);
 
 }  // namespace photorque::gltf

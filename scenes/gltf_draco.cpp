@@ -39,7 +39,7 @@ double largest_of(int component_type) {
 
 class Decoder {
  public:
-  Decoder(Document* document, Budget* budget) : document_(*document), budget_(*budget) {}
+  Decoder(Document* document, MemoryBudget* budget) : document_(*document), budget_(*budget) {}
 
   // Replaces the primitive's geometry where it has none but Draco's.
   void decode(size_t mesh, size_t index) {
@@ -185,14 +185,14 @@ class Decoder {
   }
 
   Document& document_;
-  Budget& budget_;
+  MemoryBudget& budget_;
   std::string where_;  // of the extension being decoded
   std::map<std::tuple<uint64_t, uint32_t, uint32_t>, Plain> decoded_;
 };
 
 }  // namespace
 
-void decode_draco_primitives(Document* document, Budget* budget) {
+void decode_draco_primitives(Document* document, MemoryBudget* budget) {
   if (!document->json.contains("meshes")) return;
   Decoder decoder(document, budget);
   const size_t meshes = document->json["meshes"].size();

@@ -32,9 +32,9 @@ std::string pointer(const Parts&... parts) {
 
 // Memory that a model may still take. Sizes in files are claims: they are charged here before
 // anything of that size is allocated.
-class Budget {
+class MemoryBudget {
  public:
-  Budget(std::string file, uint64_t bytes) : file_(std::move(file)), left_(bytes), all_(bytes) {}
+  MemoryBudget(std::string file, uint64_t bytes) : file_(std::move(file)), left_(bytes), all_(bytes) {}
 
   // Throws InputError at `where` when `count` items of `item_bytes` are more than what is left.
   void charge(uint64_t count, uint64_t item_bytes, const std::string& where) {

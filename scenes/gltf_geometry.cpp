@@ -64,7 +64,7 @@ size_t restart_index(int component_type) {
 // Vertices of one primitive, read as they are asked for.
 class Vertices {
  public:
-  Vertices(const Document& document, const tinygltf::Primitive& primitive, Budget* budget)
+  Vertices(const Document& document, const tinygltf::Primitive& primitive, MemoryBudget* budget)
       : document_(document),
         accessor_(primitive.attributes.at("POSITION")),
         positions_(document, accessor_, budget) {

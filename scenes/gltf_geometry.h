@@ -26,7 +26,7 @@ class Vertices;
 // validate_primitives().
 class GeometryReader {
  public:
-  GeometryReader(const Document& document, Budget* budget) : document_(document), budget_(budget) {}
+  GeometryReader(const Document& document, MemoryBudget* budget) : document_(document), budget_(budget) {}
 
   // TRIANGLES, TRIANGLE_STRIP or TRIANGLE_FAN, indexed or not, with POSITION; nothing for other
   // primitives. A triangle is degenerate when two corners coincide or its area is so small that
@@ -43,7 +43,7 @@ class GeometryReader {
                                       const Vertices& vertices, PrimitiveMesh* result);
 
   const Document& document_;
-  Budget* budget_;
+  MemoryBudget* budget_;
   // New index of each vertex of the accessor being read; all unused between two calls. Kept,
   // because many primitives may share one long accessor and use little of it.
   std::vector<uint32_t> new_index_;

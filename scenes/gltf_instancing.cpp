@@ -13,7 +13,7 @@ constexpr const char* extension = "EXT_mesh_gpu_instancing";
 // An attribute, if the node has it.
 std::optional<AccessorReader> attribute(const Document& document, const nlohmann::json& attributes,
                                         const char* name, const std::string& where,
-                                        Budget* budget) {
+                                        MemoryBudget* budget) {
   const auto found = attributes.find(name);
   if (found == attributes.end()) return std::nullopt;
   const int index = found->get<int>();
@@ -38,7 +38,7 @@ Vec3 vector(const AccessorReader& reader, size_t i) {
 
 }  // namespace
 
-std::vector<Affine> gpu_instances(const Document& document, int node, Budget* budget) {
+std::vector<Affine> gpu_instances(const Document& document, int node, MemoryBudget* budget) {
   const nlohmann::json& json = document.json["nodes"][static_cast<size_t>(node)];
   const auto extensions = json.find("extensions");
   if (extensions == json.end() || !extensions->contains(extension)) return {Affine::Identity()};

@@ -14,6 +14,6 @@ namespace photorque::gltf {
 // Source: KhronosGroup/glTF, extensions/2.0/Vendor/EXT_mesh_gpu_instancing.
 // Throws InputError for attributes of other types or of different counts, and for instances that
 // are not invertible.
-std::vector<Affine> gpu_instances(const Document& document, int node, Budget* budget);
+std::vector<Affine> gpu_instances(const Document& document, int node, MemoryBudget* budget);
 
 }  // namespace photorque::gltf

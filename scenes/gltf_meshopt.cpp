@@ -63,7 +63,7 @@ Packed read_packed(const Document& document, const json& extension, const std::s
   return packed;
 }
 
-std::string unpacked(const Document& document, const Packed& packed, Budget* budget,
+std::string unpacked(const Document& document, const Packed& packed, MemoryBudget* budget,
                      const std::string& where) {
   if (packed.count == 0) throw document.wrong(where + "/count", "0", "at least 1");
   budget->charge(packed.count, packed.stride, where);
@@ -93,7 +93,7 @@ std::string unpacked(const Document& document, const Packed& packed, Budget* bud
 
 }  // namespace
 
-void decode_meshopt_views(Document* document, Budget* budget) {
+void decode_meshopt_views(Document* document, MemoryBudget* budget) {
   if (!document->json.contains("bufferViews")) return;
   const size_t views = document->json["bufferViews"].size();
   for (size_t i = 0; i < views; ++i) {

@@ -56,7 +56,7 @@ struct Visit {
 
 class Walk {
  public:
-  Walk(const Document& document, Budget* budget) : document_(document), budget_(budget) {}
+  Walk(const Document& document, MemoryBudget* budget) : document_(document), budget_(budget) {}
 
   std::vector<Placement> from(const std::vector<int>& roots) {
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
@@ -97,7 +97,7 @@ class Walk {
   }
 
   const Document& document_;
-  Budget* budget_;
+  MemoryBudget* budget_;
   std::vector<Visit> waiting_;  // a stack: files decide how deep it gets
   std::vector<Placement> placements_;
 };
@@ -132,7 +132,7 @@ bool is_invertible(const Affine& transform) {
          std::abs(axes.determinant()) > 1e-12 * lengths;
 }
 
-std::vector<Placement> place_meshes(const Document& document, Budget* budget) {
+std::vector<Placement> place_meshes(const Document& document, MemoryBudget* budget) {
   return Walk(document, budget).from(roots_of(document));
 }
 

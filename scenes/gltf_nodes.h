@@ -34,6 +34,6 @@ struct Placement {
 // per instance. The document must have passed validate_nodes() and validate_accessors(). Throws
 // InputError for hierarchies deeper than 1000 nodes, for products of transforms that are singular
 // or overflow, for skinned meshes and for morph targets whose weights are not zero.
-std::vector<Placement> place_meshes(const Document& document, Budget* budget);
+std::vector<Placement> place_meshes(const Document& document, MemoryBudget* budget);
 
 }  // namespace photorque::gltf

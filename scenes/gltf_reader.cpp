@@ -16,7 +16,7 @@
 namespace photorque {
 namespace {
 
-using gltf::Budget;
+using gltf::MemoryBudget;
 using gltf::Document;
 using gltf::Placement;
 using gltf::pointer;
@@ -41,7 +41,7 @@ std::string in_quotes(const std::string& name) {
 // Puts the parts of a document together.
 class Assembly {
  public:
-  Assembly(const Document& document, const GltfOptions& options, Budget* budget)
+  Assembly(const Document& document, const GltfOptions& options, MemoryBudget* budget)
       : document_(document),
         options_(options),
         budget_(budget),
@@ -194,7 +194,7 @@ class Assembly {
 
   const Document& document_;
   const GltfOptions& options_;
-  Budget* budget_;
+  MemoryBudget* budget_;
   gltf::GeometryReader geometry_;
   gltf::MaterialOverrides overrides_;
   GltfModel model_;
@@ -210,7 +210,7 @@ class Assembly {
 
 GltfModel read_gltf_bytes(const std::string& bytes, const std::string& name, const GltfOpen& open,
                           const GltfOptions& options) {
-  Budget budget(name, options.largest_bytes);
+  MemoryBudget budget(name, options.largest_bytes);
   budget.charge(bytes.size(), 1, "");
   const Document document = gltf::read_document(bytes, name, open, &budget);
   gltf::validate_accessors(document);

@@ -36,7 +36,7 @@ Vec3 table_direction(Pole pole, double polar_rad, double azimuth_rad) {
          Vec3(sine * std::cos(azimuth_rad), sine * std::sin(azimuth_rad), std::cos(polar_rad));
 }
 
-TableAngles table_angles(Pole pole, const Vec3& direction) {
+GoniometerAngles table_angles(Pole pole, const Vec3& direction) {
   const Vec3 d = emitter_from_pole(pole).transpose() * direction;
   return {std::atan2(std::hypot(d.x(), d.y()), d.z()), std::atan2(d.y(), d.x())};
 }

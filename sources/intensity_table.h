@@ -39,11 +39,11 @@ struct IntensityTable {
 // runs from +x towards −y.
 Vec3 table_direction(Pole pole, double polar_rad, double azimuth_rad);
 
-struct TableAngles {
+struct GoniometerAngles {
   double polar_rad = 0.0;    // ∈ [0, π]
   double azimuth_rad = 0.0;  // ∈ (−π, π]
 };
 // The inverse, for a unit vector.
-TableAngles table_angles(Pole pole, const Vec3& direction);
+GoniometerAngles table_angles(Pole pole, const Vec3& direction);
 
 }  // namespace photorque

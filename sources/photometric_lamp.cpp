@@ -54,7 +54,7 @@ double PhotometricLamp::round_average(double angle_rad) const {
   for (int k = 0; k < turns; ++k) {
     const double turn_rad = 2.0 * pi * (k + 0.5) / turns;
     const double sine = std::sin(angle_rad);
-    const TableAngles at =
+    const GoniometerAngles at =
         table_angles(intensity_.table().pole,
                      {sine * std::cos(turn_rad), sine * std::sin(turn_rad), std::cos(angle_rad)});
     sum += intensity_.at(at.polar_rad, at.azimuth_rad);

@@ -60,6 +60,11 @@ void print_array(const Console& console, const ArrayResult& array, const TraceRe
                show(array.current_A, "A"));
   console.line("  every cell by itself    " + show(array.sum_of_cells_W, "W") + "  (" +
                show(100 * array.mismatch_loss.value) + " % lost to uneven light and diodes)");
+  if (array.mismatch_loss.value > 0.2) {
+    console.line(
+        "  note: the weakest cells limit the rest; bypass diodes (array.bypass_every) or another "
+        "wiring (array.strings) give more");
+  }
   const auto reversed = std::count_if(array.cells.voltages_V.begin(), array.cells.voltages_V.end(),
                                       [](double v) { return v < 0.0; });
   console.line("  local maxima of power   " + std::to_string(array.maxima.size()) +

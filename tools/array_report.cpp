@@ -218,7 +218,7 @@ Product target_report(const Console& console, const OpticalRun& run, const Array
               "What changes the power",
               {{"change", {}, {}}, {"power_W", {}, {}}, {"relative", {}, {}}}};
   console.line("  what changes the power:");
-  for (const Sensitivity& s : sensitivities(array.design, result)) {
+  for (const ArraySensitivity& s : sensitivities(array.design, result)) {
     console.line("    " + padded(s.change, 34) + percent(s.relative));
     table.columns[0].texts.push_back(s.change);
     table.columns[1].values.push_back(s.power_W);

@@ -21,7 +21,7 @@ double as_written(double value) {
   return std::round(value / unit) * unit;
 }
 
-void draw_platform(Draw& draw, ConcealedCase& c) {
+void draw_platform(RandomDraw& draw, ConcealedCase& c) {
   const std::array<std::string, 3> names = {"tabletop", "dumbbell", "hollow"};
   c.topology = names[static_cast<size_t>(draw.below(3))];
   Triple inertia;
@@ -44,7 +44,7 @@ void draw_platform(Draw& draw, ConcealedCase& c) {
 }
 
 // What is believed, and a truth within it.
-void draw_beliefs(Draw& draw, ConcealedCase& c, const std::vector<Recipe>& recipes) {
+void draw_beliefs(RandomDraw& draw, ConcealedCase& c, const std::vector<Recipe>& recipes) {
   const auto conceals = [&](const std::string& kind) {
     return std::ranges::any_of(recipes, [&](const Recipe& r) { return r.kind == kind; });
   };
@@ -66,7 +66,7 @@ void draw_beliefs(Draw& draw, ConcealedCase& c, const std::vector<Recipe>& recip
   c.world.gyro_bias_rad_s = draw.normals(beliefs.gyro_bias_sigma_rad_s);
 }
 
-std::vector<ConcealedCommand> draw_commands(Draw& draw, double duration_s, double rate_Hz,
+std::vector<ConcealedCommand> draw_commands(RandomDraw& draw, double duration_s, double rate_Hz,
                                             bool torques) {
   const auto on_row = [&](double t) { return std::round(t * rate_Hz) / rate_Hz; };
   const double current_A = std::round(draw.uniform(2.4, 6.0) * 100.0) / 100.0;
@@ -96,7 +96,7 @@ std::vector<ConcealedCommand> draw_commands(Draw& draw, double duration_s, doubl
   return commands;
 }
 
-void draw_runs(Draw& draw, ConcealedCase& c, const ConcealedPlan& plan,
+void draw_runs(RandomDraw& draw, ConcealedCase& c, const ConcealedPlan& plan,
                const std::vector<Recipe>& recipes) {
   const auto any = [&](auto member) { return std::ranges::any_of(recipes, member); };
   const bool torques = any([](const Recipe& r) { return r.needs_commands; }) || draw.chance(0.2);
@@ -183,7 +183,7 @@ Choice choose(const ConcealedPlan& plan, size_t index) {
   i -= plan.per_kind * static_cast<int>(inside.size());
   if (i < plan.pairs) {
     std::erase_if(inside, [](const Recipe& r) { return !r.pairs; });
-    Draw draw(plan.seed, 1000003 + static_cast<uint64_t>(i));
+    RandomDraw draw(plan.seed, 1000003 + static_cast<uint64_t>(i));
     const auto a = static_cast<size_t>(draw.below(static_cast<int>(inside.size())));
     const auto b = (a + 1 + static_cast<size_t>(draw.below(static_cast<int>(inside.size()) - 1))) %
                    inside.size();
@@ -195,7 +195,7 @@ Choice choose(const ConcealedPlan& plan, size_t index) {
 }
 
 // Of chi²: strong, medium, weak, below the limit, and again.
-double wanted_gain(Draw& draw, const Choice& choice) {
+double wanted_gain(RandomDraw& draw, const Choice& choice) {
   if (choice.family != "single") return draw.log_uniform(300.0, 2e4);
   switch (choice.number % 4) {
     case 0:
@@ -226,7 +226,7 @@ void judge(ConcealedCase& c, const Choice& choice) {
 }
 
 bool attempt(ConcealedCase& c, const ConcealedPlan& plan, const Choice& choice, uint64_t stream) {
-  Draw draw(plan.seed, stream);
+  RandomDraw draw(plan.seed, stream);
   c = {};
   c.family = choice.family;
   c.seed = hash_words(plan.seed, stream, 9);

@@ -10,9 +10,9 @@
 
 namespace photorque::concealed {
 
-class Draw {
+class RandomDraw {
  public:
-  Draw(uint64_t seed, uint64_t stream) : seed_(seed), stream_(stream) {}
+  RandomDraw(uint64_t seed, uint64_t stream) : seed_(seed), stream_(stream) {}
 
   double uniform(double low, double high) { return low + (high - low) * next(); }
   double log_uniform(double low, double high) {

@@ -54,7 +54,7 @@ struct Rows {
   std::vector<bool> lost;
 };
 
-Rows draw_rows(Draw& draw, const ConcealedSensors& sensors, double duration_s) {
+Rows draw_rows(RandomDraw& draw, const ConcealedSensors& sensors, double duration_s) {
   Rows rows;
   const double interval_s = 1.0 / sensors.rate_Hz;
   const auto count = static_cast<size_t>(std::llround(duration_s * sensors.rate_Hz));
@@ -90,7 +90,7 @@ std::vector<ConcealedCommand> on_rows(std::vector<ConcealedCommand> commands, Ro
 // The readings of one row as cells.
 class Instruments {
  public:
-  Instruments(Draw& draw, const ConcealedSensors& sensors) : draw_(draw), sensors_(sensors) {}
+  Instruments(RandomDraw& draw, const ConcealedSensors& sensors) : draw_(draw), sensors_(sensors) {}
 
   std::string attitude(const Quaternion& seen, size_t row) {
     Triple noise;
@@ -120,7 +120,7 @@ class Instruments {
   }
 
  private:
-  Draw& draw_;
+  RandomDraw& draw_;
   ConcealedSensors sensors_;
   double side_ = 1.0;
 };
@@ -166,7 +166,7 @@ std::string concealed_experiment(const ConcealedCase& c, bool told_truth) {
 }
 
 std::string concealed_recording(const ConcealedCase& c, size_t run_index) {
-  Draw draw(c.seed, 100 + run_index);
+  RandomDraw draw(c.seed, 100 + run_index);
   const ConcealedRun& run = c.runs[run_index];
   Rows rows = draw_rows(draw, c.sensors, run.duration_s);
   const auto commands = on_rows(run.commands, rows);

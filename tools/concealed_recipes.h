@@ -14,7 +14,7 @@ struct Recipe {
   std::string kind;
   // The effect at a size that is plausible in a laboratory; the strength is then fitted to what the
   // readings shall show.
-  std::function<ConcealedEffect(Draw&, const ConcealedCase&)> draw;
+  std::function<ConcealedEffect(RandomDraw&, const ConcealedCase&)> draw;
   double most = 30.0;  // times that size at most
   bool needs_commands = false;
   bool needs_small_turns = false;

@@ -63,11 +63,11 @@ void run_diagnose(const CommandLine& line) {
 
   DiagnoseOptions how;
   how.threads = line.threads;
+  how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
   const Diagnosis diagnosis = diagnose(believed, recordings, holdouts, how);
   print_diagnosis(console, diagnosis);
 
   const fs::path out = line.out_folder();
-  fs::create_directories(out);
   const Provenance provenance = experiment.provenance(0);
   const std::string json = diagnosis_json(diagnosis, provenance);
   const std::string improved =

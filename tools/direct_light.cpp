@@ -30,7 +30,7 @@ Estimate direct_total_W(const FluxMapReceiver& map, const BinSums& sums) {
 Estimate direct_bin_W(const FluxMapReceiver& map, const BinSums& sums, size_t bin) {
   std::vector<double> values;
   for (int r = 0; r < sums.replicates; ++r) values.push_back(direct_W(map, sums.of(r), bin));
-  return estimate_from_replicates(values);
+  return with_common_error(estimate_from_replicates(values), sums.common_error);
 }
 
 DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays) {
@@ -41,8 +41,7 @@ DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const 
   light.rays_W = direct_total_W(map, rays);
   const double sigma = std::hypot(light.gathered_W.standard_error, light.rays_W.standard_error);
   const double difference = light.gathered_W.value - light.rays_W.value;
-  // Quadrature is good to a few parts in a million.
-  light.difference_sigma = difference / (sigma + 5e-6 * std::abs(light.gathered_W.value) + 1e-300);
+  light.difference_sigma = difference / (sigma + 1e-300);
   int bins = 0;
   for (size_t bin = 0; bin < map.grid().bins(); ++bin) {
     const Estimate ray = direct_bin_W(map, rays, bin);
@@ -65,6 +64,7 @@ void replace_direct(const FluxMapReceiver& map, const Gathered& gathered, BinSum
     std::copy(direct.begin(), direct.end(),
               sums.sums.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(r) * map.bins()));
   }
+  sums.common_error = gathered.direct.common_error;
 }
 
 }  // namespace

@@ -210,7 +210,16 @@ void write_results(const CommandLine& line, const Console& console, const Produc
 void write_results(const CommandLine& line, const Console& console, const Product& product,
                    const Provenance& provenance, const RunCost& cost) {
   const auto folder = line.out_folder();
+  for (const Quantity& figure : product.quantities) {
+    if (!std::isfinite(figure.estimate.value)) {
+      throw NumericalError(figure.name + " came out as no finite number");
+    }
+  }
   const std::string summary = summary_json(product, provenance, cost);
+  if (line.summary_only) {
+    write_file_whole(folder / "summary.json", summary);
+    return;
+  }
   const auto files = write_product(product, provenance, folder);
   write_file_whole(folder / "summary.json", summary);
   if (line.json) std::fputs(summary.c_str(), stdout);

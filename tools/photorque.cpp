@@ -37,7 +37,9 @@ void add_options(CLI::App& command, CommandLine& line) {
   command.add_option("--out", line.out, "Folder for the results (default: out/EXPERIMENT/VERB)");
   command.add_option("--threads", line.threads, "Threads to use (default: all)")
       ->check(CLI::Range(0, 1024));
-  command.add_option("--seed", line.seed, "Seed of all randomness, over the experiment's own");
+  command.add_option("--seed", line.seed, "Seed of all randomness, over the experiment's own")
+      ->check(CLI::TypeValidator<int64_t>())
+      ->check(CLI::NonNegativeNumber);
   command.add_flag("--quiet", line.quiet, "Print nothing but errors");
   command.add_flag("--json", line.json, "Print the summary as JSON instead of text");
 }
@@ -72,6 +74,11 @@ int run(int argc, char** argv) {
       command->add_option("--cases", line.cases, "Score this folder of cases instead of new ones");
       command->add_flag("--only-make", line.only_make, "Make the cases, diagnose nothing");
     }
+    if (verb.takes_shard) {
+      command->add_option("--shard", line.shard,
+                          "K/N: only every Nth design, from the Kth; the run that finds all "
+                          "designs done writes the table");
+    }
   }
   if (argc > 1 && argv[1][0] != '-') {
     std::set<std::string> known;
@@ -93,6 +100,7 @@ int run(int argc, char** argv) {
   for (const Verb& verb : verbs) {
     if (app.got_subcommand(verb.name)) {
       line.verb = verb.name;
+      if (line.out && line.out->empty()) throw InputError({"--out"}, "", "nothing", "a folder");
       verb.run(line);
     }
   }
@@ -104,7 +112,12 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return photorque::run(argc, argv);
+    const int status = photorque::run(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      std::fprintf(stderr, "photorque: standard output could not be written\n");
+      return 3;
+    }
+    return status;
   } catch (const photorque::InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

@@ -49,13 +49,19 @@ ProveSettings read_settings(const CommandLine& line) {
   plan.duration_s = s.number_or("duration_s", plan.duration_s, seconds);
   plan.holdout_s = s.number_or("holdout_s", plan.holdout_s, seconds);
   if (s.has("rates_Hz")) plan.rates_Hz = s.numbers("rates_Hz", rate);
+  if (plan.rates_Hz.empty()) throw s.error("rates_Hz", "[]", "at least one rate");
   plan.dirty_share = s.number_or("dirty_share", plan.dirty_share, Range::fraction());
   settings.oracle = s.flag_or("oracle", settings.oracle);
   settings.at_once = static_cast<int>(s.integer_or("at_once", 1, 1, 1024));
   settings.longest_s = s.number_or("longest_s", settings.longest_s, Range::positive());
   settings.most_cases = static_cast<size_t>(s.integer_or("most_cases", most, 1, most));
   settings.section = s.text_or("section", settings.section);
-  if (s.has("document")) settings.document = line.experiment.parent_path() / s.text("document");
+  if (s.has("document")) {
+    settings.document = line.experiment.parent_path() / s.text("document");
+    if (!fs::is_regular_file(*settings.document)) {
+      throw s.error("document", "no file " + settings.document->string(), "a page to renew");
+    }
+  }
   root.finish();
   settings.hash = content_hash(read_file(line.experiment));
   return settings;
@@ -93,6 +99,13 @@ std::vector<fs::path> cases_in(const fs::path& folder) {
   if (folders.empty()) {
     throw InputError({}, "--cases", "no case in " + folder.string(),
                      "folders with experiment.toml, run1.csv.gz, run2.csv.gz and truth.json");
+  }
+  for (const fs::path& each : folders) {
+    for (const char* file : {"experiment.toml", "run1.csv.gz", "run2.csv.gz"}) {
+      if (!fs::is_regular_file(each / file)) {
+        throw InputError({(each / file).string()}, "--cases", "no such file", "a complete case");
+      }
+    }
   }
   std::ranges::sort(folders);
   return folders;

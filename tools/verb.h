@@ -26,6 +26,8 @@ struct CommandLine {
   std::vector<std::filesystem::path> holdouts;    // --holdout, recordings kept back from a fit
   std::optional<std::filesystem::path> cases;     // --cases, a folder of concealed cases
   bool only_make = false;                         // --only-make: the cases, nothing more
+  std::string shard;                              // --shard K/N, of a sweep
+  bool summary_only = false;                      // of a design in a sweep: no other files
 
   // --out, or out/EXPERIMENT/VERB below the current folder.
   std::filesystem::path out_folder() const;
@@ -42,6 +44,7 @@ struct Verb {
   bool takes_recordings = false;
   bool takes_holdouts = false;
   bool takes_cases = false;
+  bool takes_shard = false;
 };
 
 // Every verb named in tools/CMakeLists.txt, in that order.

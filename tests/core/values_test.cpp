@@ -24,6 +24,10 @@ TEST(Estimate, MeanAndErrorOfFourNumbers) {
 TEST(StudentT, TwoSidedNinetyFivePercent) {
   EXPECT_NEAR(student_t_975(2), 12.706, 1e-3);
   EXPECT_NEAR(student_t_975(3), 4.303, 1e-3);
+  EXPECT_NEAR(student_t_975(4), 3.182, 1e-3);
+  EXPECT_NEAR(student_t_975(5), 2.776, 1e-3);
+  EXPECT_NEAR(student_t_975(6), 2.571, 1e-3);
+  EXPECT_NEAR(student_t_975(7), 2.447, 2e-3);
   EXPECT_NEAR(student_t_975(9), 2.306, 2e-3);
   EXPECT_NEAR(student_t_975(16), 2.131, 1e-3);
   EXPECT_NEAR(student_t_975(31), 2.042, 1e-3);

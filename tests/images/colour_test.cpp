@@ -146,6 +146,8 @@ TEST(ColourScale, CoversTheValues) {
   EXPECT_EQ(range(0.0, 0.0, false), std::pair(0.0, 1.0));
   EXPECT_EQ(range(-2.0, 10.0, true), std::pair(-10.0, 10.0));
   EXPECT_EQ(range(0.0, 0.0, true), std::pair(-1.0, 1.0));
+  EXPECT_EQ(range(9.0, 10.0, true), std::pair(9.0, 10.0));
+  EXPECT_EQ(range(-10.0, -9.0, true), std::pair(-10.0, -9.0));
 }
 
 }  // namespace

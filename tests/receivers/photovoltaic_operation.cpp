@@ -147,7 +147,7 @@ TEST(PhotovoltaicLosses, KnownCellsAt730NanometresStayBelowTheirPhotons) {
 
 TEST(PhotovoltaicLosses, SensitivitiesHaveTheirSigns) {
   const Lit l = lit(0.1);
-  for (const Sensitivity& s : sensitivities(l.design, l.result)) {
+  for (const ArraySensitivity& s : sensitivities(l.design, l.result)) {
     const bool more_light = s.change.find("+1 %") != std::string::npos;
     EXPECT_EQ(s.relative > 0, more_light) << s.change;
     // The power rises as the light, and with it slowly the voltage.

@@ -165,7 +165,7 @@ TEST(IesFile, OfTypesAAndBComesBackAsWritten) {
     const Vec3 d = file.table.pole == Pole::vertical
                        ? table_direction(Pole::vertical, 80 * deg, -10 * deg)
                        : table_direction(Pole::horizontal, 100 * deg, 10 * deg);
-    const TableAngles at = table_angles(file.table.pole, d);
+    const GoniometerAngles at = table_angles(file.table.pole, d);
     EXPECT_NEAR(TabulatedIntensity(file.table).at(at.polar_rad, at.azimuth_rad), 5.0, 1e-9);
     EXPECT_LT(d.x(), 0.0);
     EXPECT_GT(d.y(), 0.0);

@@ -138,7 +138,7 @@ TEST(TabulatedIntensity, CellsAreSampledWithTheirShareOfTheFlux) {
   const PhotometricLamp lamp(1.0, {}, intensity);
   constexpr uint32_t rays = 1u << 20;
   for (const auto& ray : test::rays_of(lamp, rays)) {
-    const TableAngles at = table_angles(Pole::beam, ray.direction);
+    const GoniometerAngles at = table_angles(Pole::beam, ray.direction);
     const double turn = at.azimuth_rad < 0.0 ? at.azimuth_rad + 2 * pi : at.azimuth_rad;
     const int row = std::min(static_cast<int>(at.polar_rad / row_rad), rows - 1);
     const int column = std::min(static_cast<int>(turn / column_rad), columns - 1);

@@ -1,0 +1,172 @@
+// The command sweep as a user meets it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const std::string program = std::string(PHOTORQUE_BINARY_DIR) + "/photorque";
+
+std::string read(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// The rows of a CSV file without its comments; the first is the header.
+std::vector<std::vector<std::string>> rows(const fs::path& path) {
+  std::istringstream in(read(path));
+  std::vector<std::vector<std::string>> all;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream cells(line);
+    all.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) all.back().push_back(cell);
+  }
+  return all;
+}
+
+class Sweep : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("photorque_sweep_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // The text of the table [sweep] after a small experiment with a lamp far above STASIS.
+  int run(const std::string& sweep, const std::string& options = "") {
+    std::ofstream(folder_ / "e.toml")
+        << "[scene]\nfile = \"" << PHOTORQUE_SOURCE_DIR << "/scenes/stasis/stasis.gltf\"\n"
+        << "[trace]\nrays = 4096\n[[source]]\nkind = \"led\"\npower_W = 10\n"
+        << "aperture_diameter_mm = 20\nprofile = \"gaussian\"\nfwhm_deg = 3\n"
+        << "wavelength_nm = 730\nspectral_fwhm_nm = 30\nposition_m = [0, 0, 1]\naim_m = [0, 0, 0]\n"
+        << "[[receiver]]\nnode = \"solar_array\"\nbins = [10, 10]\n"
+        << sweep;
+    const std::string command = program + " sweep " + (folder_ / "e.toml").string() + " --out " +
+                                (folder_ / "out").string() + " " + options + " >" +
+                                (folder_ / "stdout").string() + " 2>" +
+                                (folder_ / "stderr").string();
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string said() const { return read(folder_ / "stdout"); }
+  std::string complained() const { return read(folder_ / "stderr"); }
+
+  fs::path folder_;
+};
+
+constexpr const char* grid = R"([sweep]
+verb = "trace"
+figures = ["emitted_W", "power_on_solar_array_W"]
+[[sweep.axis]]
+key = "source[0].fwhm_deg"
+values = [1, 30]
+[[sweep.axis]]
+key = "source[0].power_W"
+from = 1
+to = 100
+count = 3
+spacing = "logarithmic"
+)";
+
+TEST_F(Sweep, TakesEveryCombinationOfAGrid) {
+  ASSERT_EQ(run(grid), 0) << complained();
+  const auto table = rows(folder_ / "out/sweep.csv");
+  ASSERT_EQ(table.size(), 7u);
+  EXPECT_EQ(table[0][1], "source[0].fwhm_deg");
+  for (size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(std::stod(table[i + 1][1]), i < 3 ? 1.0 : 30.0);
+    const double power_W = std::pow(10.0, static_cast<double>(i % 3));
+    EXPECT_NEAR(std::stod(table[i + 1][2]), power_W, 1e-12 * power_W);
+    EXPECT_NEAR(std::stod(table[i + 1][3]), power_W, 1e-12 * power_W);
+    // A wide lamp loses light beside the array; light is linear in power, all else being equal.
+    const double share = std::stod(table[i + 1][5]) / power_W;
+    EXPECT_NEAR(share, std::stod(table[i < 3 ? 1 : 4][5]), 1e-9);
+  }
+  EXPECT_LT(std::stod(table[4][5]), 0.5 * std::stod(table[1][5]));
+  EXPECT_TRUE(fs::exists(folder_ / "out/sweep_power_on_solar_array_W.png"));
+}
+
+TEST_F(Sweep, GoesOnWhereItStopped) {
+  ASSERT_EQ(run(grid, "--shard 1/2"), 0) << complained();
+  EXPECT_THAT(said(), HasSubstr("3 run now, 0 kept"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/sweep.csv"));
+  ASSERT_EQ(run(grid), 0);
+  EXPECT_THAT(said(), HasSubstr("3 run now, 3 kept"));
+  const std::string first = read(folder_ / "out/sweep.csv");
+  // Another experiment is another set of designs.
+  ASSERT_EQ(run(grid, "--seed 9"), 0);
+  EXPECT_THAT(said(), HasSubstr("6 run now, 0 kept"));
+  EXPECT_NE(read(folder_ / "out/sweep.csv"), first);
+}
+
+TEST_F(Sweep, DrawsFromDistributions) {
+  const std::string plan = R"([sweep]
+verb = "trace"
+designs = 64
+figures = ["emitted_W"]
+[[sweep.axis]]
+key = "source[0].power_W"
+mean = 10
+sigma = 0.5
+[[sweep.axis]]
+key = "source[0].fwhm_deg"
+from = 2
+to = 4
+)";
+  ASSERT_EQ(run(plan, "--set trace.direct='\"rays\"'"), 0) << complained();
+  const auto table = rows(folder_ / "out/sweep.csv");
+  ASSERT_EQ(table.size(), 65u);
+  double sum = 0.0, squares = 0.0, widths = 0.0;
+  for (size_t i = 1; i < table.size(); ++i) {
+    const double power_W = std::stod(table[i][1]), fwhm_deg = std::stod(table[i][2]);
+    sum += power_W;
+    squares += std::pow(power_W - 10.0, 2);
+    widths += fwhm_deg;
+    EXPECT_GT(fwhm_deg, 2.0);
+    EXPECT_LT(fwhm_deg, 4.0);
+  }
+  // Far better than independent draws: 0.5/√64 = 0.06 would be their standard error.
+  EXPECT_NEAR(sum / 64, 10.0, 0.02);
+  EXPECT_NEAR(std::sqrt(squares / 64), 0.5, 0.05);
+  EXPECT_NEAR(widths / 64, 3.0, 0.02);
+}
+
+TEST_F(Sweep, WrongInputIsOneLine) {
+  const auto refuses = [&](const std::string& sweep, const std::string& word,
+                           const std::string& options = "") {
+    EXPECT_EQ(run(sweep, options), 2) << sweep;
+    const std::string text = complained();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    EXPECT_THAT(text, HasSubstr(word));
+    EXPECT_FALSE(fs::exists(folder_ / "out")) << sweep;
+  };
+  const std::string axis = "[[sweep.axis]]\nkey = \"source[0].power_W\"\n";
+  refuses("", "sweep");
+  refuses("[sweep]\nverb = \"trace\"\n", "axis");
+  refuses("[sweep]\nverb = \"tracee\"\n" + axis + "values = [1]\n", "tracee");
+  refuses("[sweep]\nverb = \"trace\"\nfigurs = [\"a\"]\n" + axis + "values = [1]\n", "figures");
+  refuses("[sweep]\nverb = \"trace\"\n" + axis + "values = []\n", "values");
+  refuses("[sweep]\nverb = \"trace\"\n" + axis +
+              "from = 0\nto = 2\ncount = 3\nspacing = \"logarithmic\"\n",
+          "above zero");
+  refuses("[sweep]\nverb = \"trace\"\n" + axis + "from = 0\nto = 2\ncount = 1\n", "count");
+  refuses("[sweep]\nverb = \"trace\"\n[[sweep.axis]]\nkey = \"source[0].power_w\"\nvalues = [1]\n",
+          "power_w");
+  refuses(grid, "K/N", "--shard 3/2");
+}
+
+}  // namespace
