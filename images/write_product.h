@@ -11,8 +11,8 @@
 namespace photorque {
 
 // Writes `product` in each of `formats` (names of writer kinds; empty: all of them) and returns the
-// paths. InputError for an unknown format, and when two items would share a file. When anything fails,
-// nothing is written, and no folder left that was not there.
+// paths. InputError for an unknown format, and when two items would share a file. When anything
+// fails, nothing is written, and no folder left that was not there.
 std::vector<std::filesystem::path> write_product(const Product& product,
                                                  const Provenance& provenance,
                                                  const std::filesystem::path& folder,
