@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "core/errors.h"
 
@@ -14,6 +15,12 @@ double with_few_bits(double h) {
   int exponent = 0;
   const double mantissa = std::frexp(h, &exponent);
   return std::ldexp(std::floor(std::ldexp(mantissa, 12)), exponent - 12);
+}
+
+std::string shown(double x) {
+  std::ostringstream out;
+  out << x;
+  return out.str();
 }
 
 std::vector<double> checked_start(const Dynamics& dynamics, const PlatformState& initial) {
@@ -119,8 +126,8 @@ void Propagator::check_pace() const {
   const double pace_s = (step_.start_s() - begin_s_) / static_cast<double>(statistics_.steps);
   const double left_s = end_s_ - step_.start_s();
   if (pace_s * static_cast<double>(options_.most_steps - statistics_.steps) < left_s) {
-    throw NumericalError("steps of " + std::to_string(pace_s) + " s on average will not reach " +
-                         std::to_string(end_s_) + " s: the motion is too fast for its duration");
+    throw NumericalError("steps of " + shown(pace_s) + " s on average will not reach " +
+                         shown(end_s_) + " s: the motion is too fast for its duration");
   }
 }
 
@@ -138,8 +145,8 @@ void Propagator::take_step() {
     const bool cut = h_s >= left_s;
     h_s = cut ? left_s : with_few_bits(h_s > 0.5 * left_s ? 0.5 * left_s : h_s);
     if (++statistics_.steps > options_.most_steps || start_s + h_s <= start_s) {
-      throw NumericalError("the step length of the propagator fell to " + std::to_string(h_s) +
-                           " s at t = " + std::to_string(start_s) + " s");
+      throw NumericalError("the step length of the propagator fell to " + shown(h_s) +
+                           " s at t = " + shown(start_s) + " s");
     }
     const CollocationStep::Outcome outcome = step_.attempt(h_s, held_, settled);
     statistics_.iterations += outcome.iterations;
