@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/errors.h"
 #include "core/parallel.h"
@@ -80,7 +81,8 @@ Fit settle(const BelievedModel& believed, Data& data) {
 }
 
 // How well the leaders also explain what was held back: their evidence on all runs together takes
-// the place of that on the fitted ones. The others gain over the belief in the ratio of the best.
+// the place of that on the fitted ones. The others gain over the belief in the ratio of the best,
+// and stay below the leaders.
 void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>& all,
                         const Data& data, int threads) {
   constexpr size_t most_leaders = 8;
@@ -118,10 +120,15 @@ void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>
   const double gain = trials[leaders.front()].log_evidence - belief;
   const double more = shift.front() - belief_shift;
   const double ratio = gain > 0.0 ? std::max(0.0, 1.0 + more / gain) : 1.0;
+  double lowest = std::numeric_limits<double>::infinity();  // of the leaders, but for the belief
+  for (const size_t i : leaders) {
+    trials[i].log_evidence += shift_of(i);
+    if (i != 0) lowest = std::min(lowest, trials[i].log_evidence);
+  }
   for (size_t i = 0; i < trials.size(); ++i) {
+    if (found(i) != leaders.end()) continue;
     double& evidence = trials[i].log_evidence;
-    evidence = found(i) != leaders.end() ? evidence + shift_of(i)
-                                         : belief + belief_shift + ratio * (evidence - belief);
+    evidence = std::min(lowest, belief + belief_shift + ratio * (evidence - belief));
   }
 }
 

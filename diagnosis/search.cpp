@@ -1,6 +1,7 @@
 #include "diagnosis/search.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/parallel.h"
 #include "diagnosis/scan.h"
@@ -80,6 +81,16 @@ std::vector<size_t> promising(const Trial& parent, const std::vector<Candidate>&
   return result;
 }
 
+// Averages and pieces flatter some: what was not fitted to the full readings stands below the first
+// `fitted` of these trials, which were, as it stood before.
+void keep_below(std::vector<Trial>& trials, size_t fitted) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < fitted; ++i) lowest = std::min(lowest, trials[i].log_evidence);
+  for (size_t i = fitted; i < trials.size(); ++i) {
+    trials[i].log_evidence = std::min(trials[i].log_evidence, lowest);
+  }
+}
+
 // The fits of all tasks on `runs`; of several starts of a candidate the best.
 std::vector<Trial> extend_by_tasks(const Trial& parent, const std::vector<Candidate>& all,
                                    const std::vector<Task>& tasks,
@@ -138,6 +149,7 @@ std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>
   const size_t refits = std::min(most_refits, rough.size());
   parallel_for(refits, threads,
                [&](size_t i) { rough[i] = refit(rough[i], all, runs, rough[i].fit.best.runs); });
+  keep_below(rough, refits);
   for (Trial& t : rough) found.push_back(std::move(t));
   return found;
 }
@@ -171,6 +183,7 @@ std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candi
       t.fit.best.runs = starts;
     }
   });
+  keep_below(found, std::min(most_refits, found.size()));
   return found;
 }
 
