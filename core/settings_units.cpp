@@ -93,8 +93,13 @@ KeyUnit unit_of_key(std::string_view key) {
   }
   if (best == nullptr) return {std::string(key), "", "", 1.0};
   const std::string_view suffix = best->suffix;
-  return {std::string(key.substr(0, key.size() - suffix.size() - 1)), best->suffix, best->dimension,
-          best->to_SI};
+  std::string stem(key.substr(0, key.size() - suffix.size() - 1));
+  // "stiffness_N_m_per_deg": one over the unit.
+  if (stem.ends_with("_per")) {
+    return {std::move(stem), best->suffix, std::string("per ") + best->dimension,
+            1.0 / best->to_SI};
+  }
+  return {std::move(stem), best->suffix, best->dimension, best->to_SI};
 }
 
 }  // namespace photorque

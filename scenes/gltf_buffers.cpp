@@ -171,7 +171,8 @@ class Loader {
 }  // namespace
 
 Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_view> binary,
-                     bool is_glb, const std::string& file, const GltfOpen& open, MemoryBudget* budget) {
+                     bool is_glb, const std::string& file, const GltfOpen& open,
+                     MemoryBudget* budget) {
   const auto list = document.find("buffers");
   if (list == document.end()) return {};
   return Loader(binary, is_glb, file, open, budget).load(*list);

@@ -30,6 +30,7 @@ struct Buffers {
 // Throws InputError for bytes that are missing or fewer than declared, and for URIs that are
 // malformed, of a scheme other than data:, absolute, or leave the folder of the model.
 Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_view> binary,
-                     bool is_glb, const std::string& file, const GltfOpen& open, MemoryBudget* budget);
+                     bool is_glb, const std::string& file, const GltfOpen& open,
+                     MemoryBudget* budget);
 
 }  // namespace photorque::gltf

@@ -34,7 +34,8 @@ std::string pointer(const Parts&... parts) {
 // anything of that size is allocated.
 class MemoryBudget {
  public:
-  MemoryBudget(std::string file, uint64_t bytes) : file_(std::move(file)), left_(bytes), all_(bytes) {}
+  MemoryBudget(std::string file, uint64_t bytes)
+      : file_(std::move(file)), left_(bytes), all_(bytes) {}
 
   // Throws InputError at `where` when `count` items of `item_bytes` are more than what is left.
   void charge(uint64_t count, uint64_t item_bytes, const std::string& where) {

@@ -26,7 +26,8 @@ class Vertices;
 // validate_primitives().
 class GeometryReader {
  public:
-  GeometryReader(const Document& document, MemoryBudget* budget) : document_(document), budget_(budget) {}
+  GeometryReader(const Document& document, MemoryBudget* budget)
+      : document_(document), budget_(budget) {}
 
   // TRIANGLES, TRIANGLE_STRIP or TRIANGLE_FAN, indexed or not, with POSITION; nothing for other
   // primitives. A triangle is degenerate when two corners coincide or its area is so small that

@@ -16,8 +16,8 @@
 namespace photorque {
 namespace {
 
-using gltf::MemoryBudget;
 using gltf::Document;
+using gltf::MemoryBudget;
 using gltf::Placement;
 using gltf::pointer;
 

@@ -39,15 +39,34 @@ const Verb& verb_called(const std::vector<Verb>& verbs, const std::string& name)
   return *it;
 }
 
-// Designs are kept under the hash of all that they follow from but other files: what changed is run
-// again, what did not is not.
-std::filesystem::path design_folder(const CommandLine& line, const ExperimentFile& file,
-                                    const SweepPlan& plan, const Provenance& build, size_t design) {
-  std::string all = plan.verb + '\n' + build.one_line() + '\n';
-  for (const auto& [name, hash] : file.inputs) all += name + ' ' + hash + '\n';
-  for (const std::string& assignment : line.all_overrides()) all += assignment + '\n';
-  for (const std::string& assignment : plan.overrides(design)) all += assignment + '\n';
-  return line.out_folder() / "designs" / content_hash(all);
+// A value as text, with the content of every file that it names.
+std::string content_of(const SettingsNode& node, const std::filesystem::path& folder) {
+  std::string all;
+  if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    for (const auto& [key, value] : *table) all += key + "={" + content_of(value, folder) + "}\n";
+  } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (const SettingsNode& item : *items) all += '[' + content_of(item, folder) + ']';
+  } else {
+    all = toml_text(node);
+    const auto* text = std::get_if<std::string>(&node.value);
+    std::error_code failure;
+    if (text != nullptr && std::filesystem::is_regular_file(folder / *text, failure)) {
+      all += content_hash(read_file(folder / *text));
+    }
+  }
+  return all;
+}
+
+// What every design follows from: the program, the experiment but its plan, the files that it names
+// (not what these refer to).
+std::string common_content(const ExperimentFile& file, const SweepPlan& plan,
+                           const Provenance& build) {
+  std::string all = plan.verb + '\n' + build.version + build.git_hash + '\n';
+  for (const std::string& key : file.settings.keys()) {
+    if (key == "sweep") continue;
+    all += key + '=' + content_of(file.settings.raw(key), file.path.parent_path()) + '\n';
+  }
+  return content_hash(all);
 }
 
 double number_of(const nlohmann::json& value) {
@@ -168,8 +187,13 @@ void run_sweep(const CommandLine& line) {
   provenance.seed = file.trace.seed;
 
   const size_t count = plan.designs();
+  const std::string common = common_content(file, plan, provenance);
+  // Under the hash of all that a design follows from: what changed is run again, what did not is
+  // not, and a plan may grow.
   const auto summary_of = [&](size_t design) {
-    return design_folder(line, file, plan, provenance, design) / "summary.json";
+    std::string all = common;
+    for (const std::string& assignment : plan.overrides(design)) all += '\n' + assignment;
+    return line.out_folder() / "designs" / content_hash(all) / "summary.json";
   };
   console.heading(std::to_string(count) + " designs by `" + plan.verb + '`');
   const auto progress = console.progress("designs");

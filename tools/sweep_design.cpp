@@ -18,25 +18,6 @@ std::string toml_number(double value) {
   return text;
 }
 
-std::string toml_text(const SettingsNode& node) {
-  if (const auto* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
-  if (const auto* whole = std::get_if<int64_t>(&node.value)) return std::to_string(*whole);
-  if (const auto* real = std::get_if<double>(&node.value)) return toml_number(*real);
-  if (const auto* text = std::get_if<std::string>(&node.value)) {
-    std::string quoted = "\"";
-    for (const char c : *text) {
-      if (c == '"' || c == '\\') quoted += '\\';
-      quoted += c;
-    }
-    return quoted + '"';
-  }
-  std::string items;
-  if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
-    for (const SettingsNode& item : *array) items += (items.empty() ? "" : ", ") + toml_text(item);
-  }
-  return "[" + items + "]";
-}
-
 std::vector<std::string> listed_values(const Settings& axis) {
   const auto* items = std::get_if<SettingsNode::Array>(&axis.raw("values").value);
   if (items == nullptr || items->empty()) {
@@ -102,6 +83,25 @@ std::vector<double> sobol_column(uint64_t seed, size_t axis, size_t designs) {
 }
 
 }  // namespace
+
+std::string toml_text(const SettingsNode& node) {
+  if (const auto* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
+  if (const auto* whole = std::get_if<int64_t>(&node.value)) return std::to_string(*whole);
+  if (const auto* real = std::get_if<double>(&node.value)) return toml_number(*real);
+  if (const auto* text = std::get_if<std::string>(&node.value)) {
+    std::string quoted = "\"";
+    for (const char c : *text) {
+      if (c == '"' || c == '\\') quoted += '\\';
+      quoted += c;
+    }
+    return quoted + '"';
+  }
+  std::string items;
+  if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (const SettingsNode& item : *array) items += (items.empty() ? "" : ", ") + toml_text(item);
+  }
+  return "[" + items + "]";
+}
 
 size_t SweepPlan::designs() const {
   if (!grid) return axes.front().values.size();

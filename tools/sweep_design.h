@@ -28,6 +28,9 @@ struct SweepPlan {
   std::vector<std::string> overrides(size_t design) const;
 };
 
+// A value as TOML text; tables are not values of a sweep.
+std::string toml_text(const SettingsNode& node);
+
 // Reads the table [sweep]:
 //   verb = "power", figures = ["array_power_W"]
 //   designs = 200, seed = 1            a random plan: Owen-scrambled Sobol points

@@ -41,6 +41,9 @@ TEST(Units, LongestSuffixWins) {
   EXPECT_EQ(unit_of_key("torque_N_m").unit, "N_m");
   EXPECT_EQ(unit_of_key("momentum_N_m_s").unit, "N_m_s");
   EXPECT_EQ(unit_of_key("shift_m_per_Ah").stem, "shift");
+  // 1 N m per degree is 57.3 N m per radian.
+  EXPECT_NEAR(unit_of_key("stiffness_N_m_per_deg").to_SI, 180.0 / pi, 1e-12);
+  EXPECT_EQ(unit_of_key("stiffness_N_m_per_deg").stem, unit_of_key("stiffness_N_m_per_rad").stem);
   EXPECT_EQ(unit_of_key("offset_m").unit, "m");
   EXPECT_EQ(unit_of_key("kind").unit, "");
 }
