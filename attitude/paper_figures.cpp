@@ -107,9 +107,10 @@ void add_bearing(std::vector<PaperFigure>& all, const PaperInputs& in) {
                  std::abs(drag.load_as_published_N / drag.rated_load_N - 1.0), nan,
                  data + "eq. 7 against the film at its rated gap: it leaves out projection and "
                         "ambient pressure"});
-  all.push_back({"bearing_drag_mean_ratio", "II.B.1", 19.63, drag.ratio_film, nan,
-                 data + "eq. 17 at the rated gap against the unloaded ball on which catalogues "
-                        "measure: the film opens as often, recess and grooves must be the rest"});
+  all.push_back(
+      {"bearing_drag_mean_ratio", "II.B.1", 19.63, drag.ratio_film, nan,
+       data + "eq. 17 at the rated gap against the unloaded ball on which catalogues "
+              "measure: the film opens that many times; recess and grooves must do the rest"});
   all.push_back({"bearing_drag_mean_ratio_with_spring", "II.B.1", 9.0,
                  drag.ratio_film / drag.ratio_spring, nan,
                  data + "what a gap that opens like a spring leaves of it"});
