@@ -116,19 +116,21 @@ void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>
   const auto shift_of = [&](size_t i) {
     return shift[static_cast<size_t>(found(i) - leaders.begin())];
   };
-  const double belief = trials.front().log_evidence, belief_shift = shift_of(0);
+  const double belief = trials.front().log_evidence;
   const double gain = trials[leaders.front()].log_evidence - belief;
-  const double more = shift.front() - belief_shift;
-  const double ratio = gain > 0.0 ? std::max(0.0, 1.0 + more / gain) : 1.0;
-  double lowest = std::numeric_limits<double>::infinity();  // of the leaders, but for the belief
+  // Of the leaders, but for the belief. One may go astray on what it never saw.
+  double lowest = std::numeric_limits<double>::infinity(), highest = belief + shift_of(0);
   for (const size_t i : leaders) {
     trials[i].log_evidence += shift_of(i);
     if (i != 0) lowest = std::min(lowest, trials[i].log_evidence);
+    highest = std::max(highest, trials[i].log_evidence);
   }
+  const double belief_now = trials.front().log_evidence;
+  const double ratio = gain > 0.0 ? (highest - belief_now) / gain : 1.0;
   for (size_t i = 0; i < trials.size(); ++i) {
     if (found(i) != leaders.end()) continue;
     double& evidence = trials[i].log_evidence;
-    evidence = std::min(lowest, belief + belief_shift + ratio * (evidence - belief));
+    evidence = std::min(lowest, belief_now + ratio * (evidence - belief));
   }
 }
 
