@@ -61,7 +61,10 @@ Environment read_environment(const Settings& settings) {
   e.gravity_lab_m_s2 = {0.0, 0.0, -gravity_m_s2};
   e.gravity_gradient_1_s2 = gravity_m_s2 / earth_radius_m;
   e.magnetic_field_lab_T = read_field_lab_T(settings);
-  e.latitude_rad = settings.number_or("latitude_deg", 0.0, {-pi / 2, pi / 2, false, false});
+  const Range latitudes{-pi / 2, pi / 2, false, false};
+  const double of_field_rad =
+      settings.has("igrf") ? settings.table("igrf").number("latitude_deg", latitudes) : 0.0;
+  e.latitude_rad = settings.number_or("latitude_deg", of_field_rad, latitudes);
   e.earth_rate_lab_rad_s =
       earth_rate_rad_s * Vec3(0.0, std::cos(e.latitude_rad), std::sin(e.latitude_rad));
 

@@ -194,6 +194,14 @@ PropagationRun read_propagation(const Settings& root) {
   run.initial =
       Dynamics(run.model).initial_state(settings.vector3_or("initial_rate_rad_s", Vec3::Zero()));
   run.initial.lab_from_body = read_initial_attitude(settings);
+  const double tilt_rad =
+      std::acos(std::clamp(run.initial.lab_from_body.toRotationMatrix()(2, 2), -1.0, 1.0));
+  const std::optional<double> limit_rad = run.model.platform.tilt_limit_rad;
+  if (limit_rad && tilt_rad > *limit_rad) {
+    throw settings.error(settings.has("initial_attitude") ? "initial_attitude" : "initial_tilt_deg",
+                         "a tilt of " + std::to_string(tilt_rad / degree_rad) + " deg",
+                         "at most platform.tilt_limit_deg");
+  }
   run.initial.charge_drawn_C = settings.number_or("initial_charge_Ah", 0.0);
   settings.finish();
   return run;

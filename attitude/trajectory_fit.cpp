@@ -1,6 +1,7 @@
 #include "attitude/trajectory_fit.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "core/errors.h"
@@ -9,6 +10,20 @@ namespace photorque {
 namespace {
 
 constexpr int initial_variables = 6;  // rotation and rate
+
+// The inverse of normal equations. What they leave open, but for rounding, gets an error as large
+// as rounding lets it be known, not the zero of a pivot that is left out.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& normal) {
+  const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().unaryExpr(
+      [](double root) { return root > 0.0 ? 1.0 / root : 1.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      Eigen::MatrixXd(scale.asDiagonal() * normal * scale.asDiagonal()));
+  const double least = 1e-15 * static_cast<double>(normal.rows());
+  const Eigen::MatrixXd half =
+      scale.asDiagonal() * eigen.eigenvectors() *
+      eigen.eigenvalues().cwiseMax(least).cwiseSqrt().cwiseInverse().asDiagonal();
+  return half * half.transpose();
+}
 
 // The measured channels, NaN where there is nothing.
 struct Measurements {
@@ -106,7 +121,7 @@ class Fitter {
     fit_.samples = last->samples;
     fit_.chi2_per_sample = last->chi2 / static_cast<double>(std::max<int64_t>(1, last->samples));
     const Eigen::MatrixXd full = last->matrix.selfadjointView<Eigen::Lower>();
-    fit_.covariance = full.ldlt().solve(Eigen::MatrixXd::Identity(full.rows(), full.cols()));
+    fit_.covariance = covariance_of(full);
     if (!fit_.covariance.allFinite()) {
       throw NumericalError("the recording does not determine what is fitted");
     }
