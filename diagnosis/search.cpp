@@ -215,9 +215,47 @@ double excess_sigma(const Trial& t, const std::vector<Observation>& runs) {
   return whiteness(residuals_of(t.fit, runs)).excess_sigma;
 }
 
+// Of trials of the same effects, found in different order, the best.
+std::vector<Trial> without_twins(std::vector<Trial> trials) {
+  std::vector<Trial> kept;
+  std::vector<std::vector<size_t>> sets;
+  for (Trial& trial : trials) {
+    std::vector<size_t> set = trial.candidates;
+    std::sort(set.begin(), set.end());
+    const auto twin = std::find(sets.begin(), sets.end(), set);
+    if (twin == sets.end()) {
+      sets.push_back(std::move(set));
+      kept.push_back(std::move(trial));
+    } else if (Trial& other = kept[static_cast<size_t>(twin - sets.begin())];
+               trial.log_evidence > other.log_evidence) {
+      other = std::move(trial);
+    }
+  }
+  return kept;
+}
+
 bool is_physics(const Trial& trial, const std::vector<Candidate>& all) {
   return std::none_of(trial.candidates.begin(), trial.candidates.end(),
                       [&](size_t c) { return all[c].empirical(); });
+}
+
+// A pair is found by way of its stronger half, which may have been another kind that takes its
+// place: the other half alone, where it has not been a parent, to be extended in turn.
+std::vector<Trial> other_halves(const Trial& pair, const std::vector<Trial>& parents,
+                                const std::vector<Trial>& singles,
+                                const std::vector<Candidate>& all,
+                                const std::vector<Observation>& runs) {
+  std::vector<Trial> halves;
+  for (const size_t candidate : pair.candidates) {
+    const std::vector<size_t> half = {candidate};
+    const auto is_half = [&](const Trial& t) { return t.candidates == half; };
+    if (std::any_of(parents.begin(), parents.end(), is_half)) continue;
+    const auto single = std::find_if(singles.begin(), singles.end(), is_half);
+    if (single != singles.end()) {
+      halves.push_back(refit(*single, all, runs, single->fit.best.runs));
+    }
+  }
+  return halves;
 }
 
 }  // namespace
@@ -228,9 +266,7 @@ std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
   std::vector<Trial> parents = trials;
   for (int effects = 1; effects <= options.most_effects; ++effects) {
     std::vector<Trial> found;
-    for (const Trial& parent : parents) {
-      // Empirical laws compete alone and beside the best physics.
-      const bool with_empirical = effects <= 2 && &parent == &parents.front();
+    const auto extend_all = [&](const Trial& parent, bool with_empirical) {
       std::vector<size_t> others;
       for (size_t c = 0; c < all.size(); ++c) {
         if (all[c].empirical() && !with_empirical) continue;
@@ -239,7 +275,21 @@ std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
       for (Trial& t : extend_by_each(parent, all, others, runs, options.threads)) {
         found.push_back(std::move(t));
       }
+    };
+    // Empirical laws compete alone and beside the best physics.
+    for (const Trial& parent : parents) {
+      extend_all(parent, effects <= 2 && &parent == &parents.front());
     }
+    if (effects == 2 && !found.empty()) {
+      const Trial best = found[by_evidence(found).front()];
+      const bool gained = best.log_evidence > parents.front().log_evidence + 3.0;
+      if (gained && is_physics(best, all)) {
+        for (const Trial& half : other_halves(best, parents, trials, all, runs)) {
+          extend_all(half, false);
+        }
+      }
+    }
+    found = without_twins(std::move(found));
     // The best physics goes on, and the next best while the best leaves structure behind; when
     // nothing gained, nothing more will.
     const size_t most_parents = effects == 1 ? 2 : 1;

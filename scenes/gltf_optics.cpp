@@ -234,8 +234,10 @@ bool has_ignored_texture(const json& material) {
 std::string describe_surface(const OpticalSurface& surface) {
   std::ostringstream text;
   text.precision(3);
-  text << "absorptance " << surface.absorbed[0] << ", specular " << surface.specular[0]
-       << ", diffuse " << surface.diffuse[0] << ", transmittance " << surface.transmitted[0];
+  const auto share = [](double value) { return std::abs(value) < 1e-12 ? 0.0 : value; };
+  text << "absorptance " << share(surface.absorbed[0]) << ", specular "
+       << share(surface.specular[0]) << ", diffuse " << share(surface.diffuse[0])
+       << ", transmittance " << share(surface.transmitted[0]);
   if (surface.finish) {
     if (surface.finish->law) text << " at normal incidence";
     if (!surface.finish->description.empty()) text << "; " << surface.finish->description;
