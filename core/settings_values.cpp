@@ -51,11 +51,13 @@ double Settings::to_number(const SettingsNode& node, std::string_view key, doubl
   }
   const double x = written * factor;
   if (!inside(x, range)) throw InputError(node.where, full_name(key), describe(node), expected);
-  // No laboratory needs more of any unit, and squares and products stay finite.
-  constexpr double largest = 1e30;
-  const std::string& unit = unit_of_key(key).unit;
-  if (!unit.empty() && std::abs(x) > largest) {
-    throw InputError(node.where, full_name(key), describe(node), "at most 1e30 in SI units");
+  // No laboratory needs more of any unit; squares and products stay finite, and places within what
+  // single precision can trace.
+  const KeyUnit unit = unit_of_key(key);
+  const bool length = unit.dimension == "length";
+  if (!unit.unit.empty() && std::abs(x) > (length ? 1e12 : 1e30)) {
+    throw InputError(node.where, full_name(key), describe(node),
+                     length ? "at most 1e12 m" : "at most 1e30 in SI units");
   }
   return x;
 }

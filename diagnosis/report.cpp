@@ -303,7 +303,7 @@ std::string holdout_table(const Holdout& holdout) {
     rows += row({html(channel), html_number(before),
                  after == holdout.rms_after.end() ? "–" : html_number(after->second)});
   }
-  return tag("section", tag("h2", "Prediction of data never fitted") +
+  return tag("section", tag("h2", "Prediction of data to which no parameter was fitted") +
                             tag("p",
                                 "Root mean square of what the prediction misses, in the unit "
                                 "that each channel's name ends in.") +

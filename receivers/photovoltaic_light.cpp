@@ -40,7 +40,8 @@ ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums) {
                    receiver.bands().count(),
                    grid.area_m2,
                    {}};
-  light.power_W = {grid.bins() * static_cast<size_t>(light.bands), sums.replicates, {}};
+  light.power_W = {
+      grid.bins() * static_cast<size_t>(light.bands), sums.replicates, {}, sums.common_error};
   const size_t bounced = receiver.direct_entries();
   for (int r = 0; r < sums.replicates; ++r) {
     const auto all = sums.of(r);

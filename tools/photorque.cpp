@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <limits>
 #include <set>
 
 #include "core/errors.h"
@@ -38,8 +39,7 @@ void add_options(CLI::App& command, CommandLine& line) {
   command.add_option("--threads", line.threads, "Threads to use (default: all)")
       ->check(CLI::Range(0, 1024));
   command.add_option("--seed", line.seed, "Seed of all randomness, over the experiment's own")
-      ->check(CLI::TypeValidator<int64_t>())
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(int64_t{0}, std::numeric_limits<int64_t>::max()));
   command.add_flag("--quiet", line.quiet, "Print nothing but errors");
   command.add_flag("--json", line.json, "Print the summary as JSON instead of text");
 }
