@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "core/constants.h"
 #include "raytrace/finish.h"
 #include "raytrace/ggx.h"
 #include "raytrace/glass.h"
+#include "raytrace/measured_brdf.h"
 #include "raytrace/rough_mirror.h"
 #include "raytrace/slope_error.h"
 
@@ -35,6 +37,41 @@ inline OpticalSurface retroreflector(double retroreflected, double diffuse) {
   return surface;
 }
 
+// f(θ_i, θ_o, φ) on nodes that are `step_deg` apart.
+template <typename Brdf>
+BrdfTable tabulated(double step_deg, const Brdf& brdf) {
+  BrdfTable table;
+  for (int i = 0; i * step_deg <= 90.0; ++i) {
+    table.incidence_rad.push_back(i * step_deg * degree_rad);
+  }
+  table.scatter_rad = table.incidence_rad;
+  for (int i = 0; i * step_deg <= 180.0; ++i) {
+    table.azimuth_rad.push_back(i * step_deg * degree_rad);
+  }
+  for (const double in : table.incidence_rad) {
+    for (const double out : table.scatter_rad) {
+      for (const double azimuth : table.azimuth_rad) {
+        table.brdf_1_sr.push_back(brdf(in, out, azimuth));
+      }
+    }
+  }
+  return table;
+}
+
+// Scatters forward and keeps its reflectance at every angle: what cos φ adds on one side it takes
+// on the other, between nodes too.
+inline BrdfTable forward_scatter(double kept) {
+  return tabulated(15.0, [&](double in, double out, double azimuth) {
+    return kept / pi * (1.0 + 0.8 * std::cos(azimuth) * std::sin(in) * std::sin(out));
+  });
+}
+
+inline OpticalSurface measured(const BrdfTable& table) {
+  BandValues scale{};
+  scale[0] = 1.0;
+  return measured_surface("s", table, scale).surface;
+}
+
 // All kinds; of what meets them (or gets through the glass) a share `kept` is not absorbed.
 inline std::vector<SurfaceKind> surface_kinds(double kept) {
   return {{"mirror", grey_surface("s", kept, 0.0), false},
@@ -49,7 +86,8 @@ inline std::vector<SurfaceKind> surface_kinds(double kept) {
           {"glass over matt", behind_glass(grey_surface("s", 0.0, kept), 1.5), true},
           {"glass over cell", behind_glass(grey_surface("s", kept, 0.0), 1.5), true},
           {"pane", behind_glass(grey_surface("s", 0.0, 0.0, kept), 1.5), true},
-          {"rough glass", behind_glass(grey_surface("s", 0.0, kept), 1.5, 0.25), true}};
+          {"rough glass", behind_glass(grey_surface("s", 0.0, kept), 1.5, 0.25), true},
+          {"measured", measured(forward_scatter(kept)), true}};
 }
 
 // Where one ray goes, in the frame of the hit; zero if it is absorbed. Transmitted light counts as
