@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/constants.h"
+#include "core/files.h"
 #include "receivers/receiver_kind.h"
 #include "receivers/receiver_settings.h"
 #include "scenes/gltf_reader.h"
@@ -116,6 +117,17 @@ void require_scene_file(const ExperimentFile& file) {
                     "a file that exists beside the experiment");
 }
 
+// The bytes of files whose names are relative to a file's folder.
+std::function<std::optional<std::string>(const std::string&)> files_beside(
+    const std::filesystem::path& path) {
+  constexpr uint64_t largest_bytes = 1ull << 28;
+  return [folder = path.parent_path()](const std::string& name) -> std::optional<std::string> {
+    std::error_code unreadable;
+    if (!std::filesystem::is_regular_file(folder / name, unreadable)) return std::nullopt;
+    return read_file(folder / name, largest_bytes);
+  };
+}
+
 void require_triangles(const Scene& scene, const std::filesystem::path& path) {
   const bool any = std::any_of(
       scene.instances.begin(), scene.instances.end(),
@@ -142,9 +154,10 @@ std::vector<const Receiver*> Experiment::receiver_pointers() const {
 
 Experiment resolve_experiment(ExperimentFile file) {
   require_scene_file(file);
-  GltfModel model = read_gltf(
-      *file.scene_file,
-      {.bands = file.bands, .materials = file.materials, .metres_per_unit = file.metres_per_unit});
+  GltfModel model = read_gltf(*file.scene_file, {.bands = file.bands,
+                                                 .materials = file.materials,
+                                                 .material_file = files_beside(file.path),
+                                                 .metres_per_unit = file.metres_per_unit});
   require_triangles(model.scene, *file.scene_file);
 
   std::vector<Beam> beams = make_beams(file, model);

@@ -185,7 +185,8 @@ OpticalSurface derived_surface(const json& material, int bands, std::string name
   return surface;
 }
 
-MaterialOverrides read_overrides(const Document& document, const GltfOptions& options) {
+MaterialOverrides read_overrides(const Document& document, const GltfOptions& options,
+                                 const SurfaceFiles& files) {
   std::set<std::string> names;
   for (const tinygltf::Material& material : document.model.materials) names.insert(material.name);
   MaterialOverrides overrides;
@@ -197,7 +198,7 @@ MaterialOverrides read_overrides(const Document& document, const GltfOptions& op
           "name", "\"" + name + "\"",
           "a material of " + document.file + (hint.empty() ? "" : ", perhaps \"" + hint + "\""));
     }
-    if (!overrides.emplace(name, read_sheet(material, options.bands.count(), name)).second) {
+    if (!overrides.emplace(name, read_sheet(material, options.bands.count(), name, files)).second) {
       throw material.error("name", "\"" + name + "\" a second time", "each material once");
     }
   }
@@ -205,13 +206,13 @@ MaterialOverrides read_overrides(const Document& document, const GltfOptions& op
 }
 
 MaterialOptics material_optics(const Document& document, int index, int bands,
-                               const MaterialOverrides& overrides) {
+                               const MaterialOverrides& overrides, const SurfaceFiles& files) {
   const std::string name =
       index < 0 ? "" : document.model.materials[static_cast<size_t>(index)].name;
   const auto override_of = overrides.find(name);
   if (override_of != overrides.end()) return {override_of->second, OpticsOrigin::experiment};
   if (const std::optional<Settings> extras = extras_of(document, index)) {
-    const SheetOptics sheet = read_sheet(*extras, bands, name);
+    const SheetOptics sheet = read_sheet(*extras, bands, name, files);
     extras->finish();
     return {sheet, OpticsOrigin::extras};
   }

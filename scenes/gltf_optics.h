@@ -24,7 +24,8 @@ using MaterialOverrides = std::map<std::string, SheetOptics>;
 // Reads the experiment's [[material]] tables, all of them, whether their material is in use or not.
 // Throws InputError as read_sheet() does, for a name twice, and for a name that no material of the
 // document has (with the most similar one).
-MaterialOverrides read_overrides(const Document& document, const GltfOptions& options);
+MaterialOverrides read_overrides(const Document& document, const GltfOptions& options,
+                                 const SurfaceFiles& files);
 
 // The optics of material `index` (−1: of primitives without one, the specification's default), from
 // the first of:
@@ -33,7 +34,7 @@ MaterialOverrides read_overrides(const Document& document, const GltfOptions& op
 //   3. the values meant for drawing, by the rule of derived_surface().
 // Throws InputError as read_sheet() does, and for keys in extras.photorque that nobody knows.
 MaterialOptics material_optics(const Document& document, int index, int bands,
-                               const MaterialOverrides& overrides);
+                               const MaterialOverrides& overrides, const SurfaceFiles& files);
 
 // Grey fractions from a material's drawing values, the same in all bands and on both sides. With
 // Y the luminance of the base colour (0.2126 R + 0.7152 G + 0.0722 B of its linear factors, IEC

@@ -41,12 +41,14 @@ std::string in_quotes(const std::string& name) {
 // Puts the parts of a document together.
 class Assembly {
  public:
-  Assembly(const Document& document, const GltfOptions& options, MemoryBudget* budget)
+  Assembly(const Document& document, const GltfOpen& open, const GltfOptions& options,
+           MemoryBudget* budget)
       : document_(document),
         options_(options),
         budget_(budget),
         geometry_(document, budget),
-        overrides_(gltf::read_overrides(document, options)) {
+        beside_model_(recorded(open)),
+        overrides_(gltf::read_overrides(document, options, recorded(options.material_file))) {
     model_.scene.bands = options.bands;
     model_.notices = document.notices;
   }
@@ -133,12 +135,15 @@ class Assembly {
     if (known != materials_.end()) return model_.materials[known->second];
     materials_[index] = model_.materials.size();
     const gltf::MaterialOptics optics =
-        gltf::material_optics(document_, index, options_.bands.count(), overrides_);
+        gltf::material_optics(document_, index, options_.bands.count(), overrides_, beside_model_);
     GltfMaterial material;
     if (index >= 0) {
       const tinygltf::Material& from = document_.model.materials[static_cast<size_t>(index)];
       material.name = from.name;
       material.double_sided = from.doubleSided;
+    }
+    for (const std::string& line : optics.sheet.notices) {
+      add_notice(in_quotes(material.name) + ": " + line);
     }
     material.origin = optics.origin;
     material.front_surface = add_surface(optics.sheet.front);
@@ -151,6 +156,19 @@ class Assembly {
     }
     model_.materials.push_back(std::move(material));
     return model_.materials.back();
+  }
+
+  // What `open` finds is an input.
+  SurfaceFiles recorded(const SurfaceFiles& open) {
+    if (!open) return {};
+    return [this, open](const std::string& name) {
+      std::optional<std::string> bytes = open(name);
+      if (bytes) {
+        budget_->charge(bytes->size(), 1, "");
+        model_.inputs.emplace_back(name, content_hash(*bytes));
+      }
+      return bytes;
+    };
   }
 
   // Materials of the same name and values are common; one line tells of them all.
@@ -196,8 +214,9 @@ class Assembly {
   const GltfOptions& options_;
   MemoryBudget* budget_;
   gltf::GeometryReader geometry_;
+  GltfModel model_;  // before what reads files into it
+  SurfaceFiles beside_model_;
   gltf::MaterialOverrides overrides_;
-  GltfModel model_;
   std::map<std::tuple<int, int, int, int, int>, std::optional<uint32_t>> meshes_;
   std::vector<double> radii_;        // of each mesh about its own origin
   std::map<int, size_t> materials_;  // index in the file → in model_.materials
@@ -216,9 +235,10 @@ GltfModel read_gltf_bytes(const std::string& bytes, const std::string& name, con
   gltf::validate_accessors(document);
   gltf::validate_primitives(document);
   gltf::validate_nodes(document);
-  GltfModel model = Assembly(document, options, &budget).build();
-  model.inputs.emplace_back(name, content_hash(bytes));
-  model.inputs.insert(model.inputs.end(), document.inputs.begin(), document.inputs.end());
+  GltfModel model = Assembly(document, open, options, &budget).build();
+  std::vector<std::pair<std::string, std::string>> inputs = {{name, content_hash(bytes)}};
+  inputs.insert(inputs.end(), document.inputs.begin(), document.inputs.end());
+  model.inputs.insert(model.inputs.begin(), inputs.begin(), inputs.end());
   return model;
 }
 

@@ -34,6 +34,9 @@ struct GltfOptions {
   // [[material]] tables of an experiment: `name`, and keys as in read_sheet(). They win over the
   // model's own properties. InputError if no material has the name.
   std::vector<Settings> materials = {};
+  // The bytes of a file that one of them names, or nothing. (The model's own properties name files
+  // beside the model.)
+  std::function<std::optional<std::string>(const std::string& name)> material_file = {};
   // Length of one unit of the file [m]; CAD exports often count millimetres: 1e-3.
   double metres_per_unit = 1.0;
   // Most memory that the files, and what is made of them, may take.

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/constants.h"
 #include "raytrace/finish.h"
 #include "raytrace/glass.h"
+#include "raytrace/measured_brdf.h"
 #include "raytrace/rough_mirror.h"
 #include "raytrace/slope_error.h"
+#include "scenes/brdf_file.h"
 
 namespace photorque {
 namespace {
@@ -26,19 +29,23 @@ constexpr std::array<Share, 4> shares = {{{"absorptance", &OpticalSurface::absor
                                           {"transmittance", &OpticalSurface::transmitted}}};
 
 // One number for all bands, or an array with one per band.
-BandValues read_share(const Settings& table, const char* key, int bands) {
+BandValues read_band_values(const Settings& table, const char* key, int bands, Range range) {
   BandValues values{};
   if (!table.raw(key).is_array()) {
-    std::fill_n(values.begin(), bands, table.number(key, Range::fraction()));
+    std::fill_n(values.begin(), bands, table.number(key, range));
     return values;
   }
-  const std::vector<double> numbers = table.numbers(key, Range::fraction());
+  const std::vector<double> numbers = table.numbers(key, range);
   if (numbers.size() != static_cast<size_t>(bands)) {
     throw table.error(key, "an array of " + std::to_string(numbers.size()),
                       "one number, or one for each of " + std::to_string(bands) + " band(s)");
   }
   std::copy(numbers.begin(), numbers.end(), values.begin());
   return values;
+}
+
+BandValues read_share(const Settings& table, const char* key, int bands) {
+  return read_band_values(table, key, bands, Range::fraction());
 }
 
 // The share that goes back where it came from, and the surface for it, if the user has one.
@@ -138,6 +145,38 @@ void read_heat(const Settings& table, SheetOptics& sheet) {
   if (sheet.back) heat(*sheet.back);
 }
 
+// Scattering from a table instead of fractions.
+OpticalSurface read_measured(const Settings& table, int bands, const std::string& name,
+                             const SurfaceFiles& files, std::vector<std::string>& notices) {
+  for (const char* key : {"absorptance", "specular", "diffuse", "transmittance", "retroreflectance",
+                          "roughness", "slope_error_mrad", "refractive_index"}) {
+    if (table.has(key)) throw table.error(key, "brdf_file too", "the table alone");
+  }
+  const std::string file = table.text("brdf_file");
+  const std::optional<std::string> text = files ? files(file) : std::nullopt;
+  if (!text) throw table.error("brdf_file", "\"" + file + "\"", "a file that exists");
+  BandValues scale{};
+  std::fill_n(scale.begin(), bands, 1.0);
+  if (table.has("brdf_scale")) {
+    scale = read_band_values(table, "brdf_scale", bands, Range::positive());
+  }
+  MeasuredSurface measured = measured_surface(name, read_brdf(*text, file), scale);
+  std::ostringstream words;
+  words.precision(4);
+  if (measured.largest_reflectance > 1.0 + sum_tolerance) {
+    words << "a reflectance of " << measured.largest_reflectance << " at "
+          << measured.at_incidence_rad / degree_rad << " deg";
+    throw table.error("brdf_file", words.str(), "at most 1 at every angle, or a brdf_scale");
+  }
+  constexpr double worth_telling = 0.01;
+  if (measured.asymmetry > worth_telling) {
+    words << file << ": f(i, o) and f(o, i) differ by " << 100.0 * measured.asymmetry
+          << " % (root mean square), which nature forbids; the mean is taken";
+    notices.push_back(words.str());
+  }
+  return std::move(measured.surface);
+}
+
 }  // namespace
 
 OpticalSurface read_surface(const Settings& table, int bands, std::string name) {
@@ -184,9 +223,15 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
   return surface;
 }
 
-SheetOptics read_sheet(const Settings& table, int bands, const std::string& name) {
-  SheetOptics sheet{read_surface(table, bands, name), std::nullopt};
-  if (table.has("back")) sheet.back = read_surface(table.table("back"), bands, name + " (back)");
+SheetOptics read_sheet(const Settings& table, int bands, const std::string& name,
+                       const SurfaceFiles& files) {
+  SheetOptics sheet;
+  const auto side = [&](const Settings& settings, const std::string& called) {
+    return settings.has("brdf_file") ? read_measured(settings, bands, called, files, sheet.notices)
+                                     : read_surface(settings, bands, called);
+  };
+  sheet.front = side(table, name);
+  if (table.has("back")) sheet.back = side(table.table("back"), name + " (back)");
   read_heat(table, sheet);
   return sheet;
 }

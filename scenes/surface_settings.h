@@ -2,8 +2,10 @@
 // glTF material.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/settings.h"
 #include "raytrace/surface.h"
@@ -14,7 +16,11 @@ namespace photorque {
 struct SheetOptics {
   OpticalSurface front;
   std::optional<OpticalSurface> back;  // nothing: like the front
+  std::vector<std::string> notices = {};
 };
+
+// The bytes of a file that a table names, or nothing when there is none.
+using SurfaceFiles = std::function<std::optional<std::string>(const std::string& name)>;
 
 // Reads `absorptance`, `specular`, `diffuse`, `transmittance` and `retroreflectance` from a table:
 // each a fraction in [0, 1], one number for all bands or an array with one per band (`bands` of
@@ -35,7 +41,12 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name);
 // The same with an optional sub-table `back` for the side from which the corners of a triangle run
 // clockwise, and heat radiation of both sides together: `reemitted` (0), the share of the absorbed
 // power that leaves at once, and `emissivity_front` and `emissivity_back` (1, 1), in proportion to
-// which it leaves the sides.
-SheetOptics read_sheet(const Settings& table, int bands, const std::string& name);
+// which it leaves the sides. Instead of fractions a side may have
+//   brdf_file            a table of measured scattering, brdf_file.h, from `files`
+//   brdf_scale           (1) a factor on it, > 0, one number or one per band
+// InputError if the file is missing or wrong, or if the surface would reflect more than falls on
+// it.
+SheetOptics read_sheet(const Settings& table, int bands, const std::string& name,
+                       const SurfaceFiles& files = {});
 
 }  // namespace photorque

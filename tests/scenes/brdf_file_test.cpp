@@ -1,0 +1,129 @@
+// Tables of measured scattering, from text to the surface of a material.
+#include "scenes/brdf_file.h"
+
+#include "core/constants.h"
+#include "gltf_test_model.h"
+#include "raytrace/finish.h"
+#include "scenes/surface_settings.h"
+
+namespace photorque {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::string small_table =
+    "# a goniometer\n\n"
+    "scatter_deg, incidence_deg,azimuth_deg,brdf_1_sr,sigma\r\n"
+    "0,60,0,0.3,0\r\n60,60,0,0.2,0\r\n0,0,0,0.1,0\r\n60,0,0,0.3,0\r\n";
+
+std::string message_from(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string brdf_error(const std::string& text) {
+  return message_from([&] { read_brdf(text, "scan.csv"); });
+}
+
+std::string with_text(std::string text, const std::string& old_text, const std::string& new_text) {
+  return text.replace(text.find(old_text), old_text.size(), new_text);
+}
+
+TEST(BrdfFile, TakesColumnsAndRowsInAnyOrder) {
+  const BrdfTable table = read_brdf(small_table, "scan.csv");
+  EXPECT_THAT(table.incidence_rad, ElementsAre(0.0, 60 * degree_rad));
+  EXPECT_THAT(table.scatter_rad, ElementsAre(0.0, 60 * degree_rad));
+  EXPECT_THAT(table.azimuth_rad, ElementsAre(0.0));
+  EXPECT_THAT(table.brdf_1_sr, ElementsAre(0.1, 0.3, 0.3, 0.2));
+}
+
+TEST(BrdfFile, NamesTheLineOfWhatIsWrong) {
+  EXPECT_EQ(brdf_error(with_text(small_table, "brdf_1_sr", "brdf")),
+            "scan.csv:3: brdf_1_sr: found no such column, expected a header with incidence_deg, "
+            "scatter_deg, azimuth_deg and brdf_1_sr");
+  EXPECT_EQ(brdf_error(with_text(small_table, "60,60,0,0.2", "60,60,0,-0.2")),
+            "scan.csv:5: brdf_1_sr: found \"-0.2\", expected a number from 0 to 1e+09");
+  EXPECT_EQ(brdf_error(with_text(small_table, "60,60,0", "95,60,0")),
+            "scan.csv:5: scatter_deg: found \"95\", expected a number from 0 to 90");
+  EXPECT_EQ(brdf_error(with_text(small_table, "0,0,0,0.1,0", "0,0,0,0.1")),
+            "scan.csv:6: found 4 fields, expected 5, as in the header");
+  EXPECT_EQ(brdf_error(with_text(small_table, "0,0,0,0.1", "0,60,0,0.1")),
+            "scan.csv:6: found angles that an earlier row has, expected each once");
+  EXPECT_THAT(brdf_error(with_text(small_table, "0,0,0,0.1,0\r\n", "")),
+              HasSubstr("found no row for incidence 0, scatter 0, azimuth 0 deg"));
+  EXPECT_THAT(brdf_error("# nothing\n"), HasSubstr("scan.csv: found no rows"));
+}
+
+TEST(BrdfFile, EveryTruncationIsReadOrRefused) {
+  for (size_t length = 0; length < small_table.size(); ++length) {
+    try {
+      read_brdf(small_table.substr(0, length), "cut");
+    } catch (const InputError&) {
+    }
+  }
+}
+
+Settings material_with(const SettingsNode::Table& more) {
+  SettingsNode::Table table = {{"name", {"paint"}}};
+  for (const auto& [key, node] : more) table[key] = SettingsNode{node.value, {"lab.toml", 4}};
+  return Settings(std::make_shared<const SettingsNode>(SettingsNode{table, {"lab.toml", 3}}),
+                  "material[0]");
+}
+
+GltfModel painted_with(const Settings& material, const std::string& brdf) {
+  TestModel model = triangle_model();
+  model.json["materials"] = nlohmann::json::array({{{"name", "paint"}}});
+  model.json["meshes"][0]["primitives"][0]["material"] = 0;
+  GltfOptions options;
+  options.materials = {material};
+  options.material_file = [&](const std::string& name) -> std::optional<std::string> {
+    if (name != "scan.csv") return std::nullopt;
+    return brdf;
+  };
+  return model.read(options);
+}
+
+TEST(MeasuredMaterial, ScattersByItsFileWhichIsAnInput) {
+  const GltfModel model =
+      painted_with(material_with({{"brdf_file", {"scan.csv"}}, {"brdf_scale", {0.5}}}),
+                   "incidence_deg,scatter_deg,azimuth_deg,brdf_1_sr\n0,0,0,0.25\n");
+  const OpticalSurface& surface = model.scene.surfaces.at(0);
+  EXPECT_NEAR(surface.diffuse[0], 0.5 * 0.25 * pi, 1e-12);
+  EXPECT_NEAR(shares_of(surface, 0.3, 0).absorbed, 1 - 0.5 * 0.25 * pi, 1e-12);
+  EXPECT_EQ(model.inputs.back().first, "scan.csv");
+  EXPECT_TRUE(model.notices.empty()) << ::testing::PrintToString(model.notices);
+}
+
+// Of the pairs (0, 0), (60, 0), (60, 60) one differs, by nothing in the small table.
+TEST(MeasuredMaterial, ThatIsNotReciprocalIsSaid) {
+  const GltfModel model = painted_with(material_with({{"brdf_file", {"scan.csv"}}}),
+                                       with_text(small_table, "60,0,0,0.3", "60,0,0,0.1"));
+  EXPECT_THAT(model.notices, Contains(HasSubstr("scan.csv: f(i, o) and f(o, i) differ by 66.6")));
+}
+
+TEST(MeasuredMaterial, ThatShinesOrIsMissingIsRefused) {
+  const Settings plain = material_with({{"brdf_file", {"scan.csv"}}});
+  EXPECT_EQ(message_from([&] {
+              painted_with(plain, "incidence_deg,scatter_deg,azimuth_deg,brdf_1_sr\n0,0,0,0.35\n");
+            }),
+            "lab.toml:4: material[0].brdf_file: found a reflectance of 1.1 at 0 deg, expected at "
+            "most 1 at every angle, or a brdf_scale");
+  EXPECT_EQ(message_from([&] {
+              painted_with(material_with({{"brdf_file", {"scam.csv"}}}), "");
+            }),
+            "lab.toml:4: material[0].brdf_file: found \"scam.csv\", expected a file that exists");
+  EXPECT_THAT(message_from([&] {
+                painted_with(material_with({{"brdf_file", {"scan.csv"}}, {"absorptance", {1.0}}}),
+                             small_table);
+              }),
+              HasSubstr("material[0].absorptance: found brdf_file too, expected the table alone"));
+}
+
+}  // namespace
+}  // namespace photorque
