@@ -122,6 +122,18 @@ Plot component_plot(const WrenchTable& table, const VectorColumn& column, const 
   return plot;
 }
 
+// The longest vector of a column.
+Quantity largest(const VectorColumn& column, const std::string& name) {
+  Estimate longest;
+  for (size_t i = 0; i < column.value->size(); ++i) {
+    const Vec3& value = (*column.value)[i];
+    if (!(value.norm() > longest.value)) continue;
+    longest = {value.norm(), value.normalized().cwiseProduct((*column.error)[i]).norm()};
+  }
+  const std::string unit = std::string(column.name) == "force" ? "N" : "N_m";
+  return {std::string("largest_") + column.name + "_" + name + "_" + unit, longest};
+}
+
 }  // namespace
 
 Product wrench_table_product(const WrenchTable& table, const std::string& name) {
@@ -130,6 +142,7 @@ Product wrench_table_product(const WrenchTable& table, const std::string& name) 
   const bool regular =
       regular_step_rad(table.polar_rad) > 0.0 && regular_step_rad(table.around_rad) > 0.0;
   for (const VectorColumn& column : vector_columns(table)) {
+    product.quantities.push_back(largest(column, name));
     if (table.around_rad.size() == 1) product.plots.push_back(component_plot(table, column, name));
     for (int axis = 0; axis < 3 && regular; ++axis) {
       product.maps.push_back(component_map(table, column, axis, name));

@@ -10,6 +10,7 @@ namespace photorque {
 
 // The table "wrench_table_NAME" with a row per node (angles in degrees, components and standard
 // errors in the body frame), and
+// - the longest force and torque, "largest_force_NAME_N" and "largest_torque_NAME_N_m",
 // - for two regular axes: maps "force_x_NAME" … "torque_z_NAME" with nodes at the middles of bins,
 // - for a single heading or azimuth: the plots "force_NAME" and "torque_NAME" over the tilt or
 //   elevation.

@@ -40,6 +40,18 @@ TEST(WrenchTableProduct, RegularGridBecomesMapsCentredOnItsNodes) {
   EXPECT_EQ(map.x_label, "heading [deg]");
 }
 
+TEST(WrenchTableProduct, NamesTheLongestForceAndTorque) {
+  const Product product = wrench_table_product(numbered({0, 10, 30}, {0, 90}), "stasis");
+  ASSERT_EQ(product.quantities.size(), 2u);
+  EXPECT_EQ(product.quantities[0].name, "largest_force_stasis_N");
+  EXPECT_EQ(product.quantities[1].name, "largest_torque_stasis_N_m");
+  const double length = std::sqrt(1 + 100 + 10000.0);
+  EXPECT_NEAR(product.quantities[1].estimate.value, 5 * length, 1e-9);
+  // Errors along the torque: (0.5, 0.25, 0.125) weighed with its direction.
+  EXPECT_NEAR(product.quantities[1].estimate.standard_error,
+              std::sqrt(0.25 + 6.25 + 156.25) / length, 1e-12);
+}
+
 TEST(WrenchTableProduct, TableHasARowPerNode) {
   const Product product = wrench_table_product(numbered({0, 10, 30}, {0, 90}), "stasis");
   EXPECT_TRUE(product.maps.empty());  // the tilts are not evenly spaced
