@@ -1,0 +1,187 @@
+// How time grows with triangles and with emitters, as tables with fitted exponents.
+//
+//   scaling_benchmark [largest number of triangles, 1e7]
+//
+// User CPU time of the whole process, so that other programs on the machine do little harm; two
+// threads. The exponent is the slope of a line through log time over log number.
+#include <sys/resource.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "core/constants.h"
+#include "receivers/gather.h"
+#include "sources/source_kind.h"
+
+namespace photorque {
+namespace {
+
+constexpr int threads = 2;
+constexpr double field_m = 0.5;
+
+double cpu_s() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * usage.ru_utime.tv_usec;
+}
+
+template <typename Work>
+double cpu_s_of(const Work& work) {
+  const double before = cpu_s();
+  work();
+  return cpu_s() - before;
+}
+
+SettingsNode node_of(const Vec3& v) {
+  return {SettingsNode::Array{{v.x(), {}}, {v.y(), {}}, {v.z(), {}}}, {}};
+}
+
+// `count` LEDs of 3 deg on a square grid over the field, looking down.
+std::vector<Beam> lamps(int count) {
+  const int across = static_cast<int>(std::ceil(std::sqrt(count)));
+  std::vector<Beam> beams;
+  const std::vector<SourceKind> kinds = all_source_kinds();
+  const auto led = std::find_if(kinds.begin(), kinds.end(),
+                                [](const SourceKind& kind) { return kind.name == "led"; });
+  for (int k = 0; k < count; ++k) {
+    const Vec3 at(field_m * ((k % across + 0.5) / across - 0.5),
+                  field_m * ((k / across + 0.5) / across - 0.5), 1.5);
+    const SettingsNode::Table table = {{"power_W", {1.0, {}}},
+                                       {"aperture_diameter_m", {0.045 / across, {}}},
+                                       {"profile", {std::string("gaussian"), {}}},
+                                       {"fwhm_deg", {3.0, {}}},
+                                       {"wavelength_nm", {730.0, {}}},
+                                       {"position_m", node_of(at)},
+                                       {"aim_m", node_of(Vec3(0.5 * at.x(), 0.5 * at.y(), 0))}};
+    const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{table, {}}));
+    for (Beam& beam : led->make(settings, {})) beams.push_back(std::move(beam));
+  }
+  return beams;
+}
+
+void add(Scene& scene, Mesh mesh, const std::string& node) {
+  Instance instance;
+  instance.node = instance.path = node;
+  instance.mesh = static_cast<uint32_t>(scene.meshes.size());
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back(instance);
+}
+
+// A corrugated sheet of `cells`² squares, mirrored and matt, so that rays bounce.
+Scene corrugated(int cells) {
+  Scene scene;
+  scene.surfaces.push_back(grey_surface("foil", 0.4, 0.2));
+  Mesh mesh;
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      const double x = i / static_cast<double>(cells) - 0.5,
+                   y = j / static_cast<double>(cells) - 0.5;
+      mesh.vertices_m.emplace_back(field_m * x, field_m * y,
+                                   0.02 * std::sin(40 * x) * std::cos(30 * y));
+    }
+  }
+  const auto row = static_cast<uint32_t>(cells) + 1;
+  for (uint32_t j = 0; j + 1 < row; ++j) {
+    for (uint32_t i = 0; i + 1 < row; ++i) {
+      const uint32_t at = j * row + i, up = at + row;
+      mesh.triangles.push_back({at, at + 1, up + 1});
+      mesh.triangles.push_back({at, up + 1, up});
+    }
+  }
+  add(scene, std::move(mesh), "sheet");
+  return scene;
+}
+
+// A flat receiver, and a grid of squares above it that shade it.
+Scene shaded_plate() {
+  Scene scene;
+  scene.surfaces.push_back(grey_surface("black", 0, 0));
+  const auto square = [](const Vec3& centre, double side_m) {
+    const Vec3 u(0.5 * side_m, 0, 0), v(0, 0.5 * side_m, 0);
+    return Mesh{{centre - u - v, centre + u - v, centre + u + v, centre - u + v},
+                {{0, 1, 2}, {0, 2, 3}},
+                {}};
+  };
+  add(scene, square(Vec3::Zero(), field_m), "receiver");
+  for (int k = 0; k < 16; ++k) {
+    add(scene, square(Vec3(0.12 * (k % 4) - 0.18, 0.12 * (k / 4) - 0.18, 0.1), 0.02), "shade");
+  }
+  return scene;
+}
+
+// The slope of the straight line through the logarithms.
+double exponent(const std::vector<double>& numbers, const std::vector<double>& times) {
+  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    const double a = std::log(numbers[i]), b = std::log(times[i]);
+    n += 1.0;
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+void over_triangles(double largest) {
+  constexpr uint64_t rays = 1 << 21;
+  const std::vector<Beam> beams = lamps(4);
+  std::vector<double> triangles, build_s, trace_s;
+  std::printf("triangles,build_s,trace_s,segments_per_ray\n");
+  for (double wanted = 1e3; wanted <= 1.01 * largest; wanted *= 10.0) {
+    Scene scene = corrugated(static_cast<int>(std::lround(std::sqrt(0.5 * wanted))));
+    triangles.push_back(static_cast<double>(scene.meshes[0].triangles.size()));
+    std::optional<TraceableScene> traceable;
+    build_s.push_back(cpu_s_of([&] { traceable.emplace(std::move(scene)); }));
+    TraceOptions options;
+    options.rays = rays;
+    options.threads = threads;
+    TraceResult result;
+    trace_s.push_back(cpu_s_of([&] { result = trace(*traceable, {}, beams, {}, options); }));
+    std::printf("%.0f,%.4g,%.4g,%.3f\n", triangles.back(), build_s.back(), trace_s.back(),
+                static_cast<double>(result.segments) / static_cast<double>(result.rays));
+    std::fflush(stdout);
+  }
+  std::printf("exponent,%.3f,%.3f\n\n", exponent(triangles, build_s), exponent(triangles, trace_s));
+}
+
+void over_emitters() {
+  Scene scene = shaded_plate();
+  const FluxMapReceiver map("receiver", scene,
+                            make_surface_grid(scene, scene.instances_of("receiver"), {}));
+  const TraceableScene traceable(std::move(scene));
+  const Receiver* const receivers[] = {&map};
+  std::vector<double> emitters, same_rays_s, rays_each_s, gather_s;
+  std::printf("emitters,forward_16M_rays_s,forward_4096_rays_each_s,gather_s\n");
+  for (const int count : {1, 10, 100, 1000, 10000}) {
+    const std::vector<Beam> beams = lamps(count);
+    emitters.push_back(count);
+    TraceOptions options;
+    options.threads = threads;
+    options.rays = 1 << 24;
+    uint64_t rays = 0;
+    const double all_s =
+        cpu_s_of([&] { rays = trace(traceable, {}, beams, receivers, options).rays; });
+    same_rays_s.push_back(all_s * static_cast<double>(options.rays) / static_cast<double>(rays));
+    options.rays = 4096 * static_cast<uint64_t>(count);
+    rays_each_s.push_back(cpu_s_of([&] { trace(traceable, {}, beams, receivers, options); }));
+    GatherOptions gathering;
+    gathering.threads = threads;
+    gathering.points = 1;
+    gather_s.push_back(cpu_s_of([&] { gather_direct(traceable, {}, beams, map, gathering); }));
+    std::printf("%d,%.4g,%.4g,%.4g\n", count, same_rays_s.back(), rays_each_s.back(),
+                gather_s.back());
+    std::fflush(stdout);
+  }
+  std::printf("exponent,%.3f,%.3f,%.3f\n", exponent(emitters, same_rays_s),
+              exponent(emitters, rays_each_s), exponent(emitters, gather_s));
+}
+
+}  // namespace
+}  // namespace photorque
+
+int main(int count, char** arguments) {
+  photorque::over_triangles(count > 1 ? std::atof(arguments[1]) : 1e7);
+  photorque::over_emitters();
+}
