@@ -67,13 +67,15 @@ DarkCurrent CellCurve::dark(double diode_V) const {
   const double i1 = parameters_.saturation_1_A, i2 = parameters_.saturation_2_A;
   const double e1 = std::expm1(diode_V / scale_1_V_);
   const double g1 = i1 * (e1 + 1.0) / scale_1_V_;
-  DarkCurrent d{i1 * e1 + shunt_S_ * diode_V, g1 + shunt_S_, g1 / scale_1_V_};
+  DarkCurrent d{i1 * e1 + shunt_S_ * diode_V, g1 + shunt_S_, g1 / scale_1_V_,
+                g1 / (scale_1_V_ * scale_1_V_)};
   if (i2 > 0) {
     const double e2 = std::expm1(diode_V / scale_2_V_);
     const double g2 = i2 * (e2 + 1.0) / scale_2_V_;
     d.value_A += i2 * e2;
     d.slope_S += g2;
     d.curvature_A_V2 += g2 / scale_2_V_;
+    d.third_A_V3 += g2 / (scale_2_V_ * scale_2_V_);
   }
   if (breakdown_S_ > 0) {
     const double m = parameters_.breakdown_exponent;
@@ -83,6 +85,8 @@ DarkCurrent CellCurve::dark(double diode_V) const {
     d.slope_S += multiplied_S * (1.0 - m + m / y);
     d.curvature_A_V2 +=
         multiplied_S * m * ((m - 1.0) * y - (m + 1.0)) / (y * y * breakdown_size_V_);
+    d.third_A_V3 += multiplied_S * m * (m + 1.0) * ((m + 2.0) - (m - 1.0) * y) /
+                    (y * y * y * breakdown_size_V_ * breakdown_size_V_);
   }
   return d;
 }

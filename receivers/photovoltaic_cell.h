@@ -38,6 +38,7 @@ struct DarkCurrent {
   double value_A = 0.0;
   double slope_S = 0.0;  // > 0
   double curvature_A_V2 = 0.0;
+  double third_A_V3 = 0.0;
 };
 
 struct CellOperatingPoint {
@@ -56,6 +57,8 @@ class CellCurve {
 
   const CellParameters& parameters() const { return parameters_; }
   double thermal_V() const { return thermal_V_; }
+  // The lesser n V_t.
+  double least_scale_V() const { return scale_1_V_ < scale_2_V_ ? scale_1_V_ : scale_2_V_; }
 
   // D at a diode voltage > V_br.
   DarkCurrent dark(double diode_V) const;

@@ -37,11 +37,16 @@ void check(const ArrayWiring& wiring, size_t cells) {
   if (wiring.strings.empty()) throw InputError({}, "array", "no strings", "at least one");
 }
 
-// I(V) beyond a point of a string from its derivatives there.
-double taylor_A(const StringState& a, double voltage_V) {
-  const double conductance_S = 1.0 / a.slope_ohm;
-  const double h = (voltage_V - a.voltage_V) * conductance_S;
-  return a.current_A - h + 0.5 * a.curvature_V_A2 * h * h * conductance_S;
+// I(V) beyond a point of a string from its derivatives there: a straight line and an exponential,
+// as a shunt and a diode have it; to third order any curve.
+double extrapolated_A(const StringState& a, double voltage_V) {
+  const Slopes current = inverted(a.slopes());
+  const double h = voltage_V - a.voltage_V;
+  const double growth = current.curvature != 0.0 ? h * current.third / current.curvature : 0.0;
+  const double bend = std::abs(growth) > 1e-3 && std::abs(growth) < 30.0
+                          ? (std::expm1(growth) - growth) / (growth * growth)
+                          : 0.5 + growth / 6.0;
+  return a.current_A - h * (current.slope - h * current.curvature * bend);
 }
 
 // Between two points, from values and slopes.
@@ -85,13 +90,13 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
   node.x = x;
   if (by_current()) {
     StringState& state = node.strings[0];
-    strings_[0].at_current(x, regimes[0], state);
+    strings_[0].at_current(x, regimes[0], tolerance, state);
     node.y = state.voltage_V;
     node.slope = state.slope_ohm;
     node.curvature = state.curvature_V_A2;
+    node.third = state.third_V_A3;
     return;
   }
-  node.y = node.slope = node.curvature = 0.0;
   for (size_t s = 0; s < strings_.size(); ++s) {
     StringState& state = node.strings[s];
     double low_A = 0.0, high_A = strings_[s].largest_photocurrent_A();
@@ -100,14 +105,38 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
       high_A = low->strings[s].current_A;
       state.current_A = hermite_A(low->strings[s], high->strings[s], x);
     } else if (state.slope_ohm > 0.0) {
-      state.current_A = taylor_A(state, x);
+      state.current_A = extrapolated_A(state, x);
+    } else {
+      state.current_A = strings_[s].first_guess_A();
     }
     strings_[s].at_voltage(x, regimes[s], low_A, high_A, tolerance, state);
-    node.y += state.current_A;
-    const double g = 1.0 / state.slope_ohm;
-    node.slope += g;
-    if (g > 0) node.curvature += state.curvature_V_A2 * g * g * g;
   }
+  node.sum_strings();
+}
+
+void ArrayCurve::Node::sum_strings() {
+  y = 0.0;
+  Slopes sum;
+  for (const StringState& state : strings) {
+    y += state.current_A;
+    sum += inverted(state.slopes());
+  }
+  slope = sum.slope;
+  curvature = sum.curvature;
+  third = sum.third;
+}
+
+void ArrayCurve::enter(const Piece& piece, const Piece& last, double tolerance, Node& node) const {
+  if (by_current()) {
+    evaluate(piece.low_x, piece.regimes, node, tolerance);
+    return;
+  }
+  for (size_t s = 0; s < strings_.size(); ++s) {
+    if (piece.regimes[s] == last.regimes[s]) continue;
+    strings_[s].at_voltage(piece.low_x, piece.regimes[s], 0.0, strings_[s].largest_photocurrent_A(),
+                           tolerance, node.strings[s]);
+  }
+  node.sum_strings();
 }
 
 ArrayCurve::Switches ArrayCurve::switches_of(const StringCurve& string) const {
@@ -116,7 +145,7 @@ ArrayCurve::Switches ArrayCurve::switches_of(const StringCurve& string) const {
   StringState state = string.make_state();
   for (double& clamp : switches.clamp_x) {
     if (clamp == infinity) continue;
-    string.at_current(clamp, string.regime_at(clamp), state);
+    string.at_current(clamp, string.regime_at(clamp), fine, state);
     clamp = state.voltage_V;
   }
   if (string.has_blocking_clamp()) switches.blocked_x = string.open_circuit_V();
@@ -155,18 +184,21 @@ double ArrayCurve::find_end_x() const {
   low = std::max(low, 0.0);
   if (!(high > low)) return std::max(high, 0.0);
   Node node = make_node();
-  return falling_root(low, high, high, 1e-13, [&](double x) {
+  evaluate(high, regimes_at(high), node, fine);
+  if (node.y >= 0.0) return high;
+  const double guess = by_current() ? std::midpoint(low, high) : high + node.y / node.slope;
+  return falling_root(low, high, guess, 1e-9, [&](double x) {
     evaluate(x, regimes_at(x), node, fine);
-    return FunctionAt{node.y, -node.slope};
+    return FunctionAt{node.y, -node.slope, node.curvature, node.third};
   });
 }
 
 double ArrayCurve::x_at(double y) const {
   if (end_x_ == 0.0) return 0.0;
   Node node = make_node();
-  return falling_root(0.0, end_x_, 0.5 * end_x_, 1e-12, [&](double x) {
+  return falling_root(0.0, end_x_, 0.5 * end_x_, 1e-9, [&](double x) {
     evaluate(x, regimes_at(x), node, fine);
-    return FunctionAt{node.y - y, -node.slope};
+    return FunctionAt{node.y - y, -node.slope, node.curvature, node.third};
   });
 }
 

@@ -60,10 +60,12 @@ class ArrayCurve {
 
  private:
   struct Node {
-    double x = 0.0, y = 0.0, slope = 0.0, curvature = 0.0;
+    double x = 0.0, y = 0.0, slope = 0.0, curvature = 0.0, third = 0.0;
     std::vector<StringState> strings;
+    void sum_strings();
     double power_slope() const { return y - x * slope; }
     double power_curvature() const { return -2.0 * slope + x * curvature; }
+    double power_third() const { return 3.0 * curvature + x * third; }
   };
   struct Piece {
     double low_x = 0.0, high_x = 0.0;
@@ -83,6 +85,9 @@ class ArrayCurve {
   // piece at either side of x.
   void evaluate(double x, const std::vector<StringRegime>& regimes, Node& node, double tolerance,
                 const Node* low = nullptr, const Node* high = nullptr) const;
+  // From the end of `last` to the beginning of `piece` after it: only strings whose diodes switch
+  // there are evaluated again.
+  void enter(const Piece& piece, const Piece& last, double tolerance, Node& node) const;
   std::vector<StringRegime> regimes_at(double x) const;
   Switches switches_of(const StringCurve& string) const;
   double find_end_x() const;

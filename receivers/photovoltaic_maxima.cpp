@@ -1,6 +1,7 @@
 // The maxima of ArrayCurve: isolation of the zeros of P′ by bounds, as photovoltaic_curve.h tells.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "receivers/photovoltaic_curve.h"
@@ -14,15 +15,23 @@ class ArrayCurve::Search {
 
   Scan run() {
     if (curve_.end_x_ == 0.0) return {{ArrayPoint{}}, {}};
-    Node low = curve_.make_node(), high = curve_.make_node(), at = curve_.make_node();
-    for (const Piece& piece : curve_.pieces()) {
-      curve_.evaluate(piece.low_x, piece.regimes, low, coarse);
-      high = low;  // the start of its strings' solutions
-      curve_.evaluate(piece.high_x, piece.regimes, high, coarse);
-      search(low, high, piece, 0);
-      if (scan_.points.empty()) add_point(low);
-      add_points_between(piece, low, at);
+    Node low = curve_.make_node(), high;
+    const std::vector<Piece> pieces = curve_.pieces();
+    for (size_t k = 0; k < pieces.size(); ++k) {
+      const Piece& piece = pieces[k];
+      if (k == 0) {
+        curve_.evaluate(piece.low_x, piece.regimes, low, near);
+        add_point(low);
+      } else {
+        std::swap(low, high);
+        curve_.enter(piece, pieces[k - 1], near, low);
+      }
+      // Every point is the start of the next one's solution.
+      high = low;
+      add_points_between(piece, high);
+      curve_.evaluate(piece.high_x, piece.regimes, high, near);
       add_point(high);
+      search(low, high, piece, 0);
     }
     std::ranges::sort(scan_.points, {}, &ArrayPoint::voltage_V);
     std::ranges::sort(scan_.maxima, {}, &ArrayPoint::voltage_V);
@@ -30,8 +39,9 @@ class ArrayCurve::Search {
   }
 
  private:
-  // Tolerances of the strings' currents: for bounds, and for results.
-  static constexpr double coarse = 1e-6, fine = 1e-9;
+  // How close to the strings' currents their cells are evaluated, as a fraction: for bounds, and
+  // for points, whose currents are exact whatever it is.
+  static constexpr double near = 1e-6, any = std::numeric_limits<double>::infinity();
 
   struct Bounds {
     double low, high;
@@ -53,7 +63,7 @@ class ArrayCurve::Search {
       return;
     }
     Node& middle = node(depth);
-    curve_.evaluate(std::midpoint(low.x, high.x), piece.regimes, middle, coarse, &low, &high);
+    curve_.evaluate(std::midpoint(low.x, high.x), piece.regimes, middle, near, &low, &high);
     search(low, middle, piece, depth + 1);
     search(node(depth), high, piece, depth + 1);
   }
@@ -91,20 +101,20 @@ class ArrayCurve::Search {
     Node& at = node(depth);
     const double guess =
         low.x + (high.x - low.x) * low.power_slope() / (low.power_slope() - high.power_slope());
-    const double x = falling_root(low.x, high.x, guess, 1e-10, [&](double trial_x) {
-      curve_.evaluate(trial_x, piece.regimes, at, fine, &low, &high);
-      return FunctionAt{at.power_slope(), at.power_curvature()};
+    const double x = falling_root(low.x, high.x, guess, 1e-6, [&](double trial_x) {
+      curve_.evaluate(trial_x, piece.regimes, at, any, &low, &high);
+      return FunctionAt{at.power_slope(), at.power_curvature(), at.power_third()};
     });
-    // Along the tangent from the last trial, 1e-10 away.
-    scan_.maxima.push_back(curve_.point(x, at.y - (x - at.x) * at.slope));
+    const double h = x - at.x;  // from the last trial
+    const double y = at.y - h * (at.slope - h * (at.curvature / 2 + h * at.third / 6));
+    scan_.maxima.push_back(curve_.point(x, y));
   }
 
-  void add_points_between(const Piece& piece, const Node& low, Node& at) {
+  void add_points_between(const Piece& piece, Node& at) {
     const double width = piece.high_x - piece.low_x;
     const int steps = std::max(1, static_cast<int>(std::ceil(intervals_ * width / curve_.end_x_)));
-    if (steps > 1) at = low;
     for (int i = 1; i < steps; ++i) {
-      curve_.evaluate(piece.low_x + width * i / steps, piece.regimes, at, coarse);
+      curve_.evaluate(piece.low_x + width * i / steps, piece.regimes, at, any);
       add_point(at);
     }
   }

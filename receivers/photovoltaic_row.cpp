@@ -11,17 +11,12 @@ namespace {
 
 // Sums over the cells of a row, each at a current of its own.
 struct RowSums {
-  double conductance_S = 0.0;
-  double curvature_A_V2 = 0.0;  // of I(V)
+  Slopes current;  // of I(V)
 
-  void add(const ElementPoint& cell) {
-    const double g = 1.0 / cell.slope_ohm;
-    conductance_S += g;
-    curvature_A_V2 += cell.curvature_V_A2 * g * g * g;
-  }
+  void add(const ElementPoint& cell) { current += inverted(cell.slopes()); }
   ElementPoint at(double voltage_V) const {
-    const double slope = 1.0 / conductance_S;
-    return {voltage_V, slope, curvature_A_V2 * slope * slope * slope};
+    const Slopes voltage = inverted(current);
+    return {voltage_V, voltage.slope, voltage.curvature, voltage.third};
   }
 };
 
@@ -47,7 +42,7 @@ std::optional<ElementPoint> solve_together(std::span<const LitCell> cells, doubl
       sums.add(points[i]);
       tangents_A += cell_A[i] + points[i].voltage_V / points[i].slope_ohm;
     }
-    const double voltage_V = tangents_A / sums.conductance_S;
+    const double voltage_V = tangents_A / sums.current.slope;
     double spread_V = 0.0;
     for (size_t i = 0; i < cells.size(); ++i) {
       const double apart_V = points[i].voltage_V - voltage_V;
@@ -81,7 +76,7 @@ ElementPoint solve_nested(std::span<const LitCell> cells, double current_A,
       sums.add(cell_at(cells[i], i_A, states[i]));
       sum_A += i_A;
     }
-    return FunctionAt{sum_A, -sums.conductance_S, sums.curvature_A_V2};
+    return FunctionAt{sum_A, -sums.current.slope, sums.current.curvature, sums.current.third};
   };
   const double voltage_V =
       falling_root(low_V, high_V, std::midpoint(low_V, high_V), 1e-9, excess_A);

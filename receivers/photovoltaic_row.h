@@ -22,20 +22,25 @@ struct ElementPoint {
   double voltage_V = 0.0;
   double slope_ohm = 0.0;       // −dV/dI ≥ 0
   double curvature_V_A2 = 0.0;  // d²V/dI²
-};
+  double third_V_A3 = 0.0;      // d³V/dI³
 
-// What bounds over an interval need to know of one junction at each end: V_d(j) and its
-// derivatives.
-struct JunctionState {
-  double slope_ohm = 0.0;
-  double curvature_V_A2 = 0.0;
+  // Elements in series.
+  ElementPoint& operator+=(const ElementPoint& other) {
+    voltage_V += other.voltage_V;
+    slope_ohm += other.slope_ohm;
+    curvature_V_A2 += other.curvature_V_A2;
+    third_V_A3 += other.third_V_A3;
+    return *this;
+  }
+  Slopes slopes() const { return {slope_ohm, curvature_V_A2, third_V_A3}; }
 };
 
 // One cell at a current of either sign.
 inline ElementPoint cell_at(const LitCell& cell, double current_A, JunctionState& state) {
   const DiodeVoltage v = cell.table->at(cell.photocurrent_A - current_A);
   state = {v.slope_ohm, v.curvature_V_A2};
-  return {v.value_V - current_A * cell.series_ohm, v.slope_ohm + cell.series_ohm, v.curvature_V_A2};
+  return {v.value_V - current_A * cell.series_ohm, v.slope_ohm + cell.series_ohm, v.curvature_V_A2,
+          -v.third_V_A3};
 }
 
 // Bounds on V(I) of one cell between two states; `high_v` at the higher diode voltage.

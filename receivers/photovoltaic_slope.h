@@ -1,10 +1,33 @@
-// Bounds on the slope and curvature of a falling current–voltage curve over an interval, and how
-// they combine when elements are joined.
+// Derivatives of a falling current–voltage curve at a point, bounds on them over an interval, and
+// how they combine when elements are joined.
 #pragma once
 
 #include <algorithm>
 
 namespace photorque {
+
+// y falls with x: `slope` is −dy/dx ≥ 0, `curvature` d²y/dx² and `third` d³y/dx³.
+struct Slopes {
+  double slope = 0.0, curvature = 0.0, third = 0.0;
+
+  // V(I) of elements in series, I(V) of elements in parallel.
+  Slopes& operator+=(const Slopes& other) {
+    slope += other.slope;
+    curvature += other.curvature;
+    third += other.third;
+    return *this;
+  }
+};
+
+// From V(I) to I(V) or back: d³x/dy³ = (3 y″² − y′ y‴)/y′⁵, the others as below. A slope of ∞ (a
+// blocked string) becomes 0.
+inline Slopes inverted(const Slopes& s) {
+  const double inverse = 1.0 / s.slope;
+  if (inverse == 0.0) return {};
+  const double cube = inverse * inverse * inverse;
+  return {inverse, s.curvature * cube,
+          -(3.0 * s.curvature * s.curvature * inverse + s.third) * inverse * cube};
+}
 
 // y falls with x: `slope` is −dy/dx ≥ 0 and `curvature` is d²y/dx². As V(I) (ohm, V/A²) or as I(V)
 // (siemens, A/V²).

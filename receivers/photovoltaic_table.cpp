@@ -8,7 +8,9 @@ namespace {
 
 DiodeVoltage inverse(const DarkCurrent& d, double diode_V) {
   const double slope = 1.0 / d.slope_S;
-  return {diode_V, slope, -d.curvature_A_V2 * slope * slope * slope};
+  const double cube = slope * slope * slope;
+  return {diode_V, slope, -d.curvature_A_V2 * cube,
+          (3.0 * d.curvature_A_V2 * d.curvature_A_V2 * slope - d.third_A_V3) * slope * cube};
 }
 
 // D″ rises through zero once and D′ is least there; without breakdown D′ falls to the shunt's.
@@ -38,9 +40,14 @@ DiodeVoltageTable::DiodeVoltageTable(const CellCurve& curve, double largest_A)
     : curve_(curve),
       origin_A_(scale_of(curve)),
       first_bin_(std::bit_cast<uint64_t>(origin_A_) >> bin_shift),
-      largest_slope_ohm_(largest_slope(curve)),
-      forward_(tabulate(1.0, largest_A)),
-      reverse_(tabulate(-1.0, largest_A)) {}
+      largest_slope_ohm_(largest_slope(curve)) {
+  constexpr int most_octaves = 200;
+  const int octaves = std::min(
+      most_octaves, 1 + static_cast<int>(std::ceil(std::log2(largest_A / origin_A_ + 1.0))));
+  tabulate(1.0, octaves);
+  bins_ = piece_of_bin_.size();
+  tabulate(-1.0, octaves);
+}
 
 DiodeVoltage DiodeVoltageTable::exact(double dark_A) const {
   const double diode_V = curve_.diode_voltage_V(dark_A);
@@ -74,12 +81,8 @@ bool DiodeVoltageTable::good(const Piece& p, double sign, double low_s, double h
   return true;
 }
 
-DiodeVoltageTable::Side DiodeVoltageTable::tabulate(double sign, double largest_A) const {
+void DiodeVoltageTable::tabulate(double sign, int octaves) {
   constexpr int bins_per_octave = 1 << bins_per_octave_log2;
-  constexpr int most_octaves = 200;  // 2^200: the bins of a side fit 16 bits
-  const int octaves = std::min(
-      most_octaves, 1 + static_cast<int>(std::ceil(std::log2(largest_A / origin_A_ + 1.0))));
-  Side side;
   for (int octave = 0; octave < octaves; ++octave) {
     const double low = std::ldexp(origin_A_, octave);
     int bin = 0, width = bins_per_octave;
@@ -91,15 +94,14 @@ DiodeVoltageTable::Side DiodeVoltageTable::tabulate(double sign, double largest_
         width /= 2;
         continue;
       }
-      side.piece_of_bin.insert(side.piece_of_bin.end(), static_cast<size_t>(width),
-                               static_cast<uint16_t>(side.pieces.size()));
-      side.pieces.push_back(piece);
+      piece_of_bin_.insert(piece_of_bin_.end(), static_cast<size_t>(width),
+                           static_cast<uint32_t>(pieces_.size()));
+      pieces_.push_back(piece);
       bin += width;
       // The next piece may be as wide as its place in the octave allows.
       while (width < bins_per_octave && bin % (2 * width) == 0 && width <= bin) width *= 2;
     }
   }
-  return side;
 }
 
 }  // namespace photorque

@@ -13,7 +13,9 @@
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "receivers/photovoltaic_cell.h"
@@ -24,6 +26,13 @@ struct DiodeVoltage {
   double value_V = 0.0;
   double slope_ohm = 0.0;       // dV_d/dj = 1/D′ > 0
   double curvature_V_A2 = 0.0;  // d²V_d/dj²
+  double third_V_A3 = 0.0;      // d³V_d/dj³, good to 1e-3 of itself: for the speed of solutions
+};
+
+// What bounds over an interval need to know of one junction at each end.
+struct JunctionState {
+  double slope_ohm = 0.0;
+  double curvature_V_A2 = 0.0;
 };
 
 class DiodeVoltageTable {
@@ -36,23 +45,31 @@ class DiodeVoltageTable {
   DiodeVoltage at(double dark_A) const {
     const double s = std::abs(dark_A) + origin_A_;
     const uint64_t bin = (std::bit_cast<uint64_t>(s) >> bin_shift) - first_bin_;
-    const Side& side = dark_A < 0 ? reverse_ : forward_;
-    if (bin >= side.piece_of_bin.size()) return exact(dark_A);
-    const Piece& p = side.pieces[side.piece_of_bin[bin]];
+    if (bin >= bins_) return exact(dark_A);
+    const Piece& p = pieces_[piece_of_bin_[dark_A < 0 ? bin + bins_ : bin]];
     const double t = (s - p.start_A) * p.per_A;
-    // Horner's scheme for the polynomial, its derivative and half its second derivative.
-    double value = p.c[5], first = 0.0, half_second = 0.0;
+    // Horner's scheme for the polynomial and its derivatives over their factorials.
+    double value = p.c[5], first = 0.0, second = 0.0, third = 0.0;
     for (int k = 4; k >= 0; --k) {
-      half_second = half_second * t + first;
+      third = third * t + second;
+      second = second * t + first;
       first = first * t + value;
       value = value * t + p.c[k];
     }
-    return {value, std::copysign(p.per_A, dark_A) * first, 2 * p.per_A * p.per_A * half_second};
+    const double per_A = std::copysign(p.per_A, dark_A), per_A2 = per_A * per_A;
+    return {value, per_A * first, 2 * per_A2 * second, 6 * per_A2 * per_A * third};
   }
+
+  // The sum over cells in series, copies[i] times that of cell i at the dark current
+  // photocurrents_A[i] − current_A; `states` gets those of the single cells. Several cells at a
+  // time: all spans have one length, a multiple of `lanes`.
+  static constexpr size_t lanes = 4;
+  DiodeVoltage series_at(std::span<const double> photocurrents_A, std::span<const double> copies,
+                         double current_A, std::span<JunctionState> states) const;
 
   // The largest slope of the table's function, at the inflection of D.
   double largest_slope_ohm() const { return largest_slope_ohm_; }
-  size_t pieces() const { return forward_.pieces.size() + reverse_.pieces.size(); }
+  size_t pieces() const { return pieces_.size(); }
 
  private:
   static constexpr int bins_per_octave_log2 = 8;
@@ -63,13 +80,12 @@ class DiodeVoltageTable {
     double per_A = 0.0;  // 1/width
     double c[6] = {};    // powers of (s − start)/width
   };
-  struct Side {
-    std::vector<Piece> pieces;
-    std::vector<uint16_t> piece_of_bin;
-  };
+  DiodeVoltage series_one_by_one(std::span<const double> photocurrents_A,
+                                 std::span<const double> copies, double current_A,
+                                 std::span<JunctionState> states) const;
 
   DiodeVoltage exact(double dark_A) const;
-  Side tabulate(double sign, double largest_A) const;
+  void tabulate(double sign, int octaves);
   Piece fit(double sign, double low_s, double high_s) const;
   bool good(const Piece& piece, double sign, double low_s, double high_s) const;
 
@@ -77,7 +93,9 @@ class DiodeVoltageTable {
   double origin_A_;  // j₀: a power of two near the current scale of D at zero voltage
   uint64_t first_bin_;
   double largest_slope_ohm_;
-  Side forward_, reverse_;
+  uint64_t bins_ = 0;  // of each direction
+  std::vector<Piece> pieces_;
+  std::vector<uint32_t> piece_of_bin_;  // forwards, then backwards
 };
 
 }  // namespace photorque
