@@ -11,18 +11,11 @@ std::vector<FoundEffect> found_effects(const Decision& decision, const std::vect
                                        const std::vector<Candidate>& all);
 
 // The best of every set of names, best first, relative to the belief.
-std::vector<Alternative> alternatives(const std::vector<Trial>& trials,
+std::vector<Alternative> alternatives(const Decision& decision, const std::vector<Trial>& trials,
                                       const std::vector<Candidate>& all);
 
 // What was believed with an uncertainty, as the chosen trial has it.
 std::vector<FittedParameter> refined_beliefs(const Trial& chosen);
-
-// The empirical part of the chosen trial along the first run, against its variable.
-std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen,
-                                               const std::vector<Candidate>& all,
-                                               const std::vector<Observation>& runs);
-
-std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects);
 
 std::string sentence_of(const Diagnosis& diagnosis);
 

@@ -87,21 +87,28 @@ std::vector<GyroReading> gyro_readings() {
   std::vector<GyroReading> all;
   const std::array<std::array<int, 3>, 6> orders = {
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
-  for (const bool degrees : {false, true}) {
+  struct Unit {
+    double to_rad_s;
+    const char* text;
+  };
+  for (const Unit& unit : {Unit{1.0, ""}, Unit{degree_rad, "the gyro reads degrees per second"},
+                           Unit{1.0 / degree_rad,
+                                "the gyro reads radians per second, not the degrees of its "
+                                "header"}}) {
+    const int changed = unit.to_rad_s == 1.0 ? 0 : 1;
     for (const auto& order : orders) {
       for (int signs = 0; signs < 8; ++signs) {
-        GyroReading r{Mat3::Zero(), degrees ? 1 : 0, ""};
+        GyroReading r{Mat3::Zero(), changed, unit.text};
         std::string axes;
         for (int k = 0; k < 3; ++k) {
           const bool reversed = ((signs >> k) & 1) != 0;
           const int from = order[static_cast<size_t>(k)];
-          r.matrix(k, from) = (reversed ? -1.0 : 1.0) * (degrees ? degree_rad : 1.0);
+          r.matrix(k, from) = (reversed ? -1.0 : 1.0) * unit.to_rad_s;
           r.changes += (reversed ? 1 : 0) + (from != k ? 1 : 0);
           axes += std::string(k > 0 ? ", " : "") + (reversed ? "-" : "+") + "xyz"[from];
         }
-        if (degrees) r.text = "the gyro reads degrees per second";
-        if (r.changes > (degrees ? 1 : 0)) {
-          r.text += std::string(degrees ? " and " : "") + "the gyro's axes x, y, z are " + axes;
+        if (r.changes > changed) {
+          r.text += std::string(changed > 0 ? " and " : "") + "the gyro's axes x, y, z are " + axes;
         }
         all.push_back(r);
       }

@@ -9,8 +9,10 @@
 #include "diagnosis/account.h"
 #include "diagnosis/belief.h"
 #include "diagnosis/conventions.h"
+#include "diagnosis/empirical_torque.h"
 #include "diagnosis/holdout.h"
 #include "diagnosis/locate.h"
+#include "diagnosis/manoeuvre.h"
 #include "diagnosis/search.h"
 #include "diagnosis/whiteness.h"
 
@@ -85,7 +87,7 @@ Fit settle(const BelievedModel& believed, Data& data) {
 // and stay below the leaders.
 void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>& all,
                         const Data& data, int threads) {
-  constexpr size_t most_leaders = 8;
+  constexpr size_t most_leaders = 12;
   constexpr double within = 15.0;
   std::vector<size_t> order(trials.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -108,6 +110,7 @@ void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>
     // Some were fitted to averages or pieces only.
     if (t.fit.samples != samples) t = refit(t, all, data.train, t.fit.best.runs);
     const Fit held = fly(t.fit, data.held);
+    if (std::isfinite(held.chi2)) t.holdout_chi2_per_sample = held.chi2_per_sample();
     std::vector<RunStart> starts = t.fit.best.runs;
     starts.insert(starts.end(), held.best.runs.begin(), held.best.runs.end());
     shift[k] = refit(t, all, joint, starts).log_evidence - t.log_evidence;
@@ -194,6 +197,9 @@ Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecordi
   tell(options, "fitting every effect of the catalogue");
   std::vector<Trial> trials =
       search(belief, all, data.train, {options.threads, options.most_effects});
+  // Before the runs held back count: in one that goes astray there all explanations differ by
+  // chance.
+  const std::vector<Where::Dependence> depends_on = dependences(trials, all);
   tell(options, "comparing with what was held back");
   weigh_with_holdout(trials, all, data, options.threads);
   const Decision decision = decide(trials, all, data.train);
@@ -203,7 +209,10 @@ Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecordi
   d.verdict = decision.verdict;
   d.confidence = decision.confidence;
   d.where = locate(residuals_of(belief, data.train), data.train);
-  if (d.verdict != Verdict::consistent) d.where.depends_on = dependences(trials, all);
+  if (d.verdict == Verdict::missing_physics) d.where.depends_on = depends_on;
+  if (d.verdict == Verdict::unexplained) {
+    d.where.depends_on = of_unknown_law(depends_on, chosen, all);
+  }
   if (d.verdict == Verdict::missing_physics) d.effects = found_effects(decision, trials, all);
   if (d.verdict == Verdict::unexplained) d.empirical = empirical_torques(chosen, all, data.train);
   d.chi2_per_sample_before = belief.chi2_per_sample();
@@ -211,8 +220,8 @@ Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecordi
   d.samples = belief.samples;
   const Fit held_before = fly(belief, data.held), held_after = fly(chosen.fit, data.held);
   d.holdout = compare_holdout(held_before, held_after, data.held);
-  d.alternatives = alternatives(trials, all);
-  d.manoeuvres = manoeuvres(d.effects);
+  d.alternatives = alternatives(decision, trials, all);
+  d.manoeuvres = manoeuvres(d.effects, decision, trials, all, data.train);
   d.beliefs_refined = refined_beliefs(chosen);
   d.warnings = data.warnings;
   if (data.noise_corrected) {

@@ -74,6 +74,7 @@ struct Alternative {
   double log_evidence_relative = 0.0;  // natural logarithm, over that of "nothing is missing"
   std::optional<double> holdout_chi2_per_sample = {};
   std::string remark = {};  // why it was not chosen: "would feed energy"
+  bool chosen = false;      // its model is the one that is reported
 };
 
 // Recordings against the prediction, numbers never used in the fit.

@@ -82,11 +82,13 @@ Json holdout_json(const Holdout& holdout) {
           {"samples", holdout.samples}};
 }
 
-// "kind" joins several with " + "; "none" stands for nothing missing.
+// "kind" joins several with " + "; "none" stands for nothing missing, and a label says what is not
+// physics alone.
 Json alternative_json(const Alternative& alternative) {
   std::string kind;
   for (const std::string& k : alternative.kinds) kind += (kind.empty() ? "" : " + ") + k;
-  if (kind.empty()) kind = alternative.label.empty() ? "none" : alternative.label;
+  if (!alternative.label.empty()) kind = alternative.label;
+  if (kind.empty()) kind = "none";
   Json json = {{"kind", kind},
                {"log_evidence_relative", number(alternative.log_evidence_relative)}};
   json["holdout_chi2_per_sample"] =

@@ -85,6 +85,7 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
   };
   RecordingSeries result;
   result.recording = seen.name;
+  const double longest_gap_s = 5.0 * seen.duration_s() / static_cast<double>(seen.blocks());
   try {
     const Prediction a = flown(before), b = flown(after);
     for (Eigen::Index k = 0; k < 6; ++k) {
@@ -94,8 +95,13 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
       c.unit = k < 3 ? "arcsec" : "rad/s";
       c.residual_unit = c.unit;
       c.noise = noise_of(seen, k);
-      c.time_s = seen.time_s;
       for (size_t i = 0; i < seen.blocks(); ++i) {
+        const bool read = rows_of(seen, i, k) > 0.0;
+        // A camera may see every second row only: what was not read is left out, and a longer gap
+        // stays one.
+        const bool in_gap = !c.time_s.empty() && seen.time_s[i] - c.time_s.back() > longest_gap_s;
+        if (!read && !in_gap) continue;
+        c.time_s.push_back(seen.time_s[i]);
         c.residual_before.push_back(in_unit(a.residual[i], seen, i, k));
         c.residual_after.push_back(in_unit(b.residual[i], seen, i, k));
         if (k < 3) continue;

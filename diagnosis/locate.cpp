@@ -129,4 +129,22 @@ std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
   return result;
 }
 
+std::vector<Where::Dependence> of_unknown_law(std::vector<Where::Dependence> depends_on,
+                                              const Trial& chosen,
+                                              const std::vector<Candidate>& all) {
+  for (const size_t c : chosen.candidates) {
+    if (!all[c].empirical()) continue;
+    const auto known = std::find_if(depends_on.begin(), depends_on.end(),
+                                    [&](const auto& d) { return d.variable == all[c].variable; });
+    if (known == depends_on.end()) {
+      depends_on.insert(depends_on.begin(), {all[c].variable, 0.0});
+    } else {
+      std::rotate(depends_on.begin(), known, known + 1);
+    }
+  }
+  // A torque that no state of the platform explains is one of time, as any torque can be said.
+  if (depends_on.empty()) depends_on.push_back({"time", 0.0});
+  return depends_on;
+}
+
 }  // namespace photorque

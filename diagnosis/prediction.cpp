@@ -133,6 +133,8 @@ class Comparison {
     if (!keep_) return;
     result_.residual.push_back(white);
     result_.states.push_back(state);
+    result_.camera_offset_lab_rad.emplace_back(state.lab_from_body * camera_offset_body);
+    result_.gyro_rad_s.push_back(gyro_rad_s);
   }
 
   void put(int reading, double off, double weight, WhiteRow& white) {

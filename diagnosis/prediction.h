@@ -27,6 +27,8 @@ struct Prediction {
   // Filled on request.
   std::vector<WhiteRow> residual;
   std::vector<PlatformState> states;
+  std::vector<Vec3> camera_offset_lab_rad;  // from the state's attitude to what the camera reports
+  std::vector<Vec3> gyro_rad_s;             // what the gyro reads
 };
 
 struct PredictionOptions {

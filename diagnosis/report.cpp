@@ -221,23 +221,24 @@ std::string ranking(const Diagnosis& d) {
     std::ranges::sort(kinds);
     std::string label;
     for (const std::string& k : a.kinds) label += (label.empty() ? "" : " + ") + spoken(k);
-    if (!a.label.empty()) label = a.label;
+    if (!a.label.empty()) label = spoken(a.label);
     if (label.empty()) label = "nothing missing";
     std::string note = a.remark;
     if (note.empty() && a.holdout_chi2_per_sample) {
       note = "χ² held out " + plain_number(*a.holdout_chi2_per_sample);
     }
-    const bool is_chosen = d.verdict != Verdict::unexplained && kinds == chosen && a.label.empty();
+    const bool named = d.verdict != Verdict::unexplained && kinds == chosen && a.label.empty();
+    const bool is_chosen = a.chosen || named;
     bars.push_back({label, a.log_evidence_relative, note, is_chosen});
   }
-  return tag(
-      "section",
-      tag("h2", "Ranking of the alternatives") +
-          tag("p", std::string("Longer is better; a lead of 3 makes the odds 20 to 1.") +
-                       (d.verdict == Verdict::unexplained ? " None of the catalogue was chosen."
-                                                          : " The chosen one is blue.")) +
-          bar_chart_svg(bars, "log evidence over “nothing missing”",
-                        "Log evidence of the alternatives"));
+  return tag("section",
+             tag("h2", "Ranking of the alternatives") +
+                 tag("p", std::string("Longer is better; a lead of 3 makes the odds 20 to 1.") +
+                              (d.verdict == Verdict::unexplained
+                                   ? " No name was chosen: the model that was kept is blue."
+                                   : " The chosen one is blue.")) +
+                 bar_chart_svg(bars, "log evidence over “nothing missing”",
+                               "Log evidence of the alternatives"));
 }
 
 std::string channel_charts(const ChannelSeries& channel, const RecordingSeries& recording) {

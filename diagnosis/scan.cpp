@@ -42,7 +42,9 @@ std::vector<size_t> peaks(const std::vector<double>& value, size_t most) {
   return found;
 }
 
-// Power of the whitened residuals of all channels of one run on an even grid of frequencies.
+// Power of the whitened residuals of all channels of one run on an even grid of frequencies. The
+// gyro counts in body axes and, turned, in lab axes: what shakes from outside has its one frequency
+// there, while a platform that turns sees it split.
 void add_power(const Prediction& prediction, const Observation& seen, double step_Hz,
                std::vector<double>& power) {
   const size_t blocks = prediction.residual.size();
@@ -50,18 +52,20 @@ void add_power(const Prediction& prediction, const Observation& seen, double ste
   for (size_t i = 0; i < blocks; ++i) {
     turn[i] = std::polar(1.0, 2.0 * pi * step_Hz * seen.time_s[i]);
   }
-  std::array<std::vector<double>, 6> channel;
-  for (size_t k = 0; k < 6; ++k) {
-    for (const WhiteRow& row : prediction.residual) {
-      const double r = row[static_cast<Eigen::Index>(k)];
-      channel[k].push_back(std::isfinite(r) ? r : 0.0);
-    }
+  constexpr size_t channels = 9;
+  std::array<std::vector<double>, channels> channel;
+  for (size_t i = 0; i < blocks; ++i) {
+    const WhiteRow white =
+        prediction.residual[i].unaryExpr([](double r) { return std::isfinite(r) ? r : 0.0; });
+    const Vec3 lab = prediction.states[i].lab_from_body * Vec3(white.tail<3>());
+    for (Eigen::Index k = 0; k < 6; ++k) channel[static_cast<size_t>(k)].push_back(white[k]);
+    for (Eigen::Index k = 0; k < 3; ++k) channel[static_cast<size_t>(6 + k)].push_back(lab[k]);
   }
   for (double& at : power) {
-    std::array<std::complex<double>, 6> sum{};
+    std::array<std::complex<double>, channels> sum{};
     for (size_t i = 0; i < blocks; ++i) {
       phasor[i] *= turn[i];
-      for (size_t k = 0; k < 6; ++k) sum[k] += channel[k][i] * phasor[i];
+      for (size_t k = 0; k < channels; ++k) sum[k] += channel[k][i] * phasor[i];
     }
     for (const auto& s : sum) at += std::norm(s) / static_cast<double>(blocks);
   }
@@ -225,8 +229,8 @@ std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observa
   const auto slow = std::min(power.size(), static_cast<size_t>(slow_Hz / step_Hz));
   std::fill(power.begin(), power.begin() + static_cast<std::ptrdiff_t>(slow), 0.0);
   for (const size_t i : peaks(power, most)) {
-    // Power 1 for each channel is noise; the largest of thousands stays below this.
-    if (power[i] > 20.0) result.push_back(static_cast<double>(i + 1) * step_Hz);
+    // Power 1 for each of nine channels is noise; the largest of thousands stays below this.
+    if (power[i] > 30.0) result.push_back(static_cast<double>(i + 1) * step_Hz);
   }
   return result;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "diagnosis/averaging.h"
 #include "diagnosis/scan.h"
 #include "diagnosis/screen.h"
 #include "diagnosis/whiteness.h"
@@ -30,12 +31,10 @@ struct Runs {
   std::vector<Observation> all;
   size_t pieces = 1;  // of each recording
 
-  // Averaged over blocks: enough for what is slow, and several times faster.
-  std::vector<Observation> averaged() const {
+  // In fewer blocks: enough for changes of the fit that are slow, and several times faster.
+  std::vector<Observation> averaged(const Fit& about) const {
     constexpr size_t blocks = 1000;
-    std::vector<Observation> result;
-    for (const Observation& seen : all) result.push_back(seen.averaged(blocks / pieces));
-    return result;
+    return averaged_about(about, all, blocks / pieces);
   }
 };
 
@@ -119,7 +118,7 @@ std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>
                                int threads) {
   constexpr size_t most_refits = 4;
   const std::vector<Observation>& runs = run_set.all;
-  const std::vector<Observation> slow_runs = run_set.averaged();
+  const std::vector<Observation> slow_runs = run_set.averaged(parent.fit);
   std::vector<double> lines_Hz;
   std::vector<size_t> worth_it;
   parallel_for(2, threads, [&](size_t i) {

@@ -50,51 +50,110 @@ bool is_fitted(const Candidate& c, size_t p) {
   return c.scale[p] > 0.0;
 }
 
-// ln p(θ) |H|^(−1/2) of the Laplace approximation. The fit's own prior is far wider than what is
-// believed of an effect's size; here it is replaced by one of the expected size, or of the size
-// found where that is larger.
+// ln |A|, of a positive definite matrix whose rows have different units.
+double log_determinant(const Eigen::MatrixXd& A) {
+  const Eigen::VectorXd scale = A.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd scaled =
+      scale.cwiseInverse().asDiagonal() * A * scale.cwiseInverse().asDiagonal();
+  return scaled.ldlt().vectorD().cwiseMax(1e-12).array().log().sum() +
+         2.0 * scale.array().log().sum();
+}
+
+// The strengths of all candidates of a trial: the parameters that are not searched, in units of
+// what is expected of them.
+struct Strengths {
+  std::vector<Eigen::Index> at;  // among the shared parameters
+  std::vector<size_t> owner;     // which of the trial's candidates
+  std::vector<double> value, scale;
+};
+
+// ln ∫ N(θ; 0, S) … over the widths of S: nobody knows beforehand how strong an effect is that was
+// left out, so the width of the prior of each one's strengths, a common factor of the expected
+// ones, is uniform in its logarithm from a millionth to ten times. With θ̂ and C from a fit with
+// a flat prior, a width contributes N(θ̂; 0, C + S) but for a constant.
+double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covariance,
+                             size_t candidates) {
+  const auto n = static_cast<Eigen::Index>(s.at.size());
+  if (n == 0) return 0.0;
+  Eigen::MatrixXd C(n, n);
+  Eigen::VectorXd theta(n);
+  double result = 0.0;
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const auto i = static_cast<size_t>(a);
+    theta[a] = s.value[i] / s.scale[i];
+    result -= std::log(s.scale[i]);
+    for (Eigen::Index b = 0; b < n; ++b) {
+      const auto j = static_cast<size_t>(b);
+      C(a, b) = covariance(s.at[i], s.at[j]) / (s.scale[i] * s.scale[j]);
+    }
+  }
+  constexpr int widths = 15;
+  const auto width = [](int k) { return std::pow(10.0, -6.0 + 0.5 * k); };
+  std::vector<int> chosen(candidates, widths - 3);
+  const auto at = [&]() {
+    Eigen::MatrixXd sum = C;
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const double w = width(chosen[s.owner[static_cast<size_t>(a)]]);
+      sum(a, a) += w * w;
+    }
+    const Eigen::VectorXd unit = sum.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = unit.asDiagonal() * sum * unit.asDiagonal();
+    const Eigen::VectorXd off = unit.cwiseProduct(theta);
+    return -0.5 * (log_determinant(sum) + off.dot(scaled.ldlt().solve(off)));
+  };
+  // Candidate by candidate, the others at their best width.
+  for (const bool last : {false, true}) {
+    for (size_t c = 0; c < candidates; ++c) {
+      std::vector<double> value;
+      for (chosen[c] = 0; chosen[c] < widths; ++chosen[c]) value.push_back(at());
+      const auto best = std::max_element(value.begin(), value.end());
+      chosen[c] = static_cast<int>(best - value.begin());
+      if (!last) continue;
+      double mean = 0.0;
+      for (const double v : value) mean += std::exp(v - *best) / widths;
+      result += std::log(mean);
+    }
+  }
+  return result + at();
+}
+
+// Laplace's approximation of the evidence. The fit's own prior is far wider than what is believed
+// of an effect; here it is replaced.
 double log_evidence(const Trial& trial, const std::vector<Candidate>& all) {
   const Fit& fit = trial.fit;
   if (!std::isfinite(fit.chi2)) return -1e300;
   Eigen::MatrixXd hessian = fit.hessian;
   double result = -0.5 * fit.chi2;
+  Strengths strengths;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];
     result += c.empirical() ? log_prior_empirical : log_prior_effect;
     const std::vector<Eigen::Index> where = shared_indices(trial, i);
     size_t k = 0;
-    double squares = 0.0;
-    int count = 0;
-    for (size_t p = 0; p < c.scale.size(); ++p) {
-      if (!is_fitted(c, p) || c.searched[p]) continue;
-      const double value =
-          fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value / c.scale[p];
-      squares += value * value;
-      ++count;
-    }
-    const double grown = count > 0 ? std::max(1.0, std::sqrt(squares / count)) : 1.0;
-    if (count > 0) result -= 0.5 * std::min<double>(count, squares);
     for (size_t p = 0; p < c.scale.size(); ++p) {
       if (!is_fitted(c, p)) continue;
-      const double sigma = c.scale[p] * (c.searched[p] ? 1.0 : grown);
-      const double wide = c.scale[p] * fit_prior_widths;
-      const Eigen::Index at = fit.first_shared + where[k++];
-      hessian(at, at) += 1.0 / (sigma * sigma) - 1.0 / (wide * wide);
+      const Eigen::Index at = where[k++];
+      if (!c.searched[p]) {
+        strengths.at.push_back(at);
+        strengths.owner.push_back(i);
+        strengths.value.push_back(
+            fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value);
+        strengths.scale.push_back(c.scale[p]);
+        if (c.lowest[p] == 0.0) result += std::log(2.0);  // half of a Gaussian
+        continue;
+      }
+      const double sigma = c.scale[p], wide = sigma * fit_prior_widths;
+      hessian(fit.first_shared + at, fit.first_shared + at) +=
+          1.0 / (sigma * sigma) - 1.0 / (wide * wide);
       result -= std::log(sigma);
-      if (c.lowest[p] == 0.0 && !c.searched[p]) result += std::log(2.0);  // half of a Gaussian
     }
     for (size_t s = 0; s < c.start.states.size(); ++s) {
       result -= static_cast<double>(fit.best.runs.size()) * std::log(0.01);  // prior of its start
     }
   }
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd scaled =
-      scale.cwiseInverse().asDiagonal() * hessian * scale.cwiseInverse().asDiagonal();
-  const Eigen::VectorXd d = scaled.ldlt().vectorD();
-  for (Eigen::Index i = 0; i < d.size(); ++i) {
-    result -= 0.5 * std::log(std::max(d[i], 1e-12)) + std::log(scale[i]);
-  }
-  return result;
+  result -= 0.5 * log_determinant(hessian);
+  return result +
+         log_strength_evidence(strengths, fit.shared_covariance(), trial.candidates.size());
 }
 
 std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) {

@@ -1,6 +1,7 @@
 // Candidates that may explain what is left, and models that contain some of them, fitted in full.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ struct Trial {
   // Laplace's approximation (MacKay, Information Theory, Inference, and Learning Algorithms, 2003,
   // eq. 28.5), with the prior probability of the candidates' names.
   double log_evidence = 0.0;
-  std::string objection;  // why physics forbids it; empty: nothing
+  std::string objection;                               // why physics forbids it; empty: nothing
+  std::optional<double> holdout_chi2_per_sample = {};  // where it flew what was held back
 };
 
 Trial believed_trial(const Fit& belief);

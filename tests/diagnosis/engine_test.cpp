@@ -1,0 +1,190 @@
+// The engine on recordings of a rigid body that this file integrates by itself:
+// one verdict of each kind, and a recording whose rates are in another unit
+// than its header says.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "attitude/disturbance_kind.h"
+#include "core/constants.h"
+#include "diagnosis/diagnose.h"
+
+namespace photorque {
+namespace {
+
+const Vec3 offset_m(2e-6, -1e-6, -3e-5), field_lab_T(1e-6, 2.2e-5, -4.2e-5);
+constexpr double mass_kg = 7.0, gravity_m_s2 = 9.80665, drag_N_m_s = 2e-5;
+
+struct State {
+  Quat lab_from_body;
+  Vec3 rate_rad_s;
+};
+
+// What acts besides gravity and drag, in body axes.
+using Extra = std::function<Vec3(const State&)>;
+
+Mat3 inertia_kg_m2() {
+  return Vec3(0.11, 0.12, 0.19).asDiagonal();
+}
+
+// d(q, ω)/dt by Euler's equation; q as (x, y, z, w).
+std::pair<Eigen::Vector4d, Vec3> slope(const State& s, const Extra& extra) {
+  const Vec3 gravity = s.lab_from_body.conjugate() * Vec3(0, 0, -gravity_m_s2);
+  const Vec3 torque = mass_kg * offset_m.cross(gravity) - drag_N_m_s * s.rate_rad_s + extra(s);
+  const Mat3 inertia = inertia_kg_m2();
+  const Quat rate(0.0, s.rate_rad_s.x(), s.rate_rad_s.y(), s.rate_rad_s.z());
+  return {0.5 * (s.lab_from_body * rate).coeffs(),
+          inertia.inverse() * (torque - s.rate_rad_s.cross(inertia * s.rate_rad_s))};
+}
+
+// The classical Runge–Kutta step.
+State after(const State& s, double step_s, const Extra& extra) {
+  const auto along = [&](double h, const std::pair<Eigen::Vector4d, Vec3>& d) {
+    State moved = s;
+    moved.lab_from_body.coeffs() += h * d.first;
+    moved.rate_rad_s += h * d.second;
+    return moved;
+  };
+  const auto a = slope(s, extra), b = slope(along(0.5 * step_s, a), extra);
+  const auto c = slope(along(0.5 * step_s, b), extra), d = slope(along(step_s, c), extra);
+  State next = along(step_s / 6.0, {a.first + 2.0 * b.first + 2.0 * c.first + d.first,
+                                    a.second + 2.0 * b.second + 2.0 * c.second + d.second});
+  next.lab_from_body.normalize();
+  return next;
+}
+
+// 120 s at 5 Hz as a camera and a gyro with the contract's noise see them.
+NamedRecording recorded(unsigned seed, const Extra& extra, double gyro_unit = 1.0) {
+  constexpr double interval_s = 0.2;
+  constexpr int rows = 600, steps = 10;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const auto scatter = [&](const Vec3& sigma) {
+    const double x = normal(random), y = normal(random), z = normal(random);
+    return Vec3(sigma.x() * x, sigma.y() * y, sigma.z() * z);
+  };
+  Recording recording;
+  std::vector<Channel> channels = {{"q_w", {}}, {"q_x", {}}, {"q_y", {}}, {"q_z", {}}};
+  for (const char* name : {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"}) {
+    channels.push_back({name, {}});
+  }
+  State state{Quat(Eigen::AngleAxisd(0.3 * seed, Vec3::UnitZ())) *
+                  Quat(Eigen::AngleAxisd(0.12, Vec3::UnitX())),
+              Vec3(0.01, -0.02, 0.15)};
+  for (int row = 0; row < rows; ++row) {
+    recording.time_s.push_back(interval_s * row);
+    const Vec3 off = arcsecond_rad * scatter(Vec3(37, 37, 12));
+    const Quat seen = Quat(Eigen::AngleAxisd(off.norm(), off.normalized())) * state.lab_from_body;
+    const Vec3 rate = gyro_unit * (state.rate_rad_s + scatter(Vec3::Constant(2e-4)));
+    const double cells[] = {seen.w(), seen.x(), seen.y(), seen.z(), rate.x(), rate.y(), rate.z()};
+    for (size_t c = 0; c < channels.size(); ++c) channels[c].values.push_back(cells[c]);
+    for (int k = 0; k < steps; ++k) state = after(state, interval_s / steps, extra);
+  }
+  recording.channels = channels;
+  recording.report.rows_read = recording.report.rows_kept = rows;
+  recording.report.median_interval_s = interval_s;
+  return {"run" + std::to_string(seed) + ".csv", recording};
+}
+
+// Gravity and drag with the uncertainty of a careful user.
+BelievedModel belief() {
+  BelievedModel believed;
+  Platform& platform = believed.model.platform;
+  platform.topology = Topology::tabletop;
+  platform.mass_kg = mass_kg;
+  platform.inertia_kg_m2 = inertia_kg_m2();
+  believed.model.environment.magnetic_field_lab_T = field_lab_T;
+  const DisturbanceContext context{platform, believed.model.environment};
+  Disturbance unbalance =
+      make_disturbance_of("static_unbalance", {{"offset_m", {2.3e-6, -1.2e-6, -3.1e-5}}}, context);
+  for (Parameter& p : unbalance.parameters) p.sigma = 1e-6;
+  Disturbance drag =
+      make_disturbance_of("bearing_drag", {{"coefficient_N_m_s", {1.8e-5}}}, context);
+  drag.parameters[0].sigma = 4e-6;
+  believed.model.disturbances = {unbalance, drag};
+  return believed;
+}
+
+Diagnosis diagnosed(const Extra& extra, double gyro_unit = 1.0) {
+  DiagnoseOptions options;
+  options.most_effects = 1;
+  return diagnose(belief(), {recorded(1, extra, gyro_unit)}, {recorded(2, extra, gyro_unit)},
+                  options);
+}
+
+Vec3 nothing(const State&) {
+  return Vec3::Zero();
+}
+
+TEST(Diagnose, FindsNothingWhereNothingIsMissing) {
+  const Diagnosis d = diagnosed(nothing);
+  EXPECT_EQ(d.verdict, Verdict::consistent);
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_TRUE(d.warnings.empty());
+  EXPECT_NEAR(d.chi2_per_sample_after, 1.0, 5.0 * std::sqrt(2.0 / 3600.0));
+  EXPECT_EQ(d.samples, 3600);
+}
+
+TEST(Diagnose, NamesADipoleAndMeasuresIt) {
+  const Vec3 dipole_A_m2(0.02, -0.03, 0.01);
+  const Diagnosis d = diagnosed(
+      [&](const State& s) { return dipole_A_m2.cross(s.lab_from_body.conjugate() * field_lab_T); });
+  ASSERT_EQ(d.verdict, Verdict::missing_physics);
+  ASSERT_EQ(d.effects.size(), 1u);
+  EXPECT_EQ(d.effects[0].kind, "magnetic_dipole");
+  EXPECT_GT(d.effects[0].probability, 0.9);
+  const FittedParameter& found = d.effects[0].parameters.at(0);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const auto i = static_cast<size_t>(k);
+    EXPECT_NEAR(found.value[i], dipole_A_m2[k], 4.0 * found.sigma[i]);
+    EXPECT_LT(found.sigma[i], 0.005);
+  }
+  ASSERT_TRUE(d.holdout.has_value());
+  EXPECT_LT(d.holdout->chi2_per_sample_after, 1.15);
+  EXPECT_GT(d.holdout->chi2_per_sample_before, 1.5);
+  // The best explanation flew what was held back.
+  ASSERT_TRUE(d.alternatives.front().holdout_chi2_per_sample.has_value());
+  EXPECT_NEAR(*d.alternatives.front().holdout_chi2_per_sample, 1.0, 0.15);
+}
+
+TEST(Diagnose, CallsCoggingUnexplainedAndMeasuresItsTorque) {
+  constexpr double amplitude_N_m = 1e-5;
+  const Diagnosis d = diagnosed([&](const State& s) {
+    const Vec3 nose = s.lab_from_body * Vec3::UnitX();
+    const double heading = std::atan2(nose.y(), nose.x());
+    const Vec3 up = s.lab_from_body.conjugate() * Vec3::UnitZ();
+    return Vec3(amplitude_N_m * std::sin(3.0 * heading) * up);
+  });
+  ASSERT_EQ(d.verdict, Verdict::unexplained);
+  EXPECT_TRUE(d.effects.empty());
+  ASSERT_FALSE(d.where.depends_on.empty());
+  EXPECT_EQ(d.where.depends_on.front().variable, "heading");
+  ASSERT_EQ(d.empirical.size(), 1u);
+  const EmpiricalTorque& torque = d.empirical.front();
+  ASSERT_EQ(torque.standard_error_N_m.size(), torque.at.size());
+  for (size_t i = 0; i < torque.at.size(); ++i) {
+    const double true_N_m = amplitude_N_m * std::sin(3.0 * torque.at[i] * degree_rad);
+    const double error_N_m = torque.standard_error_N_m[i].z();
+    EXPECT_LT(error_N_m, 1e-6);
+    // A bin is ten degrees wide: its mean is 1 % below the wave's top.
+    EXPECT_NEAR(torque.torque_N_m[i].z(), true_N_m, 4.0 * error_N_m + 0.12 * amplitude_N_m);
+  }
+}
+
+// A header in degrees over numbers in radians arrives here divided by 57, the
+// reverse as 57 times too much.
+TEST(Diagnose, ReportsRatesInAnotherUnitAsAConventionError) {
+  for (const double unit : {degree_rad, 1.0 / degree_rad}) {
+    const Diagnosis d = diagnosed(nothing, unit);
+    EXPECT_EQ(d.verdict, Verdict::consistent);
+    ASSERT_EQ(d.warnings.size(), 2u);
+    EXPECT_NE(d.warnings[0].find("convention"), std::string::npos);
+    EXPECT_NE(d.warnings[0].find(unit < 1.0 ? "radians per second" : "degrees per second"),
+              std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace photorque
