@@ -65,6 +65,12 @@ double step_battery(const Battery& battery, double surplus_W, double step_s, dou
 
 }  // namespace
 
+double LampDroop::light_at(double time_s) const {
+  const double faded = depth * -std::expm1(-time_s / time_constant_s);
+  const double warmth_K = rise_K * -std::expm1(-time_s / rise_time_constant_s);
+  return (1.0 - faded) * (1.0 - roll_off_1_K * warmth_K);
+}
+
 DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& s) {
   const double light_W_m2 =
       s.lamps_on ? array.power_on_cells_W.value / array.area_of_cells_m2 : 0.0;
@@ -72,13 +78,13 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
   const double hottest_K =
       s.heat ? temperature_K + s.heat->absorptance * light_W_m2 / s.heat->convection_W_m2_K
              : temperature_K;
-  const PowerSurface surface(design, array, temperature_K, hottest_K, 1.0 - s.droop.depth);
+  const PowerSurface surface(design, array, temperature_K, hottest_K, s.droop.least_light());
   DayResult day;
   double charge_J = s.battery.capacity_J * s.battery.charge;
   const auto steps = static_cast<int64_t>(std::ceil(s.duration_s / s.step_s));
   for (int64_t k = 0; k <= steps; ++k) {
     const double time_s = static_cast<double>(k) * s.step_s;
-    const double light = 1.0 - s.droop.depth * (1.0 - std::exp(-time_s / s.droop.time_constant_s));
+    const double light = s.droop.light_at(time_s);
     const double array_W =
         s.lamps_on ? s.tracker_efficiency * surface.at(temperature_K, light) : 0.0;
     day.time_s.push_back(time_s);
@@ -123,6 +129,14 @@ DaySettings read_day(const Settings& s) {
   day.droop.depth = s.number_or("droop_depth", 0.0, {0.0, 1.0, false, true});
   day.droop.time_constant_s =
       s.number_or("droop_time_s", day.droop.time_constant_s, Range::positive());
+  day.droop.roll_off_1_K = s.number_or("roll_off_per_K", 0.0, {0.0, 0.1});
+  day.droop.rise_K = s.number_or("lamp_rise_K", 0.0, {0.0, 300.0});
+  day.droop.rise_time_constant_s =
+      s.number_or("lamp_rise_time_s", day.droop.rise_time_constant_s, Range::positive());
+  if (!(day.droop.roll_off_1_K * day.droop.rise_K < 1.0)) {
+    throw s.error("roll_off_per_K", "a roll-off that leaves no light at lamp_rise_K",
+                  "roll_off_per_K * lamp_rise_K < 1");
+  }
   if (s.flag_or("heat", true)) {
     CellHeat heat;
     heat.air_K = s.number_or("air_K", heat.air_K, Range::positive());

@@ -17,11 +17,18 @@ struct CellHeat {
   double capacity_J_m2_K = 2000.0;  // C: a cell with 1 mm of glass has about 2 kJ/m²K
 };
 
-// Light of the lamps over that when switched on: (1 − depth (1 − e^{−t/τ})) (1 − roll-off (T − T₀))
-// with the lamps' excess temperature folded into depth and τ.
+// Light of the lamps over that when switched on: (1 − depth (1 − e^{−t/τ})) (1 − k ΔT(t)), the
+// first factor as measured on a lamp, the second from its junctions' rise of temperature
+// ΔT(t) = rise (1 − e^{−t/τ_h}) and the roll-off k of its data sheet. Both are 1 by default.
 struct LampDroop {
   double depth = 0.0;  // in [0, 1)
   double time_constant_s = 600.0;
+  double roll_off_1_K = 0.0;  // k ≥ 0, k · rise < 1; red LEDs lose about 0.5 % per kelvin
+  double rise_K = 0.0;        // at the end, ≥ 0
+  double rise_time_constant_s = 300.0;
+
+  double light_at(double time_s) const;
+  double least_light() const { return (1.0 - depth) * (1.0 - roll_off_1_K * rise_K); }
 };
 
 struct Battery {
@@ -55,9 +62,9 @@ struct DayResult {
 DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& settings);
 
 // The table `[array.day]`, all keys optional: load_W, duration_s, converter_efficiency,
-// battery_Wh, battery_charge, charge_efficiency, discharge_efficiency; droop_depth, droop_time_s;
-// and, for the cells' temperature, `heat = true` with air_K, convection_W_m2_K, absorptance,
-// capacity_J_m2_K.
+// battery_Wh, battery_charge, charge_efficiency, discharge_efficiency; droop_depth, droop_time_s,
+// roll_off_per_K, lamp_rise_K, lamp_rise_time_s; and, for the cells' temperature, `heat = true`
+// with air_K, convection_W_m2_K, absorptance, capacity_J_m2_K.
 DaySettings read_day(const Settings& day);
 
 Product day_product(const DayResult& day);

@@ -43,6 +43,22 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
   return stages;
 }
 
+namespace {
+
+// A bar as strokes up and down, close enough to fill it.
+Plot::Curve bar(const LossStage& stage, int number) {
+  constexpr int strokes = 350;
+  constexpr double width = 0.8;
+  Plot::Curve curve{std::to_string(number) + " " + stage.name, {}, {}, {}, false};
+  for (int k = 0; k <= strokes; ++k) {
+    curve.x.push_back(number + width * (static_cast<double>(k) / strokes - 0.5));
+    curve.y.push_back(k % 2 == 0 ? 0.0 : stage.power_W);
+  }
+  return curve;
+}
+
+}  // namespace
+
 Product loss_product(const std::vector<LossStage>& stages) {
   Product product;
   Table table{"losses",
@@ -62,13 +78,7 @@ Product loss_product(const std::vector<LossStage>& stages) {
     table.columns[2].values.push_back(stage.power_W);
     table.columns[3].values.push_back(before_W - stage.power_W);
     table.columns[4].values.push_back(before_W > 0 ? stage.power_W / before_W : 0.0);
-    // One bar per stage, with a label of its own.
-    const double left = static_cast<double>(i) + 0.6, right = static_cast<double>(i) + 1.4;
-    plot.curves.push_back({std::to_string(i + 1) + " " + stage.name,
-                           {left, left, right, right},
-                           {0.0, stage.power_W, stage.power_W, 0.0},
-                           {},
-                           false});
+    plot.curves.push_back(bar(stage, static_cast<int>(i) + 1));
   }
   product.tables.push_back(table);
   product.plots.push_back(plot);

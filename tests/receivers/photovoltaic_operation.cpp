@@ -189,6 +189,20 @@ TEST(PhotovoltaicDay, EnergyOfTheBatteryIsThatOfTheArrayLessTheLoad) {
               0.9 * result.array_energy_J - result.load_energy_J, 1e-6 * result.array_energy_J);
 }
 
+// 0.5 % per kelvin over 40 K leave 0.8; half of the rise is reached after τ ln 2.
+TEST(PhotovoltaicDay, WarmLampsGiveLessByTheirRollOff) {
+  LampDroop lamp;
+  lamp.roll_off_1_K = 0.005;
+  lamp.rise_K = 40.0;
+  lamp.rise_time_constant_s = 100.0;
+  EXPECT_EQ(lamp.light_at(0.0), 1.0);
+  EXPECT_NEAR(lamp.light_at(100.0 * std::log(2.0)), 0.9, 1e-15);
+  EXPECT_NEAR(lamp.light_at(1e6), 0.8, 1e-15);
+  EXPECT_NEAR(lamp.least_light(), 0.8, 1e-15);
+  lamp.depth = 0.1;
+  EXPECT_NEAR(lamp.light_at(1e6), 0.72, 1e-15);
+}
+
 TEST(PhotovoltaicDay, CellsWarmUpToTheBalanceOfLightPowerAndConvection) {
   const Lit l = lit(0.0);
   DaySettings day;
