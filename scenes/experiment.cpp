@@ -152,11 +152,16 @@ std::vector<const Receiver*> Experiment::receiver_pointers() const {
   return pointers;
 }
 
-Experiment resolve_experiment(ExperimentFile file) {
+Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture) {
   require_scene_file(file);
+  if (file.textures && !picture) {
+    throw file.settings.table("scene").error("textures", "true",
+                                             "false: nobody here reads pictures");
+  }
   GltfModel model = read_gltf(*file.scene_file, {.bands = file.bands,
                                                  .materials = file.materials,
                                                  .material_file = files_beside(file.path),
+                                                 .picture = file.textures ? picture : nullptr,
                                                  .metres_per_unit = file.metres_per_unit});
   require_triangles(model.scene, *file.scene_file);
 
@@ -180,8 +185,8 @@ Experiment resolve_experiment(ExperimentFile file) {
 }
 
 Experiment read_experiment(const std::filesystem::path& path,
-                           std::span<const std::string> overrides) {
-  return resolve_experiment(read_experiment_file(path, overrides));
+                           std::span<const std::string> overrides, const PictureReader& picture) {
+  return resolve_experiment(read_experiment_file(path, overrides), picture);
 }
 
 }  // namespace photorque

@@ -17,6 +17,7 @@
 #include "raytrace/receiver.h"
 #include "raytrace/scene.h"
 #include "raytrace/tracer.h"
+#include "scenes/picture.h"
 
 namespace photorque {
 
@@ -70,6 +71,7 @@ struct ExperimentFile {
   // Of an optical run; empty when the file has no [scene].
   std::optional<std::filesystem::path> scene_file;
   double metres_per_unit = 1.0;  // [scene] metres_per_unit: of lengths in the scene's file
+  bool textures = false;         // [scene] textures: base colours from the model's pictures
   Bands bands;
   std::vector<Settings> materials;  // [[material]], overrides by name
   std::vector<Settings> sources;
@@ -118,11 +120,12 @@ struct Experiment {
 
 // Loads what the file names. Throws InputError for: no [scene], a scene without triangles, no
 // source, a source whose spectrum leaves the bands, a receiver on a node that does not exist, and
-// every key that nobody read.
-Experiment resolve_experiment(ExperimentFile file);
+// every key that nobody read; for textures without a `picture` reader too.
+Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture = {});
 
 // read_experiment_file() and resolve_experiment().
 Experiment read_experiment(const std::filesystem::path& path,
-                           std::span<const std::string> overrides = {});
+                           std::span<const std::string> overrides = {},
+                           const PictureReader& picture = {});
 
 }  // namespace photorque

@@ -182,6 +182,7 @@ ExperimentFile read_experiment_file(const std::filesystem::path& path,
     const Settings scene = settings.table("scene");
     file.scene_file = path.parent_path() / scene.text("file");
     file.metres_per_unit = scene.number_or("metres_per_unit", 1.0, Range::positive());
+    file.textures = scene.flag_or("textures", false);
     file.bands = read_bands(scene);
   }
   file.materials = settings.tables("material");

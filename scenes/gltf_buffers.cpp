@@ -1,6 +1,7 @@
 #include "scenes/gltf_buffers.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 
@@ -81,6 +82,17 @@ class Loader {
          const GltfOpen& open, MemoryBudget* budget)
       : binary_(binary), is_glb_(is_glb), file_(file), open_(open), budget_(budget) {}
 
+  std::string image(const nlohmann::json& image, size_t index) {
+    section_ = "images";
+    const auto uri = image.find("uri");
+    if (uri == image.end() || !uri->is_string()) {
+      throw wrong(index, "uri", "nothing", "a text, or a bufferView");
+    }
+    const std::string& text = uri->get_ref<const std::string&>();
+    return text.starts_with("data:") ? data_uri(text, index, {"image/png", "image/jpeg"})
+                                     : external(text, index);
+  }
+
   Buffers load(const nlohmann::json& list) {
     for (size_t i = 0; i < list.size(); ++i) {
       Buffer buffer{list[i]["byteLength"].get<uint64_t>(), bytes(list[i], i)};
@@ -97,14 +109,16 @@ class Loader {
  private:
   InputError wrong(size_t i, const char* member, const std::string& found,
                    const std::string& expected) const {
-    return {{file_}, pointer("buffers", i, member), found, expected};
+    return {{file_}, pointer(section_, i, member), found, expected};
   }
 
   std::optional<std::string> bytes(const nlohmann::json& buffer, size_t i) {
     const auto uri = buffer.find("uri");
     if (uri != buffer.end()) {
       const std::string& text = uri->get_ref<const std::string&>();
-      return text.starts_with("data:") ? data_uri(text, i) : external(text, i);
+      return text.starts_with("data:")
+                 ? data_uri(text, i, {"application/octet-stream", "application/gltf-buffer"})
+                 : external(text, i);
     }
     if (!is_glb_ || i != 0) return std::nullopt;
     if (!binary_) throw wrong(i, "uri", "neither it nor a BIN chunk", "one of them");
@@ -113,7 +127,8 @@ class Loader {
   }
 
   // RFC 2397; the media types are those that section 3.6.1.1 of the specification admits.
-  std::string data_uri(const std::string& uri, size_t i) {
+  std::string data_uri(const std::string& uri, size_t i,
+                       const std::array<std::string_view, 2>& types) {
     const size_t comma = uri.find(',');
     if (comma == std::string::npos) throw wrong(i, "uri", excerpt(uri), "a data URI with a comma");
     std::string type = lower_case(std::string_view(uri).substr(5, comma - 5));
@@ -121,11 +136,11 @@ class Loader {
     constexpr std::string_view marker = ";base64";
     const bool base64 = type.ends_with(marker);
     if (base64) type.resize(type.size() - marker.size());
-    if (!type.empty() && type != "application/octet-stream" && type != "application/gltf-buffer") {
+    if (!type.empty() && type != types[0] && type != types[1]) {
       throw wrong(i, "uri", "media type \"" + type + "\"",
-                  "application/octet-stream or application/gltf-buffer");
+                  std::string(types[0]) + " or " + std::string(types[1]));
     }
-    budget_->charge(data.size(), 1, pointer("buffers", i, "uri"));
+    budget_->charge(data.size(), 1, pointer(section_, i, "uri"));
     const std::optional<std::string> decoded =
         base64 ? base64_decoded(data) : percent_decoded(data);
     if (!decoded) {
@@ -155,11 +170,12 @@ class Loader {
     const std::string path = checked_path(uri, i);
     std::optional<std::string> found = open_(path);
     if (!found) throw wrong(i, "uri", excerpt(uri) + ", which does not exist", "an existing file");
-    budget_->charge(found->size(), 1, pointer("buffers", i, "uri"));
+    budget_->charge(found->size(), 1, pointer(section_, i, "uri"));
     loaded_.inputs.emplace_back(path, content_hash(*found));
     return std::move(*found);
   }
 
+  const char* section_ = "buffers";
   std::optional<std::string_view> binary_;
   bool is_glb_;
   const std::string& file_;
@@ -176,6 +192,11 @@ Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_v
   const auto list = document.find("buffers");
   if (list == document.end()) return {};
   return Loader(binary, is_glb, file, open, budget).load(*list);
+}
+
+std::string load_image_uri(const nlohmann::json& image, size_t index, const std::string& file,
+                           const GltfOpen& open, MemoryBudget* budget) {
+  return Loader(std::nullopt, false, file, open, budget).image(image, index);
 }
 
 }  // namespace photorque::gltf

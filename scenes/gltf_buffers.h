@@ -33,4 +33,9 @@ Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_v
                      bool is_glb, const std::string& file, const GltfOpen& open,
                      MemoryBudget* budget);
 
+// The bytes behind the URI of an image, `index` of its section: embedded as PNG or JPEG, or a file.
+// Throws InputError as above.
+std::string load_image_uri(const nlohmann::json& image, size_t index, const std::string& file,
+                           const GltfOpen& open, MemoryBudget* budget);
+
 }  // namespace photorque::gltf

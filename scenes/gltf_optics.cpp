@@ -185,6 +185,15 @@ OpticalSurface derived_surface(const json& material, int bands, std::string name
   return surface;
 }
 
+OpticalSurface derived_surface(json material, const std::array<double, 3>& picture, int bands,
+                               std::string name) {
+  json& pbr = material["pbrMetallicRoughness"];
+  auto color = pbr.value("baseColorFactor", std::vector<double>{1, 1, 1, 1});
+  for (size_t k = 0; k < picture.size(); ++k) color[k] *= picture[k];
+  pbr["baseColorFactor"] = color;
+  return derived_surface(material, bands, std::move(name));
+}
+
 MaterialOverrides read_overrides(const Document& document, const GltfOptions& options,
                                  const SurfaceFiles& files) {
   std::set<std::string> names;

@@ -1,6 +1,7 @@
 // What the materials of a glTF document do with light.
 #pragma once
 
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -53,6 +54,10 @@ MaterialOptics material_optics(const Document& document, int index, int bands,
 // that scatters Y of what enters (t = 0), or a pane that passes Y on a way through (t = 1, r = 0).
 // It is a stand-in for measured values: drawing colours say little about absorptance.
 OpticalSurface derived_surface(const nlohmann::json& material, int bands, std::string name);
+
+// The same with the base colour multiplied by a picture's mean, linear red, green and blue.
+OpticalSurface derived_surface(nlohmann::json material, const std::array<double, 3>& picture,
+                               int bands, std::string name);
 
 // KHR_texture_transform of the base colour's texture: where on the picture texture coordinates lie,
 // scaled, then turned, then moved. Nothing for a material without one. Exporters that pack texture

@@ -10,6 +10,7 @@
 #include "scenes/gltf_geometry.h"
 #include "scenes/gltf_nodes.h"
 #include "scenes/gltf_optics.h"
+#include "scenes/gltf_texture.h"
 #include "scenes/gltf_validation.h"
 #include "scenes/mesh_closure.h"
 
@@ -47,6 +48,7 @@ class Assembly {
         options_(options),
         budget_(budget),
         geometry_(document, budget),
+        open_(open),
         beside_model_(recorded(open)),
         overrides_(gltf::read_overrides(document, options, recorded(options.material_file))) {
     model_.scene.bands = options.bands;
@@ -63,6 +65,7 @@ class Assembly {
       }
     }
     add_notices();
+    if (options_.picture) apply_pictures();
     return std::move(model_);
   }
 
@@ -128,6 +131,61 @@ class Assembly {
     instance.front_surface = optics.front_surface;
     instance.back_surface = optics.back_surface;
     model_.scene.instances.push_back(std::move(instance));
+    material_indices_.push_back(material);
+  }
+
+  // Every instance whose colour comes from a picture becomes one for each step of it.
+  void apply_pictures() {
+    std::vector<Instance> all;
+    std::map<std::pair<uint32_t, int>, std::vector<Instance>> known;  // by mesh and material
+    std::map<int, std::optional<BaseColours>> pictures;
+    for (size_t i = 0; i < model_.scene.instances.size(); ++i) {
+      const Instance& whole = model_.scene.instances[i];
+      const int material = material_indices_[i];
+      if (model_.materials[materials_.at(material)].origin != OpticsOrigin::derived ||
+          model_.scene.meshes[whole.mesh].uv.empty()) {
+        all.push_back(whole);
+        continue;
+      }
+      if (!pictures.contains(material)) {
+        pictures[material] =
+            gltf::base_colour_picture(document_, material, open_, options_.picture, budget_);
+      }
+      const std::optional<BaseColours>& picture = pictures[material];
+      const auto [parts, is_new] = known.try_emplace({whole.mesh, material});
+      if (is_new && picture) parts->second = parts_of(whole, material, *picture);
+      if (parts->second.empty()) all.push_back(whole);
+      for (Instance part : parts->second) {
+        part.node = whole.node;
+        part.path = whole.path;
+        part.body_from_mesh = whole.body_from_mesh;
+        all.push_back(std::move(part));
+      }
+    }
+    model_.scene.instances = std::move(all);
+  }
+
+  std::vector<Instance> parts_of(const Instance& whole, int material, const BaseColours& picture) {
+    std::vector<Instance> parts;
+    double darkest = 1.0, brightest = 0.0;
+    for (gltf::TextureStep& step : gltf::texture_steps(model_.scene.meshes[whole.mesh], picture)) {
+      Instance part = whole;
+      part.front_surface = part.back_surface = add_surface(
+          gltf::derived_surface(document_.json["materials"][static_cast<size_t>(material)],
+                                step.colour, options_.bands.count(), whole.material));
+      const double absorbed = model_.scene.surfaces.back().absorbed[0];
+      darkest = std::min(darkest, absorbed);
+      brightest = std::max(brightest, absorbed);
+      part.mesh = static_cast<uint32_t>(model_.scene.meshes.size());
+      model_.scene.meshes.push_back(std::move(step.mesh));
+      parts.push_back(std::move(part));
+    }
+    std::ostringstream line;
+    line.precision(3);
+    line << in_quotes(whole.material) << ": absorptance " << darkest << " to " << brightest
+         << " from the picture of its base colour";
+    add_notice(line.str());
+    return parts;
   }
 
   const GltfMaterial& material_of(int index) {
@@ -152,7 +210,7 @@ class Assembly {
     if (optics.origin == OpticsOrigin::derived) {
       add_notice(in_quotes(material.name) + ": optical properties derived from PBR values: " +
                  gltf::describe_surface(optics.sheet.front) +
-                 (has_texture(index) ? " (textures are ignored)" : ""));
+                 (has_texture(index) && !options_.picture ? " (textures are ignored)" : ""));
     }
     model_.materials.push_back(std::move(material));
     return model_.materials.back();
@@ -215,11 +273,13 @@ class Assembly {
   MemoryBudget* budget_;
   gltf::GeometryReader geometry_;
   GltfModel model_;  // before what reads files into it
+  const GltfOpen& open_;
   SurfaceFiles beside_model_;
   gltf::MaterialOverrides overrides_;
   std::map<std::tuple<int, int, int, int, int>, std::optional<uint32_t>> meshes_;
-  std::vector<double> radii_;        // of each mesh about its own origin
-  std::map<int, size_t> materials_;  // index in the file → in model_.materials
+  std::vector<double> radii_;          // of each mesh about its own origin
+  std::map<int, size_t> materials_;    // index in the file → in model_.materials
+  std::vector<int> material_indices_;  // of each instance, in the file
   std::set<std::string> told_;
   size_t degenerate_ = 0;
   size_t without_triangles_ = 0;

@@ -3,9 +3,10 @@
 // What is read: the default scene's node hierarchy with any invertible transforms, meshes of
 // triangles, strips and fans, sparse accessors, texture coordinates 0, EXT_mesh_gpu_instancing, and
 // of materials what gltf_optics.h says. What is ignored, with a notice where it could surprise:
-// points and lines, textures and images (never opened), cameras, lights, animations (the rest pose
-// counts). What is refused because the geometry would be wrong without it: skins, morph targets
-// with non-zero weights, and every required extension that is not known to leave geometry alone.
+// points and lines, textures and images (opened only for GltfOptions::picture), cameras, lights,
+// animations (the rest pose counts). What is refused because the geometry would be wrong without
+// it: skins, morph targets with non-zero weights, and every required extension that is not known to
+// leave geometry alone.
 //
 // Frames: glTF is metres with +Y up; its (x, y, z) becomes body (x, −z, y).
 //
@@ -26,6 +27,7 @@
 #include "core/settings.h"
 #include "core/spectrum.h"
 #include "raytrace/scene.h"
+#include "scenes/picture.h"
 
 namespace photorque {
 
@@ -37,6 +39,8 @@ struct GltfOptions {
   // The bytes of a file that one of them names, or nothing. (The model's own properties name files
   // beside the model.)
   std::function<std::optional<std::string>(const std::string& name)> material_file = {};
+  // With it the base colour of derived materials comes from their pictures, triangle by triangle.
+  PictureReader picture = {};
   // Length of one unit of the file [m]; CAD exports often count millimetres: 1e-3.
   double metres_per_unit = 1.0;
   // Most memory that the files, and what is made of them, may take.

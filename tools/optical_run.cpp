@@ -8,6 +8,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "images/read_picture.h"
 #include "images/write_product.h"
 #include "sources/beam_shape.h"
 
@@ -15,7 +16,11 @@ namespace photorque {
 namespace {
 
 Experiment read(const CommandLine& line) {
-  Experiment experiment = read_experiment(line.experiment, line.all_overrides());
+  Experiment experiment =
+      read_experiment(line.experiment, line.all_overrides(), [](const std::string& bytes) {
+        LinearPicture picture = read_picture(bytes);
+        return BaseColours{picture.width, picture.height, std::move(picture.rgb)};
+      });
   return experiment;
 }
 
