@@ -258,7 +258,7 @@ class Fitter {
       damping = at.sums.chi2 < now.sums.chi2 - 0.25 * promised ? damping * 0.1 : damping * 3.0;
       now = evaluate_with_priors(now_, true, share);
     }
-    return true;
+    return false;
   }
 
   const std::vector<Observation>& runs_;

@@ -238,6 +238,21 @@ bool is_physics(const Trial& trial, const std::vector<Candidate>& all) {
                       [&](size_t c) { return all[c].empirical(); });
 }
 
+// The leaders' fits are carried on until they converge: what only goes on where its parent's fit
+// stopped would seem to gain by the effect that it adds.
+void settle_leaders(std::vector<Trial>& found, const std::vector<Candidate>& all,
+                    const std::vector<Observation>& runs, int threads) {
+  constexpr size_t most_leaders = 6;
+  const std::vector<size_t> order = by_evidence(found);
+  parallel_for(std::min(most_leaders, order.size()), threads, [&](size_t i) {
+    Trial& trial = found[order[i]];
+    FitSettings patient;
+    patient.most_iterations = 60;
+    Trial again = refit(trial, all, runs, trial.fit.best.runs, patient);
+    if (again.log_evidence > trial.log_evidence) trial = std::move(again);
+  });
+}
+
 // A pair is found by way of its stronger half, which may have been another kind that takes its
 // place: the other half alone, where it has not been a parent, to be extended in turn.
 std::vector<Trial> other_halves(const Trial& pair, const std::vector<Trial>& parents,
@@ -289,6 +304,7 @@ std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
       }
     }
     found = without_twins(std::move(found));
+    settle_leaders(found, all, runs, options.threads);
     // The best physics goes on, and the next best while the best leaves structure behind; when
     // nothing gained, nothing more will.
     const size_t most_parents = effects == 1 ? 2 : 1;
