@@ -11,19 +11,21 @@
 namespace photorque {
 namespace {
 
-constexpr double light_W = 2.0;
-constexpr double width_m = 0.1;  // where the irradiance is 1/e² of its maximum
-constexpr double x_low = -0.083, x_high = 0.121, y_low = -0.057, y_high = 0.094;  // of the shadow
-constexpr double slope = 0.7, height_m = 0.2;  // z of the rectangle over x, and at x = 0
-constexpr int columns = 4, rows = 3;
+constexpr double beam_power_W = 2.0;
+constexpr double beam_radius_m = 0.1;  // where the irradiance is 1/e² of its maximum
+constexpr double shadow_x_low = -0.083, shadow_x_high = 0.121, shadow_y_low = -0.057,
+                 shadow_y_high = 0.094;  // of the shadow
+constexpr double plate_slope = 0.7,
+                 plate_height_m = 0.2;  // z of the rectangle over x, and at x = 0
+constexpr int shadow_columns = 4, shadow_rows = 3;
 
 class GaussianParallelBeam final : public Emitter {
  public:
-  double power_W() const override { return light_W; }
+  double power_W() const override { return beam_power_W; }
   void emit(const SampleBlock& samples, RayBlock& rays) const override {
     for (int i = 0; i < ray_block; ++i) {
       const double u = sobol_fraction(samples.bits[0][i]), v = sobol_fraction(samples.bits[1][i]);
-      const double radius = width_m * std::sqrt(-0.5 * std::log(u));
+      const double radius = beam_radius_m * std::sqrt(-0.5 * std::log(u));
       rays.origin_m[0][i] = radius * std::cos(2 * pi * v);
       rays.origin_m[1][i] = radius * std::sin(2 * pi * v);
       rays.origin_m[2][i] = 0.0;
@@ -34,17 +36,17 @@ class GaussianParallelBeam final : public Emitter {
   double relative_intensity(double angle_rad) const override { return angle_rad == 0.0 ? 1 : 0; }
 };
 
-// Power on the rectangle in columns by rows, seen from above.
+// Power on the rectangle in shadow_columns by shadow_rows, seen from above.
 class ShadowBins final : public Receiver {
  public:
-  size_t bins() const override { return columns * rows; }
+  size_t bins() const override { return shadow_columns * shadow_rows; }
   void score(const Hits& hits, std::span<double> sums) const override {
     for (int i = 0; i < hits.count; ++i) {
-      const double x = (hits.position_m[0][i] - x_low) / (x_high - x_low);
-      const double y = (hits.position_m[1][i] - y_low) / (y_high - y_low);
-      const auto column = static_cast<size_t>(std::clamp(x, 0.0, 0.999999) * columns);
-      const auto row = static_cast<size_t>(std::clamp(y, 0.0, 0.999999) * rows);
-      sums[row * columns + column] += hits.incident_W[0][i];
+      const double x = (hits.position_m[0][i] - shadow_x_low) / (shadow_x_high - shadow_x_low);
+      const double y = (hits.position_m[1][i] - shadow_y_low) / (shadow_y_high - shadow_y_low);
+      const auto column = static_cast<size_t>(std::clamp(x, 0.0, 0.999999) * shadow_columns);
+      const auto row = static_cast<size_t>(std::clamp(y, 0.0, 0.999999) * shadow_rows);
+      sums[row * shadow_columns + column] += hits.incident_W[0][i];
     }
   }
   Product product(const BinSums&) const override { return {}; }
@@ -53,11 +55,11 @@ class ShadowBins final : public Receiver {
 // Shares of the beam between two lines, and their first moment about the axis: marginals of the
 // beam are Gaussian with standard deviation w/2.
 double share(double low, double high) {
-  const double unit = width_m / std::sqrt(2.0);
+  const double unit = beam_radius_m / std::sqrt(2.0);
   return 0.5 * (std::erf(high / unit) - std::erf(low / unit));
 }
 double moment_m(double low, double high) {
-  const double sigma = 0.5 * width_m;
+  const double sigma = 0.5 * beam_radius_m;
   const auto density = [&](double x) {
     return std::exp(-0.5 * x * x / (sigma * sigma)) / (sigma * std::sqrt(2 * pi));
   };
@@ -65,35 +67,41 @@ double moment_m(double low, double high) {
 }
 
 Scene tilted_rectangle(const OpticalSurface& surface) {
-  const Vec3 centre(0.5 * (x_low + x_high), 0.5 * (y_low + y_high),
-                    height_m + slope * 0.5 * (x_low + x_high));
+  const Vec3 centre(0.5 * (shadow_x_low + shadow_x_high), 0.5 * (shadow_y_low + shadow_y_high),
+                    plate_height_m + plate_slope * 0.5 * (shadow_x_low + shadow_x_high));
   Scene scene;
-  testing::add(
-      scene,
-      testing::rectangle(centre, (x_high - x_low) * Vec3(1, 0, slope), Vec3(0, y_high - y_low, 0)),
-      surface, "rectangle");
+  testing::add(scene,
+               testing::rectangle(centre, (shadow_x_high - shadow_x_low) * Vec3(1, 0, plate_slope),
+                                  Vec3(0, shadow_y_high - shadow_y_low, 0)),
+               surface, "rectangle");
   return scene;
 }
 
 // Power, force along x and z (along y there is none), torque, bins; where a share `s` is mirrored,
 // `d` scattered by Lambert's law and the rest absorbed.
 std::vector<double> exact_figures(double s, double d) {
-  const double power_W = light_W * share(x_low, x_high) * share(y_low, y_high);
-  const Vec3 light = -Vec3::UnitZ(), normal = Vec3(-slope, 0, 1).normalized();
+  const double power_W =
+      beam_power_W * share(shadow_x_low, shadow_x_high) * share(shadow_y_low, shadow_y_high);
+  const Vec3 light = -Vec3::UnitZ(), normal = Vec3(-plate_slope, 0, 1).normalized();
   const Vec3 mirrored = light - 2 * light.dot(normal) * normal;
   const Vec3 push = (light - s * mirrored - d * 2 / 3 * normal) / speed_of_light_m_s;
-  const Vec3 moment_W_m = light_W * Vec3(moment_m(x_low, x_high) * share(y_low, y_high),
-                                         share(x_low, x_high) * moment_m(y_low, y_high),
-                                         slope * moment_m(x_low, x_high) * share(y_low, y_high)) +
-                          Vec3(0, 0, height_m * power_W);
+  const Vec3 moment_W_m =
+      beam_power_W *
+          Vec3(moment_m(shadow_x_low, shadow_x_high) * share(shadow_y_low, shadow_y_high),
+               share(shadow_x_low, shadow_x_high) * moment_m(shadow_y_low, shadow_y_high),
+               plate_slope * moment_m(shadow_x_low, shadow_x_high) *
+                   share(shadow_y_low, shadow_y_high)) +
+      Vec3(0, 0, plate_height_m * power_W);
   const Vec3 torque = moment_W_m.cross(push);
   std::vector<double> exact = {power_W,    power_W * push.x(), power_W * push.z(),
                                torque.x(), torque.y(),         torque.z()};
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      const double dx = (x_high - x_low) / columns, dy = (y_high - y_low) / rows;
-      exact.push_back(light_W * share(x_low + column * dx, x_low + (column + 1) * dx) *
-                      share(y_low + row * dy, y_low + (row + 1) * dy));
+  for (int row = 0; row < shadow_rows; ++row) {
+    for (int column = 0; column < shadow_columns; ++column) {
+      const double dx = (shadow_x_high - shadow_x_low) / shadow_columns,
+                   dy = (shadow_y_high - shadow_y_low) / shadow_rows;
+      exact.push_back(beam_power_W *
+                      share(shadow_x_low + column * dx, shadow_x_low + (column + 1) * dx) *
+                      share(shadow_y_low + row * dy, shadow_y_low + (row + 1) * dy));
     }
   }
   return exact;
@@ -111,7 +119,7 @@ std::vector<Estimate> estimated_figures(const TraceResult& result) {
                                wrench.estimate(3),
                                wrench.estimate(4),
                                wrench.estimate(5)};
-  for (size_t bin = 0; bin < columns * rows; ++bin) all.push_back(bins.estimate(bin));
+  for (size_t bin = 0; bin < shadow_columns * shadow_rows; ++bin) all.push_back(bins.estimate(bin));
   return all;
 }
 
@@ -164,7 +172,8 @@ TEST(Coverage, IntervalsHoldPowerForceTorqueAndBinsNinetyFivePercentOfTheTime) {
       const double tolerance = i < std::size(figure_names) ? 0.015 : 0.025;
       EXPECT_NEAR(coverage.held[i], 0.95, tolerance) << name << ", replicates " << replicates;
       EXPECT_LT(coverage.held_by_less[i], 0.935) << name << ", replicates " << replicates;
-      if (i >= std::size(figure_names)) in_bins += coverage.held[i] / (columns * rows);
+      if (i >= std::size(figure_names))
+        in_bins += coverage.held[i] / (shadow_columns * shadow_rows);
     }
     EXPECT_NEAR(in_bins, 0.95, 0.015) << "replicates " << replicates;
   }
