@@ -1,0 +1,42 @@
+// Pictures into memory, as linear light.
+#include "images/read_picture.h"
+
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+// Two texels, (0, 188, 255) and (10, 255, 0), deflated by zlib.
+const std::string two_texels_hex =
+    "89504e470d0a1a0a0000000d49484452000000020000000108020000007b40e8dd0000000f49444154789c63"
+    "60d8f39feb3f030009cb02c5c760f4870000000049454e44ae426082";
+
+std::string two_texels() {
+  std::string bytes;
+  for (size_t i = 0; i < two_texels_hex.size(); i += 2) {
+    bytes += static_cast<char>(std::stoi(two_texels_hex.substr(i, 2), nullptr, 16));
+  }
+  return bytes;
+}
+
+// IEC 61966-2-1: 188 is ((188/255 + 0.055)/1.055)^2.4 = 0.502886; 10 is 10/255/12.92 = 0.003035.
+TEST(ReadPicture, GivesLinearLight) {
+  const LinearPicture picture = read_picture(two_texels());
+  ASSERT_EQ(picture.width, 2);
+  ASSERT_EQ(picture.height, 1);
+  const float expected[] = {0.0F, 0.502886F, 1.0F, 0.003035F, 1.0F, 0.0F};
+  for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(picture.rgb[i], expected[i], 1e-5F) << i;
+}
+
+TEST(ReadPicture, RefusesWhatIsNone) {
+  const std::string good = two_texels();
+  EXPECT_THROW(read_picture(""), InputError);
+  EXPECT_THROW(read_picture("glTF"), InputError);
+  EXPECT_THROW(read_picture(good.substr(0, 4)), InputError);
+  EXPECT_THROW(read_picture(good.substr(0, 40)), InputError);
+}
+
+}  // namespace
+}  // namespace photorque
