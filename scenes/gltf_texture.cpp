@@ -105,7 +105,7 @@ std::optional<BaseColours> base_colour_picture(const Document& document, int mat
   const json::json_pointer place(where);
   if (!document.json.contains(place)) return std::nullopt;
   const json& info = document.json[place];
-  if (!info.is_object() || info.value("texCoord", 0) != 0) return std::nullopt;
+  if (!info.is_object() || info.value("texCoord", json(0)) != 0) return std::nullopt;
   const json& texture =
       referred(document, where + "/index", info.value("index", json()), "textures");
   const json index = texture.value("source", json());

@@ -133,6 +133,14 @@ TEST(GltfTexture, PaintsAbsorptanceWhereItIsAsked) {
               Contains(HasSubstr("'paint': absorptance 0 to 0.96 from the picture")));
 }
 
+TEST(GltfTexture, OtherCoordinatesThanTheFirstLeaveTheColourAsItIs) {
+  for (const nlohmann::json& set : {nlohmann::json(1), nlohmann::json("first")}) {
+    TestModel model = pictured_model();
+    model.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = set;
+    EXPECT_EQ(model.read(with_pictures()).scene.instances.size(), 1u) << set;
+  }
+}
+
 TEST(GltfTexture, WrongReferencesAreRefusedWhenPicturesAreAsked) {
   const auto message = [](const auto& edit) -> std::string {
     TestModel model = pictured_model();
