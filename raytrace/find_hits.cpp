@@ -9,8 +9,8 @@ namespace photorque {
 namespace {
 
 template <int Width>
-void intersect_packets(const TraceableScene::Data& scene, std::span<const Ray> rays,
-                       Coherence coherence, HitBuffer& buffer) {
+void intersect_packets(const TraceableScene::Data& scene, size_t rays, Coherence coherence,
+                       HitBuffer& buffer) {
   embree_seam::Query query(coherence);
   alignas(64) std::array<int, Width> valid;
   alignas(64) typename embree_seam::PacketType<Width>::type packet;
@@ -23,9 +23,9 @@ void intersect_packets(const TraceableScene::Data& scene, std::span<const Ray> r
   std::fill_n(packet.hit.instID[0], Width, RTC_INVALID_GEOMETRY_ID);
   const std::array<float*, 6> rows = {packet.ray.org_x, packet.ray.org_y, packet.ray.org_z,
                                       packet.ray.dir_x, packet.ray.dir_y, packet.ray.dir_z};
-  for (size_t begin = 0; begin < rays.size(); begin += Width) {
-    if (rays.size() - begin < Width) {  // the last packet: lanes beyond the end are not traced
-      std::fill(valid.begin() + static_cast<ptrdiff_t>(rays.size() - begin), valid.end(), 0);
+  for (size_t begin = 0; begin < rays; begin += Width) {
+    if (rays - begin < Width) {  // the last packet: lanes beyond the end are not traced
+      std::fill(valid.begin() + static_cast<ptrdiff_t>(rays - begin), valid.end(), 0);
     }
     for (size_t k = 0; k < 6; ++k) std::copy_n(&buffer.ray[k][begin], Width, rows[k]);
     std::fill_n(packet.ray.tfar, Width, std::numeric_limits<float>::infinity());
@@ -39,10 +39,12 @@ void intersect_packets(const TraceableScene::Data& scene, std::span<const Ray> r
 }
 
 // Records → columns; the columns are padded to a whole packet with copies of the last ray.
-void load_rays(std::span<const Ray> rays, HitBuffer& buffer) {
+void load_rays(const RayList& rays, HitBuffer& buffer) {
   size_t i = 0;
+  std::array<const float*, 8> rows;
   for (; i + 8 <= rays.size(); i += 8) {
-    transpose_8x8(rays[i].origin_m, &buffer.ray[0][i], Hits::capacity);
+    for (size_t k = 0; k < 8; ++k) rows[k] = rays[i + k].origin_m;
+    transpose_8x8(rows, &buffer.ray[0][i], Hits::rows);
   }
   const size_t padded = (rays.size() + 15) / 16 * 16;
   for (; i < padded; ++i) {
@@ -57,13 +59,13 @@ void load_rays(std::span<const Ray> rays, HitBuffer& buffer) {
 
 }  // namespace
 
-void find_hits(const TraceableScene::Data& scene, std::span<const Ray> rays, Coherence coherence,
+void find_hits(const TraceableScene::Data& scene, const RayList& rays, Coherence coherence,
                HitBuffer& buffer) {
   load_rays(rays, buffer);
   if (scene.packet_width == 16) {
-    intersect_packets<16>(scene, rays, coherence, buffer);
+    intersect_packets<16>(scene, rays.size(), coherence, buffer);
   } else {
-    intersect_packets<8>(scene, rays, coherence, buffer);
+    intersect_packets<8>(scene, rays.size(), coherence, buffer);
   }
   buffer.hits.count = static_cast<int>(rays.size());
 }
@@ -71,13 +73,15 @@ void find_hits(const TraceableScene::Data& scene, std::span<const Ray> rays, Coh
 int compact(HitBuffer& buffer, Hits::Column<int>& kept) {
   Hits& hits = buffer.hits;
   const int rays = hits.count;
+  const auto missed =
+      std::count(hits.instance.begin(), hits.instance.begin() + rays, RTC_INVALID_GEOMETRY_ID);
+  if (missed == 0) return rays;
   int count = 0;
   for (int i = 0; i < rays; ++i) {
     kept[count] = i;
     count += hits.instance[i] != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
   }
   hits.count = count;
-  if (count == rays) return count;
   // In place: kept[j] ≥ j.
   const auto close = [&](auto& column) {
     for (int j = 0; j < count; ++j) column[j] = column[kept[j]];
@@ -93,15 +97,19 @@ void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer
   Hits& hits = buffer.hits;
   const auto& ray = buffer.ray;
   std::fill_n(hits.depth.begin(), hits.count, static_cast<uint16_t>(depth));
+  for (int i = 0; i < hits.count; ++i) {
+    const TrianglePlane& plane = scene.plane(hits.instance[i], hits.triangle[i]);
+    for (size_t k = 0; k < 3; ++k) buffer.plane[k][i] = plane.normal[k];
+    buffer.plane[3][i] = plane.offset_m;
+  }
   // The hit in double precision from the triangle's plane: Embree's own distance is off by up to
   // 5e-7 of the scene's size.
   for (int i = 0; i < hits.count; ++i) {
-    const TrianglePlane& plane = scene.plane(hits.instance[i], hits.triangle[i]);
     const double ox = ray[0][i], oy = ray[1][i], oz = ray[2][i];
     const double dx = ray[3][i], dy = ray[4][i], dz = ray[5][i];
-    const double nx = plane.normal[0], ny = plane.normal[1], nz = plane.normal[2];
+    const double nx = buffer.plane[0][i], ny = buffer.plane[1][i], nz = buffer.plane[2][i];
     const double facing = nx * dx + ny * dy + nz * dz;
-    const double t = (plane.offset_m - nx * ox - ny * oy - nz * oz) / facing;
+    const double t = (buffer.plane[3][i] - nx * ox - ny * oy - nz * oz) / facing;
     hits.position_m[0][i] = ox + t * dx;
     hits.position_m[1][i] = oy + t * dy;
     hits.position_m[2][i] = oz + t * dz;

@@ -104,55 +104,99 @@ void send_on(const InteractionContext& context, const SobolSequence& sequence,
         power_W, ledger, next);
 }
 
-using Lane = Eigen::Map<Eigen::ArrayXd>;
-Lane lane(Hits::Column<double>& column, int count) {
-  return {column.data(), count};
+// Four neighbours of a column.
+using Quad = Eigen::Array4d;
+Eigen::Map<Quad> quad(Hits::Column<double>& column, int first) {
+  return Eigen::Map<Quad>(column.data() + first);
 }
 
-// Four partial sums in fixed order: that of Eigen's sum() depends on where the terms lie in memory.
-template <typename Terms>
-double ordered_sum(const Terms& terms) {
-  Eigen::Array4d lanes = Eigen::Array4d::Zero();
-  Eigen::Index i = 0;
-  for (; i + 4 <= terms.size(); i += 4) lanes += terms.template segment<4>(i);
-  for (; i < terms.size(); ++i) lanes[i % 4] += terms.coeff(i);
-  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+// Makes the rows after the last hit, up to a whole quad, carry no power.
+void pad_quad(HitBuffer& buffer) {
+  Hits& hits = buffer.hits;
+  const auto clear = [&](Hits::Column<double>& column) {
+    std::fill_n(column.begin() + hits.count, 3, 0.0);
+  };
+  for (int b = 0; b < hits.bands; ++b) clear(hits.incident_W[b]);
+  for (size_t k = 0; k < 3; ++k) {
+    clear(hits.position_m[k]);
+    clear(buffer.direction[k]);
+  }
+}
+
+// Whether all hits are on the same side of the same instance, as most neighbours are.
+bool on_one_side(const Hits& hits) {
+  uint32_t differences = 0;
+  for (int i = 0; i < hits.count; ++i) {
+    differences |= (hits.instance[i] ^ hits.instance[0]) |
+                   static_cast<uint32_t>(hits.front[i] ^ hits.front[0]);
+  }
+  return differences == 0;
 }
 
 // absorbed_W and left_W of every hit.
 void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
-  lane(buffer.left_W, hits.count).setZero();
+  const bool one_side = on_one_side(hits);
+  buffer.left_W.fill(0.0);
   for (int b = 0; b < hits.bands; ++b) {
     const double* fraction = scene.absorbed_fraction[b].data();
     const double* incident = hits.incident_W[b].data();
     double* absorbed = hits.absorbed_W[b].data();
-    for (int i = 0; i < hits.count; ++i) {
-      absorbed[i] = incident[i] * fraction[2 * hits.instance[i] + hits.front[i]];
+    if (one_side) {
+      const double same = fraction[2 * hits.instance[0] + hits.front[0]];
+      for (int i = 0; i < hits.count; ++i) absorbed[i] = incident[i] * same;
+    } else {
+      for (int i = 0; i < hits.count; ++i) {
+        absorbed[i] = incident[i] * fraction[2 * hits.instance[i] + hits.front[i]];
+      }
     }
-    lane(buffer.left_W, hits.count) +=
-        lane(hits.incident_W[b], hits.count) - lane(hits.absorbed_W[b], hits.count);
+    for (int i = 0; i < hits.count; ++i) buffer.left_W[i] += incident[i] - absorbed[i];
   }
 }
 
-// The momentum that arrives: force_N of every hit, and the ledger's intake for first hits.
+void book_absorbed(const Hits& hits, LedgerSums& ledger) {
+  const bool one_side = on_one_side(hits);
+  for (int b = 0; b < hits.bands; ++b) {
+    const double* absorbed = hits.absorbed_W[b].data();
+    int i = 0;
+    if (one_side) {
+      auto& sums = ledger.absorbed_lanes_W[hits.instance[0]];
+      Quad lanes = Eigen::Map<Quad>(sums.data());
+      for (; i + 4 <= hits.count; i += 4) lanes += Eigen::Map<const Quad>(absorbed + i);
+      Eigen::Map<Quad>(sums.data()) = lanes;
+    }
+    for (; i < hits.count; ++i) {
+      ledger.absorbed_lanes_W[hits.instance[i]][static_cast<size_t>(i & 3)] += absorbed[i];
+    }
+  }
+}
+
+// The momentum that arrives: force_N of every hit, and the ledger's intake for first hits. Sums go
+// in four lanes, the same on every machine.
 void take_momentum(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger) {
   Hits& hits = buffer.hits;
-  const int n = hits.count;
-  for (size_t k = 0; k < 3; ++k) lane(hits.force_N[k], n).setZero();
-  for (int b = 0; b < hits.bands; ++b) {
+  pad_quad(buffer);
+  std::array<Quad, 6> intake;
+  intake.fill(Quad::Zero());
+  for (int i = 0; i < hits.count; i += 4) {
+    Quad momentum_N = quad(hits.incident_W[0], i);
+    for (int b = 1; b < hits.bands; ++b) momentum_N += quad(hits.incident_W[b], i);
+    momentum_N *= 1.0 / speed_of_light_m_s;
+    std::array<Quad, 3> force_N, at_m;
     for (size_t k = 0; k < 3; ++k) {
-      lane(hits.force_N[k], n) +=
-          lane(buffer.direction[k], n) * lane(hits.incident_W[b], n) * (1.0 / speed_of_light_m_s);
+      force_N[k] = quad(buffer.direction[k], i) * momentum_N;
+      quad(hits.force_N[k], i) = force_N[k];
+      at_m[k] = quad(hits.position_m[k], i);
+    }
+    for (size_t k = 0; k < 3; ++k) {
+      const size_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      intake[k] += force_N[k];
+      intake[3 + k] += at_m[k1] * force_N[k2] - at_m[k2] * force_N[k1];
     }
   }
   if (context.depth > 0) return;
-  for (size_t k = 0; k < 3; ++k) {
-    const size_t k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-    ledger.momentum_in[k] += ordered_sum(lane(hits.force_N[k], n));
-    ledger.momentum_in[3 + k] +=
-        ordered_sum(lane(hits.position_m[k1], n) * lane(hits.force_N[k2], n) -
-                    lane(hits.position_m[k2], n) * lane(hits.force_N[k1], n));
+  for (size_t k = 0; k < 6; ++k) {
+    ledger.momentum_in[k] += (intake[k][0] + intake[k][1]) + (intake[k][2] + intake[k][3]);
   }
 }
 
@@ -209,12 +253,7 @@ void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& 
   absorb(*context.scene, buffer);
   if (finishes) absorb_by_angle(*context.scene, buffer);
   take_momentum(context, buffer, ledger);
-  for (int b = 0; b < hits.bands; ++b) {
-    for (int i = 0; i < hits.count; ++i) {
-      ledger.absorbed_lanes_W[hits.instance[i]][static_cast<size_t>(i & 3)] +=
-          hits.absorbed_W[b][i];
-    }
-  }
+  book_absorbed(hits, ledger);
   SobolStream stream = context.stream;
   stream.group = static_cast<uint32_t>(context.depth) + 1u;
   const SobolSequence sequence(stream);

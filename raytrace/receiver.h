@@ -16,9 +16,12 @@ namespace photorque {
 // Interactions of rays with surfaces, structure of arrays, at most `capacity` at a time. Everything
 // is in the body frame.
 struct Hits {
-  static constexpr int capacity = 1024;
+  static constexpr int capacity = 256;  // so that all columns stay in the fastest cache together
+  // The rows beyond capacity hold nothing: without them all columns would share the same few sets
+  // of that cache.
+  static constexpr int rows = capacity + 8;
   template <typename T>
-  using Column = std::array<T, capacity>;
+  using Column = std::array<T, rows>;
 
   int count = 0;
   int bands = 1;                             // only this many rows of the band columns are filled

@@ -4,6 +4,8 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
 #include "core/constants.h"
 #include "core/errors.h"
@@ -20,11 +22,9 @@ namespace {
 struct BeamPlan {
   const Beam* beam;
   RigidTransform body_from_emitter;
-  LandingGrid landing;
-  uint32_t rays_per_replicate;  // a power of two, at least ray_block
-  uint32_t batch;               // rays per batch
-  uint64_t first_batch;         // its number among the batches of a replicate
-  BandValues power_per_ray_W;   // so that each replicate carries the full power of the beam
+  LaunchPlan launch;           // of the rays of one replicate: a power of two, at least ray_block
+  uint64_t first_batch;        // its number among the batches of a replicate
+  BandValues power_per_ray_W;  // so that each replicate carries the full power of the beam
   double watt_per_ray;
 };
 
@@ -51,18 +51,16 @@ Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from
     const RigidTransform body_from_emitter = body_from_lab * beam.lab_from_emitter;
     BeamPlan share{&beam,
                    body_from_emitter,
-                   landing_grid(*beam.emitter, body_from_emitter, scene),
-                   rays,
-                   std::min(rays, largest_batch),
+                   plan_launch(*beam.emitter, body_from_emitter, scene, std::countr_zero(rays)),
                    plan.batches,
                    band_fractions(beam.spectrum, scene.scene.bands),
                    power / rays};
     double fraction = 0.0;
     for (double& band : share.power_per_ray_W) fraction += band;
     for (double& band : share.power_per_ray_W) band *= share.watt_per_ray / fraction;
-    plan.batches += rays / share.batch;
+    plan.batches += share.launch.cells.cells();
     plan.rays += static_cast<uint64_t>(rays) * static_cast<uint64_t>(options.replicates);
-    plan.beams.push_back(share);
+    plan.beams.push_back(std::move(share));
   }
   return plan;
 }
@@ -98,18 +96,19 @@ class BatchTracer {
     hits_->hits.bands = scene.scene.bands.count();
   }
 
-  void run(const BeamPlan& plan, const SobolStream& stream, uint32_t first, Sums& sums) {
+  void run(const BeamPlan& plan, const SobolStream& stream, uint32_t batch, Sums& sums) {
     sums_ = &sums;
     context_ = {&scene_, stream, 0, options_.cutoff * plan.watt_per_ray};
-    launch(*plan.beam->emitter, plan.body_from_emitter, scene_, plan.landing, stream, first,
-           plan.batch, launched_);
+    launch(*plan.beam->emitter, plan.body_from_emitter, scene_, plan.launch, stream, batch,
+           launched_);
     next_.clear();
-    trace_wave(launched_.rays, plan.power_per_ray_W.data(), 0, Coherence::coherent);
+    trace_wave({launched_.rays, launched_.order}, plan.power_per_ray_W.data(), 0,
+               Coherence::coherent);
     for (context_.depth = 1; !next_.rays.empty() && context_.depth < options_.max_depth;
          ++context_.depth) {
       std::swap(current_, next_);
       next_.clear();
-      trace_wave(current_.rays, current_.power_W.data(), bands(), Coherence::incoherent);
+      trace_wave({current_.rays, {}}, current_.power_W.data(), bands(), Coherence::incoherent);
     }
     truncate();
   }
@@ -118,12 +117,10 @@ class BatchTracer {
   int bands() const { return hits_->hits.bands; }
 
   // Ray i has the powers power_W[i · stride …].
-  void trace_wave(const std::vector<Ray>& rays, const double* power_W, int stride,
-                  Coherence coherence) {
+  void trace_wave(const RayList& rays, const double* power_W, int stride, Coherence coherence) {
     sums_->segments += rays.size();
     for (size_t begin = 0; begin < rays.size(); begin += Hits::capacity) {
-      const std::span<const Ray> some =
-          std::span(rays).subspan(begin, std::min<size_t>(Hits::capacity, rays.size() - begin));
+      const RayList some = rays.part(begin, Hits::capacity);
       const double* power = power_W + begin * static_cast<size_t>(stride);
       find_hits(scene_, some, coherence, *hits_);
       drop_misses(some, power, stride);
@@ -138,9 +135,10 @@ class BatchTracer {
 
   // Lets the rays that hit nothing escape, closes the gaps that they leave, and gives the others
   // their powers.
-  void drop_misses(std::span<const Ray> rays, const double* power_W, int stride) {
+  void drop_misses(const RayList& rays, const double* power_W, int stride) {
     Hits& hits = hits_->hits;
-    if (compact(*hits_, kept_) != static_cast<int>(rays.size())) {
+    const bool all = compact(*hits_, kept_) == static_cast<int>(rays.size());
+    if (!all) {
       int at = 0;
       for (int i = 0; i < static_cast<int>(rays.size()); ++i) {
         if (at < hits.count && kept_[at] == i) {
@@ -155,7 +153,9 @@ class BatchTracer {
       if (stride == 0) {
         std::fill_n(incident, hits.count, power_W[b]);
       } else {
-        for (int i = 0; i < hits.count; ++i) incident[i] = power_W[kept_[i] * stride + b];
+        for (int i = 0; i < hits.count; ++i) {
+          incident[i] = power_W[(all ? i : kept_[i]) * stride + b];
+        }
       }
     }
   }
@@ -202,20 +202,44 @@ class BatchTracer {
 // threads.
 constexpr uint64_t most_parts = 4;
 
-Sums trace_part(const TraceableScene::Data& scene, const Plan& plan,
-                std::span<const Receiver* const> receivers, const TraceOptions& options,
-                int replicate, uint64_t first_batch, uint64_t end_batch) {
-  Sums sums(scene.scene.instances.size(), receivers);
-  BatchTracer tracer(scene, receivers, options);
+// Batch tracers between two parts of the work: their memory is made once per thread.
+class TracerPool {
+ public:
+  TracerPool(const TraceableScene::Data& scene, std::span<const Receiver* const> receivers,
+             const TraceOptions& options)
+      : scene_(scene), receivers_(receivers), options_(options) {}
+
+  std::unique_ptr<BatchTracer> take() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<BatchTracer>(scene_, receivers_, options_);
+    auto tracer = std::move(idle_.back());
+    idle_.pop_back();
+    return tracer;
+  }
+  void give_back(std::unique_ptr<BatchTracer> tracer) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(tracer));
+  }
+
+ private:
+  const TraceableScene::Data& scene_;
+  std::span<const Receiver* const> receivers_;
+  const TraceOptions& options_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<BatchTracer>> idle_;
+};
+
+Sums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
+                std::span<const Receiver* const> receivers, uint64_t seed, int replicate,
+                uint64_t first_batch, uint64_t end_batch) {
+  Sums sums(instances, receivers);
   for (size_t b = 0; b < plan.beams.size(); ++b) {
     const BeamPlan& beam = plan.beams[b];
-    const SobolStream stream{options.seed, hash_words(b, static_cast<uint64_t>(replicate)), 0};
-    const uint64_t beam_batches = beam.rays_per_replicate / beam.batch;
+    const SobolStream stream{seed, hash_words(b, static_cast<uint64_t>(replicate)), 0};
     const uint64_t begin = std::max(first_batch, beam.first_batch);
-    const uint64_t end = std::min(end_batch, beam.first_batch + beam_batches);
+    const uint64_t end = std::min(end_batch, beam.first_batch + beam.launch.cells.cells());
     for (uint64_t batch = begin; batch < end; ++batch) {
-      const auto first = static_cast<uint32_t>((batch - beam.first_batch) * beam.batch);
-      tracer.run(beam, stream, first, sums);
+      tracer.run(beam, stream, static_cast<uint32_t>(batch - beam.first_batch), sums);
     }
   }
   return sums;
@@ -293,11 +317,15 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   const uint64_t parts = std::min(most_parts, plan.batches);
   const size_t replicates = static_cast<size_t>(options.replicates);
   std::vector<Sums> done(replicates * parts, Sums(0, {}));
+  TracerPool pool(data, receivers, options);
   std::atomic<size_t> finished = 0;
   parallel_for(done.size(), options.threads, [&](size_t item) {
     const uint64_t part = item % parts;
-    done[item] = trace_part(data, plan, receivers, options, static_cast<int>(item / parts),
-                            plan.batches * part / parts, plan.batches * (part + 1) / parts);
+    auto tracer = pool.take();
+    done[item] = trace_part(*tracer, data.scene.instances.size(), plan, receivers, options.seed,
+                            static_cast<int>(item / parts), plan.batches * part / parts,
+                            plan.batches * (part + 1) / parts);
+    pool.give_back(std::move(tracer));
     const size_t now = ++finished;
     if (options.progress)
       options.progress(static_cast<double>(now) / static_cast<double>(done.size()));

@@ -56,7 +56,7 @@ std::vector<VisiblePoint> look(const TraceableScene& scene, size_t count,
     }
     const auto buffer = std::make_unique<HitBuffer>();
     const auto kept = std::make_unique<Hits::Column<int>>();
-    find_hits(data, rays, Coherence::incoherent, *buffer);
+    find_hits(data, {rays, {}}, Coherence::incoherent, *buffer);
     compact(*buffer, *kept);
     locate_hits(data, 0, *buffer);
     for (int i = 0; i < buffer->hits.count; ++i) {

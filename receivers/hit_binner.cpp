@@ -81,9 +81,16 @@ void HitBinner::set_plane(const SurfaceGrid& grid) {
 void HitBinner::collect(const Hits& hits, BinnedHits& out) const {
   const auto count = static_cast<uint32_t>(hits.count);
   out.runs = 0;
+  // Mostly all of them do, which is found several at a time.
+  uint32_t differences = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    differences |= (hits.instance[i] ^ hits.instance[0]) |
+                   static_cast<uint32_t>(hits.front[i] ^ hits.front[0]);
+  }
   for (uint32_t begin = 0, end = 0; begin < count; begin = end) {
     const uint32_t instance = hits.instance[begin];
     const uint8_t front = hits.front[begin];
+    if (differences == 0) end = count;
     while (end < count && hits.instance[end] == instance && hits.front[end] == front) ++end;
     if (((side_bits_[instance] >> front) & 1) == 0) continue;
     if (turned_towards_.empty()) {

@@ -64,11 +64,11 @@ TEST_P(EveryReceiver, AddsNothingForNoHits) {
 
 TEST_P(EveryReceiver, AddsBatchesInAnyGrouping) {
   const auto receiver = GetParam().make(on_array(), two_plates());
-  const std::vector<HitMaker> all = random_hits(3, 1000);
+  const std::vector<HitMaker> all = random_hits(3, 250);
   std::vector<double> whole(receiver->bins(), 0.0), parts(receiver->bins(), 0.0);
   receiver->score(*hits_of(all), whole);
-  receiver->score(*hits_of({all.begin() + 300, all.end()}), parts);
-  receiver->score(*hits_of({all.begin(), all.begin() + 300}), parts);
+  receiver->score(*hits_of({all.begin() + 80, all.end()}), parts);
+  receiver->score(*hits_of({all.begin(), all.begin() + 80}), parts);
   double largest = 0.0;
   for (const double bin : whole) largest = std::max(largest, std::abs(bin));
   ASSERT_GT(largest, 0.0);
@@ -79,7 +79,7 @@ TEST_P(EveryReceiver, AddsBatchesInAnyGrouping) {
 
 TEST_P(EveryReceiver, IsLinearInTheHits) {
   const auto receiver = GetParam().make(on_array(), two_plates());
-  std::vector<HitMaker> hits = random_hits(4, 500);
+  std::vector<HitMaker> hits = random_hits(4, 250);
   std::vector<double> once(receiver->bins(), 0.0), doubled(receiver->bins(), 0.0);
   receiver->score(*hits_of(hits), once);
   for (HitMaker& hit : hits) {
@@ -94,7 +94,7 @@ TEST_P(EveryReceiver, IsLinearInTheHits) {
 TEST_P(EveryReceiver, ProductIsWhole) {
   const auto receiver = GetParam().make(on_array(), two_plates());
   const BinSums sums =
-      sums_of(*receiver, {random_hits(5, 900), random_hits(6, 900), random_hits(7, 900)});
+      sums_of(*receiver, {random_hits(5, 250), random_hits(6, 250), random_hits(7, 250)});
   const Product product = receiver->product(sums);
   EXPECT_FALSE(product.quantities.empty());
   for (const Quantity& quantity : product.quantities) {

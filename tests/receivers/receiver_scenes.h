@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -139,12 +140,18 @@ inline std::unique_ptr<Hits> hits_of(const std::vector<HitMaker>& all) {
   return hits;
 }
 
-// One replicate per list of hits.
+// One replicate per list of hits, of any length.
 inline BinSums sums_of(const Receiver& receiver, const std::vector<std::vector<HitMaker>>& lists) {
   BinSums sums{receiver.bins(), static_cast<int>(lists.size()), {}};
   sums.sums.assign(sums.bins * lists.size(), 0.0);
   for (size_t r = 0; r < lists.size(); ++r) {
-    receiver.score(*hits_of(lists[r]), std::span(sums.sums).subspan(r * sums.bins, sums.bins));
+    const auto bins = std::span(sums.sums).subspan(r * sums.bins, sums.bins);
+    for (size_t begin = 0; begin < lists[r].size(); begin += Hits::capacity) {
+      const size_t end = std::min<size_t>(begin + Hits::capacity, lists[r].size());
+      receiver.score(*hits_of({lists[r].begin() + static_cast<std::ptrdiff_t>(begin),
+                               lists[r].begin() + static_cast<std::ptrdiff_t>(end)}),
+                     bins);
+    }
   }
   return sums;
 }

@@ -6,6 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -127,12 +128,14 @@ FluxMapReceiver flux_map(const Scene& scene) {
   return {"receiver", scene, make_surface_grid(scene, instances, options)};
 }
 
+constexpr uint64_t forward_rays = 1ull << 24;
+
 void forward(benchmark::State& state, const Case& which) {
   const TraceableScene scene(which.scene, false);
   const FluxMapReceiver map = flux_map(which.scene);
   const Receiver* const receivers[] = {&map};
   TraceOptions options;
-  options.rays = 1ull << 24;
+  options.rays = forward_rays;
   options.threads = static_cast<int>(state.range(0));
   uint64_t rays = 0;
   for (auto _ : state) rays += trace(scene, {}, which.beams, receivers, options).rays;
@@ -143,26 +146,31 @@ void forward(benchmark::State& state, const Case& which) {
 // Embree alone: rays of one batch per beam, already sorted, traced over and over in packets.
 void bare_embree(benchmark::State& state, const Case& which) {
   const TraceableScene scene(which.scene, false);
-  std::vector<LaunchBuffer> batches(std::min<size_t>(which.beams.size(), 8));
+  std::vector<std::vector<Ray>> batches(std::min<size_t>(which.beams.size(), 8));
+  LaunchBuffer launched;
+  // Of one replicate of one beam in `forward`.
+  const int log2_rays = std::countr_zero(std::bit_ceil(forward_rays / 16 / which.beams.size()));
   for (size_t b = 0; b < batches.size(); ++b) {
     const Beam& beam = which.beams[b * which.beams.size() / batches.size()];
-    const LandingGrid grid = landing_grid(*beam.emitter, beam.lab_from_emitter, scene.data());
-    launch(*beam.emitter, beam.lab_from_emitter, scene.data(), grid, {1, b, 0}, 0, largest_batch,
-           batches[b]);
+    const LaunchPlan plan =
+        plan_launch(*beam.emitter, beam.lab_from_emitter, scene.data(), log2_rays);
+    launch(*beam.emitter, beam.lab_from_emitter, scene.data(), plan, {1, b, 0}, 0, launched);
+    for (const uint32_t i : launched.order) batches[b].push_back(launched.rays[i]);
   }
   const int threads = static_cast<int>(state.range(0));
-  constexpr size_t repeats = 32;
+  constexpr size_t repeats = 64;
   uint64_t rays = 0;
   for (auto _ : state) {
     parallel_for(repeats * batches.size(), threads, [&](size_t item) {
       const auto buffer = std::make_unique<HitBuffer>();
-      const std::span<const Ray> all = batches[item % batches.size()].rays;
+      const std::span<const Ray> all = batches[item % batches.size()];
       for (size_t begin = 0; begin < all.size(); begin += Hits::capacity) {
-        find_hits(scene.data(), all.subspan(begin, Hits::capacity), Coherence::coherent, *buffer);
+        find_hits(scene.data(), {all.subspan(begin, Hits::capacity), {}}, Coherence::coherent,
+                  *buffer);
         benchmark::DoNotOptimize(buffer->hits.instance[0]);
       }
     });
-    rays += repeats * batches.size() * largest_batch;
+    for (const std::vector<Ray>& batch : batches) rays += repeats * batch.size();
   }
   state.counters["Mrays/s"] =
       benchmark::Counter(static_cast<double>(rays) / 1e6, benchmark::Counter::kIsRate);
