@@ -48,10 +48,10 @@ namespace {
 // A bar as strokes up and down, close enough to fill it.
 Plot::Curve bar(const LossStage& stage, int number) {
   constexpr int strokes = 350;
-  constexpr double width = 0.8;
+  constexpr double bar_width = 0.8;
   Plot::Curve curve{std::to_string(number) + " " + stage.name, {}, {}, {}, false};
   for (int k = 0; k <= strokes; ++k) {
-    curve.x.push_back(number + width * (static_cast<double>(k) / strokes - 0.5));
+    curve.x.push_back(number + bar_width * (static_cast<double>(k) / strokes - 0.5));
     curve.y.push_back(k % 2 == 0 ? 0.0 : stage.power_W);
   }
   return curve;
