@@ -215,30 +215,39 @@ std::string ranking(const Diagnosis& d) {
   std::ranges::sort(chosen);
   std::vector<Bar> bars;
   constexpr size_t most = 14;
+  constexpr double ruled_out = -50.0;
   for (const Alternative& a : d.alternatives) {
     if (bars.size() == most) break;
+    // Explanations that the recordings rule out would only flatten the rest.
+    if (a.log_evidence_relative < ruled_out && !a.chosen) continue;
     std::vector<std::string> kinds = a.kinds;
     std::ranges::sort(kinds);
     std::string label;
     for (const std::string& k : a.kinds) label += (label.empty() ? "" : " + ") + spoken(k);
     if (!a.label.empty()) label = spoken(a.label);
     if (label.empty()) label = "nothing missing";
-    std::string note = a.remark;
-    if (note.empty() && a.holdout_chi2_per_sample) {
-      note = "χ² held out " + plain_number(*a.holdout_chi2_per_sample);
+    // Beside a bar that is as long as the best one's, only the difference says something.
+    const double behind = d.alternatives.front().log_evidence_relative - a.log_evidence_relative;
+    std::string note = behind > 0.0 ? "−" + plain_number(behind) + " to the best" : "";
+    if (!a.remark.empty()) {
+      note = a.remark;
+    } else if (a.holdout_chi2_per_sample) {
+      note +=
+          (note.empty() ? "" : "; ") + ("χ² held out " + plain_number(*a.holdout_chi2_per_sample));
     }
     const bool named = d.verdict != Verdict::unexplained && kinds == chosen && a.label.empty();
     const bool is_chosen = a.chosen || named;
     bars.push_back({label, a.log_evidence_relative, note, is_chosen});
   }
-  return tag("section",
-             tag("h2", "Ranking of the alternatives") +
-                 tag("p", std::string("Longer is better; a lead of 3 makes the odds 20 to 1.") +
-                              (d.verdict == Verdict::unexplained
-                                   ? " No name was chosen: the model that was kept is blue."
-                                   : " The chosen one is blue.")) +
-                 bar_chart_svg(bars, "log evidence over “nothing missing”",
-                               "Log evidence of the alternatives"));
+  return tag(
+      "section",
+      tag("h2", "Ranking of the alternatives") +
+          tag("p", std::string("Further right is better; a lead of 3 makes the odds 20 to 1.") +
+                       (d.verdict == Verdict::unexplained
+                            ? " No name was chosen: the model that was kept is bold and blue."
+                            : " The chosen one is bold and blue.")) +
+          bar_chart_svg(bars, "log evidence over “nothing missing”",
+                        "Log evidence of the alternatives"));
 }
 
 std::string channel_charts(const ChannelSeries& channel, const RecordingSeries& recording) {

@@ -281,7 +281,7 @@ std::string line_chart_svg(const LineChart& chart, const std::string& title) {
 
 std::string bar_chart_svg(const std::vector<Bar>& bars, const std::string& x_label,
                           const std::string& title) {
-  constexpr double row = 27.0, notes = 190.0;
+  constexpr double row = 27.0, notes = 225.0;
   // As wide as the longest label needs, which is cut where the bars would have no room.
   constexpr size_t most_letters = 62;
   constexpr double letter = 6.6, least_names = 150.0;
@@ -292,9 +292,10 @@ std::string bar_chart_svg(const std::vector<Bar>& bars, const std::string& x_lab
   for (const Bar& bar : bars) widen(range, std::isfinite(bar.value) ? bar.value : 0.0);
   if (range.low == range.high) range.high = 1.0;
   // Room for the numbers at the bars' ends.
-  const double room = 0.16 * (range.high - range.low);
-  range = {range.low < 0.0 ? range.low - room : 0.0, range.high + room};
-  const double from = names, to = page_width - notes;
+  constexpr double number_room = 72.0;
+  range = {std::min(0.0, range.low), std::max(0.0, range.high)};
+  const double from = names + (range.low < 0.0 ? number_room : 0.0);
+  const double to = page_width - notes - number_room;
   const double zero = range.at(0.0, from, to), bottom = row * static_cast<double>(bars.size()) + 4;
   std::string svg = svg_begin(bottom + 26.0, title);
   for (size_t i = 0; i < bars.size(); ++i) {
