@@ -5,9 +5,9 @@
 namespace photorque {
 namespace {
 
-class Reader {
+class AcmReader {
  public:
-  explicit Reader(const std::filesystem::path& path) : path_(path) {
+  explicit AcmReader(const std::filesystem::path& path) : path_(path) {
     acm_.message = read_kvn(path);
   }
 
@@ -93,7 +93,7 @@ std::vector<Quat> AttitudeComprehensive::AttitudeBlock::quaternions() const {
 }
 
 AttitudeComprehensive read_acm(const std::filesystem::path& path) {
-  return Reader(path).read();
+  return AcmReader(path).read();
 }
 
 void write_acm(const std::filesystem::path& path, const AttitudeComprehensive& acm) {

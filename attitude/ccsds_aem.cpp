@@ -39,9 +39,9 @@ constexpr std::array<Keyword, 17> keywords = {{
     {"INTERPOLATION_DEGREE", &Segment::interpolation_degree, false},
 }};
 
-class Reader {
+class AemReader {
  public:
-  explicit Reader(const std::filesystem::path& path) : path_(path), message_(read_kvn(path)) {}
+  explicit AemReader(const std::filesystem::path& path) : path_(path), message_(read_kvn(path)) {}
 
   AttitudeEphemeris read() {
     AttitudeEphemeris aem;
@@ -185,7 +185,7 @@ std::vector<Segment::Sample> Segment::attitudes() const {
 }
 
 AttitudeEphemeris read_aem(const std::filesystem::path& path) {
-  return Reader(path).read();
+  return AemReader(path).read();
 }
 
 KvnItem to_kvn(const AttitudeEphemeris& aem) {

@@ -47,7 +47,7 @@ namespace photorque {
 // experiment file and must not matter.
 enum class Stage {
   conditions,   // changes what all others see: gravity, field, command, inertia
-  mass,         // moves the centre of mass, by Moment::move_mass()
+  mass,         // moves the centre of mass, by Moment::move_mass(), or turns the lab
   torque,       // acts on the body
   measurement,  // changes only what the instruments read
 };
@@ -92,7 +92,8 @@ struct Moment {
   // Inertia that does not turn with the body: use detach_inertia().
   Mat3Of<T> detached_inertia_kg_m2;
   bool inertia_changed = false;  // false: inertia_kg_m2 is the platform's and nothing is detached
-  // What an ideal gyro senses: the inertial rate (earth_rotation adds to it).
+  // The inertial rate, which an ideal gyro senses and a rotor resists: earth_rotation adds to it.
+  // Complete after Stage::mass.
   Vec3Of<T> inertial_rate_body_rad_s;
   // Stage::measurement adds to these.
   Vec3Of<T> gyro_error_rad_s;  // reading − inertial rate, body axes

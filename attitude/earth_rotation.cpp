@@ -1,4 +1,4 @@
-// The lab turns with the Earth: the inertial rate is ω + Ω_B, and the gyro sees it.
+// The lab turns with the Earth: the inertial rate is ω + Ω_B; gyros and rotors feel it.
 //
 // No parameters; the Earth's rate in lab axes comes from the environment's latitude. In the body's
 // axes Ω_B changes as −ω × Ω_B, so Euler's equations for the inertial rate, written for ω, gain
@@ -26,7 +26,7 @@ struct EarthRotation final : LawOf<EarthRotation> {
 DisturbanceKind earth_rotation_kind() {
   return {"earth_rotation", "the laboratory itself turns once a day",
           [](const Settings&, const DisturbanceContext&) {
-            return make_disturbance<EarthRotation>({});
+            return make_disturbance<EarthRotation>({}, Stage::mass);
           }};
 }
 

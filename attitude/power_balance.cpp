@@ -5,6 +5,9 @@
 //   array_power_W (default 0) at zero tilt in full light, falling with the cosine of the tilt; or
 //   tilt_deg = [0, …], power_W = […]: a table, as `sweep` finds it, held beyond its end;
 // in proportion to the light that arrives. array_scale (default 1) multiplies it.
+//
+// Where the battery's capacity is known its controller tapers the current exponentially within the
+// last per cent or so: a full battery takes no more, an empty one gives no more.
 #include <algorithm>
 
 #include "attitude/disturbance_kind.h"
@@ -65,11 +68,24 @@ class PowerBalance final : public LawOf<PowerBalance> {
     const T at_tilt_W =
         from_values(half_tilt_sine_squared(now), [this](double x) { return power_W_.at(x); });
     now.array_power_W += own.parameter(1) * now.illumination * at_tilt_W;
-    now.battery_current_A +=
-        (own.parameter(0) - now.array_power_W) / now.platform.battery_voltage_V;
+    T current_A = (own.parameter(0) - now.array_power_W) / now.platform.battery_voltage_V;
+    if (now.platform.battery_capacity_C) {
+      current_A *= controller(now.charge_drawn_C, current_A, *now.platform.battery_capacity_C);
+    }
+    now.battery_current_A += current_A;
   }
 
  private:
+  // Share of the current that flows: 1 − exp(−room/δ), room the charge that can still move.
+  template <class T>
+  static T controller(const T& drawn_C, const T& current_A, double capacity_C) {
+    const T room_C = where_at_least(values(current_A), 0.0, T(capacity_C - drawn_C), drawn_C);
+    const T bounded_C = where_at_least(values(room_C), 0.0, room_C, T(0.0));
+    return 1.0 - exp(-bounded_C / (taper_share * capacity_C));
+  }
+
+  static constexpr double taper_share = 0.002;
+
   MonotoneCurve power_W_;
 };
 
@@ -103,7 +119,7 @@ DisturbanceKind power_balance_kind() {
             return make_disturbance<PowerBalance>(
                 {scalar_parameter(settings, "load_W", Range::not_negative()),
                  scalar_parameter_or(settings, "array_scale", 1.0, Range::not_negative())},
-                Stage::conditions, {}, read_curve(settings));
+                Stage::torque, {}, read_curve(settings));
           }};
 }
 

@@ -13,8 +13,6 @@
 namespace photorque {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 // The contract's channels. A header may name them in another unit of the same kind.
 constexpr std::string_view known_channels[] = {
     "t_s",           "gyro_x_rad_s",      "gyro_y_rad_s",    "gyro_z_rad_s",
@@ -42,7 +40,7 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
 
 // NaN for an empty cell or the word nan; nullopt for what is no number.
 std::optional<double> to_number(std::string_view cell) {
-  if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return nan;
+  if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return empty_cell;
   if (cell.front() == '+') cell.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -71,9 +69,9 @@ Column column_named(const std::string& in_file, const RecordingOptions& options)
   return {name, 1.0};
 }
 
-class Reader {
+class RecordingReader {
  public:
-  Reader(const std::filesystem::path& path, const RecordingOptions& options)
+  RecordingReader(const std::filesystem::path& path, const RecordingOptions& options)
       : path_(path), options_(options), lines_(path) {}
 
   Recording read() {
@@ -166,7 +164,7 @@ class Reader {
       std::optional<double> value = to_number(cells_[i]);
       if (!value) {
         ++report.unreadable_cells;
-        value = nan;
+        value = empty_cell;
       } else if (std::isnan(*value)) {
         ++report.empty_cells;
       }
@@ -277,7 +275,7 @@ RecordingOptions read_recording_options(const Settings& settings) {
 }
 
 Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options) {
-  return Reader(path, options).read();
+  return RecordingReader(path, options).read();
 }
 
 Schedule read_command_file(const std::filesystem::path& path) {

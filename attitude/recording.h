@@ -18,6 +18,9 @@
 
 namespace photorque {
 
+// A cell without a value.
+inline constexpr double empty_cell = std::numeric_limits<double>::quiet_NaN();
+
 struct Channel {
   std::string name;            // ends in its SI unit: "gyro_x_rad_s"
   std::vector<double> values;  // one per row; NaN where the cell is empty

@@ -7,7 +7,6 @@
 namespace photorque {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Ratio of standard deviation and median absolute deviation of a Gaussian.
 constexpr double sigma_per_mad = 1.4826;
 
@@ -43,7 +42,8 @@ double noise_level(const std::vector<double>& x) {
 double off_parabola(const std::vector<double>& x, size_t i, int direction) {
   const auto at = [&](int steps) {
     const auto j = static_cast<std::ptrdiff_t>(i) + direction * steps;
-    return j < 0 || j >= static_cast<std::ptrdiff_t>(x.size()) ? nan : x[static_cast<size_t>(j)];
+    return j < 0 || j >= static_cast<std::ptrdiff_t>(x.size()) ? empty_cell
+                                                               : x[static_cast<size_t>(j)];
   };
   return at(0) - 3 * at(1) + 3 * at(2) - at(3);
 }
@@ -121,13 +121,13 @@ void mend_quaternions(Recording& recording) {
     }
     if (std::isnan(square)) {
       // Three components without the fourth say nothing safe about an attitude.
-      for (Channel* channel : q) channel->values[i] = nan;
+      for (Channel* channel : q) channel->values[i] = empty_cell;
       continue;
     }
     const double norm = std::sqrt(square);
     if (!(std::abs(norm - 1.0) < 0.01)) {
       ++recording.report.bad_quaternions;
-      for (Channel* channel : q) channel->values[i] = nan;
+      for (Channel* channel : q) channel->values[i] = empty_cell;
       continue;
     }
     const double sign = along < 0.0 ? -1.0 : 1.0;
@@ -142,7 +142,7 @@ void mend_quaternions(Recording& recording) {
 void remove_outliers(Recording& recording) {
   const auto empty = [&](Channel& channel, size_t row) {
     if (std::isnan(channel.values[row])) return;
-    channel.values[row] = nan;
+    channel.values[row] = empty_cell;
     ++recording.report.outlier_cells;
     ++recording.report.outliers[channel.name];
   };

@@ -1,4 +1,4 @@
-// A wheel, fan or disk that spins at constant speed: T = −ω × h.
+// A wheel, fan or disk that spins at constant speed: T = −ω × h, ω the inertial rate.
 //
 // momentum_N_m_s[3]: angular momentum relative to the body, body axes.
 #include "attitude/disturbance_kind.h"
@@ -9,7 +9,7 @@ namespace {
 struct RotorMomentum final : TorqueLaw<RotorMomentum> {
   template <class T>
   Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
-    return own.vector(0).cross(now.rate_body_rad_s);
+    return own.vector(0).cross(now.inertial_rate_body_rad_s);
   }
 };
 

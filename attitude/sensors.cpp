@@ -8,8 +8,6 @@
 namespace photorque {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 // One stream of random numbers for each purpose.
 enum Stream : uint64_t { camera_noise, gyro_noise, gyro_walk, current_noise, power_noise };
 
@@ -110,7 +108,7 @@ bool Recorder::is_due(double rate_Hz, double time_s) const {
 
 void Recorder::add_camera(const Truth& truth) {
   const uint64_t row = recording_.rows();
-  Quat seen = Quat(nan, nan, nan, nan);
+  Quat seen = Quat(empty_cell, empty_cell, empty_cell, empty_cell);
   if (is_due(sensors_.camera->rate_Hz, truth.time_s)) {
     const Vec3 noise_rad =
         sensors_.camera->noise_rad.cwiseProduct(gaussian_vector(seed_, camera_noise, row));
@@ -135,9 +133,9 @@ void Recorder::add_gyro(const Truth& truth) {
   const Vec3 reading = truth.gyro_rad_s + bias_walk_rad_s_ +
                        gyro.noise_rad_s * gaussian_vector(seed_, gyro_noise, row);
   const bool due = is_due(gyro.rate_Hz, truth.time_s);
-  put("gyro_x_rad_s", due ? reading.x() : nan);
-  put("gyro_y_rad_s", due ? reading.y() : nan);
-  put("gyro_z_rad_s", due ? reading.z() : nan);
+  put("gyro_x_rad_s", due ? reading.x() : empty_cell);
+  put("gyro_y_rad_s", due ? reading.y() : empty_cell);
+  put("gyro_z_rad_s", due ? reading.z() : empty_cell);
 }
 
 void Recorder::add(const Truth& truth) {

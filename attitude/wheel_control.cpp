@@ -63,7 +63,7 @@ class WheelControl final : public LawOf<WheelControl> {
       momentum[k] = inertia * own.states[k];
       own.state_rates[k] = on_wheel[k] / inertia;
     }
-    now.torque_body_N_m -= on_wheel + now.rate_body_rad_s.cross(momentum);
+    now.torque_body_N_m -= on_wheel + now.inertial_rate_body_rad_s.cross(momentum);
     now.detach_inertia(Mat3(inertia * Mat3::Identity()).template cast<T>());
   }
 

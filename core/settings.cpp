@@ -23,6 +23,19 @@ size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+// " (is LIKE in line N meant?)" for the likest key that nobody has asked for yet, if there is one.
+std::string misspelled(std::string_view key, const SettingsNode::Table& table,
+                       const std::set<std::string>& asked) {
+  std::set<std::string> unasked;
+  for (const auto& [other, node] : table) {
+    if (!asked.contains(other)) unasked.insert(other);
+  }
+  const std::string likest = nearest(key, unasked);
+  if (likest.empty()) return "";
+  return " (is \"" + likest + "\" in line " +
+         std::to_string(table.find(likest)->second.where.line) + " meant?)";
+}
+
 }  // namespace
 
 std::string format_setting(double x) {
@@ -122,7 +135,9 @@ const SettingsNode& Settings::require(std::string_view key, double* factor,
       }
     }
   }
-  throw InputError(node_->where, full_name(key), "nothing", expected);
+  throw InputError(
+      node_->where, full_name(key), "nothing",
+      expected + misspelled(key, std::get<SettingsNode::Table>(node_->value), log_->asked[node_]));
 }
 
 bool Settings::has(std::string_view key) const {

@@ -6,7 +6,6 @@
 namespace photorque {
 namespace {
 
-constexpr double tick_length = 4.0;
 constexpr double gap = 3.0;
 constexpr Rgb ink = {0.13, 0.13, 0.13};
 

@@ -8,6 +8,9 @@
 
 namespace photorque {
 
+// Length of a tick on every axis, in page units.
+inline constexpr double tick_length = 4.0;
+
 struct Axis {
   AxisRange range;
   bool log = false;

@@ -7,8 +7,6 @@
 #include "images/text.h"
 
 namespace photorque {
-namespace {
-
 struct CairoDelete {
   void operator()(cairo_t* context) const { cairo_destroy(context); }
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
@@ -17,6 +15,8 @@ struct CairoDelete {
 };
 template <class T>
 using CairoOwner = std::unique_ptr<T, CairoDelete>;
+
+namespace {
 
 void check(cairo_status_t status) {
   if (status != CAIRO_STATUS_SUCCESS) {

@@ -6,7 +6,6 @@ namespace photorque {
 namespace {
 
 constexpr double bar_thickness = 16.0;
-constexpr double tick_length = 4.0;
 constexpr double caption_gap = 10.0;
 constexpr Rgb grey = {0.45, 0.45, 0.45};
 

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* extension_name = "EXT_meshopt_compression";
+constexpr const char* meshopt_extension = "EXT_meshopt_compression";
 
 struct Packed {
   uint64_t count = 0, stride = 0;
@@ -100,9 +100,9 @@ void decode_meshopt_views(Document* document, MemoryBudget* budget) {
     json& view = document->json["bufferViews"][i];
     const auto extensions = view.find("extensions");
     if (extensions == view.end() || !extensions->is_object()) continue;
-    if (!extensions->contains(extension_name)) continue;
-    const json extension = (*extensions)[extension_name];
-    const std::string where = pointer("bufferViews", i, "extensions", extension_name);
+    if (!extensions->contains(meshopt_extension)) continue;
+    const json extension = (*extensions)[meshopt_extension];
+    const std::string where = pointer("bufferViews", i, "extensions", meshopt_extension);
     const Packed packed = read_packed(*document, extension, where);
     std::string bytes = unpacked(*document, packed, budget, where);
     view["byteLength"] = bytes.size();

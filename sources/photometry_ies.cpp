@@ -190,14 +190,14 @@ IntensityTable sideways_table(Pole pole, std::vector<double> vertical_deg,
   return table;
 }
 
-struct Header {
+struct IesHeader {
   size_t type = 1;  // 1 C, 2 B, 3 A
   size_t vertical = 0, horizontal = 0;
   double factor = 1.0;
 };
 
-Header read_header(NumberStream& stream, PhotometricFile& file) {
-  Header header;
+IesHeader read_header(NumberStream& stream, PhotometricFile& file) {
+  IesHeader header;
   const double lamps = stream.next("number of lamps");
   const double lumens = stream.next("lumens per lamp");
   const double multiplier = stream.next("candela multiplier");
@@ -230,7 +230,7 @@ PhotometricFile read_ies(const std::string& bytes, const std::string& name) {
   const size_t tilt = read_labels(lines, name, file);
   NumberStream stream(lines, tilt + 1, name);
   read_tilt(trimmed(lines[tilt]), stream, file);
-  const Header header = read_header(stream, file);
+  const IesHeader header = read_header(stream, file);
   std::vector<double> vertical_deg = stream.numbers("vertical angle", header.vertical);
   require_ascending(vertical_deg, "vertical angles", stream.where());
   const InputLocation angles_at = stream.where();

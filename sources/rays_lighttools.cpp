@@ -9,9 +9,9 @@
 namespace photorque {
 namespace {
 
-constexpr double nm = 1e-9;
+constexpr double nanometre_m = 1e-9;
 
-struct Header {
+struct LightToolsHeader {
   double metres_per_unit = 1e-3;
   Vec3 origin = Vec3::Zero();  // in the file's unit
   size_t columns = 7;
@@ -45,7 +45,8 @@ double unit_of(std::string_view name, const InputLocation& where) {
                    "millimeters, centimeters, meters, inches or feet");
 }
 
-void read_keyword(std::string_view line, const InputLocation& where, Header& header, RaySet& set) {
+void read_keyword(std::string_view line, const InputLocation& where, LightToolsHeader& header,
+                  RaySet& set) {
   const size_t colon = line.find(':');
   if (colon == std::string_view::npos) return;
   const std::string_view key = trimmed(line.substr(0, colon));
@@ -64,7 +65,8 @@ void read_keyword(std::string_view line, const InputLocation& where, Header& hea
   if (key == "lt_luminous_flux") set.stated_luminous_flux_lm = number_at(words, 0, where);
 }
 
-RaySet::Ray read_ray(std::string_view line, const Header& header, const InputLocation& where) {
+RaySet::Ray read_ray(std::string_view line, const LightToolsHeader& header,
+                     const InputLocation& where) {
   const std::vector<std::string_view> words = words_of(line);
   RaySet::Ray ray;
   for (int k = 0; k < 3; ++k) {
@@ -73,7 +75,8 @@ RaySet::Ray read_ray(std::string_view line, const Header& header, const InputLoc
     ray.direction[k] = number_at(words, static_cast<size_t>(k) + 3, where);
   }
   ray.flux = number_at(words, 6, where);
-  if (header.columns == 8) ray.wavelength_m = std::max(0.0, nm * number_at(words, 7, where));
+  if (header.columns == 8)
+    ray.wavelength_m = std::max(0.0, nanometre_m * number_at(words, 7, where));
   return ray;
 }
 
@@ -82,7 +85,7 @@ RaySet::Ray read_ray(std::string_view line, const Header& header, const InputLoc
 RaySet read_lighttools_rays(const std::string& bytes, const std::string& name) {
   RaySet set;
   set.format = "LightTools";
-  Header header;
+  LightToolsHeader header;
   bool in_data = false;
   int line_number = 0;
   for (const std::string_view line : lines_of(bytes)) {

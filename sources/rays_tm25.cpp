@@ -32,7 +32,7 @@ enum Column : size_t {
 };
 constexpr std::array<size_t, column_kinds> column_floats = {3, 3, 1, 1, 1, 7, 2, 1};
 
-struct Header {
+struct Tm25Header {
   uint64_t rays = 0;
   int32_t spectra = 0, more_columns = 0, text_bytes = 0;
   std::array<bool, column_kinds> has{};
@@ -49,7 +49,7 @@ int32_t size_claim(LittleEndianReader& in, const char* what) {
   return value;
 }
 
-Header read_header(LittleEndianReader& in, RaySet& set) {
+Tm25Header read_tm25_header(LittleEndianReader& in, RaySet& set) {
   if (in.take(4, "magic") != "TM25") {
     throw InputError(in.where(), "magic", "other bytes", "\"TM25\"");
   }
@@ -60,7 +60,7 @@ Header read_header(LittleEndianReader& in, RaySet& set) {
   in.int32("creation method");
   set.stated_luminous_flux_lm = stated(in.float32("luminous flux"));
   set.stated_radiant_flux_W = stated(in.float32("radiant flux"));
-  Header header;
+  Tm25Header header;
   header.rays = in.unsigned_integer<uint64_t>("number of rays");
   in.skip(28, "date");
   in.int32("start position");
@@ -109,7 +109,7 @@ void skip_spectra(LittleEndianReader& in, int32_t spectra) {
   in.skip((32 - bytes % 32) % 32, "filling after the spectra");
 }
 
-RaySet::Ray read_ray(LittleEndianReader& in, const Header& header, RaySet::FluxUnit unit) {
+RaySet::Ray read_ray(LittleEndianReader& in, const Tm25Header& header, RaySet::FluxUnit unit) {
   RaySet::Ray ray;
   for (int k = 0; k < 3; ++k) ray.origin_m[k] = mm * in.float32("rays");
   for (int k = 0; k < 3; ++k) ray.direction[k] = in.float32("rays");
@@ -132,7 +132,7 @@ RaySet read_tm25(const std::string& bytes, const std::string& name) {
   LittleEndianReader in(bytes, name);
   RaySet set;
   set.format = "TM-25-13";
-  const Header header = read_header(in, set);
+  const Tm25Header header = read_tm25_header(in, set);
   set.name = ascii_of(in.take(4 * text_characters, "name"));
   in.skip(4 * text_characters * (texts - 1), "descriptions");
   if (header.spectra > 0) skip_spectra(in, header.spectra);

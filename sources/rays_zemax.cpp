@@ -16,16 +16,16 @@ constexpr double micrometre = 1e-6;
 // Dimension units 0 to 4.
 constexpr std::array<double, 5> unit_m = {1.0, 0.0254, 0.01, 0.3048, 0.001};
 
-struct Header {
+struct ZemaxHeader {
   uint32_t rays = 0;
   double metres_per_unit = 1.0;
   bool spectral = false;
 };
 
-Header read_header(LittleEndianReader& in, RaySet& set) {
+ZemaxHeader read_zemax_header(LittleEndianReader& in, RaySet& set) {
   const int32_t found = in.int32("magic");
   if (found != magic) throw InputError(in.where(), "magic", std::to_string(found), "1010");
-  Header header;
+  ZemaxHeader header;
   header.rays = in.unsigned_integer<uint32_t>("number of rays");
   const std::string_view name = in.take(100, "description");
   set.name = std::string(name.substr(0, name.find('\0')));
@@ -66,7 +66,7 @@ RaySet read_zemax_rays(const std::string& bytes, const std::string& name) {
   LittleEndianReader in(bytes, name);
   RaySet set;
   set.format = "Zemax";
-  const Header header = read_header(in, set);
+  const ZemaxHeader header = read_zemax_header(in, set);
   const uint64_t there = in.left() / (header.spectral ? 32 : 28);
   if (header.rays > there) {
     throw InputError({name}, "number of rays", std::to_string(header.rays),

@@ -13,8 +13,6 @@
 namespace photorque {
 namespace {
 
-constexpr double g = standard_gravity_m_s2;
-
 // Free fall about the centre of rotation from a quarter turn's worth of amplitude: the period of a
 // physical pendulum, exact with the complete elliptic integral. m = 29 kg, d = 81 µm, J = 1.3 kg m²
 // is a published testbed: 47.2 s for small swings.

@@ -50,7 +50,7 @@ std::string complaint(const std::string& text, const RecordingOptions& options =
   return "none";
 }
 
-const std::vector<double>& values(const Recording& recording, std::string_view name) {
+const std::vector<double>& cells_of(const Recording& recording, std::string_view name) {
   return recording.find(name)->values;
 }
 
@@ -103,10 +103,10 @@ TEST(Recording, RealFilesAreMendedAndEverythingIsCounted) {
       "2.0;5;6\r\n"  // after a gap
       "2.1;6");      // torn off
   EXPECT_THAT(r.time_s, ElementsAre(0.0, 0.1, 0.2, 0.4, 2.0));
-  EXPECT_EQ(values(r, "gyro_x_rad_s")[0], 1.0);
-  EXPECT_TRUE(std::isnan(values(r, "gyro_x_rad_s")[1]));
-  EXPECT_TRUE(std::isnan(values(r, "gyro_x_rad_s")[2]));
-  EXPECT_EQ(values(r, "gyro_x_rad_s")[3], 4.0);
+  EXPECT_EQ(cells_of(r, "gyro_x_rad_s")[0], 1.0);
+  EXPECT_TRUE(std::isnan(cells_of(r, "gyro_x_rad_s")[1]));
+  EXPECT_TRUE(std::isnan(cells_of(r, "gyro_x_rad_s")[2]));
+  EXPECT_EQ(cells_of(r, "gyro_x_rad_s")[3], 4.0);
   const RecordingReport& report = r.report;
   EXPECT_EQ(report.preamble_lines, 4);
   EXPECT_EQ(report.rows_read, 10);
@@ -132,9 +132,9 @@ TEST(Recording, ColumnsMayHaveOtherNamesAndUnits) {
   options.columns = {{"t_ms", "Stamp"}, {"gyro_z_deg_s", "wz"}};
   const Recording r = read("Stamp,wz,gyro_x_rpm\n1000,90,60\n1500,180,30\n", options);
   EXPECT_THAT(r.time_s, ElementsAre(1.0, 1.5));
-  EXPECT_THAT(values(r, "gyro_z_rad_s"),
+  EXPECT_THAT(cells_of(r, "gyro_z_rad_s"),
               ElementsAre(testing::DoubleEq(pi / 2), testing::DoubleEq(pi)));
-  EXPECT_DOUBLE_EQ(values(r, "gyro_x_rad_s")[0], 2 * pi);
+  EXPECT_DOUBLE_EQ(cells_of(r, "gyro_x_rad_s")[0], 2 * pi);
   const RecordingOptions from_file = read_recording_options(settings_of(
       table({{"columns", table({{"t_ms", node("Stamp")}, {"gyro_z_deg_s", node("wz")}})}})));
   EXPECT_EQ(from_file.columns, options.columns);
@@ -152,11 +152,11 @@ TEST(Recording, FlippedAndBadQuaternionsAreMended) {
   EXPECT_EQ(r.report.bad_quaternions, 1);
   for (size_t i = 0; i < r.rows(); ++i) {
     if (i == 50) {
-      EXPECT_TRUE(std::isnan(values(r, "q_w")[i]));
+      EXPECT_TRUE(std::isnan(cells_of(r, "q_w")[i]));
       continue;
     }
-    EXPECT_NEAR(values(r, "q_w")[i], std::cos(0.01 * static_cast<double>(i)), 2e-6);
-    EXPECT_NEAR(values(r, "q_x")[i], std::sin(0.01 * static_cast<double>(i)), 2e-6);
+    EXPECT_NEAR(cells_of(r, "q_w")[i], std::cos(0.01 * static_cast<double>(i)), 2e-6);
+    EXPECT_NEAR(cells_of(r, "q_x")[i], std::sin(0.01 * static_cast<double>(i)), 2e-6);
   }
 }
 
@@ -178,7 +178,7 @@ TEST(Recording, OutliersAreFoundAndNothingElse) {
   EXPECT_EQ(r.report.outlier_cells, 4);
   EXPECT_EQ(r.report.outliers.at("gyro_x_rad_s"), 4);
   for (const size_t row : {123u, 623u, 1123u, 1623u}) {
-    EXPECT_TRUE(std::isnan(values(r, "gyro_x_rad_s")[row]));
+    EXPECT_TRUE(std::isnan(cells_of(r, "gyro_x_rad_s")[row]));
   }
   RecordingOptions keep;
   keep.remove_outliers = false;

@@ -202,6 +202,25 @@ TEST(Power, ChargeIsTheIntegralOfTheBalance) {
   EXPECT_NEAR(end.charge_drawn_C, (15.0 * 100.0 - 3000.0 * std::sin(1.0)) / 20.0, 1e-9);
 }
 
+// Q' = −I (1 − exp(−Q/δ)) has the solution exp(Q/δ) − 1 ∝ exp(−I t/δ).
+TEST(Power, FullBatteryTakesNoMore) {
+  AttitudeModel model;
+  model.platform.battery_voltage_V = 10.0;
+  model.platform.battery_capacity_C = 3600.0;
+  model = with(model, "power_balance", {{"load_W", node(0.0)}, {"array_power_W", node(30.0)}});
+  PlatformState start = state_of(model, Quat::Identity());
+  start.charge_drawn_C = 60.0;
+  const double taper_C = 0.002 * 3600;
+  for (const double time_s : {10.0, 18.0, 25.0}) {
+    const double expected_C =
+        taper_C * std::log1p(std::expm1(60.0 / taper_C) * std::exp(-3.0 * time_s / taper_C));
+    EXPECT_NEAR(flown(model, start, time_s).charge_drawn_C, expected_C, 1e-7) << time_s;
+  }
+  start.charge_drawn_C = 3600.0;
+  model = with(model, "power_balance", {{"load_W", node(90.0)}});
+  EXPECT_LE(flown(model, start, 1000.0).charge_drawn_C, 3600.0 + 1e-6);
+}
+
 TEST(Power, TableIsMetAtItsPointsAndStaysBetweenThem) {
   const std::vector<double> tilts = {0, 10, 20, 30}, powers = {30, 29, 22, 22};
   AttitudeModel model;

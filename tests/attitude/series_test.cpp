@@ -14,13 +14,13 @@
 namespace photorque {
 namespace {
 
-class TemporaryFile {
+class SeriesFile {
  public:
-  TemporaryFile(const std::string& name, const std::string& text)
+  SeriesFile(const std::string& name, const std::string& text)
       : path_(std::filesystem::path(testing::TempDir()) / name) {
     std::ofstream(path_) << text;
   }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
+  ~SeriesFile() { std::filesystem::remove(path_); }
   const std::filesystem::path& path() const { return path_; }
 
  private:
@@ -76,16 +76,16 @@ TEST(TimeSeries, RefusesDisorder) {
 }
 
 TEST(TimeSeries, ReadsColumnsByName) {
-  const TemporaryFile file("series.csv",
-                           "# who made it\nnote_1,a_z,t_s,a_x,a_y\n0,3,0,1,2\n\n0,6,0.5,4,5\n");
+  const SeriesFile file("series.csv",
+                        "# who made it\nnote_1,a_z,t_s,a_x,a_y\n0,3,0,1,2\n\n0,6,0.5,4,5\n");
   const TimeSeries series =
       read_time_series(file.path(), {"a_x", "a_y", "a_z"}, TimeSeries::Outside::hold);
   EXPECT_LT((series.at(0.25) - Vec3(2.5, 3.5, 4.5)).norm(), 1e-15);
 }
 
 TEST(TimeSeries, NamesTheLineThatIsWrong) {
-  const TemporaryFile text("text.csv", "t_s,a,b,c\n0,1,2,3\n1,x,2,3\n");
-  const TemporaryFile order("order.csv", "t_s,a,b,c\n0,1,2,3\n0,1,2,3\n");
+  const SeriesFile text("text.csv", "t_s,a,b,c\n0,1,2,3\n1,x,2,3\n");
+  const SeriesFile order("order.csv", "t_s,a,b,c\n0,1,2,3\n0,1,2,3\n");
   const auto message = [](const std::filesystem::path& path) {
     try {
       read_time_series(path, {"a", "b", "c"}, TimeSeries::Outside::hold);
@@ -214,18 +214,18 @@ TEST(TorqueSurface, AgreesWithTheBilinearTable) {
 }
 
 TEST(WrenchTableFile, ReadsWhatTheProgramWrites) {
-  const TemporaryFile file(
+  const SeriesFile file(
       "wrench.csv",
       "# photorque\nheading_deg,tilt_deg,force_x_N,torque_x_N_m,torque_y_N_m,torque_z_N_m\n"
       "0,0,9,1,2,3\n0,30,9,4,5,6\n180,0,9,7,8,9\n180,30,9,10,11,12\n");
   const WrenchTable table = read_wrench_table(file.path());
   EXPECT_EQ(table.angles, WrenchTable::Angles::tilt_heading);
   EXPECT_EQ(table.torque_body_N_m[table.node(1, 1)], Vec3(10, 11, 12));
-  const TemporaryFile twice(
+  const SeriesFile twice(
       "twice.csv",
       "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n0,0,1,2,3\n0,0,1,2,3\n");
   EXPECT_THROW(read_wrench_table(twice.path()), InputError);
-  const TemporaryFile hole(
+  const SeriesFile hole(
       "hole.csv",
       "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n0,0,1,2,3\n1,1,1,2,3\n");
   EXPECT_THROW(read_wrench_table(hole.path()), InputError);

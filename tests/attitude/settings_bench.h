@@ -6,9 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/constants.h"
 #include "core/settings.h"
 
 namespace photorque {
+
+inline constexpr double g = standard_gravity_m_s2;
 
 inline SettingsNode node(double x) {
   SettingsNode n;

@@ -12,8 +12,6 @@
 namespace photorque {
 namespace {
 
-constexpr double g = standard_gravity_m_s2;
-
 // ∫ y dm of a clamped beam with an end mass, per unit of gravity: bending moment → curvature →
 // slope → deflection, each integrated by the trapezoidal rule.
 double beam_moment_by_integration(double l, double end_mass, double beam_mass, double EI) {

@@ -64,6 +64,16 @@ TEST(Keys, UnreadKeyIsAnErrorWithTheNearestName) {
             "\"aperture_m\"");
 }
 
+TEST(Keys, MissingKeyPointsToItsMisspelling) {
+  const Settings settings = lab({{"power_W", leaf(1.0, 2)}, {"apperture_m", leaf(0.1, 5)}});
+  settings.number("power_W");
+  EXPECT_THAT(
+      message([&] { settings.number("aperture_m"); }),
+      testing::HasSubstr(
+          "found nothing, expected a finite number m (is \"apperture_m\" in line 5 meant?)"));
+  EXPECT_THAT(message([&] { settings.number("exponent"); }), testing::EndsWith("a finite number"));
+}
+
 TEST(Keys, UnreadKeyOfASubTableIsFound) {
   const Settings settings =
       lab({{"scene", leaf(SettingsNode::Table{{"fiel", leaf(std::string("x"), 9)}}, 8)}});

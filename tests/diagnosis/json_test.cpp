@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json written(const Diagnosis& d) {
+Json json_of(const Diagnosis& d) {
   Provenance provenance = build_provenance();
   provenance.seed = 7;
   provenance.inputs = {{"run1.csv", "9f3c"}};
@@ -19,7 +19,7 @@ Json written(const Diagnosis& d) {
 }
 
 TEST(DiagnosisJson, HoldsEveryKeyOfTheSchema) {
-  const Json json = written(sample_diagnosis());
+  const Json json = json_of(sample_diagnosis());
   EXPECT_EQ(json["schema"], "photorque.diagnosis/1");
   EXPECT_EQ(json["verdict"], "missing_physics");
   EXPECT_EQ(json["confidence"], 0.97);
@@ -45,7 +45,7 @@ TEST(DiagnosisJson, HoldsEveryKeyOfTheSchema) {
 }
 
 TEST(DiagnosisJson, OneNumberIsANumberAndMoreAreAnArray) {
-  const Json effects = written(sample_diagnosis())["effects"];
+  const Json effects = json_of(sample_diagnosis())["effects"];
   EXPECT_EQ(effects[0]["parameters"]["dipole_A_m2"]["value"],
             Json::parse("[0.0126, 0.0288, -0.0193]"));
   EXPECT_EQ(effects[1]["parameters"]["latency_s"]["value"], 0.08);
@@ -53,7 +53,7 @@ TEST(DiagnosisJson, OneNumberIsANumberAndMoreAreAnArray) {
 }
 
 TEST(DiagnosisJson, CarriesItsProvenance) {
-  const Json provenance = written(sample_diagnosis())["provenance"];
+  const Json provenance = json_of(sample_diagnosis())["provenance"];
   EXPECT_EQ(provenance["version"], build_provenance().version);
   EXPECT_EQ(provenance["git_hash"], build_provenance().git_hash);
   EXPECT_EQ(provenance["seed"], 7);
@@ -66,7 +66,7 @@ TEST(DiagnosisJson, StaysReadableWithoutFiniteNumbersOrFindings) {
   d.chi2_per_sample_before = std::numeric_limits<double>::infinity();
   d.confidence = std::numeric_limits<double>::quiet_NaN();
   d.sentence = "bad byte \xff";
-  const Json json = written(d);
+  const Json json = json_of(d);
   EXPECT_TRUE(json["fit"]["chi2_per_sample_before"].is_null());
   EXPECT_TRUE(json["confidence"].is_null());
   EXPECT_EQ(json["effects"], Json::array());

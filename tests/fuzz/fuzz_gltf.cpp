@@ -1,9 +1,4 @@
-// libFuzzer target: any bytes, read as glTF, give a scene or an InputError.
-//
-//   cmake -B build-fuzz -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-fsanitize=fuzzer-no-link \
-//         -DPHOTORQUE_FUZZ=ON -DPHOTORQUE_SANITIZE=ON
-//   cmake --build build-fuzz --target fuzz_gltf
-//   build-fuzz/tests/fuzz/fuzz_gltf -rss_limit_mb=2048 CORPUS_FOLDER
+// Fuzz target: any bytes, read as glTF, give a scene or an InputError. tools/sanitize runs it.
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -1,5 +1,5 @@
-// libFuzzer target: any bytes, read as an IES LM-63 and as an EULUMDAT file, give a table that can
-// be interpolated and written back, or an InputError. Built and run like fuzz_gltf.
+// Fuzz target: any bytes, read as an IES LM-63 and as an EULUMDAT file, give a table that can
+// be interpolated and written back, or an InputError.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

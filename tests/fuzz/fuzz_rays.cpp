@@ -1,5 +1,5 @@
-// libFuzzer target: any bytes, read as a ray file of each format, give rays that a lamp can hold,
-// or an InputError. Built and run like fuzz_gltf.
+// Fuzz target: any bytes, read as a ray file of each format, give rays that a lamp can hold,
+// or an InputError.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

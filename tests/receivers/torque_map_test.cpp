@@ -13,13 +13,13 @@ using testing::quantity_named;
 using testing::scene_of;
 using testing::sums_of;
 
-constexpr uint32_t first[] = {0};
+constexpr uint32_t plate_instance[] = {0};
 
 TorqueMapReceiver receiver_on(const Scene& scene, int bins, const Vec3& about_m = Vec3::Zero()) {
   SurfaceGridOptions options;
   options.width = options.height = bins;
   options.side = Side::both;
-  return {"plate", scene, make_surface_grid(scene, first, options), about_m};
+  return {"plate", scene, make_surface_grid(scene, plate_instance, options), about_m};
 }
 
 // Light along (sin 30°, 0, −cos 30°) with a pressure of 1 Pa on its cross-section, absorbed by the

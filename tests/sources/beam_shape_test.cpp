@@ -7,8 +7,6 @@
 namespace photorque {
 namespace {
 
-constexpr double deg = degree_rad;
-
 // A test emitter that is nothing but its intensity.
 class Pattern : public Emitter {
  public:

@@ -14,13 +14,10 @@ namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double deg = degree_rad;
 
-fs::path samples() {
-  return fs::path(PHOTORQUE_SOURCE_DIR) / "../shared/photometry";
-}
+using test::samples;
 
-PhotometricFile read(const fs::path& path) {
+PhotometricFile read_sample_table(const fs::path& path) {
   return read_photometric(read_file(path), path.filename().string());
 }
 
@@ -181,7 +178,7 @@ TEST(PhotometricSamples, AreAllReadAndComeBackAsWritten) {
       if (extension != ".ies" && extension != ".ldt") continue;
       ++files;
       SCOPED_TRACE(entry.path().filename().string());
-      const PhotometricFile file = read(entry.path());
+      const PhotometricFile file = read_sample_table(entry.path());
       expect_equal(file, read_ies(write_ies(file), "written"));
       const TabulatedIntensity intensity(file.table);
       EXPECT_GT(intensity.flux(), 0.0);
@@ -219,7 +216,7 @@ TEST(PhotometricSamples, AgreeWithAnotherProgram) {
         Known{"ies/ABSOLUTE_LED.ies", 72.86, 120.0, 5184.8},
         Known{"ies/TILT_TEST_SYNTHETIC.ies", 120.0, 180.0, 3266.2}}) {
     SCOPED_TRACE(known.file);
-    const PhotometricLamp lamp = lamp_of(read(samples() / known.file));
+    const PhotometricLamp lamp = lamp_of(read_sample_table(samples() / known.file));
     EXPECT_NEAR(full_width_rad(lamp, 0.5) / deg, known.fwhm_deg, 0.02 * known.fwhm_deg);
     EXPECT_NEAR(full_width_rad(lamp, 0.1) / deg, known.tenth_deg, 0.02 * known.tenth_deg);
     EXPECT_NEAR(flux_by_means(lamp) / known.flux, 1.0, 5e-5);
@@ -240,7 +237,7 @@ TEST(PhotometricSamples, ReproduceTheAnswersOfSyntheticBeams) {
     for (const char* extension : {".ies", ".ldt"}) {
       SCOPED_TRACE(std::string(answer.name) + extension);
       const fs::path path = samples() / "synthetic" / (std::string(answer.name) + extension);
-      const PhotometricLamp lamp = lamp_of(read(path));
+      const PhotometricLamp lamp = lamp_of(read_sample_table(path));
       const EncircledFlux flux(lamp);
       EXPECT_NEAR(full_width_rad(lamp, 0.5) / deg, answer.fwhm_deg, 2e-4);
       EXPECT_NEAR(flux.half_angle_rad(0.5) / deg, answer.half_deg, 2e-4);

@@ -16,8 +16,6 @@ using test::largest_deviation;
 using test::rays_of;
 using test::sorted_angles;
 
-constexpr double deg = degree_rad;
-
 // A profile and the flux within a cone in closed form.
 struct Case {
   std::string name;

@@ -13,13 +13,10 @@ namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double deg = degree_rad;
 
-fs::path samples() {
-  return fs::path(PHOTORQUE_SOURCE_DIR) / "../shared/photometry";
-}
+using test::samples;
 
-RaySet read(const fs::path& path) {
+RaySet read_sample_rays(const fs::path& path) {
   return read_rays(read_file(path), path.filename().string());
 }
 
@@ -52,7 +49,7 @@ void expect_equal(const RaySet& a, const RaySet& b) {
 TEST(RaySamples, AreAllReadAndAgreeAcrossFormats) {
   if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
   const auto compare = [&](const char* first, const char* second, double tolerance) {
-    const RaySet a = read(samples() / first), b = read(samples() / second);
+    const RaySet a = read_sample_rays(samples() / first), b = read_sample_rays(samples() / second);
     ASSERT_EQ(a.rays.size(), b.rays.size());
     for (size_t i = 0; i < a.rays.size(); ++i) {
       ASSERT_NEAR((a.rays[i].origin_m - b.rays[i].origin_m).norm(), 0.0, tolerance);
@@ -63,11 +60,11 @@ TEST(RaySamples, AreAllReadAndAgreeAcrossFormats) {
   compare("synthetic/gauss3.tm25ray", "synthetic/gauss3.dat", 1e-9);
   compare("synthetic/core3_halo12_20pct.tm25ray", "synthetic/core3_halo12_20pct.dat", 1e-9);
   compare("rays/Cyl10k.1.tm25ray", "rays/Cyl10k.1.ray", 1e-6);
-  const RaySet osram = read(samples() / "rays/farfield.TM25ray");
+  const RaySet osram = read_sample_rays(samples() / "rays/farfield.TM25ray");
   EXPECT_EQ(osram.rays.size(), 100000u);
   EXPECT_EQ(osram.stated_radiant_flux_W, 1.0);
   EXPECT_NEAR(*osram.wavelength_m, 500e-9, 1e-15);
-  const RaySet cylinder = read(samples() / "rays/Cyl10k.1.tm25ray");
+  const RaySet cylinder = read_sample_rays(samples() / "rays/Cyl10k.1.tm25ray");
   EXPECT_EQ(cylinder.flux_unit, RaySet::FluxUnit::lumen);
   EXPECT_EQ(cylinder.stated_luminous_flux_lm, 1.0);
   EXPECT_NEAR(cylinder.ray_flux(), 10000.0, 75.0);
@@ -78,7 +75,7 @@ TEST(RaySamples, ComeBackAsWritten) {
   for (const char* file :
        {"synthetic/gauss3.tm25ray", "rays/Cyl10k.1.tm25ray", "rays/farfield.TM25ray"}) {
     SCOPED_TRACE(file);
-    const RaySet set = read(samples() / file);
+    const RaySet set = read_sample_rays(samples() / file);
     expect_equal(set, read_tm25(write_tm25(set), "written"));
   }
 }
@@ -87,7 +84,7 @@ TEST(RaySamples, ComeBackAsWritten) {
 TEST(RaySamples, HoldTheEncircledFluxOfTheirBeam) {
   if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
   const auto check = [&](const char* file, double half_angle_rad, double share) {
-    const RayLamp lamp(1.0, read(samples() / file));
+    const RayLamp lamp(1.0, read_sample_rays(samples() / file));
     const double sigma = std::sqrt(share * (1.0 - share) / 20000.0);
     EXPECT_NEAR(EncircledFlux(lamp).within(half_angle_rad), share, 3.5 * sigma) << file;
   };

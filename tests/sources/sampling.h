@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/constants.h"
 #include "core/files.h"
 #include "core/settings.h"
 #include "core/sobol.h"
@@ -15,7 +16,16 @@
 #include "sources/ray_set.h"
 #include "sources/source_kind.h"
 
-namespace photorque::test {
+namespace photorque {
+
+inline constexpr double deg = degree_rad;
+
+namespace test {
+
+// Where the sample files of photometers and lamp makers lie, if they are there.
+inline std::filesystem::path samples() {
+  return std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/photometry";
+}
 
 inline SettingsNode vector_node(double x, double y, double z) {
   return {SettingsNode::Array{{x}, {y}, {z}}, {}};
@@ -127,4 +137,5 @@ double largest_deviation(const std::vector<double>& sorted, const Cumulative& cu
   return largest;
 }
 
-}  // namespace photorque::test
+}  // namespace test
+}  // namespace photorque

@@ -13,8 +13,6 @@
 namespace photorque {
 namespace {
 
-constexpr double deg = degree_rad;
-
 IntensityTable axial(double step_rad, double end_rad, const std::function<double(double)>& f) {
   IntensityTable table;
   const auto steps = static_cast<int>(std::lround(end_rad / step_rad));

@@ -1,56 +1,19 @@
 // `fit-cell`, and what `power` says beyond the maximum power point, as a user meets them.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 
+#include "tests/tools/command_test.h"
+
+namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-struct Outcome {
-  int status = -1;
-  std::string out, err;
-};
-
-std::string read(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-class ArrayCommand : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("photorque_array_" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command = std::string(PHOTORQUE_BINARY_DIR) + "/photorque " + arguments +
-                                " >" + path("stdout") + " 2>" + path("stderr");
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("stdout")),
-            read(path("stderr"))};
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
-
-  fs::path folder_;
-};
+class ArrayCommand : public CommandTest {};
 
 // A measured module of 36 cells at two irradiances.
 TEST_F(ArrayCommand, FitsADatasheetAndPrintsTheCell) {
@@ -59,13 +22,13 @@ TEST_F(ArrayCommand, FitsADatasheetAndPrintsTheCell) {
         "short_circuit_A = 5.116\nopen_circuit_V = 22.05\nmaximum_A = 4.66\nmaximum_V = 17.63\n"
         "[[fit.datasheet]]\nirradiance_W_m2 = 200\nshort_circuit_A = 1.029\n"
         "open_circuit_V = 20.38\nmaximum_A = 0.939\nmaximum_V = 17.04\n");
-  const Outcome got = run("fit-cell " + path("fit.toml") + " --out " + path("out"));
+  const Outcome got = run("fit-cell " + at("fit.toml") + " --out " + at("out"));
   ASSERT_EQ(got.status, 0) << got.err;
   EXPECT_THAT(got.out, HasSubstr("series_ohm"));
   EXPECT_THAT(got.out, HasSubstr("saturation_1_A = "));
-  EXPECT_THAT(read(path("out/summary.json")), HasSubstr("\"ideality\""));
-  EXPECT_TRUE(fs::exists(path("out/parameters.csv")));
-  EXPECT_TRUE(fs::exists(path("out/fit.png")));
+  EXPECT_THAT(file_text(at("out/summary.json")), HasSubstr("\"ideality\""));
+  EXPECT_TRUE(fs::exists(at("out/parameters.csv")));
+  EXPECT_TRUE(fs::exists(at("out/fit.png")));
 }
 
 TEST_F(ArrayCommand, WrongFitsAreOneLineAndLeaveNothing) {
@@ -76,11 +39,11 @@ TEST_F(ArrayCommand, WrongFitsAreOneLineAndLeaveNothing) {
   for (const auto& [file, part] :
        {std::pair{"words.toml", "words.csv:3: current_A: found \"x\""},
         std::pair{"typo.toml", "words.csv:3"}, std::pair{"none.toml", "fit.curves"}}) {
-    const Outcome got = run("fit-cell " + path(file) + " --out " + path("out"));
+    const Outcome got = run("fit-cell " + at(file) + " --out " + at("out"));
     EXPECT_EQ(got.status, 2) << file;
     EXPECT_THAT(got.err, HasSubstr(part));
     EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
-    EXPECT_FALSE(fs::exists(path("out")));
+    EXPECT_FALSE(fs::exists(at("out")));
   }
 }
 
@@ -92,7 +55,7 @@ TEST_F(ArrayCommand, PowerReportsLossesTrackersDayTargetAndWiring) {
           " --set 'array.chain={wall_plug_efficiency=0.45,converter_efficiency=0.95}'"
           " --set 'array.layout={most_tried=20}'"
           " --set 'array.tracker={time_s=[0,4],tilt_deg=[0,30]}' --out " +
-          path("out"));
+          at("out"));
   ASSERT_EQ(got.status, 0) << got.err;
   // 730 nm: hc/λ = 1.698 eV; 0.38 × 1.698 V = 0.645 V; 30 W cos 30° = 25.98 W.
   for (const char* part :
@@ -102,17 +65,18 @@ TEST_F(ArrayCommand, PowerReportsLossesTrackersDayTargetAndWiring) {
   }
   for (const char* file : {"losses.csv", "uniformity.csv", "trackers.csv", "day.csv",
                            "sensitivities.csv", "layout.csv", "loss_waterfall.png"}) {
-    EXPECT_TRUE(fs::exists(path("out") + "/" + file)) << file;
+    EXPECT_TRUE(fs::exists(at("out") + "/" + file)) << file;
   }
 }
 
 TEST_F(ArrayCommand, TrackersNeedAMotion) {
   const Outcome got =
       run("power " + (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes/stasis/nominal.toml").string() +
-          " --set 'array.tracker={time_s=[0,4],tilt_deg=[0]}' --out " + path("out"));
+          " --set 'array.tracker={time_s=[0,4],tilt_deg=[0]}' --out " + at("out"));
   EXPECT_EQ(got.status, 2);
   EXPECT_THAT(got.err, HasSubstr("array.tracker.tilt_deg"));
-  EXPECT_FALSE(fs::exists(path("out")));
+  EXPECT_FALSE(fs::exists(at("out")));
 }
 
 }  // namespace
+}  // namespace photorque

@@ -1,8 +1,4 @@
 // The commands budget, propagate and balance as a user meets them.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -10,61 +6,19 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/tools/command_test.h"
+
+namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::string program = std::string(PHOTORQUE_BINARY_DIR) + "/photorque";
 const fs::path source = PHOTORQUE_SOURCE_DIR;
 const std::string stasis = (source / "scenes/stasis/attitude.toml").string();
 
-struct Outcome {
-  int status = -1;
-  std::string out, err;
-};
-
-std::string read(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-class AttitudeCommands : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("photorque_attitude_" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command = program + " " + arguments + " >" + (folder_ / "stdout").string() +
-                                " 2>" + (folder_ / "stderr").string();
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "stdout"),
-            read(folder_ / "stderr")};
-  }
-  std::string at(const std::string& name) const { return (folder_ / name).string(); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(at(name)) << text;
-    return at(name);
-  }
-  std::map<std::string, std::string> files(const std::string& name) const {
-    std::map<std::string, std::string> all;
-    for (const auto& entry : fs::directory_iterator(folder_ / name)) {
-      all[entry.path().filename()] = read(entry.path());
-    }
-    return all;
-  }
-
-  fs::path folder_;
-};
+class AttitudeCommands : public CommandTest {};
 
 constexpr const char* pendulum = R"([platform]
 topology = "tabletop"
@@ -208,9 +162,9 @@ TEST_F(AttitudeCommands, RecordingsOfAnotherSimulatorFitToTheirNoise) {
   int compared = 0;
   for (const auto& entry : fs::directory_iterator(cases)) {
     if (!fs::exists(entry.path() / "truth.json")) continue;
-    const json truth = json::parse(read(entry.path() / "truth.json"));
+    const json truth = json::parse(file_text(entry.path() / "truth.json"));
     if (truth.at("verdict") == "unexplained") continue;
-    std::string text = read(entry.path() / "experiment.toml");
+    std::string text = file_text(entry.path() / "experiment.toml");
     for (const json& effect : truth.at("effects")) {
       text += "\n[[disturbance]]\n";
       for (const auto& [key, number] : effect.items()) {
@@ -230,3 +184,4 @@ TEST_F(AttitudeCommands, RecordingsOfAnotherSimulatorFitToTheirNoise) {
 }
 
 }  // namespace
+}  // namespace photorque

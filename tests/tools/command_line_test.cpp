@@ -1,65 +1,21 @@
 // The program as a user meets it: exit statuses, messages, files.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 
+#include "tests/tools/command_test.h"
+
+namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string program = std::string(PHOTORQUE_BINARY_DIR) + "/photorque";
 const fs::path scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
 
-struct Outcome {
-  int status = -1;
-  std::string out, err;
-};
-
-std::string read(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-class CommandLine : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ =
-        fs::temp_directory_path() /
-        ("photorque_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Outcome run(const std::string& arguments) const {
-    const std::string command = program + " " + arguments + " >" + (folder_ / "stdout").string() +
-                                " 2>" + (folder_ / "stderr").string();
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "stdout"),
-            read(folder_ / "stderr")};
-  }
-  std::string out(const std::string& name) const { return (folder_ / name).string(); }
-
-  // Every file of a folder by name.
-  std::map<std::string, std::string> files(const std::string& name) const {
-    std::map<std::string, std::string> all;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_ / name)) {
-      if (entry.is_regular_file()) all[entry.path().filename()] = read(entry.path());
-    }
-    return all;
-  }
-
-  fs::path folder_;
-};
+class CommandLine : public CommandTest {};
 
 const std::string nominal = (scenes / "stasis" / "nominal.toml").string();
 const std::string few_rays = " --set trace.rays=65536";
@@ -79,7 +35,7 @@ TEST_F(CommandLine, SameFilesAtOneTwoAndSevenThreadsAndAgain) {
   for (const std::string threads : {"1", "2", "7", "7"}) {
     const std::string name = "run" + std::to_string(runs.size());
     const Outcome got =
-        run("power " + nominal + few_rays + " --threads " + threads + " --out " + out(name));
+        run("power " + nominal + few_rays + " --threads " + threads + " --out " + at(name));
     ASSERT_EQ(got.status, 0) << got.err;
     auto all = files(name);
     all["summary.json"] = without_time(all["summary.json"]);
@@ -93,7 +49,7 @@ TEST_F(CommandLine, SameFilesAtOneTwoAndSevenThreadsAndAgain) {
 }
 
 TEST_F(CommandLine, EveryFileCarriesProvenance) {
-  ASSERT_EQ(run("trace " + nominal + few_rays + " --seed 77 --out " + out("o")).status, 0);
+  ASSERT_EQ(run("trace " + nominal + few_rays + " --seed 77 --out " + at("o")).status, 0);
   for (const auto& [file, bytes] : files("o")) {
     EXPECT_THAT(bytes, HasSubstr("photorque")) << file;
     EXPECT_THAT(bytes, HasSubstr("77")) << file;
@@ -101,14 +57,14 @@ TEST_F(CommandLine, EveryFileCarriesProvenance) {
 }
 
 TEST_F(CommandLine, JsonIsTheSummaryAndNothingElse) {
-  const Outcome got = run("trace " + nominal + few_rays + " --json --out " + out("o"));
+  const Outcome got = run("trace " + nominal + few_rays + " --json --out " + at("o"));
   EXPECT_EQ(got.status, 0);
-  EXPECT_EQ(got.out, read(folder_ / "o" / "summary.json"));
+  EXPECT_EQ(got.out, file_text(folder_ / "o" / "summary.json"));
   EXPECT_THAT(got.out, HasSubstr("\"emitted_W\""));
 }
 
 TEST_F(CommandLine, QuietSaysNothing) {
-  const Outcome got = run("trace " + nominal + few_rays + " --quiet --out " + out("o"));
+  const Outcome got = run("trace " + nominal + few_rays + " --quiet --out " + at("o"));
   EXPECT_EQ(got.status, 0);
   EXPECT_EQ(got.out + got.err, "");
 }
@@ -116,11 +72,10 @@ TEST_F(CommandLine, QuietSaysNothing) {
 TEST_F(CommandLine, EveryExperimentRuns) {
   for (const char* name : {"dumbbell/dumbbell.toml", "tabletop/tabletop.toml", "hollow/hollow.toml",
                            "spacecraft/spacecraft.toml"}) {
-    const Outcome got = run("trace " + (scenes / name).string() + few_rays + " --out " + out("o"));
+    const Outcome got = run("trace " + (scenes / name).string() + few_rays + " --out " + at("o"));
     EXPECT_EQ(got.status, 0) << name << ": " << got.err;
-    const Outcome picture =
-        run("render " + (scenes / name).string() + few_rays +
-            " --set camera.width=160 --set camera.height=120 --out " + out("o"));
+    const Outcome picture = run("render " + (scenes / name).string() + few_rays +
+                                " --set camera.width=160 --set camera.height=120 --out " + at("o"));
     EXPECT_EQ(picture.status, 0) << name << ": " << picture.err;
   }
 }
@@ -129,9 +84,9 @@ TEST_F(CommandLine, TorqueMapCoversTheGrid) {
   const Outcome got = run("torque-map " + nominal +
                           " --set trace.rays=16384 --set torque_map.tilt_deg=[0,30]"
                           " --set torque_map.heading_deg=[0,180] --out " +
-                          out("o"));
+                          at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
-  const std::string table = read(folder_ / "o" / "power_over_attitude.csv");
+  const std::string table = file_text(folder_ / "o" / "power_over_attitude.csv");
   EXPECT_EQ(
       std::count(table.begin(), table.end(), '\n') - std::count(table.begin(), table.end(), '#'), 5)
       << table;
@@ -156,7 +111,7 @@ TEST_F(CommandLine, TorqueMapTurnsTheBodyUnderTheSun) {
   const std::string craft = (scenes / "spacecraft" / "spacecraft.toml").string();
   ASSERT_EQ(run("torque-map " + craft +
                 " --set torque_map={azimuth_deg=[30],elevation_deg=[20],rays=1048576} --out " +
-                out("turned"))
+                at("turned"))
                 .status,
             0);
   const double cos_e = std::cos(20 * M_PI / 180), sin_e = std::sin(20 * M_PI / 180);
@@ -164,11 +119,11 @@ TEST_F(CommandLine, TorqueMapTurnsTheBodyUnderTheSun) {
   direction << "[" << -cos_e * std::cos(M_PI / 6) << "," << -cos_e * std::sin(M_PI / 6) << ","
             << -sin_e << "]";
   ASSERT_EQ(run("torque-map " + craft + " --set source[0].direction=" + direction.str() +
-                " --set torque_map={tilt_deg=[0],rays=1048576} --seed 5 --out " + out("moved"))
+                " --set torque_map={tilt_deg=[0],rays=1048576} --seed 5 --out " + at("moved"))
                 .status,
             0);
-  const auto turned = last_row(read(folder_ / "turned" / "wrench_table_body.csv"));
-  const auto moved = last_row(read(folder_ / "moved" / "wrench_table_body.csv"));
+  const auto turned = last_row(file_text(folder_ / "turned" / "wrench_table_body.csv"));
+  const auto moved = last_row(file_text(folder_ / "moved" / "wrench_table_body.csv"));
   ASSERT_EQ(turned.size(), 14u);
   ASSERT_EQ(moved.size(), 14u);
   for (size_t i = 2; i < 8; ++i) {
@@ -184,11 +139,11 @@ TEST_F(CommandLine, TorqueMapOverTheSphereWritesSpad) {
       run("torque-map " + craft +
           " --set torque_map.azimuth_step_deg=90"
           " --set torque_map.elevation_step_deg=45 --set torque_map.rays=8192 --out " +
-          out("o"));
+          at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
-  const std::string spad = read(folder_ / "o" / "spacecraft.spo");
+  const std::string spad = file_text(folder_ / "o" / "spacecraft.spo");
   EXPECT_THAT(spad, HasSubstr("Azimuth"));
-  EXPECT_EQ(last_row(read(folder_ / "o" / "wrench_table_body.csv")).size(), 14u);
+  EXPECT_EQ(last_row(file_text(folder_ / "o" / "wrench_table_body.csv")).size(), 14u);
 }
 
 double value_in(const std::string& summary, const std::string& key, const char* field) {
@@ -198,10 +153,10 @@ double value_in(const std::string& summary, const std::string& key, const char* 
 
 TEST_F(CommandLine, DirectLightIsTheSameGatheredAndByRays) {
   const Outcome got = run("trace " + nominal +
-                          " --set attitude.tilt_deg=30 --set trace.rays=1048576 --out " + out("o"));
+                          " --set attitude.tilt_deg=30 --set trace.rays=1048576 --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
   EXPECT_THAT(got.out, HasSubstr("gathered and by rays differ by"));
-  const std::string summary = read(folder_ / "o" / "summary.json");
+  const std::string summary = file_text(folder_ / "o" / "summary.json");
   const double gathered = value_in(summary, "direct_on_solar_array_W", "\"value\"");
   const double rays = value_in(summary, "direct_by_rays_on_solar_array_W", "\"value\"");
   const double error = value_in(summary, "direct_by_rays_on_solar_array_W", "\"standard_error\"");
@@ -212,10 +167,10 @@ TEST_F(CommandLine, DirectLightIsTheSameGatheredAndByRays) {
 
 TEST_F(CommandLine, RaysAreAddedUntilTheTargetErrorIsReached) {
   const std::string base = "trace " + nominal + " --set trace.rays=4096 --set trace.direct=rays";
-  ASSERT_EQ(run(base + " --out " + out("few")).status, 0);
-  ASSERT_EQ(run(base + " --target-error 0.2 --max-time 60 --out " + out("more")).status, 0);
+  ASSERT_EQ(run(base + " --out " + at("few")).status, 0);
+  ASSERT_EQ(run(base + " --target-error 0.2 --max-time 60 --out " + at("more")).status, 0);
   const auto error = [&](const char* name) {
-    return value_in(read(folder_ / name / "summary.json"), "relative_error_solar_array",
+    return value_in(file_text(folder_ / name / "summary.json"), "relative_error_solar_array",
                     "\"value\"");
   };
   EXPECT_GT(error("few"), 0.2);
@@ -266,7 +221,7 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
   for (const WrongCall& call : calls) {
     const bool own_folder =
         call.arguments.find("--out") != std::string::npos || call.arguments.empty();
-    const Outcome got = run(call.arguments + (own_folder ? "" : " --out " + out("o")));
+    const Outcome got = run(call.arguments + (own_folder ? "" : " --out " + at("o")));
     EXPECT_EQ(got.status, 2) << call.arguments << ": " << got.err;
     EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1)
         << call.arguments << ": " << got.err;
@@ -282,3 +237,4 @@ TEST_F(CommandLine, HelpAndVersion) {
 }
 
 }  // namespace
+}  // namespace photorque

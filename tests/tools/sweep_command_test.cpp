@@ -1,30 +1,20 @@
 // The command sweep as a user meets it.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "tests/tools/command_test.h"
+
+namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const std::string program = std::string(PHOTORQUE_BINARY_DIR) + "/photorque";
-
-std::string read(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 // The rows of a CSV file without its comments; the first is the header.
 std::vector<std::vector<std::string>> rows(const fs::path& path) {
-  std::istringstream in(read(path));
+  std::istringstream in(file_text(path));
   std::vector<std::vector<std::string>> all;
   for (std::string line; std::getline(in, line);) {
     if (line.empty() || line[0] == '#') continue;
@@ -35,37 +25,27 @@ std::vector<std::vector<std::string>> rows(const fs::path& path) {
   return all;
 }
 
-class Sweep : public testing::Test {
+class Sweep : public CommandTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("photorque_sweep_" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+  // `photorque sweep` of a small experiment with a lamp far above STASIS, and this table [sweep].
+  int sweep(const std::string& table, const std::string& options = "") {
+    const std::string file = write(
+        "e.toml",
+        "[scene]\nfile = \"" PHOTORQUE_SOURCE_DIR
+        "/scenes/stasis/stasis.gltf\"\n"
+        "[trace]\nrays = 4096\n[[source]]\nkind = \"led\"\npower_W = 10\n"
+        "aperture_diameter_mm = 20\nprofile = \"gaussian\"\nfwhm_deg = 3\n"
+        "wavelength_nm = 730\nspectral_fwhm_nm = 30\nposition_m = [0, 0, 1]\naim_m = [0, 0, 0]\n"
+        "[[receiver]]\nnode = \"solar_array\"\nbins = [10, 10]\n" +
+            table);
+    outcome_ = run("sweep " + file + " --out " + at("out") + " " + options);
+    return outcome_.status;
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  std::string said() const { return outcome_.out; }
+  std::string complained() const { return outcome_.err; }
 
-  // The text of the table [sweep] after a small experiment with a lamp far above STASIS.
-  int run(const std::string& sweep, const std::string& options = "") {
-    std::ofstream(folder_ / "e.toml")
-        << "[scene]\nfile = \"" << PHOTORQUE_SOURCE_DIR << "/scenes/stasis/stasis.gltf\"\n"
-        << "[trace]\nrays = 4096\n[[source]]\nkind = \"led\"\npower_W = 10\n"
-        << "aperture_diameter_mm = 20\nprofile = \"gaussian\"\nfwhm_deg = 3\n"
-        << "wavelength_nm = 730\nspectral_fwhm_nm = 30\nposition_m = [0, 0, 1]\naim_m = [0, 0, 0]\n"
-        << "[[receiver]]\nnode = \"solar_array\"\nbins = [10, 10]\n"
-        << sweep;
-    const std::string command = program + " sweep " + (folder_ / "e.toml").string() + " --out " +
-                                (folder_ / "out").string() + " " + options + " >" +
-                                (folder_ / "stdout").string() + " 2>" +
-                                (folder_ / "stderr").string();
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string said() const { return read(folder_ / "stdout"); }
-  std::string complained() const { return read(folder_ / "stderr"); }
-
-  fs::path folder_;
+ private:
+  Outcome outcome_;
 };
 
 constexpr const char* grid = R"([sweep]
@@ -83,7 +63,7 @@ spacing = "logarithmic"
 )";
 
 TEST_F(Sweep, TakesEveryCombinationOfAGrid) {
-  ASSERT_EQ(run(grid), 0) << complained();
+  ASSERT_EQ(sweep(grid), 0) << complained();
   const auto table = rows(folder_ / "out/sweep.csv");
   ASSERT_EQ(table.size(), 7u);
   EXPECT_EQ(table[0][1], "source[0].fwhm_deg");
@@ -101,16 +81,16 @@ TEST_F(Sweep, TakesEveryCombinationOfAGrid) {
 }
 
 TEST_F(Sweep, GoesOnWhereItStopped) {
-  ASSERT_EQ(run(grid, "--shard 1/2"), 0) << complained();
+  ASSERT_EQ(sweep(grid, "--shard 1/2"), 0) << complained();
   EXPECT_THAT(said(), HasSubstr("3 run now, 0 kept"));
   EXPECT_FALSE(fs::exists(folder_ / "out/sweep.csv"));
-  ASSERT_EQ(run(grid), 0);
+  ASSERT_EQ(sweep(grid), 0);
   EXPECT_THAT(said(), HasSubstr("3 run now, 3 kept"));
-  const std::string first = read(folder_ / "out/sweep.csv");
+  const std::string first = file_text(folder_ / "out/sweep.csv");
   // Another experiment is another set of designs.
-  ASSERT_EQ(run(grid, "--seed 9"), 0);
+  ASSERT_EQ(sweep(grid, "--seed 9"), 0);
   EXPECT_THAT(said(), HasSubstr("6 run now, 0 kept"));
-  EXPECT_NE(read(folder_ / "out/sweep.csv"), first);
+  EXPECT_NE(file_text(folder_ / "out/sweep.csv"), first);
 }
 
 TEST_F(Sweep, DrawsFromDistributions) {
@@ -127,7 +107,7 @@ key = "source[0].fwhm_deg"
 from = 2
 to = 4
 )";
-  ASSERT_EQ(run(plan, "--set trace.direct='\"rays\"'"), 0) << complained();
+  ASSERT_EQ(sweep(plan, "--set trace.direct='\"rays\"'"), 0) << complained();
   const auto table = rows(folder_ / "out/sweep.csv");
   ASSERT_EQ(table.size(), 65u);
   double sum = 0.0, squares = 0.0, widths = 0.0;
@@ -146,13 +126,13 @@ to = 4
 }
 
 TEST_F(Sweep, WrongInputIsOneLine) {
-  const auto refuses = [&](const std::string& sweep, const std::string& word,
+  const auto refuses = [&](const std::string& table, const std::string& word,
                            const std::string& options = "") {
-    EXPECT_EQ(run(sweep, options), 2) << sweep;
+    EXPECT_EQ(sweep(table, options), 2) << table;
     const std::string text = complained();
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
     EXPECT_THAT(text, HasSubstr(word));
-    EXPECT_FALSE(fs::exists(folder_ / "out")) << sweep;
+    EXPECT_FALSE(fs::exists(folder_ / "out")) << table;
   };
   const std::string axis = "[[sweep.axis]]\nkey = \"source[0].power_W\"\n";
   refuses("", "sweep");
@@ -170,3 +150,4 @@ TEST_F(Sweep, WrongInputIsOneLine) {
 }
 
 }  // namespace
+}  // namespace photorque
