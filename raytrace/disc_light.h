@@ -49,6 +49,9 @@ class DiscLight {
     return 0.0;
   }
 
+  // Tangents of the angles where the intensity jumps or changes its law, or hardly any light is
+  // left; rising, infinite for a right angle.
+  const std::vector<double>& edge_slopes() const { return edge_slopes_; }
   // Half-angle beyond which less than 1e-9 of the flux goes.
   double reach_rad() const { return reach_rad_; }
   // Half-angle that holds half of the flux.
@@ -80,7 +83,7 @@ class DiscLight {
   const Emitter& emitter_;
   UniformAperture aperture_;
   std::vector<Segment> segments_;
-  std::vector<double> edge_slopes_;  // tangents of edges and reach; infinite for a right angle
+  std::vector<double> edge_slopes_;
   double reach_rad_ = 0.0;
   double half_flux_rad_ = 0.0;
   double half_flux_slope_ = 0.0;  // its tangent, at most 14

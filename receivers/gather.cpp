@@ -34,6 +34,7 @@ class Gather {
       if (!light) light = std::make_shared<DiscLight>(*beam.emitter, *beam.aperture);
       lamps_.emplace_back(beam, light, body_from_lab, plane_);
     }
+    for (const auto& [emitter, light] : lights) make_table(*light);
     cut_into_tiles();
     prepare_cell_means();
   }
@@ -64,6 +65,25 @@ class Gather {
   static constexpr size_t tile_side = 16;  // bins
   // Chebyshev points a side, where they replace Gauss points in every bin.
   static constexpr size_t least_nodes = 4, most_nodes = 20;
+
+  // A table of a light for all its lamps above the plane, where it pays.
+  void make_table(const DiscLight& light) {
+    constexpr size_t least_pairs = 5000;  // of a bin and a lamp
+    double low_m = INFINITY, high_m = 0.0;
+    std::vector<GatherLamp*> served;
+    for (GatherLamp& lamp : lamps_) {
+      const auto [least_m, most_m] = lamp.heights_m(plane_);
+      if (&lamp.light() != &light || !(least_m > 0.0)) continue;
+      low_m = std::min(low_m, least_m);
+      high_m = std::max(high_m, most_m);
+      served.push_back(&lamp);
+    }
+    if (served.size() * plane_.map().grid().bins() < least_pairs) return;
+    auto table = IrradianceTable::make(light, low_m, high_m, options_.threads);
+    if (!table) return;
+    const auto shared = std::make_shared<const IrradianceTable>(*std::move(table));
+    for (GatherLamp* lamp : served) lamp->use(shared);
+  }
 
   // Square tiles: the items of parallel work.
   void cut_into_tiles() {
@@ -132,11 +152,6 @@ class Gather {
            static_cast<size_t>(column);
   }
 
-  double irradiance_W_m2(const Vec3& at_body_m, const GatherLamp& lamp) const {
-    return lamp.light().irradiance_W_m2(lamp.emitter_from_body().point(at_body_m),
-                                        lamp.normal_emitter());
-  }
-
   // Light without shadow on all bins of a tile.
   size_t add_open(const BinTile& tile, const Ball& ball, const GatherLamp& lamp) {
     // Fewer points than two Gauss points a side of every bin, where the irradiance is smooth.
@@ -188,13 +203,15 @@ class Gather {
     const auto columns = static_cast<size_t>(tile.columns), rows = static_cast<size_t>(tile.rows);
     const Eigen::MatrixXd& across = cell_means_.at({nodes, columns});
     const Eigen::MatrixXd& along = cell_means_.at({nodes, rows});
+    std::vector<double> fraction;
+    for (size_t i = 0; i < nodes; ++i) fraction.push_back(chebyshev_fraction(nodes, i));
     Eigen::MatrixXd values(nodes, nodes);
     for (size_t j = 0; j < nodes; ++j) {
       for (size_t i = 0; i < nodes; ++i) {
-        const Vec3 at = plane_.point_m(tile.column + tile.columns * chebyshev_fraction(nodes, i),
-                                       tile.row + tile.rows * chebyshev_fraction(nodes, j));
+        const Vec3 at = plane_.point_m(tile.column + tile.columns * fraction[i],
+                                       tile.row + tile.rows * fraction[j]);
         values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-            irradiance_W_m2(at, lamp);
+            lamp.irradiance_W_m2(at);
       }
     }
     const Eigen::MatrixXd means = across * values * along.transpose();
@@ -204,7 +221,7 @@ class Gather {
   // 2 × 2 Gauss points, or the three-point rule of degree 2.
   double mean_irradiance_W_m2(const SurfacePatch& patch, const GatherLamp& lamp) const {
     const auto irradiance = [&](double a, double b) {
-      return irradiance_W_m2(patch.origin_m + a * patch.edge1_m + b * patch.edge2_m, lamp);
+      return lamp.irradiance_W_m2(patch.origin_m + a * patch.edge1_m + b * patch.edge2_m);
     };
     constexpr double third = 1.0 / 3.0, sixth = 1.0 / 6.0;
     if (patch.triangle) {

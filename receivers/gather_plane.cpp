@@ -57,6 +57,18 @@ GatherLamp::GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
   for (double& share : share_) share /= total;
 }
 
+std::pair<double, double> GatherLamp::heights_m(const GatherPlane& plane) const {
+  const SurfaceGrid& grid = plane.map().grid();
+  std::pair<double, double> heights = {INFINITY, -INFINITY};
+  for (const int column : {0, grid.width}) {
+    for (const int row : {0, grid.height}) {
+      const double height_m = emitter_from_body_.point(plane.point_m(column, row)).z();
+      heights = {std::min(heights.first, height_m), std::max(heights.second, height_m)};
+    }
+  }
+  return heights;
+}
+
 bool GatherLamp::misses(const Ball& ball) const {
   if (lean_rad_ - light_->reach_rad() >= 0.5 * pi) return true;
   if (light_->parallel()) return false;

@@ -3,9 +3,11 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "raytrace/disc_light.h"
+#include "raytrace/irradiance_table.h"
 #include "raytrace/shadow.h"
 #include "receivers/bin_patches.h"
 #include "receivers/flux_map.h"
@@ -65,6 +67,16 @@ class GatherLamp {
   const RigidTransform& emitter_from_body() const { return emitter_from_body_; }
   const Vec3& normal_emitter() const { return normal_emitter_; }  // of the lit side
   const BandValues& share() const { return share_; }              // of its power per band
+  // Irradiance without shadow at a point of the plane.
+  double irradiance_W_m2(const Vec3& at_body_m) const {
+    const Vec3 at = emitter_from_body_.point(at_body_m);
+    return table_ ? table_->irradiance_W_m2(at, normal_emitter_)
+                  : light_->irradiance_W_m2(at, normal_emitter_);
+  }
+  // Gives the lamp a table of its light, for all heights of heights_m().
+  void use(std::shared_ptr<const IrradianceTable> table) { table_ = std::move(table); }
+  // The least and the largest height of the whole grid above the aperture.
+  std::pair<double, double> heights_m(const GatherPlane& plane) const;
   // Every ray of the beam meets the plane from the lit side.
   bool lights_front() const { return lights_front_; }
 
@@ -79,6 +91,7 @@ class GatherLamp {
 
  private:
   std::shared_ptr<const DiscLight> light_;
+  std::shared_ptr<const IrradianceTable> table_;  // may be null
   RigidTransform body_from_emitter_, emitter_from_body_;
   Vec3 normal_emitter_;
   BandValues share_{};

@@ -11,6 +11,7 @@
 #include "raytrace/chebyshev.h"
 #include "raytrace/disc_light.h"
 #include "raytrace/gauss_legendre.h"
+#include "raytrace/irradiance_table.h"
 #include "raytrace/shadow.h"
 #include "sources/source_kind.h"
 #include "tests/raytrace/test_scenes.h"
@@ -126,6 +127,46 @@ TEST(DiscLight, HalfOfTheFluxOfAGaussianIsWithinHalfItsWidth) {
   EXPECT_TRUE(light.fades_out());
   const Beam sharp = pillbox_disc("angle");
   EXPECT_FALSE(DiscLight(*sharp.emitter, *sharp.aperture).fades_out());
+}
+
+// Largest difference at scattered points, over the largest irradiance.
+double table_error(const DiscLight& light, const IrradianceTable& table, double low_m,
+                   double high_m, double wide_m) {
+  const SobolSequence points({3, 1, 0});
+  double largest = 0.0, worst = 0.0;
+  for (uint32_t i = 0; i < 2000; ++i) {
+    const auto p = points.point(i);
+    const Vec3 at(wide_m * (2 * p[0] - 1), wide_m * (2 * p[1] - 1),
+                  low_m + p[2] * (high_m - low_m));
+    const double lean = p[3] - 0.5;
+    const Vec3 normal(std::sin(lean), 0, -std::cos(lean));
+    const double expected = light.irradiance_W_m2(at, normal);
+    largest = std::max(largest, expected);
+    worst = std::max(worst, std::abs(table.irradiance_W_m2(at, normal) - expected));
+  }
+  return worst / largest;
+}
+
+TEST(IrradianceTable, AgreesWithTheIntegralForSmoothAndForSharpBeams) {
+  for (const Beam& beam :
+       {gaussian_led(0.045, 3, {0, 0, 1.5}, {0, 0, -1}), pillbox_disc("angle")}) {
+    const DiscLight light(*beam.emitter, *beam.aperture);
+    for (const double high_m : {1.2, 1.8}) {
+      const auto table = IrradianceTable::make(light, 1.2, high_m, 1);
+      ASSERT_TRUE(table.has_value()) << high_m;
+      EXPECT_LT(table_error(light, *table, 1.2, high_m, 0.3), 5e-6) << high_m;
+    }
+  }
+}
+
+TEST(IrradianceTable, RefusesWhatItCannotTabulate) {
+  const Beam pillbox = pillbox_disc("angle"), lambertian = lambertian_disc(0.4);
+  const DiscLight sharp(*pillbox.emitter, *pillbox.aperture);
+  // The beam's edge crosses the axis at 0.2 m / tan 1.5° = 7.6 m.
+  EXPECT_TRUE(IrradianceTable::make(sharp, 6.0, 7.0, 1).has_value());
+  EXPECT_FALSE(IrradianceTable::make(sharp, 6.0, 9.0, 1).has_value());
+  const DiscLight wide(*lambertian.emitter, *lambertian.aperture);
+  EXPECT_FALSE(IrradianceTable::make(wide, 1.0, 2.0, 1).has_value());
 }
 
 TEST(Chebyshev, CellMeansOfAPolynomialAreExact) {
