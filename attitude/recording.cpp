@@ -21,7 +21,7 @@ constexpr std::string_view known_channels[] = {
     "led_current_A", "battery_voltage_V", "heading_rad",
 };
 
-std::string_view trimmed(std::string_view text) {
+std::string_view unquoted(std::string_view text) {
   const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '"'; };
   while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
@@ -32,7 +32,7 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
   cells.clear();
   for (;;) {
     const size_t end = line.find(separator);
-    cells.push_back(trimmed(line.substr(0, end)));
+    cells.push_back(unquoted(line.substr(0, end)));
     if (end == std::string_view::npos) return;
     line.remove_prefix(end + 1);
   }
@@ -78,7 +78,7 @@ class RecordingReader {
     read_header();
     std::string_view line;
     while (lines_.next(line)) {
-      if (trimmed(line).empty() || line.front() == '#') {
+      if (unquoted(line).empty() || line.front() == '#') {
         ++recording_.report.preamble_lines;
         continue;
       }
