@@ -14,9 +14,9 @@ namespace {
 using nlohmann::json;
 
 // Walks a document beside the tables.
-class Walk {
+class SchemaWalk {
  public:
-  Walk(const json& root, const std::string& file) : root_(root), file_(file) {}
+  SchemaWalk(const json& root, const std::string& file) : root_(root), file_(file) {}
 
   void members(const json& value, const std::string& where, const Fields& expected) const {
     for (const Field& field : expected) {
@@ -64,7 +64,7 @@ bool is_choice(const json& value, const char* choices) {
   return false;
 }
 
-std::string Walk::expectation(const Field& field) const {
+std::string SchemaWalk::expectation(const Field& field) const {
   if (field.choices != nullptr) return "one of " + std::string(field.choices);
   std::ostringstream range;
   range.precision(16);
@@ -103,7 +103,7 @@ std::string Walk::expectation(const Field& field) const {
 }
 
 // The value itself, not what is inside it.
-bool Walk::fits(const json& value, const Field& field) const {
+bool SchemaWalk::fits(const json& value, const Field& field) const {
   const auto in_range = [&](const json& number) {
     return number.is_number() && number.get<double>() >= field.low &&
            number.get<double>() <= field.high;
@@ -138,7 +138,7 @@ bool Walk::fits(const json& value, const Field& field) const {
   return value.is_object() && !value.empty();
 }
 
-void Walk::check(const json& value, const std::string& where, const Field& field) const {
+void SchemaWalk::check(const json& value, const std::string& where, const Field& field) const {
   if (!fits(value, field)) throw wrong(where, describe_json(value), expectation(field));
   if (field.shape == Shape::object && field.inner != nullptr) members(value, where, *field.inner);
   if (field.shape == Shape::objects) {
@@ -170,7 +170,7 @@ void check_schema(const json& document, const std::string& file) {
   if (!document.is_object()) {
     throw InputError({file}, "", describe_json(document), "a JSON object");
   }
-  Walk(document, file).members(document, "", properties::document);
+  SchemaWalk(document, file).members(document, "", properties::document);
 }
 
 }  // namespace photorque::gltf
