@@ -13,6 +13,7 @@
 #include "core/constants.h"
 #include "receivers/gather.h"
 #include "sources/source_kind.h"
+#include "tools/benchmarks/benchmark_scene.h"
 
 namespace photorque {
 namespace {
@@ -60,14 +61,6 @@ std::vector<Beam> lamps(int count) {
   return beams;
 }
 
-void add(Scene& scene, Mesh mesh, const std::string& node) {
-  Instance instance;
-  instance.node = instance.path = node;
-  instance.mesh = static_cast<uint32_t>(scene.meshes.size());
-  scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back(instance);
-}
-
 // A corrugated sheet of `cells`² squares, mirrored and matt, so that rays bounce.
 Scene corrugated(int cells) {
   Scene scene;
@@ -89,7 +82,7 @@ Scene corrugated(int cells) {
       mesh.triangles.push_back({at, up + 1, up});
     }
   }
-  add(scene, std::move(mesh), "sheet");
+  add_part(scene, std::move(mesh), "sheet");
   return scene;
 }
 
@@ -103,9 +96,9 @@ Scene shaded_plate() {
                 {{0, 1, 2}, {0, 2, 3}},
                 {}};
   };
-  add(scene, square(Vec3::Zero(), field_m), "receiver");
+  add_part(scene, square(Vec3::Zero(), field_m), "receiver");
   for (int k = 0; k < 16; ++k) {
-    add(scene, square(Vec3(0.12 * (k % 4) - 0.18, 0.12 * (k / 4) - 0.18, 0.1), 0.02), "shade");
+    add_part(scene, square(Vec3(0.12 * (k % 4) - 0.18, 0.12 * (k / 4) - 0.18, 0.1), 0.02), "shade");
   }
   return scene;
 }

@@ -17,6 +17,7 @@
 #include "receivers/gather.h"
 #include "scenes/experiment.h"
 #include "sources/source_kind.h"
+#include "tools/benchmarks/benchmark_scene.h"
 
 namespace photorque {
 namespace {
@@ -37,14 +38,6 @@ std::vector<Beam> lamp(SettingsNode::Table table) {
     if (kind.name == "led") return kind.make(settings, {});
   }
   return {};
-}
-
-void add(Scene& scene, Mesh mesh, const std::string& node) {
-  Instance instance;
-  instance.node = instance.path = node;
-  instance.mesh = static_cast<uint32_t>(scene.meshes.size());
-  scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back(instance);
 }
 
 // A plate of `cells`² squares about the origin in the plane z.
@@ -86,8 +79,8 @@ struct Case {
 Case case_a() {
   Case a;
   a.scene.surfaces.push_back(grey_surface("black", 0, 0));
-  add(a.scene, plate(0.5, 1, 0.0), "receiver");
-  add(a.scene, box(Vec3(0, -0.02, 0.5), Vec3(0.1, 0.08, 0.55)), "box");
+  add_part(a.scene, plate(0.5, 1, 0.0), "receiver");
+  add_part(a.scene, box(Vec3(0, -0.02, 0.5), Vec3(0.1, 0.08, 0.55)), "box");
   a.beams = lamp({{"power_W", number(1)},
                   {"aperture_diameter_m", number(0.4)},
                   {"profile", text("pillbox")},
@@ -102,11 +95,11 @@ Case case_a() {
 Case case_b() {
   Case b;
   b.scene.surfaces.push_back(grey_surface("black", 0, 0));
-  add(b.scene, plate(0.5, 99, 0.0), "receiver");
+  add_part(b.scene, plate(0.5, 99, 0.0), "receiver");
   for (int k = 0; k < 16; ++k) {
     const double angle = 2 * pi * k / 16, x = 0.2 * std::cos(angle), y = 0.2 * std::sin(angle);
-    add(b.scene, box(Vec3(x - 0.01, y - 0.01, 0.0), Vec3(x + 0.01, y + 0.01, 0.08)),
-        "post_" + std::to_string(k));
+    add_part(b.scene, box(Vec3(x - 0.01, y - 0.01, 0.0), Vec3(x + 0.01, y + 0.01, 0.08)),
+             "post_" + std::to_string(k));
   }
   for (int k = 0; k < 50; ++k) {
     const Vec3 at(0.06 * (k % 10) - 0.27, 0.1 * (k / 10) - 0.2, 1.5);
