@@ -30,13 +30,8 @@ constexpr ByteTables byte_tables = make_byte_tables();
 void sobol_points(const SobolStream& stream, uint32_t first,
                   const std::array<uint32_t*, sobol_dimensions>& out) {
   for (int d = 0; d < sobol_dimensions; ++d) {
-    const uint32_t high = reversed_point(d, first);
-    const uint32_t seed = dimension_seed(stream, d);
-    const uint32_t* table = byte_tables[d][0].data();
-    uint32_t* point = out[d];
-    for (uint32_t i = 0; i < sobol_block; ++i) {
-      point[i] = reverse_bits(scramble_reversed(table[i] ^ high, seed));
-    }
+    scramble_block(byte_tables[d][0].data(), reversed_point(d, first), dimension_seed(stream, d),
+                   out[d]);
   }
 }
 

@@ -79,13 +79,8 @@ void SobolCells::points(const SobolStream& stream, uint32_t cell, uint32_t first
   const uint32_t offset = combine(cell_basis_, cell) ^ combine(inner_basis_, first);
   for (uint32_t i = 0; i < sobol_block; ++i) index[i] = offset ^ block_index_[i];
   for (int d = 0; d < sobol_dimensions; ++d) {
-    const uint32_t high = reversed_point(d, offset);
-    const uint32_t seed = dimension_seed(stream, d);
-    const uint32_t* const low = block_point_[d].data();
-    uint32_t* const point = out[d];
-    for (uint32_t i = 0; i < sobol_block; ++i) {
-      point[i] = reverse_bits(scramble_reversed(low[i] ^ high, seed));
-    }
+    scramble_block(block_point_[d].data(), reversed_point(d, offset), dimension_seed(stream, d),
+                   out[d]);
   }
 }
 

@@ -3,6 +3,10 @@
 
 #include <bit>
 
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include "core/random.h"
 #include "core/sobol.h"
 
@@ -25,6 +29,49 @@ constexpr uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x05526c56u;
   x ^= x * 0x53a22864u;
   return x;
+}
+
+#ifdef __AVX2__
+// Eight numbers at a time: half-bytes by table, then the order of the bytes.
+inline __m256i reverse_bits(__m256i x) {
+  const __m256i half = _mm256_set1_epi8(0x0f);
+  const __m256i reversed = _mm256_setr_epi8(0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15, 0,
+                                            8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15);
+  const __m256i bytes = _mm256_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12, 3, 2,
+                                         1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12);
+  const __m256i low = _mm256_shuffle_epi8(reversed, _mm256_and_si256(x, half));
+  const __m256i high =
+      _mm256_shuffle_epi8(reversed, _mm256_and_si256(_mm256_srli_epi32(x, 4), half));
+  return _mm256_shuffle_epi8(_mm256_or_si256(_mm256_slli_epi32(low, 4), high), bytes);
+}
+
+inline __m256i scramble_reversed(__m256i x, uint32_t seed) {
+  const auto times = [](__m256i a, uint32_t b) {
+    return _mm256_mullo_epi32(a, _mm256_set1_epi32(static_cast<int>(b)));
+  };
+  x = _mm256_xor_si256(x, times(x, 0x3d20adeau));
+  x = _mm256_add_epi32(x, _mm256_set1_epi32(static_cast<int>(seed)));
+  x = times(x, (seed >> 16) | 1u);
+  x = _mm256_xor_si256(x, times(x, 0x05526c56u));
+  return _mm256_xor_si256(x, times(x, 0x53a22864u));
+}
+#endif
+
+// Scrambles a block of points and turns their bits round: reversed[i] ^ common → fractions.
+inline void scramble_block(const uint32_t* reversed, uint32_t common, uint32_t seed,
+                           uint32_t* fraction) {
+#ifdef __AVX2__
+  for (uint32_t i = 0; i < sobol_block; i += 8) {
+    const __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(reversed + i));
+    const __m256i point = _mm256_xor_si256(low, _mm256_set1_epi32(static_cast<int>(common)));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(fraction + i),
+                        reverse_bits(scramble_reversed(point, seed)));
+  }
+#else
+  for (uint32_t i = 0; i < sobol_block; ++i) {
+    fraction[i] = reverse_bits(scramble_reversed(reversed[i] ^ common, seed));
+  }
+#endif
 }
 
 // Direction numbers of Joe and Kuo for the first four dimensions, as bit-reversed columns: column k

@@ -1,6 +1,7 @@
 #include "raytrace/find_hits.h"
 
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "raytrace/transpose.h"
@@ -57,6 +58,29 @@ void load_rays(const RayList& rays, HitBuffer& buffer) {
   }
 }
 
+// The planes of the triangles that were hit.
+void load_planes(const TraceableScene::Data& scene, HitBuffer& buffer) {
+  const Hits& hits = buffer.hits;
+  for (int i = 0; i < hits.count; i += 4) {
+    std::array<const double*, 4> rows;
+    for (int k = 0; k < 4; ++k) {
+      const int hit = std::min(i + k, hits.count - 1);
+      rows[static_cast<size_t>(k)] = scene.plane(hits.instance[hit], hits.triangle[hit]).normal;
+    }
+    transpose_4x4(rows, &buffer.plane[0][i], Hits::rows);
+  }
+}
+
+// Whether all hits are on the same side of the same instance, as most neighbours are.
+bool on_one_side(const Hits& hits) {
+  uint32_t differences = 0;
+  for (int i = 0; i < hits.count; ++i) {
+    differences |= (hits.instance[i] ^ hits.instance[0]) |
+                   static_cast<uint32_t>(hits.front[i] ^ hits.front[0]);
+  }
+  return differences == 0;
+}
+
 }  // namespace
 
 void find_hits(const TraceableScene::Data& scene, const RayList& rays, Coherence coherence,
@@ -97,11 +121,7 @@ void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer
   Hits& hits = buffer.hits;
   const auto& ray = buffer.ray;
   std::fill_n(hits.depth.begin(), hits.count, static_cast<uint16_t>(depth));
-  for (int i = 0; i < hits.count; ++i) {
-    const TrianglePlane& plane = scene.plane(hits.instance[i], hits.triangle[i]);
-    for (size_t k = 0; k < 3; ++k) buffer.plane[k][i] = plane.normal[k];
-    buffer.plane[3][i] = plane.offset_m;
-  }
+  load_planes(scene, buffer);
   // The hit in double precision from the triangle's plane: Embree's own distance is off by up to
   // 5e-7 of the scene's size.
   for (int i = 0; i < hits.count; ++i) {
@@ -113,15 +133,14 @@ void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer
     hits.position_m[0][i] = ox + t * dx;
     hits.position_m[1][i] = oy + t * dy;
     hits.position_m[2][i] = oz + t * dz;
-    buffer.direction[0][i] = dx;
-    buffer.direction[1][i] = dy;
-    buffer.direction[2][i] = dz;
-    buffer.left_W[i] = facing;
+    hits.cosine[i] = std::min(std::abs(facing), 1.0);
+    buffer.facing[i] = static_cast<float>(facing);
   }
   for (int i = 0; i < hits.count; ++i) {
-    hits.front[i] = buffer.left_W[i] < 0.0 ? 1 : 0;
+    hits.front[i] = static_cast<uint8_t>(std::bit_cast<uint32_t>(buffer.facing[i]) >> 31);
     buffer.sample[i] = std::bit_cast<uint32_t>(ray[6][i]);
   }
+  buffer.one_side = on_one_side(hits);
 }
 
 }  // namespace photorque

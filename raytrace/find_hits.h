@@ -16,15 +16,18 @@ struct HitBuffer {
   Hits::Column<uint32_t> sample;
   // The rays in single precision: ox oy oz dx dy dz, then the bits of `sample`, and padding.
   std::array<Hits::Column<float>, 8> ray;
-  std::array<Hits::Column<double>, 3> direction;
   std::array<Hits::Column<double>, 4> plane;  // of the triangle: normal and offset
+  Hits::Column<float> facing;                 // normal · direction: negative on the front
+  bool one_side = false;                      // all hits are on the same side of one instance
   Hits::Column<double> left_W;                // power that goes on, all bands
+
+  Vec3 direction(int i) const { return {ray[3][i], ray[4][i], ray[5][i]}; }
 };
 
 // Rays in an order of their own.
 struct RayList {
   std::span<const Ray> rays;
-  std::span<const uint32_t> order;  // indices into `rays`; empty: as they lie
+  std::span<const uint16_t> order;  // indices into `rays`; empty: as they lie
 
   size_t size() const { return order.empty() ? rays.size() : order.size(); }
   const Ray& operator[](size_t i) const { return rays[order.empty() ? i : order[i]]; }
@@ -44,7 +47,7 @@ void find_hits(const TraceableScene::Data& scene, const RayList& rays, Coherence
 // row that hit j had. Returns the number of hits; where that is all, `kept` stays as it is.
 int compact(HitBuffer& buffer, Hits::Column<int>& kept);
 
-// Fills position, direction, front, sample and depth of every hit.
+// Fills position, cosine, front, sample and depth of every hit, and whether all are on one side.
 void locate_hits(const TraceableScene::Data& scene, int depth, HitBuffer& buffer);
 
 }  // namespace photorque

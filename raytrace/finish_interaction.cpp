@@ -28,7 +28,7 @@ LocalHit local_hit(const TraceableScene::Data& scene, const HitBuffer& buffer, i
   hit.front = hits.front[i] != 0;
   const Instance& instance = scene.scene.instances[hits.instance[i]];
   hit.surface = &scene.scene.surfaces[hit.front ? instance.front_surface : instance.back_surface];
-  hit.direction = {buffer.direction[0][i], buffer.direction[1][i], buffer.direction[2][i]};
+  hit.direction = buffer.direction(i);
   const TrianglePlane& plane = scene.plane(hits.instance[i], hits.triangle[i]);
   hit.z = Vec3(plane.normal[0], plane.normal[1], plane.normal[2]) * (hit.front ? 1.0 : -1.0);
   hit.cosine = std::clamp(-hit.direction.dot(hit.z), 1e-9, 1.0);

@@ -1,5 +1,6 @@
 #include "raytrace/interaction.h"
 
+#include <bit>
 #include <cmath>
 
 #include "core/constants.h"
@@ -106,43 +107,39 @@ void send_on(const InteractionContext& context, const SobolSequence& sequence,
 
 // Four neighbours of a column.
 using Quad = Eigen::Array4d;
-Eigen::Map<Quad> quad(Hits::Column<double>& column, int first) {
-  return Eigen::Map<Quad>(column.data() + first);
+Eigen::Map<const Quad> quad(const Hits::Column<double>& column, int first) {
+  return Eigen::Map<const Quad>(column.data() + first);
 }
 
-// Makes the rows after the last hit, up to a whole quad, carry no power.
-void pad_quad(HitBuffer& buffer) {
-  Hits& hits = buffer.hits;
-  const auto clear = [&](Hits::Column<double>& column) {
-    std::fill_n(column.begin() + hits.count, 3, 0.0);
-  };
-  for (int b = 0; b < hits.bands; ++b) clear(hits.incident_W[b]);
+// Makes the rows after the last hit, up to a whole quad, carry no momentum.
+void pad_quad(Hits& hits) {
   for (size_t k = 0; k < 3; ++k) {
-    clear(hits.position_m[k]);
-    clear(buffer.direction[k]);
+    std::fill_n(hits.position_m[k].begin() + hits.count, 3, 0.0);
+    std::fill_n(hits.force_N[k].begin() + hits.count, 3, 0.0);
   }
 }
 
-// Whether all hits are on the same side of the same instance, as most neighbours are.
-bool on_one_side(const Hits& hits) {
-  uint32_t differences = 0;
-  for (int i = 0; i < hits.count; ++i) {
-    differences |= (hits.instance[i] ^ hits.instance[0]) |
-                   static_cast<uint32_t>(hits.front[i] ^ hits.front[0]);
+// Whether everything stays where it hits.
+bool all_black(const TraceableScene::Data& scene, const HitBuffer& buffer) {
+  const Hits& hits = buffer.hits;
+  return buffer.one_side && scene.black[2 * hits.instance[0] + hits.front[0]] != 0;
+}
+
+void absorb_all(Hits& hits) {
+  for (int b = 0; b < hits.bands; ++b) {
+    std::copy_n(hits.incident_W[b].begin(), hits.count, hits.absorbed_W[b].begin());
   }
-  return differences == 0;
 }
 
 // absorbed_W and left_W of every hit.
 void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
-  const bool one_side = on_one_side(hits);
-  buffer.left_W.fill(0.0);
+  std::fill_n(buffer.left_W.begin(), hits.count, 0.0);
   for (int b = 0; b < hits.bands; ++b) {
     const double* fraction = scene.absorbed_fraction[b].data();
     const double* incident = hits.incident_W[b].data();
     double* absorbed = hits.absorbed_W[b].data();
-    if (one_side) {
+    if (buffer.one_side) {
       const double same = fraction[2 * hits.instance[0] + hits.front[0]];
       for (int i = 0; i < hits.count; ++i) absorbed[i] = incident[i] * same;
     } else {
@@ -154,16 +151,26 @@ void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
   }
 }
 
-void book_absorbed(const Hits& hits, LedgerSums& ledger) {
-  const bool one_side = on_one_side(hits);
+// Whether any hit has power that goes on. By the bits, which are found several at a time.
+bool any_left(const HitBuffer& buffer) {
+  uint64_t bits = 0;
+  for (int i = 0; i < buffer.hits.count; ++i) bits |= std::bit_cast<uint64_t>(buffer.left_W[i]);
+  return bits != 0;
+}
+
+void book_absorbed(const HitBuffer& buffer, LedgerSums& ledger) {
+  const Hits& hits = buffer.hits;
   for (int b = 0; b < hits.bands; ++b) {
     const double* absorbed = hits.absorbed_W[b].data();
     int i = 0;
-    if (one_side) {
+    if (buffer.one_side) {
       auto& sums = ledger.absorbed_lanes_W[hits.instance[0]];
-      Quad lanes = Eigen::Map<Quad>(sums.data());
-      for (; i + 4 <= hits.count; i += 4) lanes += Eigen::Map<const Quad>(absorbed + i);
-      Eigen::Map<Quad>(sums.data()) = lanes;
+      Quad even = Eigen::Map<Quad>(sums.data()), odd = Quad::Zero();
+      for (; i + 8 <= hits.count; i += 8) {
+        even += Eigen::Map<const Quad>(absorbed + i);
+        odd += Eigen::Map<const Quad>(absorbed + i + 4);
+      }
+      Eigen::Map<Quad>(sums.data()) = even + odd;
     }
     for (; i < hits.count; ++i) {
       ledger.absorbed_lanes_W[hits.instance[i]][static_cast<size_t>(i & 3)] += absorbed[i];
@@ -171,21 +178,31 @@ void book_absorbed(const Hits& hits, LedgerSums& ledger) {
   }
 }
 
-// The momentum that arrives: force_N of every hit, and the ledger's intake for first hits. Sums go
-// in four lanes, the same on every machine.
-void take_momentum(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger) {
+// The momentum that arrives at every hit.
+void take_momentum(HitBuffer& buffer) {
   Hits& hits = buffer.hits;
-  pad_quad(buffer);
+  const auto& direction = buffer.ray;  // columns 3 to 5
+  Hits::Column<double> power_W = hits.incident_W[0];
+  for (int b = 1; b < hits.bands; ++b) {
+    for (int i = 0; i < hits.count; ++i) power_W[i] += hits.incident_W[b][i];
+  }
+  for (int i = 0; i < hits.count; ++i) {
+    const double momentum_N = power_W[i] * (1.0 / speed_of_light_m_s);
+    hits.force_N[0][i] = direction[3][i] * momentum_N;
+    hits.force_N[1][i] = direction[4][i] * momentum_N;
+    hits.force_N[2][i] = direction[5][i] * momentum_N;
+  }
+}
+
+// The momentum of first hits, in four lanes, the same on every machine.
+void book_momentum(Hits& hits, LedgerSums& ledger) {
+  pad_quad(hits);
   std::array<Quad, 6> intake;
   intake.fill(Quad::Zero());
   for (int i = 0; i < hits.count; i += 4) {
-    Quad momentum_N = quad(hits.incident_W[0], i);
-    for (int b = 1; b < hits.bands; ++b) momentum_N += quad(hits.incident_W[b], i);
-    momentum_N *= 1.0 / speed_of_light_m_s;
     std::array<Quad, 3> force_N, at_m;
     for (size_t k = 0; k < 3; ++k) {
-      force_N[k] = quad(buffer.direction[k], i) * momentum_N;
-      quad(hits.force_N[k], i) = force_N[k];
+      force_N[k] = quad(hits.force_N[k], i);
       at_m[k] = quad(hits.position_m[k], i);
     }
     for (size_t k = 0; k < 3; ++k) {
@@ -194,7 +211,6 @@ void take_momentum(const InteractionContext& context, HitBuffer& buffer, LedgerS
       intake[3 + k] += at_m[k1] * force_N[k2] - at_m[k2] * force_N[k1];
     }
   }
-  if (context.depth > 0) return;
   for (size_t k = 0; k < 6; ++k) {
     ledger.momentum_in[k] += (intake[k][0] + intake[k][1]) + (intake[k][2] + intake[k][3]);
   }
@@ -250,10 +266,18 @@ void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& 
   Hits& hits = buffer.hits;
   const Scene& scene = context.scene->scene;
   const bool finishes = !context.scene->finish.empty();
-  absorb(*context.scene, buffer);
-  if (finishes) absorb_by_angle(*context.scene, buffer);
-  take_momentum(context, buffer, ledger);
-  book_absorbed(hits, ledger);
+  const bool black = all_black(*context.scene, buffer);
+  if (black) {
+    absorb_all(hits);
+  } else {
+    absorb(*context.scene, buffer);
+    if (finishes) absorb_by_angle(*context.scene, buffer);
+  }
+  take_momentum(buffer);
+  if (context.depth == 0) book_momentum(hits, ledger);
+  book_absorbed(buffer, ledger);
+  if (black) return;
+  if (!finishes && !any_left(buffer)) return;
   SobolStream stream = context.stream;
   stream.group = static_cast<uint32_t>(context.depth) + 1u;
   const SobolSequence sequence(stream);
@@ -263,7 +287,7 @@ void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& 
     const Instance& instance = scene.instances[hits.instance[i]];
     const OpticalSurface& surface =
         scene.surfaces[hits.front[i] != 0 ? instance.front_surface : instance.back_surface];
-    const Vec3 direction(buffer.direction[0][i], buffer.direction[1][i], buffer.direction[2][i]);
+    const Vec3 direction = buffer.direction(i);
     const Vec3 normal = lit_normal(context, hits, i);
     const Vec3 recoil = expected_recoil(hits, i, surface, direction, normal);
     for (int k = 0; k < 3; ++k) hits.force_N[k][i] -= recoil[k];

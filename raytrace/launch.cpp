@@ -13,15 +13,13 @@ namespace photorque {
 namespace {
 
 // Rays of a batch: many enough that sorting brings packets of close neighbours together, few enough
-// that they stay in the cache.
+// that they stay in the cache and 16 bits number them.
 constexpr int log2_batch = 13;
 
 // Bits of a landing cell per side: some eight rays of a batch in each cell, a packet.
 uint32_t cell_bits(uint32_t batch) {
   return (static_cast<uint32_t>(std::bit_width(batch)) - 3u) / 2u;
 }
-
-using Column = std::array<float, ray_block>;
 
 // Interleaves the bits of an 8-bit number with zeros (Morton order).
 constexpr uint32_t spread_bits(uint32_t x) {
@@ -30,54 +28,16 @@ constexpr uint32_t spread_bits(uint32_t x) {
   return (x | (x << 1)) & 0x5555u;
 }
 
-// Where the rays of a block cross the plane; if that lies behind the aperture, their directions.
-void find_landing(const RayBlock& rays, double plane_z_m, Column& x, Column& y) {
-  const double ahead = plane_z_m > 0.0 ? 1.0 : 0.0;
-  for (int i = 0; i < ray_block; ++i) {
-    const double dz = std::max(rays.direction[2][i], 0.05);
-    const double step = ahead * (plane_z_m - rays.origin_m[2][i]) / dz + (1.0 - ahead);
-    x[i] = static_cast<float>(ahead * rays.origin_m[0][i] + rays.direction[0][i] * step);
-    y[i] = static_cast<float>(ahead * rays.origin_m[1][i] + rays.direction[1][i] * step);
-  }
-}
-
-// Body frame, near the scene, single precision: columns ox oy oz dx dy dz.
-void place(const RayBlock& rays, const RigidTransform& body_from_emitter,
-           const TraceableScene::Data& scene, std::array<Column, 6>& placed) {
-  const Mat3 r = body_from_emitter.rotation.toRotationMatrix();
-  const Vec3 t = body_from_emitter.translation_m - scene.centre_m;
-  const Vec3 c = scene.centre_m;
-  const double radius = scene.radius_m * 1.001;
-  for (int i = 0; i < ray_block; ++i) {
-    const double ex = rays.origin_m[0][i], ey = rays.origin_m[1][i], ez = rays.origin_m[2][i];
-    const double fx = rays.direction[0][i], fy = rays.direction[1][i], fz = rays.direction[2][i];
-    const double dx = r(0, 0) * fx + r(0, 1) * fy + r(0, 2) * fz;
-    const double dy = r(1, 0) * fx + r(1, 1) * fy + r(1, 2) * fz;
-    const double dz = r(2, 0) * fx + r(2, 1) * fy + r(2, 2) * fz;
-    const double ox = r(0, 0) * ex + r(0, 1) * ey + r(0, 2) * ez + t.x();
-    const double oy = r(1, 0) * ex + r(1, 1) * ey + r(1, 2) * ez + t.y();
-    const double oz = r(2, 0) * ex + r(2, 1) * ey + r(2, 2) * ez + t.z();
-    // Up to the tangent plane of the sphere: never past a surface of the scene.
-    const double step = std::max(0.0, -(ox * dx + oy * dy + oz * dz) - radius);
-    placed[0][i] = static_cast<float>(ox + step * dx + c.x());
-    placed[1][i] = static_cast<float>(oy + step * dy + c.y());
-    placed[2][i] = static_cast<float>(oz + step * dz + c.z());
-    placed[3][i] = static_cast<float>(dx);
-    placed[4][i] = static_cast<float>(dy);
-    placed[5][i] = static_cast<float>(dz);
-  }
-}
-
 // Cells of the part of the plane on which a batch lands.
 struct LandingGrid {
   uint32_t bits;  // per side
   float x_low, y_low, x_scale, y_scale;
 
   // From some rays of the batch.
-  LandingGrid(const LaunchPlan& plan, uint32_t batch, const Column& x, const Column& y)
+  LandingGrid(const LaunchPlan& plan, uint32_t batch, const Landing& some)
       : bits(cell_bits(batch)) {
-    const auto [x_least, x_most] = std::minmax_element(x.begin(), x.end());
-    const auto [y_least, y_most] = std::minmax_element(y.begin(), y.end());
+    const auto [x_least, x_most] = std::minmax_element(some.x.begin(), some.x.end());
+    const auto [y_least, y_most] = std::minmax_element(some.y.begin(), some.y.end());
     x_low = std::max(*x_least, plan.x_low);
     y_low = std::max(*y_least, plan.y_low);
     const float side = static_cast<float>(1u << bits);
@@ -86,13 +46,13 @@ struct LandingGrid {
   }
 };
 
-void make_keys(const LaunchPlan& plan, const LandingGrid& grid, const Column& x, const Column& y,
-               const std::array<Column, 6>& placed, uint16_t* key) {
+void make_keys(const LaunchPlan& plan, const LandingGrid& grid, const Landing& at,
+               const RayColumns& placed, uint16_t* key) {
   const float last = static_cast<float>(1u << grid.bits) - 1.0f;
   const std::array<uint32_t, 3> step = plan.octant_step;
   for (int i = 0; i < ray_block; ++i) {
-    const float fx = std::min(std::max((x[i] - grid.x_low) * grid.x_scale, 0.0f), last);
-    const float fy = std::min(std::max((y[i] - grid.y_low) * grid.y_scale, 0.0f), last);
+    const float fx = std::min(std::max((at.x[i] - grid.x_low) * grid.x_scale, 0.0f), last);
+    const float fy = std::min(std::max((at.y[i] - grid.y_low) * grid.y_scale, 0.0f), last);
     const uint32_t cell = spread_bits(static_cast<uint32_t>(static_cast<int32_t>(fx))) |
                           (spread_bits(static_cast<uint32_t>(static_cast<int32_t>(fy))) << 1);
     const uint32_t octant = (std::bit_cast<uint32_t>(placed[3][i]) >> 31) * step[0] +
@@ -103,16 +63,10 @@ void make_keys(const LaunchPlan& plan, const LandingGrid& grid, const Column& x,
 }
 
 // Columns → records.
-void store(const std::array<Column, 6>& placed, const uint32_t* sample, Ray* out) {
+void store(const RayColumns& placed, Ray* out) {
   for (int begin = 0; begin < ray_block; begin += 8) {
-    alignas(32) std::array<float, 64> columns;
-    for (size_t c = 0; c < 6; ++c) std::copy_n(&placed[c][begin], 8, &columns[8 * c]);
-    for (int i = 0; i < 8; ++i) {
-      columns[48 + i] = std::bit_cast<float>(sample[begin + i]);
-      columns[56 + i] = 0.0f;
-    }
     std::array<const float*, 8> rows;
-    for (size_t c = 0; c < 8; ++c) rows[c] = &columns[8 * c];
+    for (size_t c = 0; c < 8; ++c) rows[c] = &placed[c][begin];
     transpose_8x8(rows, &out[begin].origin_m[0], 8);
   }
 }
@@ -121,8 +75,12 @@ void counting_sort(uint32_t key_count, LaunchBuffer& buffer) {
   const auto count = static_cast<uint32_t>(buffer.key.size());
   buffer.start.assign(key_count + 1, 0);
   for (uint32_t i = 0; i < count; ++i) ++buffer.start[buffer.key[i] + 1u];
-  for (uint32_t k = 0; k < key_count; ++k) buffer.start[k + 1] += buffer.start[k];
-  for (uint32_t i = 0; i < count; ++i) buffer.order[buffer.start[buffer.key[i]]++] = i;
+  for (uint32_t k = 0; k < key_count; ++k) {
+    buffer.start[k + 1] = static_cast<uint16_t>(buffer.start[k + 1] + buffer.start[k]);
+  }
+  for (uint32_t i = 0; i < count; ++i) {
+    buffer.order[buffer.start[buffer.key[i]]++] = static_cast<uint16_t>(i);
+  }
 }
 
 std::array<uint32_t*, sobol_dimensions> pointers(SampleBlock& samples) {
@@ -139,21 +97,20 @@ struct BeamSample {
   static constexpr uint32_t rays = 4 * sobol_block;
 };
 
-BeamSample sample_beam(const Emitter& emitter, const RigidTransform& body_from_emitter,
-                       const TraceableScene::Data& scene, double plane_z_m) {
+BeamSample sample_beam(const Emitter& emitter, const RayPlacement& placement) {
   BeamSample sample;
   SampleBlock samples;
   RayBlock rays;
-  Column x, y;
-  std::array<Column, 6> placed;
+  Landing landing;
+  RayColumns placed;
   for (uint32_t first = 0; first < BeamSample::rays; first += sobol_block) {
     sobol_points({}, first, pointers(samples));
     emitter.emit(samples, rays);
-    find_landing(rays, plane_z_m, x, y);
-    place(rays, body_from_emitter, scene, placed);
+    placement.place(rays, placed, landing);
     for (size_t i = 0; i < ray_block; ++i) {
-      sample.x_low = std::min(sample.x_low, x[i]), sample.x_high = std::max(sample.x_high, x[i]);
-      sample.y_low = std::min(sample.y_low, y[i]), sample.y_high = std::max(sample.y_high, y[i]);
+      const float x = landing.x[i], y = landing.y[i];
+      sample.x_low = std::min(sample.x_low, x), sample.x_high = std::max(sample.x_high, x);
+      sample.y_low = std::min(sample.y_low, y), sample.y_high = std::max(sample.y_high, y);
       for (size_t k = 0; k < 2; ++k) {
         sample.aperture2 += rays.origin_m[k][i] * rays.origin_m[k][i];
         sample.spread2 += rays.direction[k][i] * rays.direction[k][i];
@@ -184,18 +141,19 @@ std::array<int, sobol_dimensions> shared_bits(int bits, double aperture_m, doubl
 LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
                        const TraceableScene::Data& scene, int log2_rays) {
   const Vec3 centre = body_from_emitter.inverse().point(scene.centre_m);
-  const BeamSample sample = sample_beam(emitter, body_from_emitter, scene, centre.z());
+  const RayPlacement placement(body_from_emitter, scene);
+  const BeamSample sample = sample_beam(emitter, placement);
   const auto bits = shared_bits(std::max(log2_rays - log2_batch, 0), std::sqrt(sample.aperture2),
                                 std::sqrt(sample.spread2) * std::max(centre.z(), 0.0));
   LaunchPlan plan{SobolCells(log2_rays, bits),
-                  centre.z(),
+                  placement,
                   sample.x_low,
                   sample.x_high,
                   sample.y_low,
                   sample.y_high,
                   {},
                   1};
-  if (plan.plane_z_m > 0.0) {  // what misses the scene need not be told apart
+  if (centre.z() > 0.0) {  // what misses the scene need not be told apart
     const auto radius = static_cast<float>(scene.radius_m);
     const auto cx = static_cast<float>(centre.x()), cy = static_cast<float>(centre.y());
     plan.x_low = std::max(plan.x_low, cx - radius),
@@ -211,8 +169,7 @@ LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_e
   return plan;
 }
 
-void launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
-            const TraceableScene::Data& scene, const LaunchPlan& plan, const SobolStream& stream,
+void launch(const Emitter& emitter, const LaunchPlan& plan, const SobolStream& stream,
             uint32_t cell, LaunchBuffer& buffer) {
   const uint32_t count = plan.cells.points_per_cell();
   buffer.rays.resize(count);
@@ -221,17 +178,18 @@ void launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
   SampleBlock samples;
   std::array<uint32_t, ray_block> index;
   RayBlock rays;
-  Column x, y;
-  std::array<Column, 6> placed;
+  Landing landing;
+  RayColumns placed;
+  placed[7].fill(0.0f);
   std::optional<LandingGrid> grid;
   for (uint32_t i = 0; i < count; i += ray_block) {
     plan.cells.points(stream, cell, i, pointers(samples), index.data());
     emitter.emit(samples, rays);
-    find_landing(rays, plan.plane_z_m, x, y);
-    place(rays, body_from_emitter, scene, placed);
-    if (!grid) grid.emplace(plan, count, x, y);
-    make_keys(plan, *grid, x, y, placed, &buffer.key[i]);
-    store(placed, index.data(), &buffer.rays[i]);
+    plan.placement.place(rays, placed, landing);
+    if (!grid) grid.emplace(plan, count, landing);
+    make_keys(plan, *grid, landing, placed, &buffer.key[i]);
+    for (int k = 0; k < ray_block; ++k) placed[6][k] = std::bit_cast<float>(index[k]);
+    store(placed, &buffer.rays[i]);
   }
   counting_sort(plan.octants << (2 * grid->bits), buffer);
 }

@@ -9,6 +9,7 @@
 #include "core/sobol_cells.h"
 #include "core/transform.h"
 #include "raytrace/emitter.h"
+#include "raytrace/ray_placement.h"
 #include "raytrace/traceable_scene_data.h"
 
 namespace photorque {
@@ -25,17 +26,16 @@ struct alignas(32) Ray {
 // Room for one batch, reused from batch to batch.
 struct LaunchBuffer {
   std::vector<Ray> rays;        // in the order of emission
-  std::vector<uint32_t> order;  // indices into `rays`, neighbours together
-  std::vector<uint16_t> key;
-  std::vector<uint32_t> start;
+  std::vector<uint16_t> order;  // indices into `rays`, neighbours together
+  std::vector<uint16_t> key, start;
 };
 
 // How the rays of a beam are brought into an order that keeps neighbours together: its sequence is
 // cut into cells of neighbours, which are the batches, and each batch is sorted.
 struct LaunchPlan {
   SobolCells cells;
-  double plane_z_m;  // in the emitter's frame; ≤ 0: the scene is behind, directions serve instead
-  // Where the rays cross that plane; bounds beyond which they need not be told apart.
+  RayPlacement placement;
+  // Where the rays land; bounds beyond which they need not be told apart.
   float x_low, x_high, y_low, y_high;
   // The rays' octants are numbered by the signs of those components of their directions in the body
   // frame that have both: what a negative x, y, z adds to the number.
@@ -47,14 +47,12 @@ struct LaunchPlan {
 LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
                        const TraceableScene::Data& scene, int log2_rays);
 
-// Emits batch `cell` of plan.cells into `buffer`. Origins are moved along the rays to the sphere
-// that holds the scene, in double precision, before they are rounded: sources may be far away.
+// Emits batch `cell` of plan.cells into `buffer`.
 //
 // `buffer.order` sorts the rays by the signs of their directions first and by landing cell second.
 // Embree follows a packet as one only within an octant of directions; a beam along an axis, whose
 // rays straddle up to four octants, is traced three to four times slower without this.
-void launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
-            const TraceableScene::Data& scene, const LaunchPlan& plan, const SobolStream& stream,
+void launch(const Emitter& emitter, const LaunchPlan& plan, const SobolStream& stream,
             uint32_t cell, LaunchBuffer& buffer);
 
 }  // namespace photorque

@@ -39,6 +39,12 @@ void check(const Scene& scene) {
   }
 }
 
+bool is_black(const OpticalSurface& surface, int bands) {
+  return surface.finish == nullptr &&
+         std::all_of(surface.absorbed.begin(), surface.absorbed.begin() + bands,
+                     [](double fraction) { return fraction == 1.0; });
+}
+
 // Adds one instance to Embree in single precision and its planes in double precision.
 void add_instance(TraceableScene::Data& data, const Instance& instance) {
   const Mesh& mesh = data.scene.meshes[instance.mesh];
@@ -78,6 +84,9 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(data.embree, geometry);  // its id is the instance's index: both count from 0
   rtcReleaseGeometry(geometry);
+  const int bands = data.scene.bands.count();
+  data.black.push_back(is_black(data.scene.surfaces[instance.back_surface], bands) ? 1 : 0);
+  data.black.push_back(is_black(data.scene.surfaces[instance.front_surface], bands) ? 1 : 0);
   for (size_t b = 0; b < max_bands; ++b) {
     data.absorbed_fraction[b].push_back(data.scene.surfaces[instance.back_surface].absorbed[b]);
     data.absorbed_fraction[b].push_back(data.scene.surfaces[instance.front_surface].absorbed[b]);

@@ -29,6 +29,8 @@ struct TraceableScene::Data {
   std::vector<TrianglePlane> planes;
   // absorbed_fraction[band][2 · instance + (1 if hit from the front)]
   std::array<std::vector<double>, max_bands> absorbed_fraction;
+  // Whether a side absorbs everything and does nothing else, numbered alike.
+  std::vector<uint8_t> black;
   // finish[2 · instance + (1 if hit from the front)], null for plain surfaces; empty if all are.
   std::vector<const Finish*> finish;
   Vec3 centre_m = Vec3::Zero();  // of a sphere that holds the scene

@@ -21,7 +21,6 @@ namespace {
 // The share of the work that belongs to one beam.
 struct BeamPlan {
   const Beam* beam;
-  RigidTransform body_from_emitter;
   LaunchPlan launch;           // of the rays of one replicate: a power of two, at least ray_block
   uint64_t first_batch;        // its number among the batches of a replicate
   BandValues power_per_ray_W;  // so that each replicate carries the full power of the beam
@@ -48,13 +47,10 @@ Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from
     const uint64_t capped = static_cast<uint64_t>(std::min(wanted, 0x1p31));
     const uint32_t rays =
         std::bit_ceil(std::max<uint32_t>(static_cast<uint32_t>(capped), ray_block));
-    const RigidTransform body_from_emitter = body_from_lab * beam.lab_from_emitter;
     BeamPlan share{&beam,
-                   body_from_emitter,
-                   plan_launch(*beam.emitter, body_from_emitter, scene, std::countr_zero(rays)),
-                   plan.batches,
-                   band_fractions(beam.spectrum, scene.scene.bands),
-                   power / rays};
+                   plan_launch(*beam.emitter, body_from_lab * beam.lab_from_emitter, scene,
+                               std::countr_zero(rays)),
+                   plan.batches, band_fractions(beam.spectrum, scene.scene.bands), power / rays};
     double fraction = 0.0;
     for (double& band : share.power_per_ray_W) fraction += band;
     for (double& band : share.power_per_ray_W) band *= share.watt_per_ray / fraction;
@@ -99,8 +95,7 @@ class BatchTracer {
   void run(const BeamPlan& plan, const SobolStream& stream, uint32_t batch, Sums& sums) {
     sums_ = &sums;
     context_ = {&scene_, stream, 0, options_.cutoff * plan.watt_per_ray};
-    launch(*plan.beam->emitter, plan.body_from_emitter, scene_, plan.launch, stream, batch,
-           launched_);
+    launch(*plan.beam->emitter, plan.launch, stream, batch, launched_);
     next_.clear();
     trace_wave({launched_.rays, launched_.order}, plan.power_per_ray_W.data(), 0,
                Coherence::coherent);

@@ -1,4 +1,4 @@
-// Eight rays as eight records or as eight columns.
+// Records ↔ columns, in vector registers.
 #pragma once
 
 #include <array>
@@ -32,6 +32,45 @@ inline void transpose_8x8(const std::array<const float*, 8>& rows, float* out, i
 #else
   for (int i = 0; i < 8; ++i) {
     for (int j = 0; j < 8; ++j) out[j * out_stride + i] = rows[static_cast<size_t>(i)][j];
+  }
+#endif
+}
+
+// out[j · out_stride + i] = rows[i][j] for i in [0, 8), j in [0, 4). Any alignment.
+inline void transpose_8x4(const std::array<const float*, 8>& rows, float* out, int out_stride) {
+#ifdef __AVX__
+  __m256 row[4];  // rows i and i + 4
+  for (size_t i = 0; i < 4; ++i) {
+    row[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(rows[i])),
+                                  _mm_loadu_ps(rows[i + 4]), 1);
+  }
+  const __m256 low[2] = {_mm256_unpacklo_ps(row[0], row[1]), _mm256_unpacklo_ps(row[2], row[3])};
+  const __m256 high[2] = {_mm256_unpackhi_ps(row[0], row[1]), _mm256_unpackhi_ps(row[2], row[3])};
+  _mm256_storeu_ps(out, _mm256_shuffle_ps(low[0], low[1], 0x44));
+  _mm256_storeu_ps(out + out_stride, _mm256_shuffle_ps(low[0], low[1], 0xee));
+  _mm256_storeu_ps(out + 2 * out_stride, _mm256_shuffle_ps(high[0], high[1], 0x44));
+  _mm256_storeu_ps(out + 3 * out_stride, _mm256_shuffle_ps(high[0], high[1], 0xee));
+#else
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 4; ++j) out[j * out_stride + i] = rows[static_cast<size_t>(i)][j];
+  }
+#endif
+}
+
+// out[j · out_stride + i] = rows[i][j] for i, j in [0, 4). Any alignment.
+inline void transpose_4x4(const std::array<const double*, 4>& rows, double* out, int out_stride) {
+#ifdef __AVX__
+  const __m256d row[4] = {_mm256_loadu_pd(rows[0]), _mm256_loadu_pd(rows[1]),
+                          _mm256_loadu_pd(rows[2]), _mm256_loadu_pd(rows[3])};
+  const __m256d even[2] = {_mm256_unpacklo_pd(row[0], row[1]), _mm256_unpacklo_pd(row[2], row[3])};
+  const __m256d odd[2] = {_mm256_unpackhi_pd(row[0], row[1]), _mm256_unpackhi_pd(row[2], row[3])};
+  _mm256_storeu_pd(out, _mm256_permute2f128_pd(even[0], even[1], 0x20));
+  _mm256_storeu_pd(out + out_stride, _mm256_permute2f128_pd(odd[0], odd[1], 0x20));
+  _mm256_storeu_pd(out + 2 * out_stride, _mm256_permute2f128_pd(even[0], even[1], 0x31));
+  _mm256_storeu_pd(out + 3 * out_stride, _mm256_permute2f128_pd(odd[0], odd[1], 0x31));
+#else
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) out[j * out_stride + i] = rows[static_cast<size_t>(i)][j];
   }
 #endif
 }

@@ -1,8 +1,10 @@
 #include "sources/angular_distribution.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "raytrace/transpose.h"
 #include "sources/inverse_flux.h"
 #include "sources/vector_math.h"
 
@@ -49,29 +51,36 @@ double AngularDistribution::relative_intensity(double angle_rad) const {
 }
 
 void AngularDistribution::rises(const std::array<uint32_t, ray_block>& bits,
-                                std::array<double, ray_block>& rise) const {
-  const double halo = halo_fraction_;
-  const double per_halo = halo > 0.0 ? 1.0 / halo : 0.0;
-  const double per_core = 1.0 / (1.0 - halo);
-  const double* table = coefficients_.data();
-  constexpr double largest_share = 1.0 - 0x1p-53;
-  // Two loops: the arithmetic is vectorised, the look-up need not be.
-  std::array<uint64_t, ray_block> interval;
-  std::array<double, ray_block> t;
+                                std::array<float, ray_block>& rise) const {
+  const auto halo = static_cast<uint32_t>(std::min(std::ldexp(halo_fraction_, 32), 0x1p32 - 1.0));
+  const auto per_halo = halo > 0 ? static_cast<float>(0x1p-32 / halo_fraction_) : 0.0f;
+  const auto per_core = static_cast<float>(0x1p-32 / (1.0 - halo_fraction_));
+  constexpr auto smallest_share = static_cast<float>(InverseFlux::smallest_share);
+  constexpr float largest_share = 1.0f - 0x1p-24f;
+  std::array<uint32_t, ray_block> interval;
+  std::array<float, ray_block> t;
   for (int i = 0; i < ray_block; ++i) {
-    const double outside = remainder_of(bits[i]);
+    const uint32_t outside = ~bits[i];
     const bool in_halo = outside < halo;
     // Each part stretched to the whole interval again; the bounds only mend rounding.
-    double share = in_halo ? outside * per_halo : (outside - halo) * per_core;
-    share = share < InverseFlux::smallest_share ? InverseFlux::smallest_share : share;
+    const float part = single_of(in_halo ? outside : outside - halo) + 0.5f;
+    float share = part * (in_halo ? per_halo : per_core);
+    share = share < smallest_share ? smallest_share : share;
     share = share > largest_share ? largest_share : share;
-    const InverseFlux::Place place = InverseFlux::place(share);
-    interval[i] = place.interval + (in_halo ? InverseFlux::intervals : 0);
+    const InverseFlux::SinglePlace place = InverseFlux::place(share);
+    constexpr auto intervals = static_cast<uint32_t>(InverseFlux::intervals);
+    interval[i] = place.interval + (in_halo ? intervals : 0);
     t[i] = place.t;
   }
+  alignas(32) std::array<std::array<float, ray_block>, 4> c;
+  for (int i = 0; i < ray_block; i += 8) {
+    std::array<const float*, 8> rows;
+    for (int k = 0; k < 8; ++k) rows[static_cast<size_t>(k)] = &coefficients_[4 * interval[i + k]];
+    transpose_8x4(rows, &c[0][i], ray_block);
+  }
   for (int i = 0; i < ray_block; ++i) {
-    const double* c = table + 4 * interval[i];
-    rise[i] = c[0] + t[i] * (c[1] + t[i] * (c[2] + t[i] * c[3]));
+    const float h = c[0][i] + t[i] * (c[1][i] + t[i] * (c[2][i] + t[i] * c[3][i]));
+    rise[i] = h > 0.0f ? h : 0.0f;
   }
 }
 

@@ -33,8 +33,7 @@ class AngularDistribution {
 
   // The cosine's fall from the axis, 1 − cos θ, for each 32-bit fraction; rises with the fraction
   // within the core and, for the last `halo.fraction` of fractions, within the halo.
-  void rises(const std::array<uint32_t, ray_block>& bits,
-             std::array<double, ray_block>& rise) const;
+  void rises(const std::array<uint32_t, ray_block>& bits, std::array<float, ray_block>& rise) const;
 
  private:
   double intensity_per_flux(double angle_rad) const;
@@ -45,8 +44,8 @@ class AngularDistribution {
   };
   std::vector<Part> parts_;
   double halo_fraction_ = 0.0;
-  double brightest_ = 0.0;            // largest intensity per flux [1/sr]
-  std::vector<double> coefficients_;  // tables of InverseFlux, core before halo
+  double brightest_ = 0.0;           // largest intensity per flux [1/sr]
+  std::vector<float> coefficients_;  // tables of InverseFlux, core before halo
 };
 
 }  // namespace photorque

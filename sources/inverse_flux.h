@@ -43,6 +43,18 @@ class InverseFlux {
     const uint64_t rest = (bits << interval_bits) & mantissa;
     return {(bits >> shift) - first_knot, std::bit_cast<double>(rest | one) - 1.0};
   }
+  struct SinglePlace {
+    uint32_t interval;
+    float t;  // ∈ [0, 1) along the interval
+  };
+  static SinglePlace place(float share_outside) {
+    const auto bits = std::bit_cast<uint32_t>(share_outside);
+    const uint32_t rest = (bits << interval_bits) & 0x007fffffu;
+    constexpr int single_shift = 23 - interval_bits;
+    constexpr uint32_t first =
+        std::bit_cast<uint32_t>(static_cast<float>(smallest_share)) >> single_shift;
+    return {(bits >> single_shift) - first, std::bit_cast<float>(rest | 0x3f800000u) - 1.0f};
+  }
   static constexpr double smallest_share = 0x1p-33;  // half a step of a 32-bit fraction
   static constexpr int octaves = 33;
   static constexpr int interval_bits = 5;  // 32 intervals in each octave

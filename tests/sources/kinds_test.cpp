@@ -39,7 +39,7 @@ TEST(EverySource, EmitsUnitDirectionsForwardFromFiniteOrigins) {
     for (const Beam& beam : beams_of(kind)) {
       EXPECT_GT(beam.emitter->power_W(), 0.0) << beam.name;
       for (const auto& ray : rays_of(*beam.emitter, 4096)) {
-        ASSERT_NEAR(ray.direction.norm(), 1.0, 1e-12) << beam.name;
+        ASSERT_NEAR(ray.direction.norm(), 1.0, 3e-7) << beam.name;
         ASSERT_GE(ray.direction.z(), 0.0) << beam.name;
         ASSERT_TRUE(ray.origin_m.allFinite()) << beam.name;
         ASSERT_EQ(ray.origin_m.z(), 0.0) << beam.name;

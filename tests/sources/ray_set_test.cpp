@@ -101,8 +101,10 @@ TEST(RayLamp, GivesEachRayItsShareOfTheFlux) {
   EXPECT_EQ(lamp.power_W(), 2.0);
   int straight = 0, aslant = 0;
   for (const auto& ray : test::rays_of(lamp, 4096)) {
-    straight += ray.direction == Vec3(0, 0, 1) && ray.origin_m == Vec3(0.001, 0, 0);
-    aslant += ray.direction.isApprox(Vec3(0, 0.6, 0.8)) && ray.origin_m == Vec3(0, 0.002, 0);
+    constexpr double single = 1e-7;  // the precision of rays
+    straight += ray.direction == Vec3(0, 0, 1) && ray.origin_m.isApprox(Vec3(0.001, 0, 0), single);
+    aslant += ray.direction.isApprox(Vec3(0, 0.6, 0.8), single) &&
+              ray.origin_m.isApprox(Vec3(0, 0.002, 0), single);
   }
   EXPECT_EQ(straight, 3072);
   EXPECT_EQ(aslant, 1024);

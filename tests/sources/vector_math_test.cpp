@@ -40,6 +40,18 @@ TEST(VectorMath, CirclePointsMatchLibraryToFourEMinus16) {
   }
 }
 
+TEST(VectorMath, SinglePrecisionMatchesLibraryToTwoEMinus7) {
+  for (const uint32_t bits : words()) {
+    const double fraction = sobol_fraction(bits), angle = 2.0 * pi * fraction;
+    EXPECT_NEAR(single_fraction(bits), fraction, 2e-7 * fraction + 0x1p-33) << bits;
+    EXPECT_GT(single_fraction(bits), 0.0f);
+    EXPECT_LE(single_fraction(bits), 1.0f);
+    const SingleCirclePoint point = single_circle_point(bits);
+    EXPECT_NEAR(point.cos, std::cos(angle), 2e-7) << bits;
+    EXPECT_NEAR(point.sin, std::sin(angle), 2e-7) << bits;
+  }
+}
+
 TEST(VectorMath, LogarithmMatchesLibraryToFiveEMinus16) {
   std::vector<double> arguments = {0x1p-33,       0x1p-1022,      1e300,
                                    0.5,           std::sqrt(0.5), 1.0 - 0x1p-53,

@@ -147,7 +147,7 @@ void bare_embree(benchmark::State& state, const Case& which) {
     const Beam& beam = which.beams[b * which.beams.size() / batches.size()];
     const LaunchPlan plan =
         plan_launch(*beam.emitter, beam.lab_from_emitter, scene.data(), log2_rays);
-    launch(*beam.emitter, beam.lab_from_emitter, scene.data(), plan, {1, b, 0}, 0, launched);
+    launch(*beam.emitter, plan, {1, b, 0}, 0, launched);
     for (const uint32_t i : launched.order) batches[b].push_back(launched.rays[i]);
   }
   const int threads = static_cast<int>(state.range(0));
