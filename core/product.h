@@ -52,6 +52,7 @@ struct Plot {
     std::vector<double> x, y;
     std::vector<double> y_error;  // one standard error; empty: none drawn
     bool markers = false;         // points instead of a line
+    bool bars = false;            // bars 0.8 wide from zero instead; no errors drawn
   };
   std::vector<Curve> curves;
   bool x_log = false, y_log = false;

@@ -86,6 +86,25 @@ void draw_lines(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curv
   }
 }
 
+// The bar over the i-th point; nothing for values that cannot be shown.
+std::optional<PageBox> bar_of(const ChartPanel& panel, const Plot::Curve& curve, size_t i) {
+  const PagePoint top = panel.at(curve.x[i] - bar_half_width, curve.y[i]);
+  const PagePoint foot = panel.at(curve.x[i] + bar_half_width, panel.y.log ? panel.y.range.low : 0);
+  if (!drawable_point(top) || !drawable_point(foot)) return std::nullopt;
+  return PageBox{top.x, std::min(top.y, foot.y), foot.x - top.x, std::abs(foot.y - top.y)};
+}
+
+void draw_bars(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
+               const Rgb& colour) {
+  for (size_t i = 0; i < curve.x.size(); ++i) {
+    if (const auto bar = bar_of(panel, curve, i)) canvas.fill(*bar, colour);
+  }
+}
+
+bool overlap(const PageBox& a, const PageBox& b) {
+  return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
+}
+
 // Whether the segment from `a` to `b` meets `box` (Liang and Barsky, 1984).
 bool meets(const PageBox& box, const PagePoint& a, const PagePoint& b) {
   double enter = 0.0;
@@ -102,6 +121,9 @@ bool meets(const PageBox& box, const PagePoint& a, const PagePoint& b) {
 
 bool covers_a_curve(const ChartPanel& panel, const PageBox& box) {
   for (const Plot::Curve& curve : panel.curves) {
+    for (size_t i = 0; curve.bars && i < curve.x.size(); ++i) {
+      if (const auto bar = bar_of(panel, curve, i); bar && overlap(*bar, box)) return true;
+    }
     for (const double errors : {0.0, 1.0, -1.0}) {
       if (errors != 0.0 && curve.y_error.empty()) continue;
       for (const std::vector<PagePoint>& piece : pieces_of(panel, curve, errors)) {
@@ -158,13 +180,15 @@ void draw_curves(Canvas& canvas, const ChartPanel& panel) {
   canvas.clipped(panel.frame, [&] {
     for (size_t i = 0; i < panel.curves.size(); ++i) {
       const Plot::Curve& curve = panel.curves[i];
-      if (!curve.markers && !curve.y_error.empty()) {
+      if (!curve.bars && !curve.markers && !curve.y_error.empty()) {
         draw_band(canvas, panel, curve, curve_stroke(i).colour);
       }
     }
     for (size_t i = 0; i < panel.curves.size(); ++i) {
       const Plot::Curve& curve = panel.curves[i];
-      if (curve.markers) {
+      if (curve.bars) {
+        draw_bars(canvas, panel, curve, curve_stroke(i).colour);
+      } else if (curve.markers) {
         draw_markers(canvas, panel, curve, curve_stroke(i).colour);
       } else {
         draw_lines(canvas, panel, curve, curve_stroke(i));
@@ -209,7 +233,11 @@ void draw_legend(Canvas& canvas, const ChartPanel& panel, const Legend& legend,
     const Plot::Curve& curve = panel.curves[index];
     const Stroke stroke = curve_stroke(index);
     const double x = top_left.x + legend_padding;
-    if (curve.markers) {
+    if (curve.bars) {
+      constexpr double side = 10.0;
+      canvas.fill(PageBox{x + 0.5 * (legend_sample - side), y - 0.5 * side, side, side},
+                  stroke.colour);
+    } else if (curve.markers) {
       canvas.disc({x + 0.5 * legend_sample, y}, marker_radius, stroke.colour);
     } else {
       canvas.line({x, y}, {x + legend_sample, y}, stroke);

@@ -30,6 +30,9 @@ struct ChartPanel {
 // What is drawn differs by less than `resolution`; a million samples stay a small SVG file.
 std::vector<PagePoint> thinned(std::span<const PagePoint> line, double resolution);
 
+// Half the width of a bar, in units of x.
+inline constexpr double bar_half_width = 0.4;
+
 // Curves with their error bands or bars, clipped to the frame.
 void draw_curves(Canvas& canvas, const ChartPanel& panel);
 

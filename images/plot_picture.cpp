@@ -49,7 +49,12 @@ AxisRange x_range(const std::vector<ChartPanel>& panels, bool log) {
   bool markers = false;
   for (const ChartPanel& panel : panels) {
     for (const Plot::Curve& curve : panel.curves) {
-      for (const double x : curve.x) extent.include(x, log);
+      // As much room beside the outer bars as between two that stand at 1, 2, …
+      const double beside = curve.bars ? 1.0 - bar_half_width : 0.0;
+      for (const double x : curve.x) {
+        extent.include(x - beside, log);
+        extent.include(x + beside, log);
+      }
       markers = markers || curve.markers;
     }
   }
@@ -59,6 +64,7 @@ AxisRange x_range(const std::vector<ChartPanel>& panels, bool log) {
 AxisRange y_range(const ChartPanel& panel, bool log) {
   Extent extent;
   for (const Plot::Curve& curve : panel.curves) {
+    if (curve.bars) extent.include(0.0, log);
     for (size_t i = 0; i < curve.y.size(); ++i) {
       const double error = curve.y_error.empty() ? 0.0 : curve.y_error[i];
       extent.include(curve.y[i], log);

@@ -146,6 +146,36 @@ TEST(PlotPicture, LeavesGapsWhereNothingCanBeShown) {
   EXPECT_NEAR(ratio, 0.5, 0.02);
 }
 
+// Heights as the values, and clear of the frame on both sides.
+TEST(PlotPicture, DrawsBarsFromZeroInsideTheFrame) {
+  Plot plot = constant_plot();
+  plot.curves = {{"", {1.0}, {4.0}, {}, false, true}, {"", {2.0}, {2.0}, {}, false, true}};
+  const Picture picture = plot_picture(plot, {});
+  const int tall = pixels_of_colour(picture, curve_stroke(0).colour, 0, picture.height);
+  const int low = pixels_of_colour(picture, curve_stroke(1).colour, 0, picture.height);
+  EXPECT_NEAR(static_cast<double>(tall) / low, 2.0, 0.02);
+  const auto blue = rgb_bytes(curve_stroke(0).colour);
+  int left = picture.width, right = 0;
+  for (int row = 0; row < picture.height; ++row) {
+    for (int column = 0; column < picture.width; ++column) {
+      if (picture.pixel(column, row) != blue) continue;
+      left = std::min(left, column);
+      right = std::max(right, column);
+    }
+  }
+  // The axis goes from 0.4 to 2.6 and the bar from 0.6 to 1.4; the frame takes most of the page.
+  EXPECT_NEAR((right - left) / (0.9 * picture.width), 0.8 / 2.2, 0.03);
+  EXPECT_GT(left, 0.1 * picture.width);
+}
+
+TEST(FreeCorner, KeepsOffBars) {
+  const std::vector<Plot::Curve> full = {{"a", {0.5}, {1.0}, {}, false, true}};
+  const Legend legend{{0}, 120.0, 60.0};
+  EXPECT_FALSE(free_corner(unit_panel(full), legend));
+  const std::vector<Plot::Curve> half = {{"a", {0.5}, {0.5}, {}, false, true}};
+  EXPECT_TRUE(free_corner(unit_panel(half), legend));
+}
+
 TEST(PlotPicture, StacksPanels) {
   Plot plot = constant_plot();
   plot.below = {{"b", {{"", {0.0, 1.0}, {1.0, 2.0}, {}, false}}, false}};
