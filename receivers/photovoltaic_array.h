@@ -20,13 +20,17 @@ struct ArrayResult {
   Estimate voltage_V;
   Estimate current_A;
   Estimate power_on_cells_W;  // light
-  Estimate sum_of_cells_W;    // every cell at its own maximum
-  Estimate efficiency;        // power_W / power_on_cells_W
-  Estimate mismatch_loss;     // 1 − power_W / sum_of_cells_W: uneven light, and diodes
+  // Of it what counts like perpendicular light: less by what the cells' front reflects at a slant.
+  Estimate power_entering_W;
+  bool entry_known = false;  // false: taken as perpendicular, power_entering_W is all
+  Estimate sum_of_cells_W;   // every cell at its own maximum
+  Estimate efficiency;       // power_W / power_on_cells_W
+  Estimate mismatch_loss;    // 1 − power_W / sum_of_cells_W: uneven light, and diodes
   double area_of_cells_m2 = 0.0;
 
   std::vector<double> cell_light_W;  // per cell, cell = row · columns + column
   std::vector<double> cell_area_m2;
+  std::vector<Vec2> cell_centre_m;  // of CellPlaces, or empty
   std::vector<double> cell_photocurrent_A;
   CellStates cells;                // at the maximum power point
   std::vector<ArrayPoint> maxima;  // all local ones, by rising voltage

@@ -12,7 +12,8 @@
 namespace photorque {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+// Where a diode switches that does not.
+constexpr double never = std::numeric_limits<double>::infinity();
 // Relative step of a string's current at which its solution ends: the error is of second order.
 constexpr double fine = 1e-9;
 
@@ -70,8 +71,20 @@ ArrayCurve::ArrayCurve(const ArrayWiring& wiring, const CellTables& tables,
   check(wiring, cells_);
   strings_.reserve(wiring.strings.size());
   for (const auto& string : wiring.strings) strings_.emplace_back(string, tables, photocurrents_A);
+  if (!by_current()) group_strings();
   for (const StringCurve& string : strings_) switches_.push_back(switches_of(string));
   end_x_ = find_end_x();
+}
+
+void ArrayCurve::group_strings() {
+  fours_ = FourStrings::groups(strings_);
+  std::vector<char> grouped(strings_.size(), 0);
+  for (const FourStrings& four : fours_) {
+    for (const size_t s : four.members()) grouped[s] = 1;
+  }
+  for (size_t s = 0; s < grouped.size(); ++s) {
+    if (grouped[s] == 0) singles_.push_back(s);
+  }
 }
 
 ArrayPoint ArrayCurve::point(double x, double y) const {
@@ -97,21 +110,44 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
     node.third = state.third_V_A3;
     return;
   }
-  for (size_t s = 0; s < strings_.size(); ++s) {
-    StringState& state = node.strings[s];
-    double low_A = 0.0, high_A = strings_[s].largest_photocurrent_A();
-    if (low != nullptr && high != nullptr) {
-      low_A = high->strings[s].current_A;
-      high_A = low->strings[s].current_A;
-      state.current_A = hermite_A(low->strings[s], high->strings[s], x);
-    } else if (state.slope_ohm > 0.0) {
-      state.current_A = extrapolated_A(state, x);
-    } else {
-      state.current_A = strings_[s].first_guess_A();
+  // Four at a time first: what is left for a string alone is one look at its cells, or nothing.
+  const bool cells_too = std::isfinite(tolerance);
+  const auto alone = [&](size_t s, const CurrentGuess& guess) {
+    strings_[s].at_voltage(x, regimes[s], guess.low_A, guess.high_A, tolerance, node.strings[s]);
+  };
+  for (const FourStrings& four : fours_) {
+    FourStrings::Lanes low_A, high_A;
+    for (Eigen::Index lane = 0; lane < 4; ++lane) {
+      const size_t s = four.member(static_cast<size_t>(lane));
+      const CurrentGuess guess = guess_current(s, x, node, low, high);
+      low_A[lane] = guess.low_A;
+      high_A[lane] = guess.high_A;
     }
-    strings_[s].at_voltage(x, regimes[s], low_A, high_A, tolerance, state);
+    bool solved = false;
+    if (x >= 0.0 && x < four.least_open_circuit_V()) {
+      FourStrings::State state = four.read(node.strings);
+      solved = four.solve(x, low_A.max(0.0), high_A, state);
+      if (solved) four.write(state, node.strings);
+    }
+    if (solved && !cells_too) continue;
+    for (size_t i = 0; i < four.members().size(); ++i) {
+      const auto lane = static_cast<Eigen::Index>(i);
+      alone(four.member(i), {low_A[lane], high_A[lane]});
+    }
   }
+  for (const size_t s : singles_) alone(s, guess_current(s, x, node, low, high));
   node.sum_strings();
+}
+
+ArrayCurve::CurrentGuess ArrayCurve::guess_current(size_t s, double x, Node& node, const Node* low,
+                                                   const Node* high) const {
+  StringState& state = node.strings[s];
+  if (low != nullptr && high != nullptr) {
+    state.current_A = hermite_A(low->strings[s], high->strings[s], x);
+    return {high->strings[s].current_A, low->strings[s].current_A};
+  }
+  state.current_A = state.slope_ohm > 0.0 ? extrapolated_A(state, x) : strings_[s].first_guess_A();
+  return {0.0, strings_[s].largest_photocurrent_A()};
 }
 
 void ArrayCurve::Node::sum_strings() {
@@ -140,11 +176,11 @@ void ArrayCurve::enter(const Piece& piece, const Piece& last, double tolerance, 
 }
 
 ArrayCurve::Switches ArrayCurve::switches_of(const StringCurve& string) const {
-  Switches switches{string.clamp_currents_A(), infinity};
+  Switches switches{string.clamp_currents_A(), never};
   if (by_current()) return switches;
   StringState state = string.make_state();
   for (double& clamp : switches.clamp_x) {
-    if (clamp == infinity) continue;
+    if (clamp == never) continue;
     string.at_current(clamp, string.regime_at(clamp), fine, state);
     clamp = state.voltage_V;
   }
@@ -156,7 +192,7 @@ std::vector<StringRegime> ArrayCurve::regimes_at(double x) const {
   std::vector<StringRegime> regimes(strings_.size());
   for (size_t s = 0; s < strings_.size(); ++s) {
     for (const double clamp_x : switches_[s].clamp_x) {
-      const bool clamped = clamp_x != infinity && (by_current() ? x >= clamp_x : x < clamp_x);
+      const bool clamped = clamp_x != never && (by_current() ? x >= clamp_x : x < clamp_x);
       regimes[s].clamped.push_back(clamped);
     }
     regimes[s].blocked = x >= switches_[s].blocked_x;
@@ -175,7 +211,7 @@ double ArrayCurve::find_end_x() const {
   if (by_current()) {
     high = strings_[0].largest_photocurrent_A();
   } else {
-    low = infinity;
+    low = std::numeric_limits<double>::infinity();
     for (const StringCurve& string : strings_) {
       low = std::min(low, string.open_circuit_V());
       high = std::max(high, string.open_circuit_V());

@@ -15,6 +15,7 @@
 
 #include <vector>
 
+#include "receivers/photovoltaic_lanes.h"
 #include "receivers/photovoltaic_string.h"
 
 namespace photorque {
@@ -85,6 +86,13 @@ class ArrayCurve {
   // piece at either side of x.
   void evaluate(double x, const std::vector<StringRegime>& regimes, Node& node, double tolerance,
                 const Node* low = nullptr, const Node* high = nullptr) const;
+  // Between which currents a string's lies; where the search begins goes to the node's state.
+  struct CurrentGuess {
+    double low_A, high_A;
+  };
+  CurrentGuess guess_current(size_t s, double x, Node& node, const Node* low,
+                             const Node* high) const;
+  void group_strings();
   // From the end of `last` to the beginning of `piece` after it: only strings whose diodes switch
   // there are evaluated again.
   void enter(const Piece& piece, const Piece& last, double tolerance, Node& node) const;
@@ -98,6 +106,8 @@ class ArrayCurve {
 
   CellTables tables_;  // keeps alive what the strings point to
   std::vector<StringCurve> strings_;
+  std::vector<FourStrings> fours_;  // of several strings, those that are alike
+  std::vector<size_t> singles_;     // the others
   std::vector<Switches> switches_;
   size_t cells_ = 0;
   double end_x_ = 0.0;  // where y = 0

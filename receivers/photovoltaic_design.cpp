@@ -209,13 +209,20 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options) 
   return wiring;
 }
 
-ArrayDesign read_array_design(const Settings& array) {
+ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> places) {
   ArrayDesign design;
-  read_size(array, design);
+  if (places) {
+    design.columns = places->columns;
+    design.rows = places->rows;
+    design.places = std::move(places);
+  } else {
+    read_size(array, design);
+  }
   design.temperature_K = array.number_or("temperature_K", design.temperature_K, {1.0, 1000.0});
   design.wiring = read_wiring(array, design);
   design.cell = read_cell(array);
   design.efficiency = read_efficiency(array);
+  if (array.has("cover")) design.front = read_cell_front(array.table("cover"));
   return design;
 }
 

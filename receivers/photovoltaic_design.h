@@ -1,22 +1,28 @@
 // What an experiment says about its solar array.
 #pragma once
 
+#include <optional>
+
 #include "core/settings.h"
+#include "receivers/photovoltaic_front.h"
 #include "receivers/photovoltaic_model.h"
+#include "receivers/photovoltaic_places.h"
 #include "receivers/photovoltaic_response.h"
 #include "receivers/photovoltaic_wiring.h"
 
 namespace photorque {
 
 struct ArrayDesign {
-  int columns = 0;     // cells along u of the receiver's grid
-  int rows = 0;        // and along v; cell = row · columns + column
-  double gap_m = 0.0;  // between neighbouring cells
+  int columns = 0;                   // cells along u of the receiver's grid
+  int rows = 0;                      // and along v; cell = row · columns + column
+  std::optional<CellPlaces> places;  // instead of equal rectangles over the whole grid
+  double gap_m = 0.0;                // between neighbouring cells
   double margin_m = 0.0;
   ArrayWiring wiring;
   CellModel cell;
   double temperature_K = 298.15;
   QuantumEfficiency efficiency;
+  std::optional<CellFront> front;  // over the surface's own optics
 
   int cells() const { return columns * rows; }
 };
@@ -37,7 +43,8 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 
 // Reads the table `[array]`:
 //
-//   cells = [10, 10]         columns along u and rows along v of the receiver (required)
+//   cells = [10, 10]         columns along u and rows along v of the receiver; required where
+//                            `places` does not say where the cells are, see read_cell_places()
 //   gap_m, margin_m          between cells and around them; default 0. On a grid over texture
 //                            coordinates they are fractions of it.
 //   series = "columns"       "columns" or "rows": the serpentine in which cells follow each other
@@ -61,6 +68,7 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 //                            area all of them belong to
 //   quantum_efficiency_peak = 0.95    of the default table for monocrystalline silicon, or
 //   [array.quantum_efficiency]        wavelength_m = […] (or _nm), efficiency = […]
-ArrayDesign read_array_design(const Settings& array);
+//   [array.cover]                     see read_cell_front()
+ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> places = {});
 
 }  // namespace photorque

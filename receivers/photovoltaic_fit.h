@@ -79,9 +79,21 @@ struct TemperatureSlopes {
   double open_circuit_1_K = -3e-3;
 };
 
+// How well the figures of a datasheet are known, one independently of the other: rounded to a step,
+// which is a standard deviation of step/√12, and off by a share of themselves (one sigma).
+struct RatedTolerance {
+  double step_A = 0.0, step_V = 0.0;
+  double fraction = 0.0;
+};
+
+// The steps in which figures are written: the last decimal that any current, or any voltage, has,
+// since figures of one kind are printed alike (22.0 is not to be told from 22).
+RatedTolerance written_steps(std::span<const RatedPoint> points);
+
 struct RatedFit {
   SingleDiode diode;                  // photocurrent at the first point
   CellModel model;                    // of the whole device, reference_area_m2 = 1
+  double gap_error_eV = 0.0;          // standard error of the model's gap
   double short_circuit_A_m2_W = 0.0;  // short-circuit current over irradiance at the first point
   double rms = 0.0;                   // relative, over V_oc, I_mp and V_mp of the points given
 
@@ -94,8 +106,13 @@ struct RatedFit {
 // circuit. One point leaves one parameter open: `ideality_guess_V` (n V_t of the whole device) is
 // then kept. The gap follows from the slope of the open-circuit voltage. Throws InputError for
 // figures that no curve can have.
+//
+// Standard errors: the fit is repeated with every figure moved by its standard deviation both ways,
+// and half the differences add up in quadrature; or, if larger, the scatter of the residuals where
+// there are more figures than parameters. What one diode cannot describe at all is in neither, nor
+// is, for one point alone, that the ideality was assumed.
 RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
-                          double ideality_guess_V);
+                          double ideality_guess_V, const RatedTolerance& tolerance = {});
 
 // A string of like substrings, each with a bypass diode, under light that differs between them.
 struct ShadedFit {

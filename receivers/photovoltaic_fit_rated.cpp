@@ -1,10 +1,13 @@
 // Fits of datasheet figures.
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "core/constants.h"
 #include "core/errors.h"
@@ -56,27 +59,32 @@ VectorXd relative_errors(std::span<const RatedPoint> points, const VectorXd& x) 
   return errors;
 }
 
+LeastSquaresFit fit_from(const VectorXd& start, std::span<const RatedPoint> points,
+                         double guess_V) {
+  // Without a second point a weak pull keeps n V_t where it was guessed.
+  const bool fixed_scale = points.size() == 1;
+  const auto residuals = [&](const VectorXd& x) {
+    VectorXd all = relative_errors(points, x);
+    if (!fixed_scale) return all;
+    all.conservativeResize(all.size() + 1);
+    all[all.size() - 1] = x[scale] - std::log(guess_V);
+    return all;
+  };
+  return least_squares(start, with_differences(residuals));
+}
+
 LeastSquaresFit fit(std::span<const RatedPoint> points, double guess_V) {
   const RatedPoint& first = points[0];
   LeastSquaresFit best;
   best.squares = std::numeric_limits<double>::infinity();
-  const bool fixed_scale = points.size() == 1;
   for (const double blunter : {1.0, 1.5}) {
     for (const double resistive : {0.3, 3.0}) {
-      const double a = guess_V * (fixed_scale ? 1.0 : blunter);
+      const double a = guess_V * (points.size() == 1 ? 1.0 : blunter);
       VectorXd start(Index{count});
       start << std::log(first.short_circuit_A) - first.open_circuit_V / a, std::log(a),
           std::log(0.02 * resistive * first.open_circuit_V / first.short_circuit_A),
           std::log(0.01 * first.short_circuit_A / first.open_circuit_V);
-      // Without a second point a weak pull keeps n V_t where it was guessed.
-      const auto residuals = [&](const VectorXd& x) {
-        VectorXd all = relative_errors(points, x);
-        if (!fixed_scale) return all;
-        all.conservativeResize(all.size() + 1);
-        all[all.size() - 1] = x[scale] - std::log(guess_V);
-        return all;
-      };
-      const LeastSquaresFit trial = least_squares(start, with_differences(residuals));
+      const LeastSquaresFit trial = fit_from(start, points, guess_V);
       if (trial.squares < best.squares) best = trial;
     }
   }
@@ -99,10 +107,118 @@ double gap_eV(const CellModel& model, double light_A, double slope_V_K) {
   return std::midpoint(low, high);
 }
 
+// Without errors.
+RatedFit described(const VectorXd& x, std::span<const RatedPoint> points,
+                   const TemperatureSlopes& slopes) {
+  const RatedPoint& first = points[0];
+  RatedFit result;
+  result.diode = {{0.0, 0.0},
+                  exponential(x[saturation], 0.0),
+                  exponential(x[scale], 0.0),
+                  exponential(x[series], 0.0),
+                  exponential(-x[shunt], 0.0)};
+  result.model.reference = result.diode.parameters(first.temperature_K);
+  const double light_A = CellCurve(result.model.reference).photocurrent_A(first.short_circuit_A);
+  result.diode.photocurrent_A = {light_A, 0.0};
+  result.model.gap_eV = gap_eV(result.model, light_A * (1.0 + 10.0 * slopes.short_circuit_1_K),
+                               slopes.open_circuit_1_K * first.open_circuit_V);
+  result.model.photocurrent_slope_1_K = slopes.short_circuit_1_K;
+  result.short_circuit_A_m2_W = first.short_circuit_A / first.irradiance_W_m2;
+  result.rms = std::sqrt(relative_errors(points, x).squaredNorm() /
+                         (3.0 * static_cast<double>(points.size())));
+  return result;
+}
+
+// Everything that has a standard error, in one row.
+constexpr Index with_errors = 6;
+using FigureErrors = Eigen::Vector<double, with_errors>;
+FigureErrors figures_of(const RatedFit& fit) {
+  const SingleDiode& d = fit.diode;
+  return {d.photocurrent_A.value, d.saturation_A.value, d.scale_V.value,
+          d.series_ohm.value,     d.shunt_ohm.value,    fit.model.gap_eV};
+}
+
+// From the covariance of the parameters, by central differences.
+FigureErrors scatter_errors(const LeastSquaresFit& fitted, std::span<const RatedPoint> points,
+                            const TemperatureSlopes& slopes) {
+  constexpr double step = 1e-4;  // of logarithms
+  Eigen::Matrix<double, with_errors, Eigen::Dynamic> jacobian(with_errors, Index{count});
+  for (Index k = 0; k < Index{count}; ++k) {
+    const auto moved = [&](double by) {
+      VectorXd x = fitted.parameters;
+      x[k] += by;
+      return figures_of(described(x, points, slopes));
+    };
+    jacobian.col(k) = (moved(step) - moved(-step)) / (2.0 * step);
+  }
+  return (jacobian * fitted.covariance * jacobian.transpose() * fitted.variance())
+      .diagonal()
+      .cwiseMax(0.0)
+      .cwiseSqrt();
+}
+
+double rounded_sigma(double figure, double step, double fraction) {
+  return std::hypot(step / std::sqrt(12.0), fraction * figure);
+}
+
+// Half the difference of the fits with one figure moved up and down by its standard deviation, in
+// quadrature over all figures.
+FigureErrors rounding_errors(const VectorXd& start, std::span<const RatedPoint> points,
+                             const TemperatureSlopes& slopes, double guess_V,
+                             const RatedTolerance& tolerance) {
+  struct Figure {
+    double RatedPoint::*member;
+    double step;
+  };
+  const std::array<Figure, 4> all = {{{&RatedPoint::short_circuit_A, tolerance.step_A},
+                                      {&RatedPoint::open_circuit_V, tolerance.step_V},
+                                      {&RatedPoint::maximum_A, tolerance.step_A},
+                                      {&RatedPoint::maximum_V, tolerance.step_V}}};
+  FigureErrors squares = FigureErrors::Zero();
+  for (size_t p = 0; p < points.size(); ++p) {
+    for (const Figure& figure : all) {
+      const double sigma = rounded_sigma(points[p].*figure.member, figure.step, tolerance.fraction);
+      if (sigma == 0.0) continue;
+      const auto moved = [&](double by) {
+        std::vector<RatedPoint> trial(points.begin(), points.end());
+        trial[p].*figure.member += by;
+        return figures_of(described(fit_from(start, trial, guess_V).parameters, trial, slopes));
+      };
+      squares += (0.5 * (moved(sigma) - moved(-sigma))).cwiseAbs2();
+    }
+  }
+  return squares.cwiseSqrt();
+}
+
+// The unit of the last decimal of a number, as its first nine digits show it.
+double last_decimal(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", number);
+  const std::string shown = text;
+  if (shown.find('e') != std::string::npos) return 0.0;
+  const size_t point = shown.find('.');
+  return point == std::string::npos
+             ? 1.0
+             : std::pow(10.0, -static_cast<double>(shown.size() - point - 1));
+}
+
 }  // namespace
 
+RatedTolerance written_steps(std::span<const RatedPoint> points) {
+  RatedTolerance steps{1.0, 1.0, 0.0};
+  for (const RatedPoint& p : points) {
+    for (const double i : {p.short_circuit_A, p.maximum_A}) {
+      steps.step_A = std::min(steps.step_A, last_decimal(i));
+    }
+    for (const double v : {p.open_circuit_V, p.maximum_V}) {
+      steps.step_V = std::min(steps.step_V, last_decimal(v));
+    }
+  }
+  return steps;
+}
+
 RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
-                          double ideality_guess_V) {
+                          double ideality_guess_V, const RatedTolerance& tolerance) {
   check(points);
   if (!(ideality_guess_V > 0)) {
     throw InputError({}, "datasheet", "n V_t = " + std::to_string(ideality_guess_V),
@@ -116,25 +232,17 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
                          std::to_string(ideality_guess_V) + " V gives",
                      "the figures of one cell, or of a module with its cells_in_series");
   }
-  const VectorXd& x = best.parameters;
-  const VectorXd error = (best.covariance.diagonal() * best.variance()).cwiseSqrt();
-  const RatedPoint& first = points[0];
-  const double temperature_K = first.temperature_K;
-  RatedFit result;
-  result.diode = {{0.0, 0.0},
-                  exponential(x[saturation], error[saturation]),
-                  exponential(x[scale], error[scale]),
-                  exponential(x[series], error[series]),
-                  exponential(-x[shunt], error[shunt])};
-  result.model.reference = result.diode.parameters(temperature_K);
-  const double light_A = CellCurve(result.model.reference).photocurrent_A(first.short_circuit_A);
-  result.diode.photocurrent_A = {light_A, 0.0};
-  result.model.gap_eV = gap_eV(result.model, light_A * (1.0 + 10.0 * slopes.short_circuit_1_K),
-                               slopes.open_circuit_1_K * first.open_circuit_V);
-  result.model.photocurrent_slope_1_K = slopes.short_circuit_1_K;
-  result.short_circuit_A_m2_W = first.short_circuit_A / first.irradiance_W_m2;
-  result.rms = std::sqrt(relative_errors(points, x).squaredNorm() /
-                         (3.0 * static_cast<double>(points.size())));
+  RatedFit result = described(best.parameters, points, slopes);
+  const FigureErrors errors =
+      scatter_errors(best, points, slopes)
+          .cwiseMax(rounding_errors(best.parameters, points, slopes, ideality_guess_V, tolerance));
+  SingleDiode& d = result.diode;
+  Index row = 0;
+  for (Estimate* of :
+       {&d.photocurrent_A, &d.saturation_A, &d.scale_V, &d.series_ohm, &d.shunt_ohm}) {
+    of->standard_error = errors[row++];
+  }
+  result.gap_error_eV = errors[row];
   return result;
 }
 

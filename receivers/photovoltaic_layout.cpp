@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/errors.h"
+#include "receivers/photovoltaic_layout_bound.h"
 
 namespace photorque {
 namespace {
@@ -52,18 +53,19 @@ class Search {
   LayoutResult run() {
     LayoutResult result;
     result.start_power_W = power_W(cells_);
-    result.bound_W = bound_W();
+    bound_W_ = result.bound_W = layout_bound_W(shape_, tables_, lights_);
     best_ = cells_;
     best_W_ = result.start_power_W;
     result.exact = count_assignments() <= most_tried_;
     if (result.exact) {
       try_all();
     } else {
-      exchange(cells_);
       exchange(by_light());
+      exchange(cells_);
     }
     result.wiring = wired(best_);
     result.power_W = best_W_;
+    result.exact = result.exact || bound_reached();
     result.tried = tried_;
     return result;
   }
@@ -90,23 +92,14 @@ class Search {
     return sum / static_cast<double>(lights_.size());
   }
 
-  double bound_W() const {
-    double sum = 0.0;
-    for (const auto& light : lights_) {
-      for (const int cell : cells_) {
-        const auto i = static_cast<size_t>(cell);
-        sum += tables_[i]->curve().maximum_power(light[i]).power_W();
-      }
-    }
-    return sum / static_cast<double>(lights_.size());
-  }
-
   void keep(const std::vector<int>& cells, double power) {
     if (power > best_W_) {
       best_W_ = power;
       best_ = cells;
     }
   }
+
+  bool bound_reached() const { return best_W_ >= bound_W_ * (1.0 - 1e-11); }
 
   // Cells in order of their mean light, brightest first.
   std::vector<int> by_light() const {
@@ -129,7 +122,7 @@ class Search {
       for (size_t i = 0; i < cells.size(); ++i) {
         for (size_t j = i + 1; j < cells.size(); ++j) {
           if (together(i, j)) continue;
-          if (tried_ >= most_tried_) return;
+          if (tried_ >= most_tried_ || bound_reached()) return;
           std::swap(cells[i], cells[j]);
           const double trial = power_W(cells);
           if (trial > power * (1.0 + 1e-12)) {
@@ -223,7 +216,7 @@ class Search {
   int64_t most_tried_, tried_ = 0;
   std::vector<Place> places_;
   std::vector<int> cells_, best_;
-  double best_W_ = 0.0;
+  double best_W_ = 0.0, bound_W_ = 0.0;
 };
 
 }  // namespace

@@ -15,8 +15,8 @@ struct LayoutResult {
   ArrayWiring wiring;
   double power_W = 0.0;        // mean over the attitudes
   double start_power_W = 0.0;  // of the wiring given
-  double bound_W = 0.0;        // every cell by itself: no wiring gives more
-  bool exact = false;          // every assignment was tried
+  double bound_W = 0.0;        // no wiring gives more
+  bool exact = false;          // every assignment was tried, or the bound is reached
   int64_t tried = 0;           // curves whose maximum was found
 };
 
@@ -25,6 +25,7 @@ struct LayoutResult {
 // (InputError). Assignments that differ by order alone count once. If there are at most
 // `most_tried`, all are tried; else pairs of cells are exchanged while that helps, from the given
 // wiring and from one with cells of like light joined, within `most_tried` trials.
+// See photovoltaic_layout_bound.h for the bound.
 LayoutResult search_layout(const ArrayWiring& start, const CellTables& tables,
                            const AttitudeLights& lights, int64_t most_tried);
 

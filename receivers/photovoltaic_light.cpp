@@ -29,7 +29,7 @@ std::vector<Overlap> overlaps(double low, double high, double start, double end,
 
 }  // namespace
 
-ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums) {
+ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums, const BinSums& entry) {
   const SurfaceGrid& grid = receiver.grid();
   ArrayLight light{grid.width,
                    grid.height,
@@ -39,7 +39,8 @@ ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums) {
                    grid.v_high,
                    receiver.bands().count(),
                    grid.area_m2,
-                   {}};
+                   {},
+                   entry};
   light.power_W = {
       grid.bins() * static_cast<size_t>(light.bands), sums.replicates, {}, sums.common_error};
   const size_t bounced = receiver.direct_entries();
@@ -60,7 +61,7 @@ ArrayLight array_light(int width, int height, double u_length_m, double v_length
   const double area_m2 = u_length_m * v_length_m / (width * height);
   ArrayLight light{width, height,     0.0, u_length_m,
                    0.0,   v_length_m, 1,   std::vector<double>(irradiance_W_m2.size(), area_m2),
-                   {}};
+                   {},    {}};
   light.power_W = {irradiance_W_m2.size(), 1, {}};
   for (const double e : irradiance_W_m2) light.power_W.sums.push_back(e * area_m2);
   return light;
@@ -91,32 +92,43 @@ std::vector<CellRectangle> cell_rectangles(const ArrayLight& light, int columns,
   return cells;
 }
 
-CellCover::CellCover(const ArrayLight& light, std::span<const CellRectangle> cells)
-    : bands_(static_cast<size_t>(light.bands)), first_{0} {
-  for (const CellRectangle& cell : cells) {
-    double area = 0.0;
-    for (const Overlap& v :
-         overlaps(cell.v_low, cell.v_high, light.v_low, light.v_high, light.height)) {
-      for (const Overlap& u :
-           overlaps(cell.u_low, cell.u_high, light.u_low, light.u_high, light.width)) {
-        const auto bin = static_cast<uint32_t>(v.index * light.width + u.index);
-        parts_.push_back({bin, u.fraction * v.fraction});
-        area += u.fraction * v.fraction * light.area_m2[bin];
-      }
+std::vector<BinPart> parts_of_rectangle(const CellRectangle& cell, const ArrayLight& light) {
+  std::vector<BinPart> parts;
+  for (const Overlap& v :
+       overlaps(cell.v_low, cell.v_high, light.v_low, light.v_high, light.height)) {
+    for (const Overlap& u :
+         overlaps(cell.u_low, cell.u_high, light.u_low, light.u_high, light.width)) {
+      parts.push_back(
+          {static_cast<uint32_t>(v.index * light.width + u.index), u.fraction * v.fraction});
     }
-    first_.push_back(parts_.size());
-    area_m2_.push_back(area);
   }
+  return parts;
 }
 
-std::vector<double> CellCover::gather(std::span<const double> power_W,
-                                      std::span<const double> band_factor) const {
-  std::vector<double> sums(cells(), 0.0);
+CellCover::CellCover(const ArrayLight& light, std::span<const CellRectangle> cells)
+    : bands_(static_cast<size_t>(light.bands)), first_{0} {
+  for (const CellRectangle& cell : cells) add(light, parts_of_rectangle(cell, light));
+}
+
+CellCover::CellCover(const ArrayLight& light, std::span<const std::vector<BinPart>> cells)
+    : bands_(static_cast<size_t>(light.bands)), first_{0} {
+  for (const std::vector<BinPart>& parts : cells) add(light, parts);
+}
+
+void CellCover::add(const ArrayLight& light, std::span<const BinPart> parts) {
+  double area_m2 = 0.0;
+  for (const BinPart& part : parts) area_m2 += part.fraction * light.area_m2[part.bin];
+  parts_.insert(parts_.end(), parts.begin(), parts.end());
+  first_.push_back(parts_.size());
+  area_m2_.push_back(area_m2);
+}
+
+std::vector<double> CellCover::gather(std::span<const double> power_W) const {
+  std::vector<double> sums(cells() * bands_, 0.0);
   for (size_t cell = 0; cell < cells(); ++cell) {
     for (size_t p = first_[cell]; p < first_[cell + 1]; ++p) {
       for (size_t band = 0; band < bands_; ++band) {
-        sums[cell] +=
-            parts_[p].fraction * band_factor[band] * power_W[parts_[p].bin * bands_ + band];
+        sums[cell * bands_ + band] += parts_[p].fraction * power_W[parts_[p].bin * bands_ + band];
       }
     }
   }

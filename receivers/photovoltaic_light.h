@@ -18,10 +18,14 @@ struct ArrayLight {
   int bands = 1;
   std::vector<double> area_m2;  // of surface per bin (without bands)
   BinSums power_W;
+  // Sums of an IncidenceReceiver over the same grid, as many replicates; without bins, all light
+  // enters the cells as perpendicular light does.
+  BinSums entry = {};
 };
 
-// What a flux map received.
-ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums);
+// What a flux map received; and how the light enters.
+ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums,
+                       const BinSums& entry = {});
 
 // The whole of a grid of given irradiance, exactly known: one replicate, one band.
 ArrayLight array_light(int width, int height, double u_length_m, double v_length_m,
@@ -38,25 +42,33 @@ struct CellRectangle {
 std::vector<CellRectangle> cell_rectangles(const ArrayLight& light, int columns, int rows,
                                            double gap, double margin);
 
+// A share of a bin's surface.
+struct BinPart {
+  uint32_t bin = 0;
+  double fraction = 0.0;
+};
+
+// The parts of a grid's bins in a rectangle.
+std::vector<BinPart> parts_of_rectangle(const CellRectangle& cell, const ArrayLight& light);
+
 // Which bins each cell covers, and by what fraction of the bin. Light is taken as even within a
 // bin.
 class CellCover {
  public:
   CellCover(const ArrayLight& light, std::span<const CellRectangle> cells);
+  // One list of parts per cell.
+  CellCover(const ArrayLight& light, std::span<const std::vector<BinPart>> cells);
 
   size_t cells() const { return first_.size() - 1; }
   double area_m2(size_t cell) const { return area_m2_[cell]; }
-  // Sum over bins and bands of power × factor of the band, per cell.
-  std::vector<double> gather(std::span<const double> power_W,
-                             std::span<const double> band_factor) const;
+  // Sum over the bins of each cell: cell · bands + band.
+  std::vector<double> gather(std::span<const double> power_W) const;
 
  private:
-  struct Part {
-    uint32_t bin;
-    double fraction;
-  };
+  void add(const ArrayLight& light, std::span<const BinPart> parts);
+
   size_t bands_;
-  std::vector<Part> parts_;
+  std::vector<BinPart> parts_;
   std::vector<size_t> first_;  // parts of cell i: first_[i] … first_[i + 1] − 1
   std::vector<double> area_m2_;
 };

@@ -21,7 +21,9 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
   stages.push_back({"light on the receiver", in.on_receiver_W, "spill and obstacles"});
   const double on_cells_W = array.power_on_cells_W.value;
   stages.push_back({"light on the cells", on_cells_W, "gaps between the cells"});
-  stages.push_back({"photons converted", on_cells_W * in.quantum_efficiency,
+  const double entering_W = array.power_entering_W.value;
+  if (array.entry_known) stages.push_back({"light that enters", entering_W, "angle of incidence"});
+  stages.push_back({"photons converted", entering_W * in.quantum_efficiency,
                     "quantum efficiency, reflection included"});
   stages.push_back({"every cell by itself", array.sum_of_cells_W.value,
                     "voltage below the photon's, fill factor"});
@@ -43,22 +45,6 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
   return stages;
 }
 
-namespace {
-
-// A bar as strokes up and down, close enough to fill it.
-Plot::Curve bar(const LossStage& stage, int number) {
-  constexpr int strokes = 350;
-  constexpr double bar_width = 0.8;
-  Plot::Curve curve{std::to_string(number) + " " + stage.name, {}, {}, {}, false};
-  for (int k = 0; k <= strokes; ++k) {
-    curve.x.push_back(number + bar_width * (static_cast<double>(k) / strokes - 0.5));
-    curve.y.push_back(k % 2 == 0 ? 0.0 : stage.power_W);
-  }
-  return curve;
-}
-
-}  // namespace
-
 Product loss_product(const std::vector<LossStage>& stages) {
   Product product;
   Table table{"losses",
@@ -78,7 +64,13 @@ Product loss_product(const std::vector<LossStage>& stages) {
     table.columns[2].values.push_back(stage.power_W);
     table.columns[3].values.push_back(before_W - stage.power_W);
     table.columns[4].values.push_back(before_W > 0 ? stage.power_W / before_W : 0.0);
-    plot.curves.push_back(bar(stage, static_cast<int>(i) + 1));
+    const std::string number = std::to_string(i + 1);
+    plot.curves.push_back({number + " " + stage.name,
+                           {static_cast<double>(i + 1)},
+                           {stage.power_W},
+                           {},
+                           false,
+                           true});
   }
   product.tables.push_back(table);
   product.plots.push_back(plot);

@@ -113,10 +113,42 @@ class ArrayCurve::Search {
   void add_points_between(const Piece& piece, Node& at) {
     const double width = piece.high_x - piece.low_x;
     const int steps = std::max(1, static_cast<int>(std::ceil(intervals_ * width / curve_.end_x_)));
+    states_.clear();
+    for (const FourStrings& four : curve_.fours_) states_.push_back(four.read(at.strings));
     for (int i = 1; i < steps; ++i) {
-      curve_.evaluate(piece.low_x + width * i / steps, piece.regimes, at, any);
+      const double x = piece.low_x + width * i / steps;
+      if (states_.empty()) {
+        curve_.evaluate(x, piece.regimes, at, any);
+      } else {
+        at.x = x;
+        at.y = currents_at(x, piece, at);
+      }
       add_point(at);
     }
+    for (size_t k = 0; k < states_.size(); ++k) curve_.fours_[k].write(states_[k], at.strings);
+  }
+
+  // Of all strings; in `at` the states of fours are old ones.
+  double currents_at(double x, const Piece& piece, Node& at) {
+    double sum_A = 0.0;
+    const auto add_alone = [&](size_t s) {
+      const CurrentGuess guess = curve_.guess_current(s, x, at, nullptr, nullptr);
+      curve_.strings_[s].at_voltage(x, piece.regimes[s], guess.low_A, guess.high_A, any,
+                                    at.strings[s]);
+      sum_A += at.strings[s].current_A;
+    };
+    for (size_t k = 0; k < states_.size(); ++k) {
+      const FourStrings& four = curve_.fours_[k];
+      if (x < four.least_open_circuit_V() && four.advance(x, states_[k])) {
+        sum_A += four.sum_A(states_[k]);
+        continue;
+      }
+      four.write(states_[k], at.strings);
+      for (const size_t s : four.members()) add_alone(s);
+      states_[k] = four.read(at.strings);
+    }
+    for (const size_t s : curve_.singles_) add_alone(s);
+    return sum_A;
   }
 
   void add_point(const Node& node) {
@@ -129,6 +161,7 @@ class ArrayCurve::Search {
   }
 
   const ArrayCurve& curve_;
+  std::vector<FourStrings::State> states_;    // at the last point
   std::vector<std::unique_ptr<Node>> nodes_;  // one per depth: references stay valid
   int intervals_;
   Scan scan_;

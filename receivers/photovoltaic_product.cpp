@@ -51,6 +51,13 @@ Table cell_table(const ArrayResult& result) {
                    {"voltage_V", result.cells.voltages_V, {}},
                    {"current_A", result.cells.currents_A, {}},
                    {"power_W", products(result.cells.voltages_V, result.cells.currents_A), {}}};
+  if (result.cell_centre_m.empty()) return table;
+  Table::Column u{"centre_u_m", {}, {}}, v{"centre_v_m", {}, {}};
+  for (const Vec2& centre : result.cell_centre_m) {
+    u.values.push_back(centre.x());
+    v.values.push_back(centre.y());
+  }
+  table.columns.insert(table.columns.end(), {u, v});
   return table;
 }
 
@@ -92,6 +99,11 @@ Product array_product(const ArrayResult& result) {
                     point_table("maxima", "Local maxima of the power", result.maxima),
                     cell_table(result)};
   add_plots(result, product.tables[0], product);
+  if (result.entry_known) {
+    product.quantities.push_back({"power_entering_cells_W", result.power_entering_W});
+  }
+  // Cells anywhere have no picture in columns and rows.
+  if (!result.cell_centre_m.empty() && result.rows == 1 && result.columns > 1) return product;
   const auto& cells = product.tables[2].columns;
   product.maps = {
       cell_map(result, "cell_irradiance", "Irradiance on the cells", "W/m²", cells[1].values),

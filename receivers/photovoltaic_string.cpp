@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/constants.h"
 #include "receivers/photovoltaic_root.h"
 
 namespace photorque {
@@ -12,146 +11,18 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // Beyond this a junction carries nothing that double precision can see; keeps its cube finite.
 constexpr double most_ohm = 1e90;
-// At this many n V_t in reverse a diode carries I_s but for 1e-13 of it.
-constexpr double saturated = -30.0;
 
 }  // namespace
 
-StringCurve::Junction::Junction(const Diode& diode)
-    : kind(diode.kind),
-      drop_V(diode.drop_V),
-      saturation_A(diode.saturation_A),
-      series_ohm(diode.series_ohm),
-      scale_V(diode.ideality * boltzmann_J_K * diode.temperature_K / elementary_charge_C),
-      per_scale_1_V(1.0 / scale_V) {}
-
-double StringCurve::Junction::slope_S(double g) const {
-  return g / (1.0 + g * series_ohm);
-}
-
-double StringCurve::Junction::curvature_A_V2(double g) const {
-  const double divisor = 1.0 + g * series_ohm;
-  return g / (scale_V * divisor * divisor * divisor);
-}
-
-// With w the voltage forwards, w(i) = n V_t ln(1 + i/I_s) + i R_s; the substring's V is −w.
-Slopes StringCurve::Junction::slopes(double g) const {
-  const double divisor = 1.0 + g * series_ohm, per_divisor = 1.0 / divisor;
-  const double per_divisor3 = per_divisor * per_divisor * per_divisor;
-  const double bend = g * per_scale_1_V * per_divisor3;
-  return {g * per_divisor, bend,
-          -bend * per_scale_1_V * (1.0 - 2.0 * g * series_ohm) * per_divisor * per_divisor};
-}
-
-// The slope rises with g; the curvature has one maximum, at g R_s = 1/2.
-SlopeRange StringCurve::Junction::range(double low_S, double high_S) const {
-  const double a = curvature_A_V2(low_S), b = curvature_A_V2(high_S);
-  const double peak_S = 0.5 / std::max(series_ohm, 1e-30);
-  const bool inside = low_S < peak_S && peak_S < high_S;
-  return {slope_S(low_S), slope_S(high_S), std::min(a, b),
-          inside ? curvature_A_V2(peak_S) : std::max(a, b)};
-}
-
-StringCurve::StringCurve(const ArrayWiring::String& wiring, const CellTables& tables,
-                         const std::vector<double>& photocurrents_A)
-    : blocking_(wiring.blocking) {
-  reserve(wiring);
-  for (const auto& substring : wiring.substrings) add_substring(substring, tables, photocurrents_A);
-  for (const Substring& substring : substrings_) {
-    largest_photocurrent_A_ = std::max(largest_photocurrent_A_, largest_A(substring));
-  }
-  StringState state = make_state();
-  for (Substring& substring : substrings_) {
-    const Junction& bypass = substring.bypass;
-    if (bypass.kind == Diode::Kind::clamp) {
-      substring.clamp_A = rows_current_A(substring, bypass.drop_V, state);
-    } else if (bypass.kind == Diode::Kind::junction) {
-      const double typical_A = 0.2 * largest_photocurrent_A_;
-      substring.turn_on_A = rows_current_A(
-          substring, bypass.scale_V * std::log1p(typical_A / bypass.saturation_A), state);
-    }
-    substring.open_circuit_V = rows_at(substring, 0.0, state).voltage_V;
-  }
-  at_current(0.0, regime_at(0.0), 1e-9, state);
-  open_circuit_V_ = state.voltage_V;
-}
-
-// Room for all, filled up in runs of like tables.
-void StringCurve::reserve(const ArrayWiring::String& wiring) {
-  size_t cells = 0;
-  for (const auto& substring : wiring.substrings) {
-    for (const auto& row : substring.rows) cells += row.size();
-    cells += DiodeVoltageTable::lanes;
-  }
-  cells_.reserve(cells);
-  photocurrents_A_.reserve(cells);
-  copies_.reserve(cells);
-  wired_.reserve(cells);
-  first_wired_.reserve(cells);
-  substrings_.reserve(wiring.substrings.size());
-}
-
-void StringCurve::add_cell(int cell, const CellTables& tables,
-                           const std::vector<double>& photocurrents_A) {
-  const auto i = static_cast<size_t>(cell);
-  cells_.push_back(
-      {tables[i].get(), photocurrents_A[i], tables[i]->curve().parameters().series_ohm});
-  photocurrents_A_.push_back(photocurrents_A[i]);
-  close_V_ = std::min(close_V_, 0.1 * tables[i]->curve().least_scale_V());
-  copies_.push_back(1.0);
-  first_wired_.push_back(static_cast<uint32_t>(wired_.size()));
-  wired_.push_back(cell);
-}
-
-// Cells of one table stand next to each other; like cells under the same light become one.
-void StringCurve::add_series(std::vector<int> cells, const CellTables& tables,
-                             const std::vector<double>& photocurrents_A) {
-  const auto table = [&](int cell) { return tables[static_cast<size_t>(cell)].get(); };
-  const auto light_A = [&](int cell) { return photocurrents_A[static_cast<size_t>(cell)]; };
-  std::ranges::stable_sort(cells, [&](int a, int b) {
-    if (table(a) != table(b)) return std::less<>()(table(a), table(b));
-    return light_A(a) < light_A(b);
-  });
-  for (size_t first = 0, end = 0; first < cells.size(); first = end) {
-    Run run{table(cells[first]), 0.0, static_cast<uint32_t>(cells_.size()), 0, 0};
-    for (; end < cells.size() && table(cells[end]) == run.table; ++end) {
-      if (end > first && light_A(cells[end]) == light_A(cells[end - 1])) {
-        cells_.back().copies += 1.0;
-        copies_.back() += 1.0;
-        wired_.push_back(cells[end]);
-      } else {
-        add_cell(cells[end], tables, photocurrents_A);
-      }
-      run.series_ohm += cells_.back().series_ohm;
-    }
-    run.cells = static_cast<uint32_t>(cells_.size()) - run.first_cell;
-    while ((cells_.size() - run.first_cell) % DiodeVoltageTable::lanes != 0) {
-      add_cell(cells[end - 1], tables, photocurrents_A);
-      copies_.back() = 0.0;
-    }
-    run.filled_cells = static_cast<uint32_t>(cells_.size()) - run.first_cell;
-    runs_.push_back(run);
-  }
-}
-
-void StringCurve::add_substring(const ArrayWiring::Substring& wiring, const CellTables& tables,
-                                const std::vector<double>& photocurrents_A) {
-  std::vector<int> singles;
-  for (const auto& row : wiring.rows) {
-    if (row.size() == 1) singles.push_back(row[0]);
-  }
-  Substring substring{Junction(wiring.bypass)};
-  substring.first_run = static_cast<uint32_t>(runs_.size());
-  add_series(std::move(singles), tables, photocurrents_A);
-  substring.runs = static_cast<uint32_t>(runs_.size()) - substring.first_run;
-  substring.first_row = static_cast<uint32_t>(rows_.size());
-  for (const auto& row : wiring.rows) {
-    if (row.size() == 1) continue;
-    rows_.push_back({static_cast<uint32_t>(cells_.size()), static_cast<uint32_t>(row.size())});
-    for (const int cell : row) add_cell(cell, tables, photocurrents_A);
-  }
-  substring.rows = static_cast<uint32_t>(rows_.size()) - substring.first_row;
-  substrings_.push_back(substring);
+std::optional<PlainString> StringCurve::plain() const {
+  if (substrings_.size() != 1 || runs_.size() != 1 || !rows_.empty()) return std::nullopt;
+  const Run& run = runs_[0];
+  return PlainString{run.table,
+                     std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
+                     std::span(copies_).subspan(run.first_cell, run.filled_cells),
+                     run.series_ohm,
+                     &substrings_[0].bypass,
+                     &blocking_};
 }
 
 StringState StringCurve::make_state() const {
@@ -181,36 +52,6 @@ double StringCurve::first_guess_A() const {
   return guess_A;
 }
 
-// From this current on no row has a voltage above zero.
-double StringCurve::largest_A(const Substring& substring) const {
-  double largest = 0.0;
-  for (const Run& run : runs_of(substring)) {
-    largest = std::max(largest, cells_[run.first_cell + run.cells - 1].photocurrent_A);
-  }
-  for (const Row& row : rows_of(substring)) {
-    double sum = 0.0;
-    for (const LitCell& cell : lit(row)) sum += cell.photocurrent_A;
-    largest = std::max(largest, sum);
-  }
-  return largest;
-}
-
-double StringCurve::rows_current_A(const Substring& substring, double drop_V,
-                                   StringState& state) const {
-  const auto excess_V = [&](double current_A) {
-    const ElementPoint p = rows_at(substring, current_A, state);
-    const double excess = p.voltage_V + drop_V;
-    return FunctionAt{excess, -p.slope_ohm, p.curvature_V_A2, p.third_V_A3, close(excess)};
-  };
-  double low = 0.0, high = largest_A(substring), step = 1e-3 * high + 1e-9;
-  while (excess_V(high).value > 0.0) {
-    low = high;
-    high += step;
-    step *= 4.0;
-  }
-  return falling_root(low, high, std::midpoint(low, high), 1e-9, excess_V);
-}
-
 ElementPoint StringCurve::rows_at(const Substring& substring, double current_A,
                                   StringState& state) const {
   ElementPoint sum;
@@ -233,7 +74,7 @@ ElementPoint StringCurve::rows_at(const Substring& substring, double current_A,
 // rows kept the current at which they turn the diode on.
 double StringCurve::bypass_guess_V(const Substring& substring, const StringState::Bypass& last,
                                    double current_A) {
-  const Junction& d = substring.bypass;
+  const DiodeJunction& d = substring.bypass;
   const double h = current_A - last.current_A;
   const double last_through_A = last.junction_S * d.scale_V;
   if (std::abs(h) > 0.3 * last_through_A && current_A > substring.turn_on_A) {
@@ -251,14 +92,14 @@ double StringCurve::bypass_guess_V(const Substring& substring, const StringState
 ElementPoint StringCurve::bypassed_at(uint32_t index, double current_A, double tolerance,
                                       StringState& state) const {
   const Substring& substring = substrings_[index];
-  const Junction& d = substring.bypass;
+  const DiodeJunction& d = substring.bypass;
   StringState::Bypass& last = state.bypasses[index];
-  if (last.junction_V <= saturated * d.scale_V && current_A <= substring.turn_on_A) {
+  if (last.junction_V <= d.saturated_V() && current_A <= substring.turn_on_A) {
     // Far in reverse the diode leaks I_s and no more: nothing to solve.
     const ElementPoint rows = rows_at(substring, current_A + d.saturation_A, state);
     const double u = d.saturation_A * d.series_ohm - rows.voltage_V;
     last = {u, 0.0, current_A, rows};
-    if (u <= saturated * d.scale_V) return rows;
+    if (u <= d.saturated_V()) return rows;
   }
   ElementPoint rows;
   double through_A = 0.0, g = 0.0;
@@ -311,26 +152,40 @@ ElementPoint StringCurve::substrings_at(double current_A, const StringRegime& re
   return sum;
 }
 
+double StringCurve::blocking_drop_V(double current_A) const {
+  switch (blocking_.kind) {
+    case Diode::Kind::clamp:
+      return blocking_.drop_V;
+    case Diode::Kind::junction:
+      return blocking_.scale_V * std::log1p(current_A / blocking_.saturation_A) +
+             current_A * blocking_.series_ohm;
+    case Diode::Kind::none:
+      break;
+  }
+  return 0.0;
+}
+
 void StringCurve::at_current(double current_A, const StringRegime& regime, double tolerance,
                              StringState& state) const {
   ElementPoint sum = substrings_at(current_A, regime, tolerance, state);
-  if (blocking_.kind == Diode::Kind::clamp) sum.voltage_V -= blocking_.drop_V;
-  if (blocking_.kind == Diode::Kind::junction) {
-    const double junction_ohm =
-        std::min(blocking_.scale_V / (current_A + blocking_.saturation_A), most_ohm);
-    state.blocking_ohm = junction_ohm;
-    sum.voltage_V -= blocking_.scale_V * std::log1p(current_A / blocking_.saturation_A) +
-                     current_A * blocking_.series_ohm;
-    sum.slope_ohm += junction_ohm + blocking_.series_ohm;
-    const double bend = junction_ohm * junction_ohm * blocking_.per_scale_1_V;
-    sum.curvature_V_A2 += bend;
-    sum.third_V_A3 -= 2.0 * bend * junction_ohm * blocking_.per_scale_1_V;
-  }
+  sum.voltage_V -= blocking_drop_V(current_A);
   state.current_A = current_A;
   state.voltage_V = sum.voltage_V;
   state.slope_ohm = sum.slope_ohm;
   state.curvature_V_A2 = sum.curvature_V_A2;
   state.third_V_A3 = sum.third_V_A3;
+  if (blocking_.kind == Diode::Kind::junction) add_blocking(state);
+}
+
+// The derivatives of a blocking junction, in series with what the state has.
+void StringCurve::add_blocking(StringState& state) const {
+  const double junction_ohm =
+      std::min(blocking_.scale_V / (state.current_A + blocking_.saturation_A), most_ohm);
+  state.blocking_ohm = junction_ohm;
+  state.slope_ohm += junction_ohm + blocking_.series_ohm;
+  const double bend = junction_ohm * junction_ohm * blocking_.per_scale_1_V;
+  state.curvature_V_A2 += bend;
+  state.third_V_A3 -= 2.0 * bend * junction_ohm * blocking_.per_scale_1_V;
 }
 
 // Backwards through a blocking junction the current is below I_s; its voltage z is what is left
@@ -360,6 +215,68 @@ void StringCurve::reverse_at_voltage(double voltage_V, const StringRegime& regim
   state.third_V_A3 = sum.third_V_A3 - 2.0 * bend * junction_ohm * blocking_.per_scale_1_V;
 }
 
+// With the current r through the cells as the unknown, all is explicit: their voltage, hence the
+// current i ≤ 0 of the diode beside them, the string's I = r + i and its voltage.
+FunctionAt StringCurve::beside_junction(double rows_A, double voltage_V, ElementPoint& rows,
+                                        StringState& state) const {
+  const DiodeJunction& bypass = substrings_[0].bypass;
+  rows = rows_at(substrings_[0], rows_A, state);
+  const double i_A = bypass.current_A(bypass.junction_V(-rows.voltage_V));
+  const double current_A = std::max(rows_A + i_A, 0.0);
+  FunctionAt f{rows.voltage_V - voltage_V, -rows.slope_ohm, rows.curvature_V_A2, rows.third_V_A3,
+               true};
+  f.value -= blocking_drop_V(current_A);
+  if (blocking_.kind == Diode::Kind::junction) {
+    // Derivatives of I by r, then of the blocking diode's voltage.
+    const Slopes d = bypass.slopes(bypass.conductance_S(i_A));
+    const double a = rows.slope_ohm, b = rows.curvature_V_A2, c = rows.third_V_A3;
+    const double i1 = 1.0 + d.slope * a, i2 = d.curvature * a * a - d.slope * b;
+    const double i3 = -d.third * a * a * a - 3.0 * d.curvature * a * b - d.slope * c;
+    const double ohm = 1.0 / blocking_.conductance_S(current_A);
+    const double w1 = ohm + blocking_.series_ohm, w2 = -ohm * ohm * blocking_.per_scale_1_V;
+    const double w3 = -2.0 * w2 * ohm * blocking_.per_scale_1_V;
+    f.slope -= w1 * i1;
+    f.curvature -= w2 * i1 * i1 + w1 * i2;
+    f.third -= w3 * i1 * i1 * i1 + 3.0 * w2 * i1 * i2 + w1 * i3;
+  }
+  f.close = close(f.value);
+  return f;
+}
+
+void StringCurve::beside_junction_at_voltage(double voltage_V, double low_A, double high_A,
+                                             double tolerance, StringState& state) const {
+  const DiodeJunction& bypass = substrings_[0].bypass;
+  StringState::Bypass& last = state.bypasses[0];
+  ElementPoint rows;
+  double at_A = 0.0;
+  const double rows_V = voltage_V + blocking_drop_V(std::max(state.current_A, 0.0));
+  const double guess_A = state.current_A - bypass.current_A(bypass.junction_V(-rows_V));
+  const double root_A =
+      falling_root(low_A, high_A + bypass.saturation_A, guess_A, tolerance, [&](double rows_A) {
+        at_A = rows_A;
+        return beside_junction(rows_A, voltage_V, rows, state);
+      });
+  // To third order in the last step.
+  const double step_A = root_A - at_A;
+  rows.voltage_V -=
+      step_A *
+      (rows.slope_ohm - step_A * (rows.curvature_V_A2 / 2.0 + step_A * rows.third_V_A3 / 6.0));
+  rows.slope_ohm -= step_A * (rows.curvature_V_A2 + 0.5 * step_A * rows.third_V_A3);
+  rows.curvature_V_A2 += step_A * rows.third_V_A3;
+  const double u = bypass.junction_V(-rows.voltage_V), i_A = bypass.current_A(u);
+  const double g = bypass.conductance_S(i_A);
+  Slopes current = inverted(rows.slopes());
+  current += bypass.slopes(g);
+  const Slopes voltage = inverted(current);
+  state.current_A = root_A + i_A;
+  state.voltage_V = voltage_V;
+  state.slope_ohm = voltage.slope;
+  state.curvature_V_A2 = voltage.curvature;
+  state.third_V_A3 = voltage.third;
+  last = {u, g, state.current_A, {rows.voltage_V, voltage.slope, voltage.curvature, voltage.third}};
+  if (blocking_.kind == Diode::Kind::junction) add_blocking(state);
+}
+
 void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, double low_A,
                              double high_A, double tolerance, StringState& state) const {
   if (regime.blocked) {
@@ -371,6 +288,11 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
   }
   if (blocking_.kind == Diode::Kind::junction && voltage_V >= open_circuit_V_) {
     reverse_at_voltage(voltage_V, regime, state);
+    return;
+  }
+  const bool one = substrings_.size() == 1 && substrings_[0].bypass.kind == Diode::Kind::junction;
+  if (one && voltage_V >= 0.0 && voltage_V < open_circuit_V_) {
+    beside_junction_at_voltage(voltage_V, std::max(low_A, 0.0), high_A, tolerance, state);
     return;
   }
   const auto excess_V = [&](double current_A) {
@@ -394,78 +316,6 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
   state.curvature_V_A2 += step_A * state.third_V_A3;
   state.current_A = root_A;
   state.voltage_V = voltage_V;
-}
-
-SlopeRange StringCurve::substring_range(uint32_t index, const StringState& low_i,
-                                        const StringState& high_i) const {
-  const Substring& substring = substrings_[index];
-  SlopeRange sum;
-  for (const Run& run : runs_of(substring)) {
-    for (uint32_t c = run.first_cell; c < run.first_cell + run.cells; ++c) {
-      sum += cell_range(cells_[c], low_i.cells[c], high_i.cells[c]) * cells_[c].copies;
-    }
-  }
-  for (const Row& row : rows_of(substring)) {
-    sum += tied_cells_range(lit(row), std::span(low_i.cells).subspan(row.first_cell, row.cells),
-                            std::span(high_i.cells).subspan(row.first_cell, row.cells));
-  }
-  if (substring.bypass.kind != Diode::Kind::junction) return sum;
-  SlopeRange both = inverted(sum);
-  both +=
-      substring.bypass.range(low_i.bypasses[index].junction_S, high_i.bypasses[index].junction_S);
-  return inverted(both);
-}
-
-SlopeRange StringCurve::resistance_range(const StringState& low_i, const StringState& high_i,
-                                         const StringRegime& regime) const {
-  SlopeRange sum;
-  for (uint32_t s = 0; s < substrings_.size(); ++s) {
-    if (!regime.clamped[s]) sum += substring_range(s, low_i, high_i);
-  }
-  if (blocking_.kind == Diode::Kind::junction) {
-    const double low = high_i.blocking_ohm, high = low_i.blocking_ohm;
-    sum += SlopeRange{low + blocking_.series_ohm, high + blocking_.series_ohm,
-                      low * low * blocking_.per_scale_1_V, high * high * blocking_.per_scale_1_V};
-  }
-  return sum;
-}
-
-SlopeRange StringCurve::conductance_range(const StringState& low_i, const StringState& high_i,
-                                          const StringRegime& regime) const {
-  return regime.blocked ? SlopeRange{} : inverted(resistance_range(low_i, high_i, regime));
-}
-
-void StringCurve::cells_at(double current_A, std::vector<double>& voltages_V,
-                           std::vector<double>& currents_A) const {
-  StringState state = make_state();
-  const StringRegime regime = regime_at(current_A);
-  for (uint32_t s = 0; s < substrings_.size(); ++s) {
-    const Substring& substring = substrings_[s];
-    double rows_A = regime.clamped[s] ? substring.clamp_A : current_A;
-    if (substring.bypass.kind == Diode::Kind::junction) {
-      bypassed_at(s, current_A, 1e-9, state);
-      rows_A -= substring.bypass.saturation_A *
-                std::expm1(state.bypasses[s].junction_V / substring.bypass.scale_V);
-    }
-    for (const Run& run : runs_of(substring)) {
-      for (uint32_t c = run.first_cell; c < run.first_cell + run.cells; ++c) {
-        const double voltage_V = cell_at(cells_[c], rows_A, state.cells[c]).voltage_V;
-        for (const int wired : wired_to(c)) {
-          voltages_V[static_cast<size_t>(wired)] = voltage_V;
-          currents_A[static_cast<size_t>(wired)] = rows_A;
-        }
-      }
-    }
-    for (const Row& row : rows_of(substring)) {
-      const auto states = std::span(state.cells).subspan(row.first_cell, row.cells);
-      const double voltage_V = tied_cells_at(lit(row), rows_A, states).voltage_V;
-      for (uint32_t c = row.first_cell; c < row.first_cell + row.cells; ++c) {
-        const auto wired = static_cast<size_t>(wired_to(c).front());
-        voltages_V[wired] = voltage_V;
-        currents_A[wired] = cells_[c].table->curve().current_A(cells_[c].photocurrent_A, voltage_V);
-      }
-    }
-  }
 }
 
 }  // namespace photorque

@@ -5,15 +5,27 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "receivers/photovoltaic_junction.h"
+#include "receivers/photovoltaic_root.h"
 #include "receivers/photovoltaic_row.h"
 #include "receivers/photovoltaic_wiring.h"
 
 namespace photorque {
 
 using CellTables = std::vector<std::shared_ptr<const DiodeVoltageTable>>;
+
+// A string of cells of one table in series, with one bypass diode over all of them at most.
+struct PlainString {
+  const DiodeVoltageTable* table = nullptr;
+  std::span<const double> photocurrents_A, copies;  // filled up to DiodeVoltageTable::lanes
+  double series_ohm = 0.0;                          // of all cells
+  const DiodeJunction* bypass = nullptr;
+  const DiodeJunction* blocking = nullptr;
+};
 
 // A point of a string's curve, with what the bounds between two points need. Reused between
 // evaluations to spare allocations.
@@ -64,6 +76,10 @@ class StringCurve {
   // The voltage at no current behind the blocking diode's drop: above it a clamping diode blocks.
   double open_circuit_V() const { return open_circuit_V_; }
   bool has_blocking_clamp() const { return blocking_.kind == Diode::Kind::clamp; }
+  // Nothing for other strings. Points into this.
+  std::optional<PlainString> plain() const;
+  // Over which a cell's curve keeps its shape: a tenth of the least n V_t.
+  double close_V() const { return close_V_; }
 
   StringState make_state() const;
   // Cells behind a bypass junction are evaluated within a fraction `tolerance` of its voltage; the
@@ -89,19 +105,6 @@ class StringCurve {
                 std::vector<double>& currents_A) const;
 
  private:
-  // A Diode with n V_t and its reciprocal at hand.
-  struct Junction {
-    Diode::Kind kind = Diode::Kind::none;
-    double drop_V = 0.0, saturation_A = 0.0, series_ohm = 0.0;
-    double scale_V = 0.0, per_scale_1_V = 0.0;
-
-    explicit Junction(const Diode& diode);
-    // I(V) with the series resistance, from the junction's own conductance.
-    double slope_S(double conductance_S) const;
-    double curvature_A_V2(double conductance_S) const;
-    Slopes slopes(double conductance_S) const;
-    SlopeRange range(double low_S, double high_S) const;
-  };
   // Cells of a substring: first those in series, in runs of one table, then the rows of tied ones.
   struct Row {
     uint32_t first_cell, cells;
@@ -113,7 +116,7 @@ class StringCurve {
     uint32_t first_cell, cells, filled_cells;
   };
   struct Substring {
-    Junction bypass;
+    DiodeJunction bypass;
     uint32_t first_run = 0, runs = 0;  // of cells in series
     uint32_t first_row = 0, rows = 0;  // of tied cells
     double clamp_A = std::numeric_limits<double>::infinity();
@@ -121,7 +124,6 @@ class StringCurve {
     double open_circuit_V = 0.0;                                 // of the rows
   };
 
-  // Whether a cell's curve keeps its shape over a voltage: a tenth of the least n V_t.
   bool close(double voltage_V) const { return std::abs(voltage_V) <= close_V_; }
   void reserve(const ArrayWiring::String& wiring);
   void add_cell(int cell, const CellTables& tables, const std::vector<double>& photocurrents_A);
@@ -136,6 +138,15 @@ class StringCurve {
                            StringState& state) const;
   ElementPoint substrings_at(double current_A, const StringRegime& regime, double tolerance,
                              StringState& state) const;
+  // At a voltage from 0 to open circuit of a string that is one substring beside a junction: what
+  // is left of the voltage at a current through its cells, whose point goes to `rows`; and the
+  // whole.
+  FunctionAt beside_junction(double rows_A, double voltage_V, ElementPoint& rows,
+                             StringState& state) const;
+  void beside_junction_at_voltage(double voltage_V, double low_A, double high_A, double tolerance,
+                                  StringState& state) const;
+  double blocking_drop_V(double current_A) const;
+  void add_blocking(StringState& state) const;
   void reverse_at_voltage(double voltage_V, const StringRegime& regime, StringState& state) const;
   // At which the rows have the voltage −drop_V.
   double rows_current_A(const Substring& substring, double drop_V, StringState& state) const;
@@ -165,7 +176,7 @@ class StringCurve {
   std::vector<Run> runs_;
   std::vector<Row> rows_;
   std::vector<Substring> substrings_;
-  Junction blocking_;
+  DiodeJunction blocking_;
   double close_V_ = std::numeric_limits<double>::infinity();
   double largest_photocurrent_A_ = 0.0;
   double open_circuit_V_ = 0.0;

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "receivers/photovoltaic_cell.h"
+#include "receivers/photovoltaic_quad.h"
 
 namespace photorque {
 
@@ -34,6 +35,8 @@ struct JunctionState {
   double slope_ohm = 0.0;
   double curvature_V_A2 = 0.0;
 };
+
+struct QuadVoltage;  // photovoltaic_table_quad.h
 
 class DiodeVoltageTable {
  public:
@@ -59,6 +62,9 @@ class DiodeVoltageTable {
     const double per_A = std::copysign(p.per_A, dark_A), per_A2 = per_A * per_A;
     return {value, per_A * first, 2 * per_A2 * second, 6 * per_A2 * per_A * third};
   }
+
+  // Four of at() side by side; defined in photovoltaic_table_quad.h.
+  QuadVoltage quad_at_dark(Quad dark_A) const;
 
   // The sum over cells in series, copies[i] times that of cell i at the dark current
   // photocurrents_A[i] − current_A; `states` gets those of the single cells. Several cells at a

@@ -100,19 +100,12 @@ Vec2 to_cells(const SurfaceGrid& grid, const Vec2& uv) {
 void measure_areas(SurfaceGrid& grid, const Scene& scene, std::span<const SurfaceFace> faces) {
   grid.area_m2.assign(static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), 0.0);
   for (const SurfaceFace& face : faces) {
-    std::array<Vec2, 3> corners;
-    if (grid.over == SurfaceGrid::Over::texture) corners = texture_corners(scene, face);
-    for (size_t i = 0; i < 3; ++i) {
-      if (grid.over == SurfaceGrid::Over::plane) {
-        corners[i] = plane_coordinates(grid, face.corner_body_m[i]);
-      }
-      corners[i] = to_cells(grid, corners[i]);
-    }
     const double area_m2 = face.area_body_m2.norm();
-    split_over_cells(corners, grid.width, grid.height, [&](int column, int row, double fraction) {
-      grid.area_m2[static_cast<size_t>(row) * static_cast<size_t>(grid.width) +
-                   static_cast<size_t>(column)] += fraction * area_m2;
-    });
+    split_over_cells(corners_in_bins(grid, scene, face), grid.width, grid.height,
+                     [&](int column, int row, double fraction) {
+                       grid.area_m2[static_cast<size_t>(row) * static_cast<size_t>(grid.width) +
+                                    static_cast<size_t>(column)] += fraction * area_m2;
+                     });
   }
   // Where an edge of the surface lies on a line of the grid, rounding spills a sliver over it; that
   // is no surface.
@@ -195,6 +188,19 @@ size_t bin_of_position(const SurfaceGrid& grid, const Vec3& position_body_m) {
 
 size_t bin_of_texture(const SurfaceGrid& grid, const Vec2& uv) {
   return nearest_bin(grid, uv);
+}
+
+std::array<Vec2, 3> corners_in_bins(const SurfaceGrid& grid, const Scene& scene,
+                                    const SurfaceFace& face) {
+  std::array<Vec2, 3> corners;
+  if (grid.over == SurfaceGrid::Over::texture) corners = texture_corners(scene, face);
+  for (size_t i = 0; i < 3; ++i) {
+    if (grid.over == SurfaceGrid::Over::plane) {
+      corners[i] = plane_coordinates(grid, face.corner_body_m[i]);
+    }
+    corners[i] = to_cells(grid, corners[i]);
+  }
+  return corners;
 }
 
 std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face) {

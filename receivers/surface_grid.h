@@ -87,6 +87,10 @@ SurfaceGrid make_surface_grid(const Scene& scene, std::span<const uint32_t> inst
 size_t bin_of_position(const SurfaceGrid& grid, const Vec3& position_body_m);
 size_t bin_of_texture(const SurfaceGrid& grid, const Vec2& uv);
 
+// The corners of a face on the grid, in units of bins from its lower corner.
+std::array<Vec2, 3> corners_in_bins(const SurfaceGrid& grid, const Scene& scene,
+                                    const SurfaceFace& face);
+
 // Texture coordinates of the corners of a face.
 std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face);
 

@@ -2,11 +2,27 @@
 
 #include <algorithm>
 
+#include "core/constants.h"
 #include "core/errors.h"
+#include "receivers/photovoltaic_incidence.h"
 
 namespace photorque {
 
-ArrayPower read_array_power(const OpticalRun& run) {
+namespace {
+
+// Power-weighted mean wavelength of the light in each band, from the ampere per watt that it would
+// give were every photon converted.
+std::vector<double> mean_wavelengths_m(const std::vector<double>& ideal_responsivity_A_W) {
+  std::vector<double> wavelength_m;
+  for (const double r : ideal_responsivity_A_W) {
+    wavelength_m.push_back(r * planck_J_s * speed_of_light_m_s / elementary_charge_C);
+  }
+  return wavelength_m;
+}
+
+}  // namespace
+
+ArrayPower read_array_power(OpticalRun& run) {
   const Experiment& experiment = run.experiment();
   const auto tables = experiment.file.others("array");
   if (tables.size() != 1) {
@@ -15,8 +31,10 @@ ArrayPower read_array_power(const OpticalRun& run) {
   }
   ArrayPower array;
   array.flux_map = run.flux_map_index(tables[0].text_or("receiver", ""));
-  array.design = read_array_design(tables[0]);
-  array.report = read_array_report(tables[0]);
+  const FluxMapReceiver& map = run.flux_map(array.flux_map);
+  array.design =
+      read_array_design(tables[0], read_cell_places(tables[0], experiment.scene, map.grid()));
+  array.report = read_array_report(tables[0], read_published(experiment.file.others("published")));
   tables[0].finish();
 
   std::vector<WeighedSpectrum> spectra;
@@ -30,11 +48,20 @@ ArrayPower read_array_power(const OpticalRun& run) {
   };
   array.responsivity_A_W = over_bands(array.design.efficiency);
   array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
+  if (array.design.front || has_own_front(experiment.scene, map.grid())) {
+    const InputLocation where = tables[0].where();
+    array.incidence =
+        run.add_receiver({"incidence", "incidence",
+                          std::make_shared<IncidenceReceiver>(
+                              experiment.scene, map.grid(), array.design.front,
+                              mean_wavelengths_m(array.ideal_responsivity_A_W), where)});
+  }
   return array;
 }
 
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result) {
-  const ArrayLight light = array_light(run.flux_map(array.flux_map), result.sums[array.flux_map]);
+  const ArrayLight light = array_light(run.flux_map(array.flux_map), result.sums[array.flux_map],
+                                       array.incidence ? result.sums[*array.incidence] : BinSums{});
   return evaluate_array(array.design, light, array.responsivity_A_W);
 }
 

@@ -1,6 +1,7 @@
 // From a trace to the electric power of the experiment's solar array.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,14 +15,16 @@ namespace photorque {
 struct ArrayPower {
   ArrayDesign design;
   size_t flux_map = 0;                         // place among the receivers
+  std::optional<size_t> incidence;             // that of the IncidenceReceiver
   std::vector<double> responsivity_A_W;        // per band of the scene
   std::vector<double> ideal_responsivity_A_W;  // were every photon converted
   ArrayReport report;
 };
 
 // Reads `[array]`; its key `receiver` names the flux map that holds the cells (default: the first
-// one). InputError when the experiment has no array, and for unknown keys.
-ArrayPower read_array_power(const OpticalRun& run);
+// one). InputError when the experiment has no array, and for unknown keys. Adds a receiver to the
+// run where the light's angle counts: under [array.cover], and on a surface with optics by angle.
+ArrayPower read_array_power(OpticalRun& run);
 
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result);
 

@@ -37,17 +37,6 @@ ArrayReport::Motion read_motion(const Settings& s) {
   return motion;
 }
 
-std::string percent(double fraction) {
-  return show(100.0 * fraction) + " %";
-}
-
-// Columns padded to a width that holds them; plain text may have letters of several bytes.
-std::string padded(std::string text, size_t width) {
-  const auto letters = static_cast<size_t>(std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
-  return letters < width ? text + std::string(width - letters, ' ') : text + " ";
-}
-
 CellTables tables_for(const ArrayPower& array, const ArrayResult& result,
                       const std::vector<std::vector<double>>& lights) {
   double most_A = 0.0;
@@ -93,7 +82,7 @@ Product tracker_product(const std::vector<TrackerRun>& runs) {
 void print_trackers(const Console& console, const std::vector<TrackerRun>& runs) {
   console.heading("Trackers over " + show(runs.front().duration_s) + " s of motion");
   for (const TrackerRun& run : runs) {
-    console.line("  " + padded(name_of(run.tracker.kind), 26) + percent(run.efficiency) +
+    console.line("  " + padded(name_of(run.tracker.kind), 26) + show_percent(run.efficiency) +
                  " of the energy at the global maximum; on a false maximum for " +
                  show(run.false_maximum_s) + " s");
   }
@@ -133,7 +122,7 @@ void print_losses(const Console& console, const std::vector<LossStage>& stages) 
     std::string line =
         "  " + padded(stages[i].name, 30) + padded(show(stages[i].power_W) + " W", 14);
     if (i > 0 && stages[i - 1].power_W > 0) {
-      line += percent(lost_fraction(stages[i - 1], stages[i])) + " lost to " + stages[i].loss;
+      line += show_percent(lost_fraction(stages[i - 1], stages[i])) + " lost to " + stages[i].loss;
     }
     console.line(line);
   }
@@ -145,7 +134,7 @@ void print_uniformity(const Console& console, const Table& table) {
     console.line("  " + padded(table.columns[0].texts[i], 12) + "mean " +
                  show(table.columns[1].values[i]) + " W/m², least over mean " +
                  show(table.columns[2].values[i]) + ", variation " +
-                 percent(table.columns[3].values[i]));
+                 show_percent(table.columns[3].values[i]));
   }
 }
 
@@ -170,74 +159,18 @@ Product day_report(const Console& console, const ArrayPower& array, const ArrayR
   return day_product(day);
 }
 
-Product target_report(const Console& console, const OpticalRun& run, const ArrayPower& array,
-                      const ArrayResult& result, const LossInputs& in) {
-  const ArrayReport::Target& target = *array.report.target;
-  const double irradiance = result.power_on_cells_W.value / result.area_of_cells_m2;
-  const double tilt_rad = run.experiment().file.attitude.tilt_rad;
-  const double needed_V = target.efficiency * in.photon_V;
-  console.heading("What " + show(target.power_W) + " W and " + percent(target.efficiency) +
-                  " require");
-  console.line("  a photon has " + show(in.photon_V) + " eV: at most " + show(1.0 / in.photon_V) +
-               " A/W; " + percent(target.efficiency) + " needs EQE V_oc FF = " + show(needed_V) +
-               " V");
-  console.line("  light on the cells for it: " + show(target.power_W / target.efficiency) +
-               " W; at this array's " + percent(result.efficiency.value) + ": " +
-               show(target.power_W / result.efficiency.value) + " W");
-  const double cosine_W = target.power_W * std::cos(tilt_rad);
-  console.line("  at " + show(tilt_rad / degree_rad) + " deg: " + show(target.power_W) +
-               " W cos = " + show(cosine_W) + " W; 23 W would be " + show(23.0 / cosine_W) +
-               " of it, this array gives " + show(result.power_W.value) + " W, " +
-               show(result.power_W.value / cosine_W) + " of it");
-  Product product;
-  Table known{"known_cells",
-              "Known cells in this light",
-              {{"cell", {}, {}},
-               {"irradiance_W_m2", {}, {}},
-               {"open_circuit_V", {}, {}},
-               {"fill_factor", {}, {}},
-               {"eqe_voc_ff_V", {}, {}},
-               {"efficiency", {}, {}}}};
-  for (const double light : {1000.0, irradiance}) {
-    console.line("  known cells at " + show(light) + " W/m²:");
-    for (const CellFigures& f : known_cell_figures(light, in.photon_V, in.quantum_efficiency,
-                                                   array.design.temperature_K)) {
-      console.line("    " + padded(f.name, 30) + "EQE V_oc FF " +
-                   padded(show(f.product_V) + " V", 12) + percent(f.efficiency));
-      known.columns[0].texts.push_back(f.name);
-      for (const auto& [column, value] : {std::pair{1, light},
-                                          {2, f.open_circuit_V},
-                                          {3, f.fill_factor},
-                                          {4, f.product_V},
-                                          {5, f.efficiency}}) {
-        known.columns[static_cast<size_t>(column)].values.push_back(value);
-      }
-    }
-  }
-  Table table{"sensitivities",
-              "What changes the power",
-              {{"change", {}, {}}, {"power_W", {}, {}}, {"relative", {}, {}}}};
-  console.line("  what changes the power:");
-  for (const ArraySensitivity& s : sensitivities(array.design, result)) {
-    console.line("    " + padded(s.change, 34) + percent(s.relative));
-    table.columns[0].texts.push_back(s.change);
-    table.columns[1].values.push_back(s.power_W);
-    table.columns[2].values.push_back(s.relative);
-  }
-  product.tables = {known, table};
-  return product;
-}
-
 Product layout_report(const Console& console, const ArrayPower& array, const CellTables& tables,
                       const std::vector<std::vector<double>>& lights) {
   const LayoutResult found =
       search_layout(array.design.wiring, tables, lights, *array.report.layout_most_tried);
   console.heading("Wiring for " + std::to_string(lights.size()) + " attitude" +
                   (lights.size() == 1 ? "" : "s") +
-                  (found.exact ? ", every assignment tried" : ", by exchanges"));
+                  (found.exact ? ", no better one exists" : ", by exchanges"));
+  const double gap = found.bound_W / found.power_W - 1.0;
   console.line("  as given " + show(found.start_power_W) + " W, best found " + show(found.power_W) +
-               " W, no wiring above " + show(found.bound_W) + " W; " + std::to_string(found.tried) +
-               " tried");
+               " W, no wiring above " + show(found.bound_W) + " W" +
+               (gap > 1e-9 ? " (" + show_percent(gap) + " more)" : "") + "; " +
+               std::to_string(found.tried) + " tried");
   std::string wiring = "[";
   Table table{
       "layout", "Best wiring found", {{"cell", {}, {}}, {"string", {}, {}}, {"substring", {}, {}}}};
@@ -266,20 +199,17 @@ Product layout_report(const Console& console, const ArrayPower& array, const Cel
 
 }  // namespace
 
-ArrayReport read_array_report(const Settings& array) {
+ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure> published) {
   ArrayReport report;
+  report.published = std::move(published);
   if (array.has("chain")) {
     const Settings chain = array.table("chain");
     report.chain = {efficiency(chain, "wall_plug_efficiency"),
                     efficiency(chain, "collimator_efficiency"),
                     efficiency(chain, "converter_efficiency")};
   }
-  if (array.has("target")) {
-    const Settings target = array.table("target");
-    report.target =
-        ArrayReport::Target{target.number_or("power_W", 30.0, Range::positive()),
-                            target.number_or("efficiency", 0.38, {0.0, 1.0, true, false})};
-  }
+  if (array.has("target"))
+    report.target = read_array_target(array.table("target"), report.published);
   if (array.has("tracker")) report.motion = read_motion(array.table("tracker"));
   if (array.has("day")) report.day = read_day(array.table("day"));
   if (array.has("layout")) {
@@ -314,7 +244,11 @@ Product report_array(const Console& console, const OpticalRun& run, const ArrayP
   const Table even = uniformity_table(result, array.design.wiring);
   print_uniformity(console, even);
   product.tables.push_back(even);
-  if (report.target) append(product, target_report(console, run, array, result, in));
+  if (report.target) {
+    const Attitude& attitude = run.experiment().file.attitude;
+    append(product, target_report(console, *report.target, report.published, array.design, result,
+                                  in, attitude.tilt_rad));
+  }
   if (report.day) append(product, day_report(console, array, result));
   if (report.layout_most_tried)
     append(product, layout_report(console, array, tables_for(array, result, lights), lights));

@@ -7,6 +7,7 @@
 #include "receivers/photovoltaic_layout.h"
 #include "receivers/photovoltaic_losses.h"
 #include "receivers/photovoltaic_tracker.h"
+#include "tools/array_target.h"
 #include "tools/optical_run.h"
 
 namespace photorque {
@@ -19,11 +20,7 @@ struct ArrayReport {
   struct Chain {
     std::optional<double> wall_plug, collimator, converter;
   } chain;
-  // [array.target]: power_W = 30, efficiency = 0.38, at zero tilt.
-  struct Target {
-    double power_W = 30.0, efficiency = 0.38;
-  };
-  std::optional<Target> target;
+  std::optional<ArrayTarget> target;  // [array.target]
   // [array.tracker]: see read_trackers(); and the motion during which they run: time_s, tilt_deg
   // and, if it changes, heading_deg, arrays of equal length. The scene is traced at each instant.
   struct Motion {
@@ -34,9 +31,10 @@ struct ArrayReport {
   std::optional<DaySettings> day;  // [array.day], see read_day()
   // [array.layout]: most_tried = 2000. Over the attitudes of the motion, or the one that is traced.
   std::optional<int64_t> layout_most_tried;
+  std::vector<PublishedFigure> published;  // [[published]], what the target is held against
 };
 
-ArrayReport read_array_report(const Settings& array);
+ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure> published);
 
 // Traces, computes and prints all that was asked for; the losses always.
 Product report_array(const Console& console, const OpticalRun& run, const ArrayPower& array,

@@ -93,4 +93,14 @@ std::string show(const Estimate& estimate, const std::string& unit) {
          ")×10" + superscript(exponent) + " " + unit;
 }
 
+std::string show_percent(double fraction) {
+  return show(100.0 * fraction) + " %";
+}
+
+std::string padded(std::string text, size_t width) {
+  const auto letters = static_cast<size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+  return letters < width ? text + std::string(width - letters, ' ') : text + " ";
+}
+
 }  // namespace photorque

@@ -34,6 +34,10 @@ class Console {
 
 // "79.112 ± 0.004 W": as many digits as the error supports; exact numbers with six.
 std::string show(const Estimate& estimate, const std::string& unit);
+// "38 %" of a fraction.
+std::string show_percent(double fraction);
+// Filled up to `width` letters, which may have several bytes; at least one space at the end.
+std::string padded(std::string text, size_t width);
 // Six significant digits, exponents as ×10ⁿ: "1.127×10⁻⁹".
 std::string show(double value);
 

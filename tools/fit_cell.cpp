@@ -21,6 +21,7 @@ struct FitTask {
   std::vector<IvSweep> sweeps;
   std::vector<RatedPoint> datasheet;
   TemperatureSlopes slopes;
+  RatedTolerance tolerance;
   SweepNoise noise;
   int cells_in_series = 1;
   int substrings = 0;  // 0: even light
@@ -101,6 +102,10 @@ FitTask read_task(const Settings& root, const fs::path& folder) {
     for (const Settings& point : s.tables("datasheet")) task.datasheet.push_back(read_point(point));
     task.slopes.short_circuit_1_K = s.number_or("short_circuit_slope_per_K", 5e-4);
     task.slopes.open_circuit_1_K = s.number_or("open_circuit_slope_per_K", -3e-3);
+    const RatedTolerance written = written_steps(task.datasheet);
+    task.tolerance = {s.number_or("rounding_A", written.step_A, Range::not_negative()),
+                      s.number_or("rounding_V", written.step_V, Range::not_negative()),
+                      s.number_or("tolerance", 0.0, {0.0, 0.5})};
   } else {
     for (const std::string& name : s.texts("curves")) {
       task.files.push_back(folder / name);
@@ -247,13 +252,18 @@ Product fit_even_light(const FitTask& task, const Console& console) {
 Product fit_datasheet(const FitTask& task, const Console& console) {
   const double guess_V = 1.2 * task.cells_in_series * boltzmann_J_K *
                          task.datasheet[0].temperature_K / elementary_charge_C;
-  const RatedFit fit = fit_rated_points(task.datasheet, task.slopes, guess_V);
+  const RatedFit fit = fit_rated_points(task.datasheet, task.slopes, guess_V, task.tolerance);
   FitTask at_first = task;
   at_first.temperature_K = task.datasheet[0].temperature_K;
   std::vector<Row> rows = diode_rows(fit.diode, at_first);
-  rows.push_back({"gap_eV", {fit.model.gap_eV, 0.0}});
+  rows.push_back({"gap_eV", {fit.model.gap_eV, fit.gap_error_eV}});
   rows.push_back({"rms_fraction", {fit.rms, 0.0}});
   print_rows(console, rows);
+  const RatedTolerance& t = task.tolerance;
+  console.line(
+      "  errors: of figures rounded to " + show(t.step_A) + " A and " + show(t.step_V) + " V" +
+      (t.fraction > 0.0 ? ", each good to " + show_percent(t.fraction) + " (one sigma)" : "") +
+      (task.datasheet.size() == 1 ? "; one point leaves the ideality as assumed" : ""));
   print_cell(console, fit.diode, at_first, task.cells_in_series);
   const CellCurve cell(fit.model.reference);
   Product product = parameter_product(rows);

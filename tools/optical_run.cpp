@@ -70,6 +70,11 @@ OpticalRun::OpticalRun(const CommandLine& line, const Console& console)
   for (const std::string& text : beam_shape_lines(experiment_.beams)) console.line("  " + text);
 }
 
+size_t OpticalRun::add_receiver(NamedReceiver receiver) {
+  experiment_.receivers.push_back(std::move(receiver));
+  return experiment_.receivers.size() - 1;
+}
+
 OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
                               const std::function<void(double)>& progress,
                               std::optional<uint64_t> rays) const {

@@ -34,6 +34,9 @@ class OpticalRun {
   const TraceableScene& scene() const { return scene_; }
   const Provenance& provenance() const { return provenance_; }
 
+  // Adds one that is not in the experiment file, for all later runs; returns its place.
+  size_t add_receiver(NamedReceiver receiver);
+
   // Traces at an attitude, with the options of the experiment but, if given, another number of
   // rays; goes on with twice the rays until the experiment's target error or time is reached.
   OpticalResult run(const RigidTransform& lab_from_body,

@@ -8,9 +8,8 @@ namespace {
 
 void run_power(const CommandLine& line) {
   Console console(line);
-  const OpticalRun run(line, console);
+  OpticalRun run(line, console);
   const ArrayPower array = read_array_power(run);
-  const auto published = read_published(run.experiment().file.others("published"));
   const OpticalResult result = run.run(run.experiment().lab_from_body, console.progress("tracing"));
   console.done();
   const ArrayResult power = evaluate(array, run, result);
@@ -19,8 +18,8 @@ void run_power(const CommandLine& line) {
   Product product = run.product(result);
   append(product, array_power_product(power, result));
   append(product, report_array(console, run, array, result, power));
-  Table table =
-      compare_published(published, run.experiment().file.attitude.tilt_rad, product, console);
+  Table table = compare_published(array.report.published, run.experiment().file.attitude.tilt_rad,
+                                  product, console);
   if (!table.columns.empty()) product.tables.push_back(std::move(table));
   write_results(line, console, product, run.provenance(), result.rays, result.wall_s);
 }

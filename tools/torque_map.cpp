@@ -58,7 +58,7 @@ class PowerTable {
   Table table_;
 };
 
-void map_over_attitude(const CommandLine& line, Console& console, const OpticalRun& run) {
+void map_over_attitude(const CommandLine& line, Console& console, OpticalRun& run) {
   std::optional<ArrayPower> array;
   if (!run.experiment().file.others("array").empty()) array = read_array_power(run);
   const AttitudeGrid& grid = run.experiment().file.torque_map;
@@ -115,7 +115,7 @@ void map_over_attitude(const CommandLine& line, Console& console, const OpticalR
 
 void run_torque_map(const CommandLine& line) {
   Console console(line);
-  const OpticalRun run(line, console);
+  OpticalRun run(line, console);
   if (run.experiment().file.light_directions) {
     map_over_direction(line, console, run);
   } else {

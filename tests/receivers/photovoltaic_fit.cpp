@@ -118,9 +118,10 @@ TEST(PhotovoltaicFit, StandardErrorsAreTheScatterOfFits) {
   EXPECT_NEAR(squares / promised, 1.0, 0.55);
 }
 
-TEST(PhotovoltaicFit, DatasheetFiguresOfAKnownModuleGiveItBack) {
-  ivcurves::Truth truth{8.0, 5e-10, 0.3, 400.0, 1.1, 60};
-  const CellCurve cell(truth.parameters());
+const ivcurves::Truth rated_truth{8.0, 5e-10, 0.3, 400.0, 1.1, 60};
+
+std::vector<RatedPoint> rated_points() {
+  const CellCurve cell(rated_truth.parameters());
   std::vector<RatedPoint> points;
   for (const double sun : {1.0, 0.2}) {
     const double light_A = cell.photocurrent_A(8.0 * sun);
@@ -128,6 +129,59 @@ TEST(PhotovoltaicFit, DatasheetFiguresOfAKnownModuleGiveItBack) {
     points.push_back({1000.0 * sun, 298.15, 8.0 * sun, cell.open_circuit_V(light_A), best.current_A,
                       best.voltage_V});
   }
+  return points;
+}
+
+std::array<Estimate, 5> fitted_figures(const RatedFit& fit) {
+  const SingleDiode& d = fit.diode;
+  return {d.photocurrent_A, d.scale_V, d.series_ohm, d.shunt_ohm,
+          Estimate{fit.model.gap_eV, fit.gap_error_eV}};
+}
+
+// The standard errors are the scatter of many fits, each of figures rounded at random.
+TEST(PhotovoltaicFit, DatasheetErrorsAreTheScatterOfRoundedFigures) {
+  constexpr int draws = 60;
+  const std::vector<RatedPoint> exact = rated_points();
+  const RatedTolerance tolerance{1e-3, 1e-2, 0.0};
+  const double guess_V = 60 * 1.2 * 0.0257;
+  const auto promised = fitted_figures(fit_rated_points(exact, {}, guess_V, tolerance));
+  std::array<double, promised.size()> sum{}, squares{};
+  for (uint64_t draw = 0; draw < draws; ++draw) {
+    std::vector<RatedPoint> rounded = exact;
+    for (uint64_t p = 0; p < rounded.size(); ++p) {
+      const auto move = [&](double& figure, double step, uint64_t which) {
+        figure += step * (unit_interval(hash_words(11, draw, p, which)) - 0.5);
+      };
+      move(rounded[p].short_circuit_A, tolerance.step_A, 0);
+      move(rounded[p].maximum_A, tolerance.step_A, 1);
+      move(rounded[p].open_circuit_V, tolerance.step_V, 2);
+      move(rounded[p].maximum_V, tolerance.step_V, 3);
+    }
+    const auto found = fitted_figures(fit_rated_points(rounded, {}, guess_V));
+    for (size_t k = 0; k < found.size(); ++k) {
+      sum[k] += found[k].value - promised[k].value;
+      squares[k] += std::pow(found[k].value - promised[k].value, 2);
+    }
+  }
+  for (size_t k = 0; k < promised.size(); ++k) {
+    const double scatter = std::sqrt((squares[k] - sum[k] * sum[k] / draws) / (draws - 1));
+    // A scatter of 60 is known to 9 %.
+    EXPECT_NEAR(promised[k].standard_error / scatter, 1.0, 0.35) << k;
+    EXPECT_GT(promised[k].standard_error, 0.0) << k;
+  }
+}
+
+TEST(PhotovoltaicFit, FiguresTellHowFarTheyAreRounded) {
+  const std::array points = {RatedPoint{1000, 298.15, 5.116, 22.05, 4.66, 17.6},
+                             RatedPoint{200, 298.15, 1.03, 20.0, 0.94, 17.0}};
+  const RatedTolerance steps = written_steps(points);
+  EXPECT_NEAR(steps.step_A, 1e-3, 1e-18);
+  EXPECT_NEAR(steps.step_V, 1e-2, 1e-17);
+}
+
+TEST(PhotovoltaicFit, DatasheetFiguresOfAKnownModuleGiveItBack) {
+  const ivcurves::Truth& truth = rated_truth;
+  const std::vector<RatedPoint> points = rated_points();
   const RatedFit fit = fit_rated_points(points, {}, 60 * 1.3 * 0.0257);
   EXPECT_LT(fit.rms, 1e-9);
   EXPECT_NEAR(fit.diode.scale_V.value / truth.scale_V(), 1.0, 1e-5);

@@ -111,6 +111,7 @@ struct HitMaker {
   std::vector<double> incident_W = {1.0};
   std::vector<double> absorbed_W = {1.0};
   Vec3 force_N = Vec3::Zero();
+  double cosine = 1.0;
 };
 
 inline void add_hit(Hits& hits, const HitMaker& hit) {
@@ -119,6 +120,7 @@ inline void add_hit(Hits& hits, const HitMaker& hit) {
   hits.triangle[i] = hit.triangle;
   hits.front[i] = hit.front ? 1 : 0;
   hits.depth[i] = 0;
+  hits.cosine[i] = hit.cosine;
   hits.bands = static_cast<int>(hit.incident_W.size());
   for (size_t band = 0; band < hit.incident_W.size(); ++band) {
     hits.incident_W[band][i] = hit.incident_W[band];

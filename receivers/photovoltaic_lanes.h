@@ -1,0 +1,75 @@
+// Four parallel strings at a time in vector registers: I of each at one voltage.
+//
+// The same equations as StringCurve::at_voltage() for strings that are cells of one table in series
+// with one bypass diode at most, between short and open circuit of all four.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "receivers/photovoltaic_string.h"
+
+namespace photorque {
+
+class FourStrings {
+ public:
+  using Lanes = Eigen::Array4d;
+
+  // Groups of four, the last one filled up with its own strings again; strings that fit in none are
+  // left out. Keeps pointers into the strings' tables.
+  static std::vector<FourStrings> groups(std::span<const StringCurve> strings);
+
+  // Which of the strings; the first of four.
+  std::span<const size_t> members() const { return std::span(member_).first(count_); }
+  size_t member(size_t lane) const { return member_[lane]; }  // beyond count, again the last
+  // Voltages from 0 up to this can be asked for.
+  double least_open_circuit_V() const { return least_open_circuit_V_; }
+
+  // All four at one voltage, as in StringState.
+  struct State {
+    double voltage_V = 0.0;
+    Lanes current_A, slope_ohm, curvature_V_A2, third_V_A3;
+  };
+  // From and to the states of all strings; the states of their cells and bypasses are left alone.
+  State read(std::span<const StringState> states) const;
+  void write(const State& state, std::span<StringState> states) const;
+
+  // Solves at a voltage, from the currents in `state`, within [low_A, high_A], exact to 1e-12;
+  // false when the search does not end: `state` is then as it was.
+  bool solve(double voltage_V, const Lanes& low_A, const Lanes& high_A, State& state) const;
+  // The same from a solution at a voltage not far away.
+  bool advance(double voltage_V, State& state) const;
+  // Of all members.
+  double sum_A(const State& state) const {
+    return state.current_A.head(static_cast<Eigen::Index>(count_)).sum();
+  }
+
+ private:
+  struct Point {  // of V(I)
+    Lanes voltage_V, slope_ohm, curvature_V_A2, third_V_A3;
+  };
+
+  bool fits(const PlainString& string) const;
+  void add(size_t index, const StringCurve& curve, const PlainString& string);
+  void fill();
+  Point rows_at(const Lanes& rows_A, bool& outside) const;
+  // False where that is not found.
+  bool add_bypass(Point& at, Lanes& current_A, Lanes& leak_A) const;
+  void add_blocking(Point& at, const Lanes& current_A) const;
+  bool at_currents(Lanes& current_A, Lanes& leak_A, Point& at) const;
+
+  std::array<size_t, 4> member_{};
+  size_t count_ = 0;
+  const DiodeVoltageTable* table_ = nullptr;
+  bool bypass_junctions_ = false, blocking_junctions_ = false;
+  std::vector<std::array<double, 4>> light_A_, copies_;  // cell by cell
+  Lanes series_ohm_, most_A_;
+  Lanes bypass_saturation_A_, bypass_scale_V_, bypass_ohm_;
+  Lanes blocking_saturation_A_, blocking_scale_V_, blocking_ohm_, blocking_drop_V_;
+  double least_open_circuit_V_ = 0.0, close_V_ = 0.0;
+};
+
+}  // namespace photorque
