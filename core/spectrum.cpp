@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/constants.h"
+#include "core/solar_spectra.h"
 
 namespace photorque {
 namespace {
@@ -32,13 +33,24 @@ double blackbody_below(const Spectrum& spectrum, double wavelength_m) {
   return 15.0 / std::pow(pi, 4) * sum;
 }
 
+double fraction_below(const Spectrum& spectrum, double wavelength_m) {
+  switch (spectrum.shape) {
+    case Spectrum::Shape::gaussian:
+      return gaussian_below(spectrum, wavelength_m);
+    case Spectrum::Shape::blackbody:
+      return blackbody_below(spectrum, wavelength_m);
+    case Spectrum::Shape::am0:
+      return solar_share_below(SolarStandard::am0, wavelength_m);
+    case Spectrum::Shape::am15g:
+      break;
+  }
+  return solar_share_below(SolarStandard::am15g, wavelength_m);
+}
+
 }  // namespace
 
 BandValues band_fractions(const Spectrum& spectrum, const Bands& bands) {
-  const auto below = [&](double wavelength_m) {
-    return spectrum.shape == Spectrum::Shape::gaussian ? gaussian_below(spectrum, wavelength_m)
-                                                       : blackbody_below(spectrum, wavelength_m);
-  };
+  const auto below = [&](double wavelength_m) { return fraction_below(spectrum, wavelength_m); };
   BandValues fractions{};
   if (bands.count() == 1 && bands.edges_m[0] <= 0.0 && bands.edges_m[1] >= 1.0) {
     fractions[0] = 1.0;

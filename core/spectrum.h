@@ -21,7 +21,7 @@ using BandValues = std::array<double, max_bands>;
 
 // The relative spectral power of a source.
 struct Spectrum {
-  enum class Shape { gaussian, blackbody };
+  enum class Shape { gaussian, blackbody, am0, am15g };  // am…: see solar_spectra.h
   Shape shape = Shape::gaussian;
   double centre_m = 550e-9;       // gaussian: wavelength of the maximum
   double fwhm_m = 20e-9;          // gaussian: full width at half maximum; 0 is a line

@@ -10,7 +10,8 @@
 //   nonuniformity = 0.02              # (max − min)/(max + min) over the field, [0, 1); default 0
 //   position_m = [0, 0, 0]            # middle of the field, lab frame
 //   direction = [0, 0, -1]            # in which the light travels
-//   temperature_K = 5772              # of the blackbody that stands for the lamp's spectrum
+//   spectrum = "AM0"                  # or "AM1.5G", or a "blackbody" (default)
+//   temperature_K = 5772              # of the blackbody
 //
 // Nonuniformity is that of IEC 60904-9. The irradiance falls from the middle as E(r) = E0 (1 − k
 // r²/R²) with k = 2u/(1 + u), which has that nonuniformity u. Every point of the field sees the
@@ -78,18 +79,14 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   constexpr double margin = 1.001;
   const double distance_m = margin * (context.scene_radius_m + position_m.norm());
   const double nonuniformity = settings.number_or("nonuniformity", 0.0, {0.0, 1.0, false, true});
+  const Sunlight light = read_sunlight(settings);
   const SolarSimulator::Field field{
-      settings.number_or("irradiance_W_m2", solar_irradiance_W_m2, Range::positive()),
-      0.5 * settings.number("footprint_diameter_m", Range::positive()),
+      light.irradiance_W_m2, 0.5 * settings.number("footprint_diameter_m", Range::positive()),
       2.0 * nonuniformity / (1.0 + nonuniformity),
       settings.number_or("collimation_half_angle_deg", solar_angular_radius_rad, {0.0, 0.25 * pi}),
       distance_m};
-  Spectrum spectrum;
-  spectrum.shape = Spectrum::Shape::blackbody;
-  spectrum.temperature_K =
-      settings.number_or("temperature_K", solar_temperature_K, {100.0, 1e6, false, false});
   return {{name, std::make_shared<SolarSimulator>(field),
-           frame_looking_along(direction, position_m - distance_m * direction), spectrum}};
+           frame_looking_along(direction, position_m - distance_m * direction), light.spectrum}};
 }
 
 }  // namespace

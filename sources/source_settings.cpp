@@ -104,6 +104,24 @@ Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m) {
   return spectrum;
 }
 
+Sunlight read_sunlight(const Settings& settings) {
+  constexpr double ground_irradiance_W_m2 = 1000.0;  // IEC 60904-3
+  enum : size_t { blackbody, am0, am15g };
+  const size_t choice = settings.choice_or("spectrum", {"blackbody", "AM0", "AM1.5G"}, blackbody);
+  Spectrum spectrum;
+  spectrum.shape = choice == am0     ? Spectrum::Shape::am0
+                   : choice == am15g ? Spectrum::Shape::am15g
+                                     : Spectrum::Shape::blackbody;
+  if (choice == blackbody) {
+    spectrum.temperature_K =
+        settings.number_or("temperature_K", solar_temperature_K, {100.0, 1e6, false, false});
+  }
+  return {spectrum,
+          settings.number_or("irradiance_W_m2",
+                             choice == am15g ? ground_irradiance_W_m2 : solar_irradiance_W_m2,
+                             Range::positive())};
+}
+
 Lamp read_lamp(const Settings& settings, const SourceContext& context, const std::string& name,
                double power_W) {
   constexpr double usual_led_fwhm_m = 20e-9;

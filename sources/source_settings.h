@@ -35,6 +35,17 @@ AngularDistribution read_angular_distribution(const Settings& settings);
 // wavelength_nm, and spectral_fwhm_nm with a default.
 Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m);
 
+// What the Sun and what stands for it shine with:
+//   spectrum = "blackbody"    temperature_K, default 5772
+//   spectrum = "AM0"          as above the atmosphere (ASTM G173-03)
+//   spectrum = "AM1.5G"       as on the ground (the same)
+//   irradiance_W_m2           > 0, default 1361; with AM1.5G 1000
+struct Sunlight {
+  Spectrum spectrum;
+  double irradiance_W_m2;
+};
+Sunlight read_sunlight(const Settings& settings);
+
 // One lamp of power `power_W`: the keys above, aperture_diameter_m, and for the etendue optionally
 // die_size_m (side of a square) or die_diameter_m, with lens_index (default 1, a bare die).
 struct Lamp {

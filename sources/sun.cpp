@@ -6,7 +6,8 @@
 //   irradiance_W_m2 = 1361         # on a plane normal to `direction`; default: mean at 1 au
 //   angular_radius_deg = 0.2665    # of the disc, [0, 45]; 0: collimated; default: Sun at 1 au
 //   direction = [0, 0, -1]         # in which the light travels, lab frame
-//   temperature_K = 5772           # of the blackbody spectrum
+//   spectrum = "AM0"               # or "AM1.5G", or a "blackbody" (default)
+//   temperature_K = 5772           # of the blackbody
 //   limb_darkening = [0.47, 0.23]  # default: none
 //
 // Without limb darkening the disc has the same radiance L all over: directions are even in solid
@@ -105,22 +106,18 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   constexpr double margin = 1.001;
   const std::string name = settings.text_or("name", "sun");
   const Vec3 direction = read_direction_vector(settings);
-  const double irradiance_W_m2 =
-      settings.number_or("irradiance_W_m2", solar_irradiance_W_m2, Range::positive());
+  const Sunlight light = read_sunlight(settings);
   const double angular_radius_rad = settings.number_or(
       "angular_radius_deg", solar_angular_radius_rad, {0.0, 0.25 * pi, false, false});
-  Spectrum spectrum;
-  spectrum.shape = Spectrum::Shape::blackbody;
-  spectrum.temperature_K =
-      settings.number_or("temperature_K", solar_temperature_K, {100.0, 1e6, false, false});
   if (!(context.scene_radius_m > 0.0)) {
     throw settings.error("kind", "\"sun\" over a scene without extent", "a scene to shine on");
   }
   const double radius_m = margin * context.scene_radius_m;
   const std::optional<LimbDarkening> limb = read_limb_darkening(settings, angular_radius_rad);
-  auto sun = std::make_shared<Sun>(irradiance_W_m2, angular_radius_rad, radius_m, limb);
+  auto sun = std::make_shared<Sun>(light.irradiance_W_m2, angular_radius_rad, radius_m, limb);
   const double exitance_W_m2 = sun->power_W() / (pi * radius_m * radius_m);
-  return {{name, std::move(sun), frame_looking_along(direction, -radius_m * direction), spectrum,
+  return {{name, std::move(sun), frame_looking_along(direction, -radius_m * direction),
+           light.spectrum,
            UniformAperture{std::numeric_limits<double>::infinity(), exitance_W_m2,
                            limb ? limb->edges_rad() : std::vector<double>{angular_radius_rad}}}};
 }

@@ -111,6 +111,23 @@ TEST(Sun, DefaultsAreTheSunAtOneAstronomicalUnit) {
   EXPECT_DOUBLE_EQ(beam.spectrum.temperature_K, 5772.0);
 }
 
+TEST(Sun, ShinesWithTheStandardThatIsNamed) {
+  const SettingsNode down = vector_node(0, 0, -1);
+  const auto irradiance_W_m2 = [](const Beam& beam) {
+    return beam.aperture->exitance_W_m2 * std::pow(std::cos(0.5 * solar_angular_radius_rad), 2);
+  };
+  const Beam space = make_beams("sun", {{"direction", down}, {"spectrum", {"AM0"}}}).at(0);
+  EXPECT_EQ(space.spectrum.shape, Spectrum::Shape::am0);
+  EXPECT_NEAR(irradiance_W_m2(space), 1361.0, 1e-9);
+  const Beam ground = make_beams("sun", {{"direction", down}, {"spectrum", {"AM1.5G"}}}).at(0);
+  EXPECT_EQ(ground.spectrum.shape, Spectrum::Shape::am15g);
+  EXPECT_NEAR(irradiance_W_m2(ground), 1000.0, 1e-9);
+  // A named spectrum has no temperature: the key is not read.
+  EXPECT_THROW(
+      make_beams("sun", {{"direction", down}, {"spectrum", {"AM0"}}, {"temperature_K", {5800.0}}}),
+      InputError);
+}
+
 TEST(Sun, CollimatedRaysAreParallel) {
   for (const auto& ray : test::rays_of(*sun(0.0).emitter, 1024)) {
     EXPECT_EQ(ray.direction, Vec3::UnitZ());
