@@ -156,11 +156,13 @@ void Propagator::take_step() {
     } else if (outcome.error > 2.0 * options_.tolerance) {
       h_s_ = propose_length(outcome, h_s, false);
       ceiling_s_ = 0.9 * h_s;
+    } else if (sensitivity_ && !sensitivity_->solve(step_, held_)) {
+      h_s_ = 0.5 * h_s;
+      ceiling_s_ = 0.7 * h_s;
     } else {
       ceiling_s_ *= 1.01;
       h_s_ = std::min(propose_length(outcome, h_s, cut), ceiling_s_);
       step_end_s_ = cut ? stop_s : start_s + h_s;
-      if (sensitivity_) sensitivity_->solve(step_, held_);
       return;
     }
     --statistics_.steps;

@@ -40,8 +40,9 @@ class Sensitivity {
   const Dynamics& dynamics() const { return dynamics_; }
   const std::vector<Variable>& variables() const { return variables_; }
 
-  // Differentiates an attempted step. NumericalError when the iteration does not settle.
-  void solve(const CollocationStep& step, const Held& held);
+  // Differentiates an attempted step. False when the iteration does not settle: the step is too
+  // long for the derivatives.
+  bool solve(const CollocationStep& step, const Held& held);
   void accept();
   void restart() { has_polynomial_ = false; }
   // Adds `change` (a derivative of the state) to the derivatives by variable `v`.

@@ -34,6 +34,20 @@ std::string label_of(const Trial& t, const std::vector<Candidate>& all) {
   return label;
 }
 
+// The length of an axis means nothing: a unit vector, and errors across it alone.
+void make_direction(FittedParameter& axis, const Eigen::Matrix3d& covariance) {
+  const Vec3 vector(axis.value[0], axis.value[1], axis.value[2]);
+  const double length = vector.norm();
+  if (!(length > 0.0)) return;
+  const Vec3 unit = vector / length;
+  const Mat3 across = Mat3::Identity() - unit * unit.transpose();
+  const Mat3 error = across * covariance * across / (length * length);
+  for (int k = 0; k < 3; ++k) {
+    axis.value[static_cast<size_t>(k)] = unit[k];
+    axis.sigma[static_cast<size_t>(k)] = std::sqrt(std::max(0.0, error(k, k)));
+  }
+}
+
 // Values and standard errors of one disturbance by key, in the keys' units.
 std::vector<FittedParameter> parameters_of(const Trial& t, size_t disturbance) {
   const Eigen::MatrixXd covariance = t.fit.shared_covariance();
@@ -53,6 +67,9 @@ std::vector<FittedParameter> parameters_of(const Trial& t, size_t disturbance) {
     }
     result.back().value.push_back(parameters[p].value / unit);
     result.back().sigma.push_back(std::sqrt(std::max(0.0, covariance(at, at))) / unit);
+    if (parameters[p].key == "axis" && result.back().value.size() == 3) {
+      make_direction(result.back(), covariance.block<3, 3>(at - 2, at - 2));
+    }
   }
   return result;
 }

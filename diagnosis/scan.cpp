@@ -1,12 +1,15 @@
 #include "diagnosis/scan.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "diagnosis/averaging.h"
 #include "diagnosis/screen.h"
 
 namespace photorque {
@@ -136,44 +139,103 @@ std::vector<Disturbance> sinusoid_starts(const Candidate& c, const Trial& parent
   return starts;
 }
 
-// A light appendage on each axis, at each of a grid of frequencies.
-std::vector<Disturbance> flexible_mode_starts(const Candidate& c, const Trial& parent,
-                                              const std::vector<Observation>& runs) {
-  const double interval_s = runs.front().duration_s() / static_cast<double>(runs.front().blocks());
-  const double highest_Hz = std::min(3.0, 0.5 / interval_s);
-  std::vector<Disturbance> modes;
-  std::vector<double> gain;
-  for (double f_Hz = std::max(0.02, 2.0 / span_s(runs)); f_Hz < highest_Hz; f_Hz *= 1.7) {
-    std::vector<ScoreGroup> groups;
-    for (size_t axis = 0; axis < 3; ++axis) {
-      Disturbance d = with(c.start, 3, f_Hz);
-      for (size_t k = 0; k < 3; ++k) {
-        d.parameters[k].value = k == axis ? 1.0 : 0.0;
-        d.states[1].per_body_rate[static_cast<Eigen::Index>(k)] = d.parameters[k].value;
-      }
-      d.parameters[5].value *= 1e-3;
-      groups.push_back({{d}, {5}});
-    }
-    const std::vector<Score> scores = score(parent.fit, runs, groups);
-    for (size_t axis = 0; axis < 3; ++axis) {
-      Disturbance d = groups[axis].disturbances.front();
-      if (scores[axis].estimate.size() == 1) {
-        d.parameters[5].value =
-            std::clamp(scores[axis].estimate[0], 0.1 * c.start.parameters[5].value,
-                       10.0 * c.start.parameters[5].value);
-      }
-      modes.push_back(d);
-      gain.push_back(scores[axis].estimate.size() == 1 && scores[axis].estimate[0] > 0.0
-                         ? scores[axis].gain
-                         : 0.0);
-    }
+// The runs in blocks so short that a swing at this frequency passes through many of them.
+std::vector<Observation> as_fine_as(double frequency_Hz, const Fit& at,
+                                    const std::vector<Observation>& runs) {
+  constexpr double blocks_a_swing = 7.0;
+  const double blocks = blocks_a_swing * frequency_Hz * runs.front().duration_s();
+  if (blocks > static_cast<double>(runs.front().blocks())) return runs;
+  return averaged_about(at, runs, static_cast<size_t>(blocks));
+}
+
+// Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.
+ScoreGroup appendages(const Disturbance& start, double frequency_Hz) {
+  // Mostly short pulls set them swinging (a command that begins or ends), so that a resonance looks
+  // as wide as its damping: enough of it for the grid of frequencies.
+  constexpr double damping = 0.08;
+  ScoreGroup group;
+  group.parameters = {5};
+  for (const Vec3& axis :
+       {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)}) {
+    Disturbance d = with(with(start, 3, frequency_Hz), 4, damping);
+    const Vec3 unit = axis.normalized();
+    for (int k = 0; k < 3; ++k) d.parameters[static_cast<size_t>(k)].value = unit[k];
+    d.states[1].per_body_rate = unit;
+    d.parameters[5].value *= 1e-3;
+    group.disturbances.push_back(std::move(d));
   }
-  std::vector<size_t> order(modes.size());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return gain[a] > gain[b]; });
+  return group;
+}
+
+// As the strengths of six appendages(): the one about `axis`.
+Eigen::VectorXd as_six(const Vec3& axis) {
+  const Mat3 M = axis * axis.transpose();
+  Eigen::VectorXd six(6);
+  six << M(0, 0) - M(0, 1) - M(0, 2), M(1, 1) - M(0, 1) - M(1, 2), M(2, 2) - M(0, 2) - M(1, 2),
+      2.0 * M(0, 1), 2.0 * M(0, 2), 2.0 * M(1, 2);
+  return six;
+}
+
+struct Mode {
+  double gain = 0.0;  // expected fall of χ²
+  Disturbance start;
+};
+
+// The one appendage that does most of what the six would together: about an eigenvector of
+// Σ J a aᵀ.
+Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& inertia_kg_m2) {
+  Mode best;
+  if (score.estimate.size() != 6) return best;
+  Mat3 sum = Mat3::Zero();
+  for (size_t i = 0; i < 6; ++i) {
+    const Vec3& axis = group.disturbances[i].states[1].per_body_rate;
+    sum += score.estimate[static_cast<Eigen::Index>(i)] * axis * axis.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(sum);
+  for (int e = 0; e < 3; ++e) {
+    const Vec3 axis = eigen.eigenvectors().col(e);
+    const Eigen::VectorXd six = as_six(axis);
+    const double along = six.dot(score.information * score.estimate);
+    const double curvature = six.dot(score.information * six);
+    if (!(along > 0.0) || along * along < best.gain * curvature) continue;
+    best.gain = along * along / curvature;
+    const double whole_kg_m2 = axis.dot(inertia_kg_m2 * axis);
+    const double share = std::min(along / curvature / whole_kg_m2, 0.5);
+    best.start = group.disturbances.front();
+    auto& parameters = best.start.parameters;
+    for (int k = 0; k < 3; ++k) parameters[static_cast<size_t>(k)].value = axis[k];
+    best.start.states[1].per_body_rate = axis;
+    // The platform's recoil makes a heavy appendage swing faster than with the platform held.
+    parameters[3].value *= std::sqrt(1.0 - share);
+    parameters[4].value = 0.04;
+    parameters[5].value = share * whole_kg_m2;
+  }
+  return best;
+}
+
+std::vector<Disturbance> flexible_mode_starts(const Candidate& c, const Trial& parent,
+                                              const std::vector<Observation>& runs,
+                                              const std::vector<Observation>& slow_runs) {
+  constexpr double step = 1.2, most_Hz = 5.0;
+  constexpr size_t most_starts = 3;
+  const auto interval_s = [](const Observation& seen) {
+    return seen.duration_s() / static_cast<double>(seen.blocks());
+  };
+  const double highest_Hz = std::min(most_Hz, 0.4 / interval_s(runs.front()));
+  const double slow_Hz = 0.14 / interval_s(slow_runs.front());
+  std::vector<Mode> modes;
+  std::vector<double> gain;
+  for (double f_Hz = std::max(0.02, 2.0 / span_s(runs)); f_Hz < highest_Hz; f_Hz *= step) {
+    const ScoreGroup group = appendages(c.start, f_Hz);
+    const bool slow = f_Hz < slow_Hz;
+    const Score together =
+        score(parent.fit, slow ? slow_runs : as_fine_as(f_Hz, parent.fit, runs), {group}).front();
+    modes.push_back(best_appendage(group, together, parent.fit.best.model.platform.inertia_kg_m2));
+    gain.push_back(modes.back().gain);
+  }
   std::vector<Disturbance> starts;
-  for (size_t i = 0; i < std::min<size_t>(2, order.size()); ++i) {
-    if (gain[order[i]] > least_gain) starts.push_back(modes[order[i]]);
+  for (const size_t i : peaks(gain, most_starts)) {
+    if (gain[i] > least_gain) starts.push_back(modes[i].start);
   }
   return starts;
 }
@@ -244,7 +306,7 @@ std::vector<Disturbance> starts_of(const Candidate& candidate, const Trial& pare
   if (kind == "periodic_torque" || kind == "floor_vibration") {
     return sinusoid_starts(candidate, parent, runs, lines_Hz);
   }
-  if (kind == "flexible_mode") return flexible_mode_starts(candidate, parent, slow_runs);
+  if (kind == "flexible_mode") return flexible_mode_starts(candidate, parent, runs, slow_runs);
   return {candidate.start};
 }
 

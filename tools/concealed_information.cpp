@@ -143,7 +143,8 @@ Eigen::VectorXd ConcealedInformation::difference(const Sampled& sampled) const {
 Eigen::VectorXd ConcealedInformation::change_by(size_t index, double share) const {
   ConcealedWorld world = case_.world;
   ConcealedEffect& effect = world.effects[index];
-  if (effect.parameters.empty()) {
+  // What an appendage does is not in proportion to its inertia, which also moves its resonance.
+  if (effect.parameters.empty() || effect.kind == "flexible_mode") {
     world.effects.erase(world.effects.begin() + static_cast<ptrdiff_t>(index));
     share = 1.0;
   } else {

@@ -20,7 +20,8 @@ class ConcealedInformation {
   explicit ConcealedInformation(const ConcealedCase& concealed);
 
   // How the readings change by effect `index` of the case's world: `share` of it taken away,
-  // divided by `share`, which must be small where the effect is strong.
+  // divided by `share`, which must be small where the effect is strong. What has no strength to
+  // which it is proportional is taken away whole.
   Eigen::VectorXd change_by(size_t index, double share) const;
 
   // The columns of a kind's numbers, about the true motion.

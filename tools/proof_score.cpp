@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 #include "core/errors.h"
@@ -49,8 +50,22 @@ const Json* true_number(const Json& effect, const std::string& key) {
   return effect.contains(with_kind) ? &effect[with_kind] : nullptr;
 }
 
+// Whether a sinusoid was found with its amplitude turned round, half a period later: the same one.
+bool is_turned_round(const Json& parameters, const Json& truth) {
+  if (!parameters.contains("phase")) return false;
+  for (const auto& [key, fitted] : parameters.items()) {
+    const Json* wanted = true_number(truth, key);
+    if (key == "phase" || wanted == nullptr || !fitted.is_object()) continue;
+    const auto value = numbers_of(fitted.value("value", Json())), right = numbers_of(*wanted);
+    if (right.size() != 3 || value.size() != 3) continue;
+    return std::inner_product(value.begin(), value.end(), right.begin(), 0.0) < 0.0;
+  }
+  return false;
+}
+
 void add_pulls(const Json& found, const Json& truth, std::vector<double>& pulls) {
   if (!found.contains("parameters")) return;
+  const bool turned = is_turned_round(found["parameters"], truth);
   for (const auto& [key, fitted] : found["parameters"].items()) {
     const Json* wanted = true_number(truth, key);
     // The sign and length of an axis mean nothing.
@@ -59,8 +74,11 @@ void add_pulls(const Json& found, const Json& truth, std::vector<double>& pulls)
     const auto sigma = numbers_of(fitted.value("sigma", Json()));
     if (value.size() != right.size() || sigma.size() != right.size()) continue;
     for (size_t i = 0; i < right.size(); ++i) {
-      double miss = value[i] - right[i];
-      if (key == "phase") miss = std::remainder(miss, 2.0 * std::numbers::pi);
+      const bool amplitude = right.size() == 3;
+      double miss = (turned && amplitude ? -value[i] : value[i]) - right[i];
+      if (key == "phase") {
+        miss = std::remainder(miss + (turned ? std::numbers::pi : 0.0), 2.0 * std::numbers::pi);
+      }
       if (sigma[i] > 0.0 && std::isfinite(miss)) pulls.push_back(miss / sigma[i]);
     }
   }

@@ -107,6 +107,23 @@ TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
   EXPECT_LT(energy(end), energy(middle));
 }
 
+// Nothing moves, so nothing but the derivatives keeps the steps short enough for a swing.
+TEST(FlexibleMode, OfAnAppendageAtRestTheDerivativeIsTheSwing) {
+  const double I = 0.19, appendage = 0.05, f = 1.3;
+  const AttitudeModel model = with(bench_model(), "flexible_mode",
+                                   {{"axis", numbers({0, 0, 1})},
+                                    {"frequency_Hz", node(f)},
+                                    {"damping", node(0)},
+                                    {"inertia_kg_m2", node(appendage)}});
+  const double period_s = std::sqrt((I - appendage) / I) / f;
+  const double times_s[] = {40.5 * period_s};
+  const Dynamics dynamics(model);
+  const Trajectory flown = propagate(dynamics, state_of(model, Quat::Identity()), times_s, {},
+                                     {Variable::initial_extra(0)});
+  EXPECT_NEAR(flown.derivatives[7], -1.0, 1e-6);
+  EXPECT_NEAR(flown.derivatives[2], 2 * appendage / I, 1e-6);
+}
+
 TEST(FlexibleMode, RefusesMoreInertiaThanThePlatformHas) {
   EXPECT_THROW(make(bench_model(), "flexible_mode",
                     {{"axis", numbers({0, 0, 1})},
