@@ -124,13 +124,13 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
       high_A[lane] = guess.high_A;
     }
     bool solved = false;
-    if (x >= 0.0 && x < four.least_open_circuit_V()) {
+    if (x >= 0.0) {
       FourStrings::State state = four.read(node.strings);
       solved = four.solve(x, low_A.max(0.0), high_A, state);
       if (solved) four.write(state, node.strings);
     }
-    if (solved && !cells_too) continue;
     for (size_t i = 0; i < four.members().size(); ++i) {
+      if (solved && !cells_too && four.solves(i, x)) continue;
       const auto lane = static_cast<Eigen::Index>(i);
       alone(four.member(i), {low_A[lane], high_A[lane]});
     }

@@ -2,8 +2,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -192,9 +192,10 @@ FigureErrors rounding_errors(const VectorXd& start, std::span<const RatedPoint> 
 
 // The unit of the last decimal of a number, as its first nine digits show it.
 double last_decimal(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", number);
-  const std::string shown = text;
+  std::array<char, 32> text;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, 9);
+  const std::string shown(text.data(), end.ptr);
   if (shown.find('e') != std::string::npos) return 0.0;
   const size_t point = shown.find('.');
   return point == std::string::npos

@@ -57,7 +57,7 @@ void FourStrings::add(size_t index, const StringCurve& curve, const PlainString&
     table_ = string.table;
     bypass_junctions_ = bypass.kind == Diode::Kind::junction;
     blocking_junctions_ = blocking.kind == Diode::Kind::junction;
-    least_open_circuit_V_ = close_V_ = std::numeric_limits<double>::infinity();
+    close_V_ = std::numeric_limits<double>::infinity();
   }
   // From this string on, all further lanes: those that stay without one repeat it.
   for (size_t lane = count_; lane < 4; ++lane) {
@@ -73,6 +73,7 @@ void FourStrings::add(size_t index, const StringCurve& curve, const PlainString&
     }
     series_ohm_[l] = string.series_ohm;
     most_A_[l] = curve.largest_photocurrent_A();
+    open_circuit_V_[l] = curve.open_circuit_V();
     bypass_saturation_A_[l] = bypass.saturation_A;
     bypass_scale_V_[l] = bypass.scale_V;
     bypass_ohm_[l] = bypass.series_ohm;
@@ -82,7 +83,6 @@ void FourStrings::add(size_t index, const StringCurve& curve, const PlainString&
     blocking_drop_V_[l] = blocking.kind == Diode::Kind::clamp ? blocking.drop_V : 0.0;
   }
   ++count_;
-  least_open_circuit_V_ = std::min(least_open_circuit_V_, curve.open_circuit_V());
   close_V_ = std::min(close_V_, curve.close_V());
 }
 
@@ -113,6 +113,7 @@ FourStrings::State FourStrings::read(std::span<const StringState> states) const 
 
 void FourStrings::write(const State& state, std::span<StringState> states) const {
   for (size_t i = 0; i < count_; ++i) {
+    if (!solves(i, state.voltage_V)) continue;
     StringState& to = states[member_[i]];
     const auto lane = static_cast<Eigen::Index>(i);
     to.voltage_V = state.voltage_V;
@@ -121,6 +122,14 @@ void FourStrings::write(const State& state, std::span<StringState> states) const
     to.curvature_V_A2 = state.curvature_V_A2[lane];
     to.third_V_A3 = state.third_V_A3[lane];
   }
+}
+
+double FourStrings::sum_A(const State& state) const {
+  double sum_A = 0.0;
+  for (size_t i = 0; i < count_; ++i) {
+    if (solves(i, state.voltage_V)) sum_A += state.current_A[static_cast<Eigen::Index>(i)];
+  }
+  return sum_A;
 }
 
 FourStrings::Point FourStrings::rows_at(const FourLanes& rows_A, bool& outside) const {
@@ -195,7 +204,10 @@ bool FourStrings::at_currents(Lanes& current_A, Lanes& leak_A, Point& at) const 
 bool FourStrings::solve(double voltage_V, const Lanes& low_A, const Lanes& high_A,
                         State& state) const {
   constexpr int most_rounds = 30;
-  Lanes low = low_A, high = high_A, current = state.current_A.max(low).min(high);
+  const Eigen::Array<bool, 4, 1> idle = open_circuit_V_ <= voltage_V;
+  // What idle lanes had may be no number.
+  Lanes low = idle.select(0.0, low_A), high = idle.select(0.0, high_A);
+  Lanes current = idle.select(0.0, state.current_A.max(low).min(high));
   Lanes leak = bypass_junctions_ ? Lanes(-bypass_saturation_A_) : Lanes(Lanes::Zero());
   Point at;
   for (int round = 0; round < most_rounds; ++round) {
@@ -212,7 +224,7 @@ bool FourStrings::solve(double voltage_V, const Lanes& low_A, const Lanes& high_
         (q2 < 0.09).select(-newton * (1.0 + bent + 2.0 * bent * bent - twist), chebyshev);
     const Lanes root = current + step;
     const auto exact = left <= 1e-12 * current.abs() || step.abs() <= 1e-13 * current.abs();
-    if ((exact && excess.abs() <= close_V_).all()) {
+    if ((idle || (exact && excess.abs() <= close_V_)).all()) {
       state = {voltage_V, root,
                at.slope_ohm - step * (at.curvature_V_A2 + 0.5 * step * at.third_V_A3),
                at.curvature_V_A2 + step * at.third_V_A3, at.third_V_A3};

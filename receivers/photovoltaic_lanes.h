@@ -1,7 +1,7 @@
 // Four parallel strings at a time in vector registers: I of each at one voltage.
 //
 // The same equations as StringCurve::at_voltage() for strings that are cells of one table in series
-// with one bypass diode at most, between short and open circuit of all four.
+// with one bypass diode at most, between short and open circuit.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,8 +25,11 @@ class FourStrings {
   // Which of the strings; the first of four.
   std::span<const size_t> members() const { return std::span(member_).first(count_); }
   size_t member(size_t lane) const { return member_[lane]; }  // beyond count, again the last
-  // Voltages from 0 up to this can be asked for.
-  double least_open_circuit_V() const { return least_open_circuit_V_; }
+  // Above its open circuit a string is blocked or fed backwards: it is not solved here, and what is
+  // said below about members does not hold for it.
+  bool solves(size_t lane, double voltage_V) const {
+    return voltage_V < open_circuit_V_[static_cast<Eigen::Index>(lane)];
+  }
 
   // All four at one voltage, as in StringState.
   struct State {
@@ -43,9 +46,7 @@ class FourStrings {
   // The same from a solution at a voltage not far away.
   bool advance(double voltage_V, State& state) const;
   // Of all members.
-  double sum_A(const State& state) const {
-    return state.current_A.head(static_cast<Eigen::Index>(count_)).sum();
-  }
+  double sum_A(const State& state) const;
 
  private:
   struct Point {  // of V(I)
@@ -66,10 +67,10 @@ class FourStrings {
   const DiodeVoltageTable* table_ = nullptr;
   bool bypass_junctions_ = false, blocking_junctions_ = false;
   std::vector<std::array<double, 4>> light_A_, copies_;  // cell by cell
-  Lanes series_ohm_, most_A_;
+  Lanes series_ohm_, most_A_, open_circuit_V_;
   Lanes bypass_saturation_A_, bypass_scale_V_, bypass_ohm_;
   Lanes blocking_saturation_A_, blocking_scale_V_, blocking_ohm_, blocking_drop_V_;
-  double least_open_circuit_V_ = 0.0, close_V_ = 0.0;
+  double close_V_ = 0.0;
 };
 
 }  // namespace photorque

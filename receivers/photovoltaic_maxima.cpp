@@ -139,13 +139,16 @@ class ArrayCurve::Search {
     };
     for (size_t k = 0; k < states_.size(); ++k) {
       const FourStrings& four = curve_.fours_[k];
-      if (x < four.least_open_circuit_V() && four.advance(x, states_[k])) {
+      const bool solved = four.advance(x, states_[k]);
+      if (solved) {
         sum_A += four.sum_A(states_[k]);
-        continue;
+      } else {
+        four.write(states_[k], at.strings);
       }
-      four.write(states_[k], at.strings);
-      for (const size_t s : four.members()) add_alone(s);
-      states_[k] = four.read(at.strings);
+      for (size_t i = 0; i < four.members().size(); ++i) {
+        if (!solved || !four.solves(i, x)) add_alone(four.member(i));
+      }
+      if (!solved) states_[k] = four.read(at.strings);
     }
     for (const size_t s : curve_.singles_) add_alone(s);
     return sum_A;
