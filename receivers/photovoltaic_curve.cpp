@@ -110,7 +110,7 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
     node.third = state.third_V_A3;
     return;
   }
-  // Four at a time first: what is left for a string alone is one look at its cells, or nothing.
+  // Four at a time where that is possible.
   const bool cells_too = std::isfinite(tolerance);
   const auto alone = [&](size_t s, const CurrentGuess& guess) {
     strings_[s].at_voltage(x, regimes[s], guess.low_A, guess.high_A, tolerance, node.strings[s]);
@@ -126,11 +126,12 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
     bool solved = false;
     if (x >= 0.0) {
       FourStrings::State state = four.read(node.strings);
-      solved = four.solve(x, low_A.max(0.0), high_A, state);
+      solved = four.solve(x, low_A.max(0.0), high_A, tolerance, state,
+                          cells_too ? std::span(node.strings) : std::span<StringState>());
       if (solved) four.write(state, node.strings);
     }
     for (size_t i = 0; i < four.members().size(); ++i) {
-      if (solved && !cells_too && four.solves(i, x)) continue;
+      if (solved && four.solves(i, x)) continue;
       const auto lane = static_cast<Eigen::Index>(i);
       alone(four.member(i), {low_A[lane], high_A[lane]});
     }

@@ -63,6 +63,7 @@ void FourStrings::add(size_t index, const StringCurve& curve, const PlainString&
   for (size_t lane = count_; lane < 4; ++lane) {
     const auto l = static_cast<Eigen::Index>(lane);
     member_[lane] = index;
+    cells_[lane] = string.photocurrents_A.size();
     const size_t cells = std::max(light_A_.size(), string.photocurrents_A.size());
     light_A_.resize(cells, std::array<double, 4>{});
     copies_.resize(cells, std::array<double, 4>{});
@@ -132,13 +133,19 @@ double FourStrings::sum_A(const State& state) const {
   return sum_A;
 }
 
-FourStrings::Point FourStrings::rows_at(const FourLanes& rows_A, bool& outside) const {
+FourStrings::Point FourStrings::rows_at(const Lanes& rows_A, const CellTargets& targets,
+                                        bool& outside) const {
   Quad value{}, slope{}, curvature{}, third{};
   QuadBits any_outside{};
   const Quad current = quad_of(rows_A);
   for (size_t c = 0; c < light_A_.size(); ++c) {
     const QuadVoltage v = table_->quad_at_dark(quad_at(light_A_[c].data()) - current);
     const Quad weight = quad_at(copies_[c].data());
+    if (targets[0] != nullptr) {
+      for (size_t lane = 0; lane < 4; ++lane) {
+        if (c < cells_[lane]) targets[lane][c] = {v.slope_ohm[lane], v.curvature_V_A2[lane]};
+      }
+    }
     any_outside |= v.outside;
     value = multiply_add(weight, v.value_V, value);
     slope = multiply_add(weight, v.slope_ohm, slope);
@@ -147,7 +154,7 @@ FourStrings::Point FourStrings::rows_at(const FourLanes& rows_A, bool& outside) 
   }
   outside = (any_outside[0] | any_outside[1] | any_outside[2] | any_outside[3]) != 0;
   return {lanes_of(value) - rows_A * series_ohm_, lanes_of(slope) + series_ohm_,
-          lanes_of(curvature), -lanes_of(third)};
+          lanes_of(curvature), -lanes_of(third), FourLanes::Zero()};
 }
 
 // What flows backwards through the bypass diodes beside lit rows joins the current, in place of the
@@ -156,7 +163,11 @@ FourStrings::Point FourStrings::rows_at(const FourLanes& rows_A, bool& outside) 
 bool FourStrings::add_bypass(Point& at, FourLanes& current_A, FourLanes& leak_A) const {
   constexpr int rounds = 2;
   const FourLanes& scale_V = bypass_scale_V_;
-  if ((at.voltage_V > 30.0 * scale_V).all()) return true;
+  if ((at.voltage_V > 30.0 * scale_V).all()) {
+    current_A += -bypass_saturation_A_ - leak_A;
+    leak_A = -bypass_saturation_A_;
+    return true;
+  }
   FourLanes u = -at.voltage_V, through_A, g, apart_V;
   for (int round = 0; round <= rounds; ++round) {
     through_A = bypass_saturation_A_ * ((u / scale_V).exp() - 1.0);
@@ -167,6 +178,7 @@ bool FourStrings::add_bypass(Point& at, FourLanes& current_A, FourLanes& leak_A)
   if (!(apart_V.abs() <= 1e-14 * scale_V + 4e-16 * u.abs()).all()) return false;
   current_A += through_A - leak_A;
   leak_A = through_A;
+  at.bypass_S = g;
   const FourLanes per_divisor = (1.0 + g * bypass_ohm_).inverse();
   const FourLanes bend = g / scale_V * per_divisor.cube();
   invert(at.slope_ohm, at.curvature_V_A2, at.third_V_A3);
@@ -192,26 +204,42 @@ void FourStrings::add_blocking(Point& at, const FourLanes& current_A) const {
 
 // The strings' voltages and derivatives; their currents move by what the bypass diodes' leak was
 // off.
-bool FourStrings::at_currents(Lanes& current_A, Lanes& leak_A, Point& at) const {
+bool FourStrings::at_currents(const CellTargets& targets, Lanes& current_A, Lanes& leak_A,
+                              Point& at) const {
   bool outside = false;
-  at = rows_at(current_A - leak_A, outside);
+  at = rows_at(current_A - leak_A, targets, outside);
   if (outside || !at.voltage_V.isFinite().all()) return false;
   if (bypass_junctions_ && !add_bypass(at, current_A, leak_A)) return false;
   add_blocking(at, current_A);
   return true;
 }
 
-bool FourStrings::solve(double voltage_V, const Lanes& low_A, const Lanes& high_A,
-                        State& state) const {
+void FourStrings::write_diodes(const Point& at, double voltage_V, const Lanes& current_A,
+                               std::span<StringState> states) const {
+  for (size_t i = 0; i < count_; ++i) {
+    if (!solves(i, voltage_V)) continue;
+    const auto lane = static_cast<Eigen::Index>(i);
+    StringState& to = states[member_[i]];
+    to.bypasses[0].junction_S = at.bypass_S[lane];
+    to.blocking_ohm = blocking_scale_V_[lane] / (current_A[lane] + blocking_saturation_A_[lane]);
+  }
+}
+
+bool FourStrings::solve(double voltage_V, const Lanes& low_A, const Lanes& high_A, double tolerance,
+                        State& state, std::span<StringState> states) const {
   constexpr int most_rounds = 30;
   const Eigen::Array<bool, 4, 1> idle = open_circuit_V_ <= voltage_V;
   // What idle lanes had may be no number.
   Lanes low = idle.select(0.0, low_A), high = idle.select(0.0, high_A);
   Lanes current = idle.select(0.0, state.current_A.max(low).min(high));
   Lanes leak = bypass_junctions_ ? Lanes(-bypass_saturation_A_) : Lanes(Lanes::Zero());
+  CellTargets targets{};
+  if (!states.empty()) {
+    for (size_t lane = 0; lane < 4; ++lane) targets[lane] = states[member_[lane]].cells.data();
+  }
   Point at;
   for (int round = 0; round < most_rounds; ++round) {
-    if (!at_currents(current, leak, at)) return false;
+    if (!at_currents(targets, current, leak, at)) return false;
     const Lanes excess = at.voltage_V - voltage_V;
     // As root_step() and falling_root().
     const Lanes inverse = -at.slope_ohm.inverse(), newton = excess * inverse;
@@ -224,7 +252,9 @@ bool FourStrings::solve(double voltage_V, const Lanes& low_A, const Lanes& high_
         (q2 < 0.09).select(-newton * (1.0 + bent + 2.0 * bent * bent - twist), chebyshev);
     const Lanes root = current + step;
     const auto exact = left <= 1e-12 * current.abs() || step.abs() <= 1e-13 * current.abs();
-    if ((idle || (exact && excess.abs() <= close_V_)).all()) {
+    const auto near = step.abs() <= tolerance * current.abs();
+    if ((idle || (exact && near && excess.abs() <= close_V_)).all()) {
+      if (!states.empty()) write_diodes(at, voltage_V, current, states);
       state = {voltage_V, root,
                at.slope_ohm - step * (at.curvature_V_A2 + 0.5 * step * at.third_V_A3),
                at.curvature_V_A2 + step * at.third_V_A3, at.third_V_A3};
@@ -248,7 +278,8 @@ bool FourStrings::advance(double voltage_V, State& state) const {
       0.5 + growth * (1.0 / 6 + growth * (1.0 / 24 + growth * (1.0 / 120 + growth / 720)));
   State trial = state;
   trial.current_A -= h * (slope - h * curvature * bend);
-  if (!solve(voltage_V, Lanes::Zero(), most_A_, trial)) return false;
+  constexpr double any = std::numeric_limits<double>::infinity();
+  if (!solve(voltage_V, Lanes::Zero(), most_A_, any, trial, {})) return false;
   state = trial;
   return true;
 }

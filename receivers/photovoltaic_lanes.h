@@ -36,14 +36,17 @@ class FourStrings {
     double voltage_V = 0.0;
     Lanes current_A, slope_ohm, curvature_V_A2, third_V_A3;
   };
-  // From and to the states of all strings; the states of their cells and bypasses are left alone.
+  // From and to the states of all strings; those of cells and diodes are left alone.
   State read(std::span<const StringState> states) const;
   void write(const State& state, std::span<StringState> states) const;
 
   // Solves at a voltage, from the currents in `state`, within [low_A, high_A], exact to 1e-12;
-  // false when the search does not end: `state` is then as it was.
-  bool solve(double voltage_V, const Lanes& low_A, const Lanes& high_A, State& state) const;
-  // The same from a solution at a voltage not far away.
+  // false when the search does not end: `state` is then as it was. With `states`, those of all
+  // strings, cells and diodes are written there, evaluated within a fraction `tolerance` of the
+  // currents.
+  bool solve(double voltage_V, const Lanes& low_A, const Lanes& high_A, double tolerance,
+             State& state, std::span<StringState> states) const;
+  // From a solution at a voltage not far away, without cells.
   bool advance(double voltage_V, State& state) const;
   // Of all members.
   double sum_A(const State& state) const;
@@ -51,18 +54,23 @@ class FourStrings {
  private:
   struct Point {  // of V(I)
     Lanes voltage_V, slope_ohm, curvature_V_A2, third_V_A3;
+    Lanes bypass_S = Lanes::Zero();
   };
+  // Where the states of each member's cells go; null: nowhere.
+  using CellTargets = std::array<JunctionState*, 4>;
 
   bool fits(const PlainString& string) const;
   void add(size_t index, const StringCurve& curve, const PlainString& string);
   void fill();
-  Point rows_at(const Lanes& rows_A, bool& outside) const;
+  Point rows_at(const Lanes& rows_A, const CellTargets& targets, bool& outside) const;
   // False where that is not found.
   bool add_bypass(Point& at, Lanes& current_A, Lanes& leak_A) const;
   void add_blocking(Point& at, const Lanes& current_A) const;
-  bool at_currents(Lanes& current_A, Lanes& leak_A, Point& at) const;
+  bool at_currents(const CellTargets& targets, Lanes& current_A, Lanes& leak_A, Point& at) const;
+  void write_diodes(const Point& at, double voltage_V, const Lanes& current_A,
+                    std::span<StringState> states) const;
 
-  std::array<size_t, 4> member_{};
+  std::array<size_t, 4> member_{}, cells_{};
   size_t count_ = 0;
   const DiodeVoltageTable* table_ = nullptr;
   bool bypass_junctions_ = false, blocking_junctions_ = false;
