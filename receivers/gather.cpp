@@ -317,6 +317,20 @@ bool can_gather(const Scene& scene, const SurfaceGrid& grid, std::span<const Bea
          !absorbs_by_angle(scene, grid);
 }
 
+double gathering_cost_s(size_t pairs) {
+  return 5e-7 * static_cast<double>(pairs);
+}
+
+double tracing_cost_s(uint64_t rays) {
+  return 9e-8 * static_cast<double>(rays);
+}
+
+bool gathering_pays(size_t pairs, uint64_t rays) {
+  constexpr double bearable_s = 2.0;
+  constexpr double worth = 4.0;  // times the rays, whose errors are far larger
+  return gathering_cost_s(pairs) <= std::max(bearable_s, worth * tracing_cost_s(rays));
+}
+
 Gathered gather_direct(const TraceableScene& scene, const RigidTransform& lab_from_body,
                        std::span<const Beam> beams, const FluxMapReceiver& map,
                        const GatherOptions& options) {

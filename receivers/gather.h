@@ -45,6 +45,15 @@ struct Gathered {
 // (no glass in front), and beams with uniform apertures.
 bool can_gather(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams);
 
+// Rough times [s] of one thread, as measured (docs/benchmarks.md, "Scaling"): of gathering over
+// pairs of a bin and a lamp that something may shade, and of rays without bounces.
+double gathering_cost_s(size_t pairs);
+double tracing_cost_s(uint64_t rays);
+
+// Whether gathering is worth its time: not when it would take seconds and several times as long as
+// the rays, as with thousands of lamps on one map.
+bool gathering_pays(size_t pairs, uint64_t rays);
+
 // The light that comes to `map` straight from the beams, at the attitude `lab_from_body`. Surfaces
 // in between shade, whatever they are made of; what they pass on is for tracer.h. The result is the
 // same bits at any number of threads.

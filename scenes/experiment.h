@@ -42,7 +42,10 @@ struct DirectionGrid {
 
 // [trace]: how much work the light on surfaces is worth.
 struct TraceEffort {
-  bool gather = true;  // direct light from the surface's side where that is possible; else by rays
+  // Direct light, where it can be gathered from the surface's side: so always, never, or unless
+  // that would take much longer than the rays.
+  enum class Direct { automatic, gather, rays };
+  Direct direct = Direct::automatic;
   // More rays until every bin above a tenth of its map's peak has this relative standard error,
   std::optional<double> target_error;
   std::optional<double> max_time_s;  // or until the next round would end later than this

@@ -67,7 +67,9 @@ TraceEffort read_effort(const Settings& root) {
   TraceEffort effort;
   if (!root.has("trace")) return effort;
   const Settings table = root.table("trace");
-  if (table.has("direct")) effort.gather = table.choice("direct", {"gather", "rays"}) == 0;
+  constexpr TraceEffort::Direct ways[] = {TraceEffort::Direct::automatic,
+                                          TraceEffort::Direct::gather, TraceEffort::Direct::rays};
+  effort.direct = ways[table.choice_or("direct", {"auto", "gather", "rays"}, 0)];
   if (table.has("target_error")) {
     effort.target_error = table.number("target_error", {1e-6, 1.0, false, false});
   }

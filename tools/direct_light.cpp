@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace photorque {
 namespace {
@@ -67,26 +68,44 @@ void replace_direct(const FluxMapReceiver& map, const Gathered& gathered, BinSum
   sums.common_error = gathered.direct.common_error;
 }
 
+std::string cost_notice(const FluxMapReceiver& map, size_t pairs, uint64_t rays) {
+  char text[256];
+  std::snprintf(text, sizeof text,
+                " by rays alone: to gather it over %.2g pairs of a bin and a lamp would take about "
+                "%.2g s of one thread, the rays take %.2g s; trace.direct = \"gather\" does so all "
+                "the same",
+                static_cast<double>(pairs), gathering_cost_s(pairs), tracing_cost_s(rays));
+  return "direct light on " + map.name() + text;
+}
+
 }  // namespace
 
-std::vector<DirectLight> gather_into(const Experiment& experiment, const TraceableScene& scene,
-                                     const RigidTransform& lab_from_body,
-                                     const TraceOptions& options, TraceResult& result) {
-  std::vector<DirectLight> all;
+DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
+                        const RigidTransform& lab_from_body, const TraceOptions& options,
+                        TraceResult& result) {
+  const TraceEffort& effort = experiment.file.effort;
+  const bool weigh_cost =
+      effort.direct == TraceEffort::Direct::automatic && !effort.target_error.has_value();
+  DirectRoute route;
+  if (effort.direct == TraceEffort::Direct::rays) return route;
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
     const FluxMapReceiver* map = flux_map_of(experiment.receivers[i]);
     if (map == nullptr || !can_gather(experiment.scene, map->grid(), experiment.beams)) continue;
-    const Gathered gathered =
-        gather_direct(scene, lab_from_body, experiment.beams, *map,
-                      {.replicates = options.replicates,
-                       .seed = options.seed,
-                       .threads = options.threads,
-                       .target_error = experiment.file.effort.target_error.value_or(0.0)});
-    all.push_back(compare(*map, gathered, result.sums[i]));
-    all.back().receiver = i;
+    const size_t pairs = map->grid().bins() * experiment.beams.size();
+    if (weigh_cost && !gathering_pays(pairs, result.rays)) {
+      route.notices.push_back(cost_notice(*map, pairs, result.rays));
+      continue;
+    }
+    const Gathered gathered = gather_direct(scene, lab_from_body, experiment.beams, *map,
+                                            {.replicates = options.replicates,
+                                             .seed = options.seed,
+                                             .threads = options.threads,
+                                             .target_error = effort.target_error.value_or(0.0)});
+    route.gathered.push_back(compare(*map, gathered, result.sums[i]));
+    route.gathered.back().receiver = i;
     replace_direct(*map, gathered, result.sums[i]);
   }
-  return all;
+  return route;
 }
 
 double worst_bin_error(const Experiment& experiment, const TraceResult& result) {

@@ -22,11 +22,18 @@ struct DirectLight {
   uint64_t shadow_rays = 0;
 };
 
+// Which way the direct light went.
+struct DirectRoute {
+  std::vector<DirectLight> gathered;  // by flux map; empty where rays alone had to do
+  std::vector<std::string> notices;  // one line for each map that was left to the rays for its cost
+};
+
 // Replaces the direct light of every flat flux map in `result` by what gather_direct() finds, where
-// the sources allow it, and says how it agrees with the rays' own.
-std::vector<DirectLight> gather_into(const Experiment& experiment, const TraceableScene& scene,
-                                     const RigidTransform& lab_from_body,
-                                     const TraceOptions& options, TraceResult& result);
+// the experiment wants it and the sources allow it, and says how it agrees with the rays' own. An
+// experiment with a target error always gathers, unless it says "rays".
+DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
+                        const RigidTransform& lab_from_body, const TraceOptions& options,
+                        TraceResult& result);
 
 // Largest relative standard error of any bin of any flux map with more than a tenth of the map's
 // largest irradiance.

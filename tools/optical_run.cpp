@@ -92,9 +92,7 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
   for (;; options.rays *= 2) {
     const double before_s = elapsed_s();
     OpticalResult result{trace(scene_, lab_from_body, experiment_.beams, receivers, options), {}};
-    if (effort.gather) {
-      result.direct = gather_into(experiment_, scene_, lab_from_body, options, result);
-    }
+    result.direct = gather_into(experiment_, scene_, lab_from_body, options, result);
     result.worst_bin_error = worst_bin_error(experiment_, result);
     result.wall_s = elapsed_s();
     const double next_s = 2.0 * (result.wall_s - before_s);
@@ -137,7 +135,7 @@ Product OpticalRun::product(const OpticalResult& result) const {
       {"momentum_disagreement_sigma",
        {momentum_disagreement(ledger, result.sums[wrench_], wrench()), 0.0}},
   };
-  for (const DirectLight& direct : result.direct) {
+  for (const DirectLight& direct : result.direct.gathered) {
     product.quantities.push_back({"direct_on_" + direct.name + "_W", direct.gathered_W});
     product.quantities.push_back({"direct_by_rays_on_" + direct.name + "_W", direct.rays_W});
   }
@@ -189,7 +187,8 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   console.line("  momentum: surfaces and rays differ by at most " +
                show(momentum_disagreement(ledger, result.sums[run.wrench_index()], run.wrench())) +
                " standard errors");
-  for (const DirectLight& direct : result.direct) {
+  for (const std::string& notice : result.direct.notices) console.line("  note: " + notice);
+  for (const DirectLight& direct : result.direct.gathered) {
     console.line("  direct light on " + direct.name + ": gathered and by rays differ by " +
                  show(std::abs(direct.difference_sigma)) + " standard errors in all, " +
                  show(std::sqrt(direct.mean_square)) + " (rms) in a bin");

@@ -19,8 +19,8 @@ namespace photorque {
 
 // What a run found: the trace, the direct light of its flux maps gathered where possible.
 struct OpticalResult : TraceResult {
-  std::vector<DirectLight> direct;  // by flux map; empty where rays alone had to do
-  double worst_bin_error = 0.0;     // see worst_bin_error()
+  DirectRoute direct;
+  double worst_bin_error = 0.0;  // see worst_bin_error()
 };
 
 // An experiment made ready to trace: its scene built once, its receivers, and always a wrench over

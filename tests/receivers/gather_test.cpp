@@ -415,5 +415,16 @@ TEST(Gather, WhatNeedsRaysIsRefused) {
   EXPECT_THROW(gather_direct(traceable, {}, std::span(&beam, 1), map, {}), InputError);
 }
 
+// A map of 10,000 bins and 8.4 million rays: docs/benchmarks.md, "Scaling".
+TEST(GatheringPays, ForHundredsOfLampsButNotForThousands) {
+  constexpr size_t bins = 10000;
+  constexpr uint64_t rays = 1ull << 23;
+  EXPECT_TRUE(gathering_pays(bins * 49, rays));
+  EXPECT_TRUE(gathering_pays(bins * 500, rays));
+  EXPECT_FALSE(gathering_pays(bins * 3000, rays));
+  EXPECT_TRUE(gathering_pays(bins * 3000, 64 * rays));
+  EXPECT_TRUE(gathering_pays(bins * 49, 1024));  // half a second whatever the rays take
+}
+
 }  // namespace
 }  // namespace photorque
