@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "receivers/receiver_kind.h"
 #include "receivers/receiver_settings.h"
+#include "scenes/gltf_lights.h"
 #include "scenes/gltf_reader.h"
 #include "sources/source_kind.h"
 
@@ -42,7 +43,13 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
     throw file.settings.error("source", "nothing", "at least one [[source]]");
   const std::vector<SourceKind> kinds = all_source_kinds();
   std::vector<Beam> beams;
-  for (const Settings& source : file.sources) {
+  std::optional<std::vector<GltfLight>> lights;  // of the scene, once a source asks for one
+  for (const Settings& written : file.sources) {
+    if (written.has("light") && !lights) {
+      lights = read_gltf_lights(*file.scene_file, file.metres_per_unit);
+    }
+    const bool at_light = written.has("light");
+    const Settings source = at_light ? source_at_light(written, *lights) : written;
     const SourceContext context{
         .scene_radius_m = scene.radius_m(),
         .notice =
@@ -55,6 +62,7 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
       require_spectrum_inside(source, beam, scene.bands);
       beams.push_back(std::move(beam));
     }
+    if (at_light) source.finish();
   }
   return beams;
 }

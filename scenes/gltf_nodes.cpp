@@ -132,6 +132,31 @@ bool is_invertible(const Affine& transform) {
          std::abs(axes.determinant()) > 1e-12 * lengths;
 }
 
+void visit_nodes(const Document& document,
+                 const std::function<void(int node, const std::string& name,
+                                          const Affine& world_from_node)>& visit) {
+  std::vector<Visit> waiting;
+  const std::vector<int> roots = roots_of(document);
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
+    waiting.push_back({*root, 1, "", Affine::Identity()});
+  }
+  while (!waiting.empty()) {
+    const Visit next = std::move(waiting.back());
+    waiting.pop_back();
+    const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(next.node)];
+    if (next.depth > deepest_hierarchy) {
+      throw document.wrong(pointer("nodes", next.node),
+                           "a hierarchy deeper than " + std::to_string(deepest_hierarchy),
+                           "a shallower one");
+    }
+    const Affine world_from_node = next.world_from_parent * parent_from_node(node);
+    visit(next.node, node.name, world_from_node);
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+      waiting.push_back({*child, next.depth + 1, "", world_from_node});
+    }
+  }
+}
+
 std::vector<Placement> place_meshes(const Document& document, MemoryBudget* budget) {
   return Walk(document, budget).from(roots_of(document));
 }

@@ -1,6 +1,7 @@
 // The node hierarchy of a glTF document: where its meshes stand.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,12 @@ struct Placement {
   std::string path;  // names from the root to the node, joined by "/"
   Affine world_from_mesh = Affine::Identity();
 };
+
+// Calls `visit` with the index of every node of the default scene, its name as the file has it and
+// its transform into the world of the file, parents first. As place_meshes().
+void visit_nodes(const Document& document,
+                 const std::function<void(int node, const std::string& name,
+                                          const Affine& world_from_node)>& visit);
 
 // Every mesh of the default scene, in depth-first order: scene `scene`, else scene 0, else (no
 // scenes) everything below all root nodes. A node with EXT_mesh_gpu_instancing gives one placement

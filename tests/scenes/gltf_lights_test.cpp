@@ -1,0 +1,145 @@
+// Lamps that a glTF file places, as sources of an experiment.
+#include "scenes/gltf_lights.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "receivers/flux_map.h"
+#include "scenes/experiment.h"
+#include "scenes/gltf_writer.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+// A plate of 2 m × 2 m, and lights in the file's own axes (y up): a spot of 20 deg 1 m above the
+// plate's middle, turned by −90 deg about x so that it looks down; a sun of the node below it,
+// which inherits the turn; a point at (0.5, 2, 0.25).
+json lamp_file() {
+  GltfWriterModel model;
+  Mesh plate;
+  plate.vertices_m = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+  model.meshes = {plate};
+  model.materials.emplace_back().name = "plate";
+  model.nodes.push_back({"plate", -1, {}, 0, 0, {}});
+  json file = json::parse(gltf_text(model));
+  const auto light = [](int number) { return json{{"KHR_lights_punctual", {{"light", number}}}}; };
+  const double half = std::sqrt(0.5);
+  json& nodes = file["nodes"];
+  const size_t first = nodes.size();
+  nodes.push_back({{"name", "lamp"},
+                   {"translation", {0.0, 1.0, 0.0}},
+                   {"rotation", {-half, 0.0, 0.0, half}},
+                   {"children", {first + 1}},
+                   {"extensions", light(0)}});
+  nodes.push_back({{"extensions", light(1)}});
+  nodes.push_back({{"name", "bulb"}, {"translation", {0.5, 2.0, 0.25}}, {"extensions", light(2)}});
+  file["scenes"][0]["nodes"].push_back(first);
+  file["scenes"][0]["nodes"].push_back(first + 2);
+  file["extensionsUsed"] = {"KHR_lights_punctual"};
+  file["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "spot"}, {"spot", {{"outerConeAngle", 20.0 * degree_rad}}}, {"intensity", 5.0}},
+      {{"type", "directional"}, {"name", "noon"}},
+      {{"type", "point"}}};
+  return file;
+}
+
+fs::path written(const json& file, const std::string& experiment = "") {
+  const fs::path folder = fs::path(::testing::TempDir()) / "gltf_lights";
+  fs::create_directories(folder);
+  std::ofstream(folder / "lamps.gltf") << file.dump();
+  std::ofstream(folder / "lamps.toml") << "[scene]\nfile = \"lamps.gltf\"\n[[receiver]]\n"
+                                          "kind = \"flux_map\"\nnode = \"plate\"\n"
+                                          "bins = [1, 1]\n[trace]\nrays = 65536\n"
+                                       << experiment;
+  return folder;
+}
+
+TEST(GltfLights, StandAndShineAsTheFileSays) {
+  const auto lights = read_gltf_lights(written(lamp_file()) / "lamps.gltf", 1e-3);
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_EQ(lights[0].name, "lamp");
+  EXPECT_EQ(lights[0].kind, GltfLight::Kind::spot);
+  EXPECT_NEAR(lights[0].outer_cone_rad, 20.0 * degree_rad, 1e-15);
+  // Up in the file is z here; millimetres were asked for.
+  EXPECT_LT((lights[0].position_m - Vec3(0, 0, 1e-3)).norm(), 1e-15);
+  EXPECT_LT((lights[0].direction - Vec3(0, 0, -1)).norm(), 1e-12);
+  EXPECT_EQ(lights[1].name, "noon");
+  EXPECT_EQ(lights[1].kind, GltfLight::Kind::directional);
+  EXPECT_LT((lights[1].direction - Vec3(0, 0, -1)).norm(), 1e-12);
+  EXPECT_EQ(lights[2].name, "bulb");
+  EXPECT_LT((lights[2].position_m - 1e-3 * Vec3(0.5, -0.25, 2.0)).norm(), 1e-15);
+}
+
+// A cone of 20 deg from 1 m lights a disc of 0.364 m: all of its power is on the plate. An even
+// cone has the flux of an even radiant intensity.
+TEST(GltfLights, ASpotIsALedWithAnEvenCone) {
+  const fs::path folder = written(lamp_file(),
+                                  "[[source]]\nlight = \"lamp\"\npower_W = 3\n"
+                                  "wavelength_nm = 730\naperture_diameter_mm = 1\n");
+  const Experiment experiment = read_experiment(folder / "lamps.toml");
+  ASSERT_EQ(experiment.beams.size(), 1u);
+  const Beam& beam = experiment.beams[0];
+  EXPECT_EQ(beam.emitter->power_W(), 3.0);
+  EXPECT_LT((beam.lab_from_emitter.translation_m - Vec3(0, 0, 1)).norm(), 1e-12);
+  EXPECT_LT((beam.lab_from_emitter.direction(Vec3::UnitZ()) - Vec3(0, 0, -1)).norm(), 1e-12);
+  const auto& map = dynamic_cast<const FluxMapReceiver&>(*experiment.receivers[0].receiver);
+  const TraceResult traced =
+      trace(TraceableScene(experiment.scene), experiment.lab_from_body, experiment.beams,
+            experiment.receiver_pointers(), experiment.file.trace);
+  EXPECT_NEAR(map.flux_map(traced.sums[0]).incident.power_W.value, 3.0, 1e-9);
+}
+
+TEST(GltfLights, ADirectionalLightIsASunAndKeysOfTheUserWin) {
+  const fs::path folder = written(lamp_file(),
+                                  "[[source]]\nlight = \"noon\"\nirradiance_W_m2 = 500\n"
+                                  "angular_radius_deg = 0\n"
+                                  "[[source]]\nlight = \"lamp\"\npower_W = 1\n"
+                                  "wavelength_nm = 730\ndirection = [0, 1, -1]\n"
+                                  "profile = \"gaussian\"\nfwhm_deg = 3\n"
+                                  "aperture_diameter_mm = 45\n");
+  const Experiment experiment = read_experiment(folder / "lamps.toml");
+  ASSERT_EQ(experiment.beams.size(), 2u);
+  const auto looks = [&](size_t beam) {
+    return experiment.beams[beam].lab_from_emitter.direction(Vec3::UnitZ());
+  };
+  EXPECT_LT((looks(0) - Vec3(0, 0, -1)).norm(), 1e-12);
+  EXPECT_LT((looks(1) - Vec3(0, 1, -1).normalized()).norm(), 1e-12);
+}
+
+std::string refusal(const json& file, const std::string& source) {
+  try {
+    read_experiment(written(file, "[[source]]\n" + source) / "lamps.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(GltfLights, WrongLightsNameTheirPlace) {
+  const std::string led = "power_W = 1\nwavelength_nm = 730\naperture_diameter_mm = 1\n";
+  EXPECT_THAT(refusal(lamp_file(), "light = \"lump\"\n" + led), HasSubstr("\"lamp\", \"noon\""));
+  EXPECT_THAT(refusal(lamp_file(), "light = \"lamp\"\ncolour = 3\n" + led), HasSubstr("colour"));
+  json wide = lamp_file();
+  wide["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"]["outerConeAngle"] = 2.0;
+  EXPECT_THAT(refusal(wide, "light = \"lamp\"\n" + led), HasSubstr("lights/0/spot/outerConeAngle"));
+  json missing = lamp_file();
+  missing["extensions"]["KHR_lights_punctual"]["lights"] = json::array();
+  EXPECT_THAT(refusal(missing, "light = \"lamp\"\n" + led), HasSubstr("the number of a light"));
+  json kind = lamp_file();
+  kind["extensions"]["KHR_lights_punctual"]["lights"][2]["type"] = "area";
+  EXPECT_THAT(refusal(kind, "light = \"lamp\"\n" + led), HasSubstr("\"spot\""));
+}
+
+}  // namespace
+}  // namespace photorque
