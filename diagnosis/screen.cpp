@@ -40,14 +40,22 @@ Score solve(const Eigen::MatrixXd& S, const Eigen::VectorXd& g, const Eigen::Vec
   return score;
 }
 
-void score_batch(const Fit& at, const std::vector<Observation>& runs,
-                 const std::vector<ScoreGroup>& groups, size_t first, size_t last,
-                 std::vector<Score>& scores) {
+// What the data say about the parameters of some groups, everything fitted (and the starts of the
+// groups' own states) projected out.
+struct Projected {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient, before;  // before: the information with nothing projected out
+  std::vector<Eigen::Index> begin;   // of each group's parameters, and the end
+  bool known = false;                // false: it could not be propagated
+};
+
+Projected project(const Fit& at, const std::vector<Observation>& runs,
+                  const std::vector<ScoreGroup>& groups, size_t first, size_t last) {
+  Projected result;
   Hypothesis h = at.best;
   std::vector<Free> extra;
-  std::vector<Eigen::Index> begin;
   for (size_t g = first; g < last; ++g) {
-    begin.push_back(static_cast<Eigen::Index>(extra.size()));
+    result.begin.push_back(static_cast<Eigen::Index>(extra.size()));
     for (const Disturbance& d : groups[g].disturbances) {
       // It would act at once.
       if (d.parameters.empty()) continue;
@@ -55,20 +63,20 @@ void score_batch(const Fit& at, const std::vector<Observation>& runs,
       for (const int p : parameters_of(groups[g], d)) extra.push_back({index, p});
     }
   }
-  begin.push_back(static_cast<Eigen::Index>(extra.size()));
+  const auto count = static_cast<Eigen::Index>(extra.size());
+  result.begin.push_back(count);
   const NormalSums sums = sums_at(h, runs, extra);
-  if (!std::isfinite(sums.chi2)) return;
-  // Everything fitted, and the starts of the added disturbances' own states.
-  const Eigen::Index known = sums.matrix.rows() - static_cast<Eigen::Index>(extra.size());
-  const Eigen::LDLT<Eigen::MatrixXd> nuisance(sums.matrix.topLeftCorner(known, known));
-  const Eigen::VectorXd settled = nuisance.solve(sums.gradient.head(known));
-  for (size_t g = first; g < last; ++g) {
-    const Eigen::Index a = known + begin[g - first], n = begin[g - first + 1] - begin[g - first];
-    const Eigen::MatrixXd cross = sums.matrix.block(a, 0, n, known);
-    const Eigen::MatrixXd own = sums.matrix.block(a, a, n, n);
-    const Eigen::MatrixXd S = own - cross * nuisance.solve(cross.transpose());
-    scores[g] = solve(S, sums.gradient.segment(a, n) - cross * settled, own.diagonal());
-  }
+  if (!std::isfinite(sums.chi2)) return result;
+  const Eigen::Index fitted = sums.matrix.rows() - count;
+  const Eigen::LDLT<Eigen::MatrixXd> nuisance(sums.matrix.topLeftCorner(fitted, fitted));
+  const Eigen::MatrixXd cross = sums.matrix.bottomLeftCorner(count, fitted);
+  const Eigen::MatrixXd own = sums.matrix.bottomRightCorner(count, count);
+  result.information = own - cross * nuisance.solve(cross.transpose());
+  result.gradient = sums.gradient.tail(count) -
+                    cross * nuisance.solve(Eigen::VectorXd(sums.gradient.head(fitted)));
+  result.before = own.diagonal();
+  result.known = true;
+  return result;
 }
 
 }  // namespace
@@ -86,10 +94,38 @@ std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
   for (size_t first = 0; first < groups.size();) {
     size_t last = first + 1, count = size(first);
     while (last < groups.size() && count + size(last) <= variables_at_once) count += size(last++);
-    score_batch(at, runs, groups, first, last, scores);
+    const Projected all = project(at, runs, groups, first, last);
+    for (size_t g = first; all.known && g < last; ++g) {
+      const Eigen::Index a = all.begin[g - first], n = all.begin[g - first + 1] - a;
+      scores[g] = solve(all.information.block(a, a, n, n), all.gradient.segment(a, n),
+                        all.before.segment(a, n));
+    }
     first = last;
   }
   return scores;
+}
+
+Eigen::MatrixXd score_pairs(const Fit& at, const std::vector<Observation>& runs,
+                            const std::vector<ScoreGroup>& groups) {
+  const auto count = static_cast<Eigen::Index>(groups.size());
+  Eigen::MatrixXd gains = Eigen::MatrixXd::Zero(count, count);
+  const Projected all = project(at, runs, groups, 0, groups.size());
+  if (!all.known) return gains;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = i; j < count; ++j) {
+      std::vector<Eigen::Index> both;
+      for (const Eigen::Index g : {i, j}) {
+        const auto at_group = static_cast<size_t>(g);
+        for (Eigen::Index p = all.begin[at_group]; p < all.begin[at_group + 1]; ++p) {
+          both.push_back(p);
+        }
+        if (i == j) break;
+      }
+      gains(i, j) = gains(j, i) =
+          solve(all.information(both, both), all.gradient(both), all.before(both)).gain;
+    }
+  }
+  return gains;
 }
 
 }  // namespace photorque

@@ -24,4 +24,9 @@ struct ScoreGroup {
 std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
                          const std::vector<ScoreGroup>& groups);
 
+// The expected fall of χ² by every two groups together, on the diagonal by each alone. In one pass
+// with all their parameters: for runs of some thousand blocks.
+Eigen::MatrixXd score_pairs(const Fit& at, const std::vector<Observation>& runs,
+                            const std::vector<ScoreGroup>& groups);
+
 }  // namespace photorque

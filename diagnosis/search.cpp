@@ -272,6 +272,62 @@ std::vector<Trial> other_halves(const Trial& pair, const std::vector<Trial>& par
   return halves;
 }
 
+// Two effects that hide each other: alone neither may be what explains most. Near the readings the
+// score test foretells what every pair would gain; the best are fitted.
+std::vector<Trial> best_pairs(const Trial& belief, const std::vector<Candidate>& all,
+                              const std::vector<Observation>& runs, const std::vector<Trial>& known,
+                              int threads) {
+  constexpr size_t most_pairs = 4;
+  // Over the better of the two alone, to be worth a fit.
+  constexpr double least_gain = 16.0;
+  if (belief.fit.chi2_per_sample() > astray_chi2_per_sample) return {};
+  const std::vector<Observation> slow_runs = Runs{runs}.averaged(belief.fit);
+  std::vector<size_t> linear;
+  std::vector<ScoreGroup> groups;
+  for (size_t c = 0; c < all.size(); ++c) {
+    if (all[c].empirical() || !is_linear(all[c])) continue;
+    linear.push_back(c);
+    groups.push_back({{all[c].start}});
+  }
+  const Eigen::MatrixXd gains = score_pairs(belief.fit, slow_runs, groups);
+  struct Pair {
+    size_t first, second;
+    double gain;
+  };
+  std::vector<Pair> pairs;
+  for (Eigen::Index i = 0; i < gains.rows(); ++i) {
+    for (Eigen::Index j = i + 1; j < gains.cols(); ++j) {
+      // The stronger first.
+      const auto [a, b] = gains(i, i) > gains(j, j) ? std::pair(i, j) : std::pair(j, i);
+      const Pair pair{linear[static_cast<size_t>(a)], linear[static_cast<size_t>(b)], gains(i, j)};
+      if (all[pair.first].label == all[pair.second].label) continue;
+      if (gains(i, j) < gains(a, a) + least_gain) continue;
+      const bool tried = std::any_of(known.begin(), known.end(), [&](const Trial& t) {
+        return t.candidates == std::vector<size_t>{pair.first, pair.second} ||
+               t.candidates == std::vector<size_t>{pair.second, pair.first};
+      });
+      if (!tried) pairs.push_back(pair);
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(), [&](const Pair& a, const Pair& b) {
+    const auto worth = [&](const Pair& p) {
+      const size_t parameters =
+          all[p.first].start.parameters.size() + all[p.second].start.parameters.size();
+      return p.gain - 4.0 * static_cast<double>(parameters);
+    };
+    return worth(a) > worth(b);
+  });
+  if (pairs.size() > most_pairs) pairs.resize(most_pairs);
+  std::vector<Trial> found(pairs.size());
+  parallel_for(pairs.size(), threads, [&](size_t i) {
+    const Pair& p = pairs[i];
+    const Trial one = extend(belief, all, p.first, all[p.first].start, slow_runs);
+    const Trial two = extend(one, all, p.second, all[p.second].start, slow_runs);
+    found[i] = refit(two, all, runs, two.fit.best.runs);
+  });
+  return found;
+}
+
 }  // namespace
 
 std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
@@ -301,6 +357,9 @@ std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
         for (const Trial& half : other_halves(best, parents, trials, all, runs)) {
           extend_all(half, false);
         }
+      }
+      for (Trial& t : best_pairs(trials.front(), all, runs, found, options.threads)) {
+        found.push_back(std::move(t));
       }
     }
     found = without_twins(std::move(found));

@@ -121,7 +121,7 @@ double share_of(double gain) {
   return std::min(1.0, 3.0 / std::sqrt(std::max(gain, 1e-30)));
 }
 
-// The gain of effect `index`, with the columns of the case's other effects free.
+// The gain of effect `index`, with all numbers of the case's other effects free.
 double own_gain(const ConcealedCase& c, size_t index, bool against_catalogue) {
   const ConcealedInformation information(c);
   std::vector<Eigen::MatrixXd> others;
@@ -131,7 +131,11 @@ double own_gain(const ConcealedCase& c, size_t index, bool against_catalogue) {
     }
   }
   for (size_t i = 0; i < c.world.effects.size(); ++i) {
-    if (i != index) others.emplace_back(information.change_by(i, 1e-3));
+    if (i == index) continue;
+    // The other may be of any strength and direction.
+    Eigen::MatrixXd columns = information.columns_of(c.world.effects[i].kind);
+    if (columns.cols() == 0) columns = information.change_by(i, 1e-3);
+    others.push_back(std::move(columns));
   }
   return information.gain(information.change_by(index, 1e-3), others);
 }

@@ -3,13 +3,17 @@
 // than its header says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
 
 #include "attitude/disturbance_kind.h"
 #include "core/constants.h"
+#include "diagnosis/belief.h"
 #include "diagnosis/diagnose.h"
+#include "diagnosis/screen.h"
+#include "diagnosis/trial.h"
 
 namespace photorque {
 namespace {
@@ -147,6 +151,36 @@ TEST(Diagnose, NamesADipoleAndMeasuresIt) {
   // The best explanation flew what was held back.
   ASSERT_TRUE(d.alternatives.front().holdout_chi2_per_sample.has_value());
   EXPECT_NEAR(*d.alternatives.front().holdout_chi2_per_sample, 1.0, 0.15);
+}
+
+// A dipole and a draught together: what the slopes at the belief foretell is what the fit gains.
+TEST(Score, ForetellsWhatTwoEffectsGainTogether) {
+  const Vec3 dipole_A_m2(0.01, -0.02, 0.01), draught_lab_N_m(4e-7, -3e-7, 0.0);
+  const NamedRecording seen = recorded(3, [&](const State& s) {
+    const Quat body_from_lab = s.lab_from_body.conjugate();
+    return Vec3(dipole_A_m2.cross(body_from_lab * field_lab_T) + body_from_lab * draught_lab_N_m);
+  });
+  const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
+  const Fit believed = fit_belief(belief(), runs);
+  const std::vector<Candidate> all = all_candidates(belief(), runs);
+  const auto named = [&](const std::string& label) {
+    const auto at =
+        std::find_if(all.begin(), all.end(), [&](const Candidate& c) { return c.label == label; });
+    return static_cast<size_t>(at - all.begin());
+  };
+  const size_t dipole = named("magnetic_dipole"), draught = named("room_draft");
+  const std::vector<ScoreGroup> groups = {{{all[dipole].start}}, {{all[draught].start}}};
+  const Eigen::MatrixXd gains = score_pairs(believed, runs, groups);
+  const std::vector<Score> alone = score(believed, runs, groups);
+  EXPECT_NEAR(gains(0, 0), alone[0].gain, 1e-6 * alone[0].gain);
+  EXPECT_NEAR(gains(1, 1), alone[1].gain, 1e-6 * alone[1].gain);
+  EXPECT_EQ(gains(0, 1), gains(1, 0));
+
+  const Trial one = extend(believed_trial(believed), all, dipole, all[dipole].start, runs);
+  const Trial both = extend(one, all, draught, all[draught].start, runs);
+  const double gained = believed.chi2 - both.fit.chi2;
+  EXPECT_NEAR(gains(0, 1), gained, 0.05 * gained);
+  EXPECT_GT(gained, believed.chi2 - one.fit.chi2 + 20.0);
 }
 
 TEST(Diagnose, CallsCoggingUnexplainedAndMeasuresItsTorque) {
