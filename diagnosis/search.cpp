@@ -160,10 +160,13 @@ std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candi
                                     const std::vector<size_t>& candidates,
                                     const std::vector<Observation>& runs, int threads) {
   constexpr size_t most_refits = 6;
-  Runs pieces;
-  Trial near;
+  Runs pieces{runs};
+  Trial near = parent;
   for (const size_t count : {6u, 20u}) {
-    pieces = cut(runs, count);
+    Runs shorter = cut(runs, count);
+    // Too few readings to be cut.
+    if (shorter.all.empty()) break;
+    pieces = std::move(shorter);
     near = refit(parent, all, pieces.all, seen_starts(parent.fit.best, pieces.all));
     if (near.fit.chi2_per_sample() < astray_chi2_per_sample) break;
   }

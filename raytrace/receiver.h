@@ -29,7 +29,7 @@ struct Hits {
   Column<uint32_t> triangle;                 // index into that mesh's triangles
   Column<uint8_t> front;                     // 1: hit from the front, 0: from the back
   Column<uint16_t> depth;                    // 0: straight from the emitter
-  Column<double> cosine;                     // of the angle of incidence, in [0, 1]; to 1e-7
+  Column<double> cosine;                     // of the angle of incidence, in [0, 1]; to 3e-7
   std::array<Column<double>, 3> position_m;  // on the triangle's plane to 2e-10 of the scene size
   std::array<Column<float>, 2> barycentric;  // weights of the triangle's vertices 1 and 2
   std::array<Column<double>, max_bands> incident_W;  // per band

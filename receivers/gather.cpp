@@ -318,7 +318,7 @@ bool can_gather(const Scene& scene, const SurfaceGrid& grid, std::span<const Bea
 }
 
 double gathering_cost_s(size_t pairs) {
-  return 5e-7 * static_cast<double>(pairs);
+  return 1e-7 * static_cast<double>(pairs);
 }
 
 double tracing_cost_s(uint64_t rays) {

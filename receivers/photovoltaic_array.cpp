@@ -104,7 +104,13 @@ PreparedArray prepare(const ArrayDesign& design, const ArrayLight& light,
   for (const double r : responsivity_A_W.first(static_cast<size_t>(light.bands))) {
     array.factor_A_W.push_back(r * warmth);
   }
-  array.tables = cell_tables(design, array.area_m2, std::ranges::max(array.light(bins).current_A));
+  const std::vector<double> current_A = array.light(bins).current_A;
+  for (size_t i = 0; i < current_A.size(); ++i) {
+    if (!std::isfinite(current_A[i])) {
+      throw NumericalError("the light on cell " + std::to_string(i) + " is no finite number");
+    }
+  }
+  array.tables = cell_tables(design, array.area_m2, std::ranges::max(current_A));
   return array;
 }
 
@@ -189,9 +195,11 @@ CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_a
   std::vector<std::pair<double, std::shared_ptr<const DiodeVoltageTable>>> known;
   CellTables tables;
   for (const double area_m2 : cell_area_m2) {
-    // Areas that differ by rounding alone are one.
-    auto same = std::ranges::find_if(
-        known, [&](const auto& pair) { return std::abs(pair.first - area_m2) <= 1e-12 * area_m2; });
+    // Areas that differ by the rounding of a model's single numbers alone are one.
+    constexpr double rounding = 1e-6;
+    auto same = std::ranges::find_if(known, [&](const auto& pair) {
+      return std::abs(pair.first - area_m2) <= rounding * area_m2;
+    });
     if (same == known.end()) {
       const CellCurve curve(parameters_at(design.cell, area_m2, design.temperature_K));
       known.emplace_back(area_m2, std::make_shared<const DiodeVoltageTable>(

@@ -212,6 +212,11 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options) 
 ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> places) {
   ArrayDesign design;
   if (places) {
+    const size_t count = places->parts.size();
+    if (count == 0 || count > most_cells) {
+      throw array.error(array.has("rectangle") ? "rectangle" : "cells",
+                        std::to_string(count) + " separate cells", "1 to 100000");
+    }
     design.columns = places->columns;
     design.rows = places->rows;
     design.places = std::move(places);

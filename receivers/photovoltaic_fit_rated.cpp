@@ -196,11 +196,12 @@ double last_decimal(double number) {
   const auto end =
       std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, 9);
   const std::string shown(text.data(), end.ptr);
-  if (shown.find('e') != std::string::npos) return 0.0;
-  const size_t point = shown.find('.');
-  return point == std::string::npos
-             ? 1.0
-             : std::pow(10.0, -static_cast<double>(shown.size() - point - 1));
+  const size_t exponent_at = std::min(shown.find('e'), shown.size());
+  const size_t point = std::min(shown.find('.'), exponent_at);
+  const size_t decimals = exponent_at - std::min(point + 1, exponent_at);
+  int exponent = 0;
+  if (exponent_at < shown.size()) exponent = std::stoi(shown.substr(exponent_at + 1));
+  return std::pow(10.0, exponent - static_cast<int>(decimals));
 }
 
 }  // namespace

@@ -46,10 +46,15 @@ void read_front_table(const Settings& cover, CellFront& front) {
     throw cover.error("angle_rad", std::to_string(front.angle_rad.size()) + " angles",
                       "ascending angles from 0");
   }
-  if (front.transmittance.size() != front.angle_rad.size() || !(front.transmittance[0] > 0.0)) {
-    throw cover.error(
-        "transmittance", std::to_string(front.transmittance.size()) + " numbers",
-        std::to_string(front.angle_rad.size()) + ", one per angle, the first above 0");
+  if (front.transmittance.size() != front.angle_rad.size()) {
+    throw cover.error("transmittance", std::to_string(front.transmittance.size()) + " numbers",
+                      std::to_string(front.angle_rad.size()) + ", one per angle");
+  }
+  // Everything is measured by what goes straight in.
+  constexpr double least = 1e-3;
+  if (front.transmittance[0] < least) {
+    throw cover.error("transmittance", "a first of " + std::to_string(front.transmittance[0]),
+                      "at least 0.001 at 0 deg");
   }
 }
 

@@ -31,7 +31,7 @@ class DisjointSets {
   std::vector<size_t> parent_;
 };
 
-using Piece = std::vector<SurfaceFace>;
+using FacePiece = std::vector<SurfaceFace>;
 
 // A corner as a number; corners within rounding (1e-7 of the extent) are one.
 class CornerNames {
@@ -58,7 +58,7 @@ class CornerNames {
 };
 
 // The faces of one instance, by shared edges.
-std::vector<Piece> connected_pieces(const std::vector<SurfaceFace>& faces) {
+std::vector<FacePiece> connected_pieces(const std::vector<SurfaceFace>& faces) {
   double extent_m = 0.0;
   for (const SurfaceFace& face : faces) {
     for (const Vec3& corner : face.corner_body_m) extent_m = std::max(extent_m, corner.norm());
@@ -74,9 +74,9 @@ std::vector<Piece> connected_pieces(const std::vector<SurfaceFace>& faces) {
       if (!added) sets.join(known->second, f);
     }
   }
-  std::map<size_t, Piece> pieces;
+  std::map<size_t, FacePiece> pieces;
   for (size_t f = 0; f < faces.size(); ++f) pieces[sets.root(f)].push_back(faces[f]);
-  std::vector<Piece> all;
+  std::vector<FacePiece> all;
   for (auto& [root, piece] : pieces) all.push_back(std::move(piece));
   return all;
 }
@@ -87,7 +87,7 @@ struct FoundCell {
   Vec2 size;
 };
 
-FoundCell found_cell(const Piece& piece, const Scene& scene, const SurfaceGrid& grid) {
+FoundCell found_cell(const FacePiece& piece, const Scene& scene, const SurfaceGrid& grid) {
   FoundCell cell;
   std::map<uint32_t, double> area_m2;
   double total_m2 = 0.0;
@@ -197,7 +197,8 @@ bool overlapping(const CellRectangle& a, const CellRectangle& b) {
 CellPlaces places_from_mesh(const Scene& scene, const SurfaceGrid& grid) {
   std::vector<FoundCell> cells;
   for (const uint32_t instance : grid.instances) {
-    for (const Piece& piece : connected_pieces(faces_of(scene, {{instance}}, grid.facing_body))) {
+    for (const FacePiece& piece :
+         connected_pieces(faces_of(scene, {{instance}}, grid.facing_body))) {
       cells.push_back(found_cell(piece, scene, grid));
     }
   }

@@ -1,7 +1,7 @@
 // A StringCurve from its wiring: cells in runs, and where its diodes begin to conduct.
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <map>
 #include <numeric>
 
 #include "receivers/photovoltaic_root.h"
@@ -64,9 +64,12 @@ void StringCurve::add_cell(int cell, const CellTables& tables,
 void StringCurve::add_series(std::vector<int> cells, const CellTables& tables,
                              const std::vector<double>& photocurrents_A) {
   const auto table = [&](int cell) { return tables[static_cast<size_t>(cell)].get(); };
+  // Tables in the order in which the string meets them, which no address in memory changes.
+  std::map<const DiodeVoltageTable*, size_t> place;
+  for (const int cell : cells) place.emplace(table(cell), place.size());
   const auto light_A = [&](int cell) { return photocurrents_A[static_cast<size_t>(cell)]; };
   std::ranges::stable_sort(cells, [&](int a, int b) {
-    if (table(a) != table(b)) return std::less<>()(table(a), table(b));
+    if (table(a) != table(b)) return place.at(table(a)) < place.at(table(b));
     return light_A(a) < light_A(b);
   });
   for (size_t first = 0, end = 0; first < cells.size(); first = end) {

@@ -1,5 +1,6 @@
 #include "scenes/gltf_lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -43,10 +44,12 @@ GltfLight described_light(const Document& document, const json& light, const std
       const json& angle = spot["outerConeAngle"];
       described.outer_cone_rad = angle.is_number() ? angle.get<double>() : 0.0;
     }
-    if (!(described.outer_cone_rad > 0.0 && described.outer_cone_rad <= widest_rad)) {
+    // π/2 as a single number is a little more.
+    if (!(described.outer_cone_rad > 0.0 && described.outer_cone_rad <= widest_rad * (1 + 1e-6))) {
       throw document.wrong(where + "/spot/outerConeAngle", std::to_string(described.outer_cone_rad),
                            "above 0, at most π/2");
     }
+    described.outer_cone_rad = std::min(described.outer_cone_rad, widest_rad);
   } else if (type == "directional") {
     described.kind = GltfLight::Kind::directional;
   } else if (type != "point") {
@@ -95,11 +98,22 @@ SettingsNode numbers_node(const Vec3& values, const InputLocation& where) {
 
 const GltfLight& light_named(const Settings& source, const std::vector<GltfLight>& lights) {
   const std::string name = source.text("light");
-  std::string known;
+  std::set<std::string> names;
+  const GltfLight* found = nullptr;
+  size_t count = 0;
   for (const GltfLight& light : lights) {
-    if (light.name == name) return light;
-    known += (known.empty() ? "\"" : ", \"") + light.name + '"';
+    names.insert(light.name);
+    if (light.name != name) continue;
+    found = &light;
+    ++count;
   }
+  if (count == 1) return *found;
+  if (count > 1) {
+    throw source.error("light", '"' + name + "\", the name of " + std::to_string(count) + " lamps",
+                       "a name that one lamp of the scene has");
+  }
+  std::string known;
+  for (const std::string& other : names) known += (known.empty() ? "\"" : ", \"") + other + '"';
   throw source.error(
       "light", '"' + name + '"',
       known.empty() ? "a scene with lights (KHR_lights_punctual)" : "one of " + known);
@@ -128,10 +142,14 @@ Settings source_at_light(const Settings& source, const std::vector<GltfLight>& l
   const InputLocation where = source.raw("light").where;
   SettingsNode::Table keys;
   std::set<std::string> stems;
+  bool aimed = false;
   for (const std::string& key : source.keys()) {
     if (key == "light") continue;
     keys[key] = source.raw(key);
-    stems.insert(unit_of_key(key).stem);
+    const std::string stem(unit_of_key(key).stem);
+    // `aim` alone is how the lamps of an array stand to each other, not a point.
+    aimed = aimed || (stem == "aim" && key != stem);
+    stems.insert(stem);
   }
   const auto fill_in = [&](const std::string& key, SettingsNode node) {
     if (!stems.contains(unit_of_key(key).stem)) keys[key] = std::move(node);
@@ -140,11 +158,18 @@ Settings source_at_light(const Settings& source, const std::vector<GltfLight>& l
   const bool directional = light.kind == GltfLight::Kind::directional;
   if (spot) fill_in("kind", {std::string("led"), where});
   if (directional) fill_in("kind", {std::string("sun"), where});
-  if (!directional) fill_in("position_m", numbers_node(light.position_m, where));
-  if (light.kind != GltfLight::Kind::point && !stems.contains("aim")) {
+  if (!directional && !stems.contains("positions")) {
+    fill_in("position_m", numbers_node(light.position_m, where));
+  }
+  if (light.kind != GltfLight::Kind::point && !aimed) {
     fill_in("direction", numbers_node(light.direction, where));
   }
-  if (spot && !stems.contains("profile")) {
+  // A cone is the beam of an LED; lamps of other kinds have beams of their own.
+  const auto stated = keys.find("kind");
+  const auto* text =
+      stated == keys.end() ? nullptr : std::get_if<std::string>(&stated->second.value);
+  const std::string kind = text == nullptr ? "" : *text;
+  if (spot && (kind == "led" || kind == "led_array") && !stems.contains("profile")) {
     fill_in("profile", {std::string("pillbox"), where});
     fill_in("half_angle_rad", {light.outer_cone_rad, where});
     fill_in("pillbox_measure", {std::string("solid_angle"), where});

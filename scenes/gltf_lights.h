@@ -29,8 +29,8 @@ std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, doubl
 
 // A `[[source]]` that names one of them, `light = "NAME"`, with its place written out as keys, in
 // so far as the user has not given them: position_m, of spot and directional lights direction; kind
-// (spot: "led", directional: "sun"); of a spot without `profile` an even cone. Throws InputError
-// for a name that is not there.
+// (spot: "led", directional: "sun"); of a spot that is to be an LED, without `profile`, an even
+// cone. Throws InputError for a name that none or several have.
 Settings source_at_light(const Settings& source, const std::vector<GltfLight>& lights);
 
 }  // namespace photorque

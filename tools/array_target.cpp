@@ -61,7 +61,8 @@ Table tilted_table(const Console& console, const ArrayTarget& target,
                {"our_further_factor", {}, {}}}};
   for (const PublishedFigure& figure : published) {
     const auto ours_W = power_of(result, figure.quantity);
-    if (!ours_W || figure.tilt_rad < same_tilt_rad) continue;
+    constexpr double edge_on = 1e-6;
+    if (!ours_W || figure.tilt_rad < same_tilt_rad || std::cos(figure.tilt_rad) < edge_on) continue;
     const double cosine_W = target.power_W * std::cos(figure.tilt_rad);
     const double degrees = figure.tilt_rad / degree_rad;
     const bool here = std::abs(figure.tilt_rad - tilt_rad) < same_tilt_rad;

@@ -207,6 +207,22 @@ TEST(Diagnose, CallsCoggingUnexplainedAndMeasuresItsTorque) {
   }
 }
 
+// A strong torque over few readings: the belief goes astray, and the pieces into which the run
+// would be cut have too few attitudes to start from.
+TEST(Diagnose, AShortRunThatGoesAstrayIsStillAnswered) {
+  const auto pull = [](const State&) { return Vec3(3e-4, 0, 0); };
+  NamedRecording brief = recorded(4, pull);
+  constexpr size_t rows = 40;
+  brief.recording.time_s.resize(rows);
+  for (Channel& channel : brief.recording.channels) channel.values.resize(rows);
+  brief.recording.report.rows_read = brief.recording.report.rows_kept = rows;
+  DiagnoseOptions options;
+  options.most_effects = 1;
+  const Diagnosis d = diagnose(belief(), {brief}, {}, options);
+  EXPECT_GT(d.chi2_per_sample_before, 20.0);
+  EXPECT_NE(d.verdict, Verdict::consistent);
+}
+
 // A header in degrees over numbers in radians arrives here divided by 57, the
 // reverse as 57 times too much.
 TEST(Diagnose, ReportsRatesInAnotherUnitAsAConventionError) {

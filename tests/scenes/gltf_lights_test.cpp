@@ -117,6 +117,25 @@ TEST(GltfLights, ADirectionalLightIsASunAndKeysOfTheUserWin) {
   EXPECT_LT((looks(1) - Vec3(0, 1, -1).normalized()).norm(), 1e-12);
 }
 
+// A cone is the beam of an LED; a lamp of another kind at a spot's place has a beam of its own.
+TEST(GltfLights, AnyKindOfSourceCanStandWhereASpotStands) {
+  const fs::path folder = written(lamp_file(),
+                                  "[[source]]\nlight = \"lamp\"\nkind = \"laser\"\npower_W = 2\n"
+                                  "wavelength_nm = 532\nwaist_radius_mm = 5\n");
+  const Experiment experiment = read_experiment(folder / "lamps.toml");
+  ASSERT_EQ(experiment.beams.size(), 1u);
+  EXPECT_EQ(experiment.beams[0].emitter->power_W(), 2.0);
+  EXPECT_LT((experiment.beams[0].lab_from_emitter.translation_m - Vec3(0, 0, 1)).norm(), 1e-12);
+}
+
+// Blender writes half a turn as a single number, a little more than π/2.
+TEST(GltfLights, ASpotMayBeAsWideAsAHemisphere) {
+  json wide = lamp_file();
+  wide["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"]["outerConeAngle"] = 1.5707963705;
+  const auto lights = read_gltf_lights(written(wide) / "lamps.gltf", 1.0);
+  EXPECT_EQ(lights[0].outer_cone_rad, 0.5 * pi);
+}
+
 std::string refusal(const json& file, const std::string& source) {
   try {
     read_experiment(written(file, "[[source]]\n" + source) / "lamps.toml");
@@ -133,6 +152,11 @@ TEST(GltfLights, WrongLightsNameTheirPlace) {
   json wide = lamp_file();
   wide["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"]["outerConeAngle"] = 2.0;
   EXPECT_THAT(refusal(wide, "light = \"lamp\"\n" + led), HasSubstr("lights/0/spot/outerConeAngle"));
+  json twice = lamp_file();
+  for (json& node : twice["nodes"]) {
+    if (node.value("name", "") == "bulb") node["name"] = "lamp";
+  }
+  EXPECT_THAT(refusal(twice, "light = \"lamp\"\n" + led), HasSubstr("the name of 2 lamps"));
   json missing = lamp_file();
   missing["extensions"]["KHR_lights_punctual"]["lights"] = json::array();
   EXPECT_THAT(refusal(missing, "light = \"lamp\"\n" + led), HasSubstr("the number of a light"));

@@ -13,7 +13,7 @@ class DirectRouteCommand : public CommandTest {};
 
 TEST_F(DirectRouteCommand, ManyPairsAreLeftToTheRaysWithANote) {
   const std::string many = "trace " + stasis_file + " --set trace.rays=65536" +
-                           " --set receiver[0].bins=[400,400] --out " + at("o");
+                           " --set receiver[0].bins=[800,800] --out " + at("o");
   const Outcome left = run(many);
   ASSERT_EQ(left.status, 0) << left.err;
   EXPECT_THAT(left.out, HasSubstr("by rays alone"));
