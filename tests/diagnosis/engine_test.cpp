@@ -210,7 +210,7 @@ TEST(Diagnose, CallsCoggingUnexplainedAndMeasuresItsTorque) {
 // A strong torque over few readings: the belief goes astray, and the pieces into which the run
 // would be cut have too few attitudes to start from.
 TEST(Diagnose, AShortRunThatGoesAstrayIsStillAnswered) {
-  const auto pull = [](const State&) { return Vec3(3e-4, 0, 0); };
+  const auto pull = [](const State&) { return Vec3(3e-3, 0, 0); };
   NamedRecording brief = recorded(4, pull);
   constexpr size_t rows = 40;
   brief.recording.time_s.resize(rows);

@@ -421,8 +421,8 @@ TEST(GatheringPays, ForHundredsOfLampsButNotForThousands) {
   constexpr uint64_t rays = 1ull << 23;
   EXPECT_TRUE(gathering_pays(bins * 49, rays));
   EXPECT_TRUE(gathering_pays(bins * 500, rays));
-  EXPECT_FALSE(gathering_pays(bins * 3000, rays));
-  EXPECT_TRUE(gathering_pays(bins * 3000, 64 * rays));
+  EXPECT_FALSE(gathering_pays(bins * 5000, rays));
+  EXPECT_TRUE(gathering_pays(bins * 5000, 64 * rays));
   EXPECT_TRUE(gathering_pays(bins * 49, 1024));  // half a second whatever the rays take
 }
 
