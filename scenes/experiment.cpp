@@ -56,7 +56,11 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
             [&](const std::string& line) { model.notices.push_back(source.name() + ": " + line); },
         .folder = file.path.parent_path(),
         .input = [&](const std::string& name,
-                     const std::string& hash) { model.inputs.emplace_back(name, hash); }};
+                     const std::string& hash) { model.inputs.emplace_back(name, hash); },
+        .within =
+            [&](const std::string& name) {
+              return at_light ? profile_of_lights(*lights, name) : std::nullopt;
+            }};
     const SourceKind& kind = kinds[source.choice("kind", names_of(kinds))];
     for (Beam& beam : kind.make(source, context)) {
       require_spectrum_inside(source, beam, scene.bands);

@@ -82,23 +82,23 @@ class Loader {
          const GltfOpen& open, MemoryBudget* budget)
       : binary_(binary), is_glb_(is_glb), file_(file), open_(open), budget_(budget) {}
 
-  std::string image(const nlohmann::json& image, size_t index) {
-    section_ = "images";
-    const auto uri = image.find("uri");
-    if (uri == image.end() || !uri->is_string()) {
-      throw wrong(index, "uri", "nothing", "a text, or a bufferView");
+  std::string uri(const UriHolder& holder) {
+    where_ = holder.where;
+    const auto uri = holder.object.find("uri");
+    if (uri == holder.object.end() || !uri->is_string()) {
+      throw wrong("uri", "nothing", "a text, or a bufferView");
     }
     const std::string& text = uri->get_ref<const std::string&>();
-    return text.starts_with("data:") ? data_uri(text, index, {"image/png", "image/jpeg"})
-                                     : external(text, index);
+    return text.starts_with("data:") ? data_uri(text, holder.media_types) : external(text);
   }
 
   Buffers load(const nlohmann::json& list) {
     for (size_t i = 0; i < list.size(); ++i) {
+      where_ = pointer("buffers", i);
       Buffer buffer{list[i]["byteLength"].get<uint64_t>(), bytes(list[i], i)};
       if (buffer.bytes && buffer.bytes->size() < buffer.byte_length) {
         throw wrong(
-            i, "byteLength", std::to_string(buffer.byte_length),
+            "byteLength", std::to_string(buffer.byte_length),
             "at most the " + std::to_string(buffer.bytes->size()) + " bytes that are there");
       }
       loaded_.buffers.push_back(std::move(buffer));
@@ -107,9 +107,9 @@ class Loader {
   }
 
  private:
-  InputError wrong(size_t i, const char* member, const std::string& found,
+  InputError wrong(const char* member, const std::string& found,
                    const std::string& expected) const {
-    return {{file_}, pointer(section_, i, member), found, expected};
+    return {{file_}, where_ + pointer(member), found, expected};
   }
 
   std::optional<std::string> bytes(const nlohmann::json& buffer, size_t i) {
@@ -117,65 +117,64 @@ class Loader {
     if (uri != buffer.end()) {
       const std::string& text = uri->get_ref<const std::string&>();
       return text.starts_with("data:")
-                 ? data_uri(text, i, {"application/octet-stream", "application/gltf-buffer"})
-                 : external(text, i);
+                 ? data_uri(text, {"application/octet-stream", "application/gltf-buffer"})
+                 : external(text);
     }
     if (!is_glb_ || i != 0) return std::nullopt;
-    if (!binary_) throw wrong(i, "uri", "neither it nor a BIN chunk", "one of them");
-    budget_->charge(binary_->size(), 1, pointer("buffers", i));
+    if (!binary_) throw wrong("uri", "neither it nor a BIN chunk", "one of them");
+    budget_->charge(binary_->size(), 1, where_);
     return std::string(*binary_);
   }
 
   // RFC 2397; the media types are those that section 3.6.1.1 of the specification admits.
-  std::string data_uri(const std::string& uri, size_t i,
-                       const std::array<std::string_view, 2>& types) {
+  std::string data_uri(const std::string& uri, const std::array<std::string_view, 2>& types) {
     const size_t comma = uri.find(',');
-    if (comma == std::string::npos) throw wrong(i, "uri", excerpt(uri), "a data URI with a comma");
+    if (comma == std::string::npos) throw wrong("uri", excerpt(uri), "a data URI with a comma");
     std::string type = lower_case(std::string_view(uri).substr(5, comma - 5));
     const std::string_view data = std::string_view(uri).substr(comma + 1);
     constexpr std::string_view marker = ";base64";
     const bool base64 = type.ends_with(marker);
     if (base64) type.resize(type.size() - marker.size());
     if (!type.empty() && type != types[0] && type != types[1]) {
-      throw wrong(i, "uri", "media type \"" + type + "\"",
+      throw wrong("uri", "media type \"" + type + "\"",
                   std::string(types[0]) + " or " + std::string(types[1]));
     }
-    budget_->charge(data.size(), 1, pointer(section_, i, "uri"));
+    budget_->charge(data.size(), 1, where_ + "/uri");
     const std::optional<std::string> decoded =
         base64 ? base64_decoded(data) : percent_decoded(data);
     if (!decoded) {
-      throw wrong(i, "uri", excerpt(uri),
+      throw wrong("uri", excerpt(uri),
                   std::string("data in ") + (base64 ? "base64" : "percent encoding"));
     }
     return *decoded;
   }
 
   // The path of an external file, relative to the model's folder and inside it.
-  std::string checked_path(const std::string& uri, size_t i) const {
+  std::string checked_path(const std::string& uri) const {
     const std::string expected = "a relative path inside the model's folder";
     const std::optional<std::string> decoded = percent_decoded(uri);
     if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) {
-      throw wrong(i, "uri", excerpt(uri), expected);
+      throw wrong("uri", excerpt(uri), expected);
     }
     const std::string first = decoded->substr(0, decoded->find_first_of("/\\"));
     const std::filesystem::path path = std::filesystem::path(*decoded).lexically_normal();
     if (first.find(':') != std::string::npos || decoded->find('\\') != std::string::npos ||
         path.is_absolute() || *path.begin() == "..") {
-      throw wrong(i, "uri", excerpt(uri), expected);
+      throw wrong("uri", excerpt(uri), expected);
     }
     return path.generic_string();
   }
 
-  std::string external(const std::string& uri, size_t i) {
-    const std::string path = checked_path(uri, i);
+  std::string external(const std::string& uri) {
+    const std::string path = checked_path(uri);
     std::optional<std::string> found = open_(path);
-    if (!found) throw wrong(i, "uri", excerpt(uri) + ", which does not exist", "an existing file");
-    budget_->charge(found->size(), 1, pointer(section_, i, "uri"));
+    if (!found) throw wrong("uri", excerpt(uri) + ", which does not exist", "an existing file");
+    budget_->charge(found->size(), 1, where_ + "/uri");
     loaded_.inputs.emplace_back(path, content_hash(*found));
     return std::move(*found);
   }
 
-  const char* section_ = "buffers";
+  std::string where_;  // of what is being loaded, a JSON pointer
   std::optional<std::string_view> binary_;
   bool is_glb_;
   const std::string& file_;
@@ -194,9 +193,9 @@ Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_v
   return Loader(binary, is_glb, file, open, budget).load(*list);
 }
 
-std::string load_image_uri(const nlohmann::json& image, size_t index, const std::string& file,
-                           const GltfOpen& open, MemoryBudget* budget) {
-  return Loader(std::nullopt, false, file, open, budget).image(image, index);
+std::string load_uri(const UriHolder& holder, const std::string& file, const GltfOpen& open,
+                     MemoryBudget* budget) {
+  return Loader(std::nullopt, false, file, open, budget).uri(holder);
 }
 
 }  // namespace photorque::gltf

@@ -1,6 +1,7 @@
 // The bytes that a glTF document refers to, and the only place of the reader that asks for files.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -33,9 +34,15 @@ Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_v
                      bool is_glb, const std::string& file, const GltfOpen& open,
                      MemoryBudget* budget);
 
-// The bytes behind the URI of an image, `index` of its section: embedded as PNG or JPEG, or a file.
-// Throws InputError as above.
-std::string load_image_uri(const nlohmann::json& image, size_t index, const std::string& file,
-                           const GltfOpen& open, MemoryBudget* budget);
+// Something with a `uri`.
+struct UriHolder {
+  const nlohmann::json& object;
+  std::string where;                            // JSON pointer, for messages
+  std::array<std::string_view, 2> media_types;  // that may be embedded
+};
+
+// The bytes behind its URI: embedded, or a file. Throws InputError as above.
+std::string load_uri(const UriHolder& holder, const std::string& file, const GltfOpen& open,
+                     MemoryBudget* budget);
 
 }  // namespace photorque::gltf

@@ -193,4 +193,27 @@ Document read_document(const std::string& bytes, const std::string& file, const 
   return document;
 }
 
+const json& element_of(const Document& document, const std::string& where, const json& index,
+                       const char* section) {
+  const auto list = document.json.find(section);
+  const bool there = list != document.json.end() && list->is_array() &&
+                     index.is_number_unsigned() && index.get<uint64_t>() < list->size() &&
+                     (*list)[index.get<size_t>()].is_object();
+  if (!there) throw document.wrong(where, describe_json(index), std::string("one of ") + section);
+  return (*list)[index.get<size_t>()];
+}
+
+std::string bytes_of_view(const Document& document, const std::string& where, const json& index) {
+  const json& view = element_of(document, where, index, "bufferViews");
+  const auto buffer = view.value("buffer", size_t{0});
+  const auto offset = view.value("byteOffset", uint64_t{0});
+  const auto length = view.value("byteLength", uint64_t{0});
+  if (buffer >= document.buffers.size() || !document.buffers[buffer].bytes ||
+      offset > document.buffers[buffer].bytes->size() ||
+      length > document.buffers[buffer].bytes->size() - offset) {
+    throw document.wrong(where, "a view beyond its buffer", "a view of bytes that are there");
+  }
+  return document.buffers[buffer].bytes->substr(offset, length);
+}
+
 }  // namespace photorque::gltf

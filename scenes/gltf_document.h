@@ -37,4 +37,13 @@ struct Document {
 Document read_document(const std::string& bytes, const std::string& file, const GltfOpen& open,
                        MemoryBudget* budget);
 
+// Element `index` (of any JSON type, as found at the pointer `where`) of a section of the document.
+// Throws InputError for an index that is none.
+const nlohmann::json& element_of(const Document& document, const std::string& where,
+                                 const nlohmann::json& index, const char* section);
+
+// The bytes of a buffer view, likewise.
+std::string bytes_of_view(const Document& document, const std::string& where,
+                          const nlohmann::json& index);
+
 }  // namespace photorque::gltf

@@ -13,30 +13,6 @@ using Colour = std::array<double, 3>;
 
 constexpr int luminance_steps = 32;
 
-// An index into a section of the document, at `where`.
-const json& referred(const Document& document, const std::string& where, const json& index,
-                     const char* section) {
-  const auto list = document.json.find(section);
-  const bool there = list != document.json.end() && list->is_array() &&
-                     index.is_number_unsigned() && index.get<uint64_t>() < list->size() &&
-                     (*list)[index.get<size_t>()].is_object();
-  if (!there) throw document.wrong(where, describe_json(index), std::string("one of ") + section);
-  return (*list)[index.get<size_t>()];
-}
-
-std::string bytes_of_view(const Document& document, const std::string& where, const json& index) {
-  const json& view = referred(document, where, index, "bufferViews");
-  const auto buffer = view.value("buffer", size_t{0});
-  const auto offset = view.value("byteOffset", uint64_t{0});
-  const auto length = view.value("byteLength", uint64_t{0});
-  if (buffer >= document.buffers.size() || !document.buffers[buffer].bytes ||
-      offset > document.buffers[buffer].bytes->size() ||
-      length > document.buffers[buffer].bytes->size() - offset) {
-    throw document.wrong(where, "a view beyond its buffer", "the bytes of a picture");
-  }
-  return document.buffers[buffer].bytes->substr(offset, length);
-}
-
 // The colour of the picture at texture coordinates: the texel that holds them.
 Colour texel(const BaseColours& picture, const Vec2& uv) {
   const auto place = [](double coordinate, int size) {
@@ -107,14 +83,14 @@ std::optional<BaseColours> base_colour_picture(const Document& document, int mat
   const json& info = document.json[place];
   if (!info.is_object() || info.value("texCoord", json(0)) != 0) return std::nullopt;
   const json& texture =
-      referred(document, where + "/index", info.value("index", json()), "textures");
+      element_of(document, where + "/index", info.value("index", json()), "textures");
   const json index = texture.value("source", json());
-  const json& image = referred(document, where, index, "images");
+  const json& image = element_of(document, where, index, "images");
   const std::string named = pointer("images", index.get<size_t>());
   const std::string bytes =
       image.contains("bufferView")
           ? bytes_of_view(document, named + "/bufferView", image["bufferView"])
-          : load_image_uri(image, index.get<size_t>(), document.file, open, budget);
+          : load_uri({image, named, {"image/png", "image/jpeg"}}, document.file, open, budget);
   try {
     BaseColours picture = read(bytes);
     budget->charge(picture.rgb.size(), sizeof(float), named);

@@ -8,6 +8,12 @@ namespace photorque {
 
 SourceFile read_source_file(const Settings& settings, const SourceContext& context) {
   const std::filesystem::path given = settings.text("file");
+  if (context.within) {
+    if (const auto bytes = context.within(given.string())) {
+      if (context.input) context.input(given.string(), content_hash(*bytes));
+      return {given.string(), *bytes};
+    }
+  }
   const std::filesystem::path path = context.folder / given;
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(path, unreadable)) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct SourceContext {
   std::filesystem::path folder = {};
   // Told the name and the content hash of every file read, for the provenance. May be empty.
   std::function<void(const std::string& name, const std::string& hash)> input = {};
+  // The bytes of a file that lies within another, by the name that a source's key gives it. May be
+  // empty.
+  std::function<std::optional<std::string>(const std::string& name)> within = {};
 };
 
 // One kind of source: `kind = "led"`.

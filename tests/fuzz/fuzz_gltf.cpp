@@ -1,8 +1,10 @@
-// Fuzz target: any bytes, read as glTF, give a scene or an InputError. tools/sanitize runs it.
+// Fuzz target: any bytes, read as glTF, give a scene and lamps or an InputError. tools/sanitize
+// runs it.
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
+#include "scenes/gltf_lights.h"
 #include "scenes/gltf_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -17,6 +19,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     photorque::read_gltf_bytes(bytes, "fuzz", zeros, options);
   } catch (const photorque::InputError&) {
     // The one exception that is allowed.
+  }
+  try {
+    photorque::read_gltf_lights_bytes(bytes, "fuzz", zeros, 1.0, options.largest_bytes);
+  } catch (const photorque::InputError&) {
+    // Likewise.
   }
   return 0;
 }

@@ -1,6 +1,6 @@
-// Fuzz target: any bytes, read as a recording, a CCSDS attitude message, a table of numbers or
-// a wrench table, give that or an InputError. These readers take a file, so the bytes go through
-// one in memory.
+// Fuzz target: any bytes, read as a recording, a CCSDS attitude message, a table of numbers, of
+// torque or of measured scattering, give that or an InputError. Most of these readers take a file,
+// so the bytes go through one in memory.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -16,6 +16,7 @@
 #include "attitude/recording.h"
 #include "attitude/torque_surface.h"
 #include "core/errors.h"
+#include "scenes/brdf_file.h"
 
 namespace {
 
@@ -41,5 +42,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   try_to_read([](const auto& at) { return read_wrench_table(at); }, path);
   try_to_read([](const auto& at) { return read_column_names(at); }, path);
   close(file);
+  try_to_read(
+      [&](const auto&) {
+        return read_brdf(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
+      },
+      path);
   return 0;
 }

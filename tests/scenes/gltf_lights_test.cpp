@@ -10,6 +10,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/sobol.h"
 #include "receivers/flux_map.h"
 #include "scenes/experiment.h"
 #include "scenes/gltf_writer.h"
@@ -136,6 +137,79 @@ TEST(GltfLights, ASpotMayBeAsWideAsAHemisphere) {
   EXPECT_EQ(lights[0].outer_cone_rad, 0.5 * pi);
 }
 
+// A lamp that shines 10 deg beside its axis, towards C0 (linear in C to nothing at ±90 deg), as
+// LM-63 text and as base64 (Python's b64encode).
+constexpr const char* leaning_ies =
+    "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 5 1 2 0 0 0\n1 1 10\n0 10 20\n0 90 180 270 360\n"
+    "0 100 0\n0 0 0\n0 0 0\n0 0 0\n0 100 0\n";
+constexpr const char* leaning_base64 =
+    "SUVTTkE6TE0tNjMtMjAwMgpUSUxUPU5PTkUKMSAtMSAxIDMgNSAxIDIgMCAwIDAKMSAxIDEwCjAgMTAg"
+    "MjAKMCA5MCAxODAgMjcwIDM2MAowIDEwMCAwCjAgMCAwCjAgMCAwCjAgMCAwCjAgMTAwIDAK";
+
+// A profile at (0, 0, 1), looking down, its x axis 40 deg from x towards y.
+json profile_file(json light) {
+  json file = lamp_file();
+  file["extensionsUsed"].push_back("EXT_lights_ies");
+  file["extensions"]["EXT_lights_ies"]["lights"] = {std::move(light)};
+  json& nodes = file["nodes"];
+  const size_t first = nodes.size();
+  const double half = std::sqrt(0.5), turn = 20.0 * degree_rad;
+  nodes.push_back({{"translation", {0.0, 1.0, 0.0}},
+                   {"rotation", {0.0, std::sin(turn), 0.0, std::cos(turn)}},
+                   {"children", {first + 1}}});
+  nodes.push_back({{"name", "measured"},
+                   {"rotation", {-half, 0.0, 0.0, half}},
+                   {"extensions", {{"EXT_lights_ies", {{"light", 0}, {"multiplier", 7.0}}}}}});
+  file["scenes"][0]["nodes"].push_back(first);
+  return file;
+}
+
+Vec3 mean_direction(const Beam& beam) {
+  SampleBlock samples;
+  RayBlock rays;
+  sobol_points({}, 0,
+               {samples.bits[0].data(), samples.bits[1].data(), samples.bits[2].data(),
+                samples.bits[3].data()});
+  beam.emitter->emit(samples, rays);
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < ray_block; ++i) {
+    sum += Vec3(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
+  }
+  return beam.lab_from_emitter.direction(sum / ray_block);
+}
+
+TEST(GltfLights, AProfileIsAMeasuredLampTurnedAsItsNode) {
+  const std::string data = std::string("data:application/x-ies-lm-63;base64,") + leaning_base64;
+  for (const char* uri : {"leaning.ies", data.c_str()}) {
+    const fs::path folder = written(profile_file({{"uri", uri}}),
+                                    "[[source]]\nlight = \"measured\"\npower_W = 2\n"
+                                    "wavelength_nm = 730\n");
+    std::ofstream(folder / "leaning.ies") << leaning_ies;
+    const Experiment experiment = read_experiment(folder / "lamps.toml");
+    ASSERT_EQ(experiment.beams.size(), 1u);
+    const Beam& beam = experiment.beams[0];
+    EXPECT_EQ(beam.emitter->power_W(), 2.0);  // candela and multipliers are for pictures
+    EXPECT_LT((beam.lab_from_emitter.translation_m - Vec3(0, 0, 1)).norm(), 1e-12);
+    const Vec3 mean = mean_direction(beam);
+    EXPECT_LT(mean.z(), -0.95);
+    EXPECT_NEAR(std::atan2(mean.y(), mean.x()), 40.0 * degree_rad, 0.02);
+    EXPECT_GT(std::hypot(mean.x(), mean.y()), 0.1);
+  }
+}
+
+TEST(GltfLights, AProfileOfABufferViewIsRead) {
+  json file = profile_file({{"bufferView", 0}, {"mimeType", "application/x-ies-lm-63"}});
+  const size_t length = std::string(leaning_ies).size();
+  file["buffers"].push_back(
+      {{"byteLength", length},
+       {"uri", std::string("data:application/octet-stream;base64,") + leaning_base64}});
+  file["bufferViews"].push_back({{"buffer", file["buffers"].size() - 1}, {"byteLength", length}});
+  file["extensions"]["EXT_lights_ies"]["lights"][0]["bufferView"] = file["bufferViews"].size() - 1;
+  const auto lights = read_gltf_lights(written(file) / "lamps.gltf", 1.0);
+  ASSERT_EQ(lights.back().kind, GltfLight::Kind::profile);
+  EXPECT_EQ(lights.back().profile_bytes, leaning_ies);
+}
+
 std::string refusal(const json& file, const std::string& source) {
   try {
     read_experiment(written(file, "[[source]]\n" + source) / "lamps.toml");
@@ -160,6 +234,13 @@ TEST(GltfLights, WrongLightsNameTheirPlace) {
   json missing = lamp_file();
   missing["extensions"]["KHR_lights_punctual"]["lights"] = json::array();
   EXPECT_THAT(refusal(missing, "light = \"lamp\"\n" + led), HasSubstr("the number of a light"));
+  const std::string profile = "light = \"measured\"\npower_W = 1\nwavelength_nm = 730\n";
+  EXPECT_THAT(refusal(profile_file({{"uri", "none.ies"}}), profile),
+              HasSubstr("EXT_lights_ies/lights/0/uri"));
+  EXPECT_THAT(refusal(profile_file({{"bufferView", 99}}), profile),
+              HasSubstr("EXT_lights_ies/lights/0/bufferView"));
+  EXPECT_THAT(refusal(profile_file({{"uri", "data:,not%20a%20profile"}}), profile),
+              HasSubstr("lamps.gltf/extensions/EXT_lights_ies/lights/0"));
   json kind = lamp_file();
   kind["extensions"]["KHR_lights_punctual"]["lights"][2]["type"] = "area";
   EXPECT_THAT(refusal(kind, "light = \"lamp\"\n" + led), HasSubstr("\"spot\""));
