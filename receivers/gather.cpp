@@ -180,7 +180,7 @@ class Gather {
   void prepare_cell_means() {
     std::set<int> sizes;
     const std::function<void(int)> halve = [&](int side) {
-      if (side < 2 || !sizes.insert(side).second) return;
+      if (!sizes.insert(side).second || side < 2) return;
       halve(side / 2);
       halve(side - side / 2);
     };

@@ -82,8 +82,9 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
   DayResult day;
   double charge_J = s.battery.capacity_J * s.battery.charge;
   const auto steps = static_cast<int64_t>(std::ceil(s.duration_s / s.step_s));
+  const double step_s = s.duration_s / static_cast<double>(steps);
   for (int64_t k = 0; k <= steps; ++k) {
-    const double time_s = static_cast<double>(k) * s.step_s;
+    const double time_s = static_cast<double>(k) * step_s;
     const double light = s.droop.light_at(time_s);
     const double array_W =
         s.lamps_on ? s.tracker_efficiency * surface.at(temperature_K, light) : 0.0;
@@ -93,10 +94,10 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
     day.charge_J.push_back(charge_J);
     if (k == steps) break;
     const double served =
-        step_battery(s.battery, array_W * s.converter_efficiency - s.load_W, s.step_s, &charge_J);
+        step_battery(s.battery, array_W * s.converter_efficiency - s.load_W, step_s, &charge_J);
     if (served < 1.0 && !day.empty_after_s) day.empty_after_s = time_s;
-    day.array_energy_J += array_W * s.step_s;
-    day.load_energy_J += s.load_W * s.step_s;
+    day.array_energy_J += array_W * step_s;
+    day.load_energy_J += s.load_W * step_s;
     if (s.heat) {
       // Exact for constant power over the step, so that any step is stable.
       const double heat_W_m2 =
@@ -104,11 +105,11 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
       const double end_K = s.heat->air_K + heat_W_m2 / s.heat->convection_W_m2_K;
       temperature_K =
           end_K + (temperature_K - end_K) *
-                      std::exp(-s.step_s * s.heat->convection_W_m2_K / s.heat->capacity_J_m2_K);
+                      std::exp(-step_s * s.heat->convection_W_m2_K / s.heat->capacity_J_m2_K);
     }
   }
   day.final_temperature_K = temperature_K;
-  day.mean_array_W = day.array_energy_J / (static_cast<double>(steps) * s.step_s);
+  day.mean_array_W = day.array_energy_J / s.duration_s;
   return day;
 }
 

@@ -46,7 +46,7 @@ struct DaySettings {
   double tracker_efficiency = 1.0;
   double load_W = 25.0;
   double duration_s = 86400.0;
-  double step_s = 30.0;
+  double step_s = 30.0;  // at most; a whole number of steps make the duration
   bool lamps_on = true;
 };
 

@@ -164,6 +164,11 @@ CellModel read_cell(const Settings& array) {
       s.number_or("photocurrent_slope_per_K", model.photocurrent_slope_1_K);
   model.reference_area_m2 =
       s.number_or("reference_area_m2", model.reference_area_m2, Range::positive());
+  for (const char* key : {"saturation_1_A", "saturation_2_A", "series_ohm", "shunt_ohm"}) {
+    if (!s.has(key) || s.has("reference_area_m2")) continue;
+    throw s.error("reference_area_m2", "nothing beside " + std::string(key),
+                  "the area of the cell that it was found on");
+  }
   if (p.saturation_1_A + p.saturation_2_A == 0.0) {
     throw s.error("saturation_1_A", "0 in both diodes", "a saturation current > 0 in one of them");
   }

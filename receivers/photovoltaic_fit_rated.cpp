@@ -91,8 +91,9 @@ LeastSquaresFit fit(std::span<const RatedPoint> points, double guess_V) {
   return best;
 }
 
-// E₀ with which V_oc changes as the datasheet says, over the next 10 kelvin.
-double gap_eV(const CellModel& model, double light_A, double slope_V_K) {
+// E₀ with which V_oc changes as the datasheet says, over the next 10 kelvin, while the light's
+// current grows by `growth_1_K`.
+double gap_eV(const CellModel& model, double light_A, double growth_1_K, double slope_V_K) {
   constexpr double step_K = 10.0;
   const double temperature_K = model.reference.temperature_K;
   const double wanted_V = CellCurve(model.reference).open_circuit_V(light_A) + step_K * slope_V_K;
@@ -100,8 +101,8 @@ double gap_eV(const CellModel& model, double light_A, double slope_V_K) {
   for (int i = 0; i < 60; ++i) {
     CellModel trial = model;
     trial.gap_eV = std::midpoint(low, high);
-    const double v =
-        CellCurve(parameters_at(trial, 1.0, temperature_K + step_K)).open_circuit_V(light_A);
+    const double v = CellCurve(parameters_at(trial, 1.0, temperature_K + step_K))
+                         .open_circuit_V(light_A * (1.0 + step_K * growth_1_K));
     (v > wanted_V ? low : high) = trial.gap_eV;
   }
   return std::midpoint(low, high);
@@ -120,7 +121,7 @@ RatedFit described(const VectorXd& x, std::span<const RatedPoint> points,
   result.model.reference = result.diode.parameters(first.temperature_K);
   const double light_A = CellCurve(result.model.reference).photocurrent_A(first.short_circuit_A);
   result.diode.photocurrent_A = {light_A, 0.0};
-  result.model.gap_eV = gap_eV(result.model, light_A * (1.0 + 10.0 * slopes.short_circuit_1_K),
+  result.model.gap_eV = gap_eV(result.model, light_A, slopes.short_circuit_1_K,
                                slopes.open_circuit_1_K * first.open_circuit_V);
   result.model.photocurrent_slope_1_K = slopes.short_circuit_1_K;
   result.short_circuit_A_m2_W = first.short_circuit_A / first.irradiance_W_m2;

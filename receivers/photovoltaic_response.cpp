@@ -16,10 +16,11 @@ struct BandShare {
   double current_A_W = 0.0;
 };
 
-BandShare line_share(const QuantumEfficiency& efficiency, double wavelength_m, double low_m,
+// Of a line so narrow that all of its light counts as of one wavelength.
+BandShare line_share(const QuantumEfficiency& efficiency, const Spectrum& spectrum, double low_m,
                      double high_m) {
-  if (wavelength_m < low_m || wavelength_m >= high_m) return {};
-  return {1.0, responsivity_A_W(efficiency, wavelength_m)};
+  const double power = band_fractions(spectrum, Bands{{low_m, high_m}})[0];
+  return {power, power * responsivity_A_W(efficiency, spectrum.centre_m)};
 }
 
 BandShare smooth_share(const QuantumEfficiency& efficiency, const Spectrum& spectrum, double low_m,
@@ -48,7 +49,7 @@ BandShare smooth_share(const QuantumEfficiency& efficiency, const Spectrum& spec
 BandShare share_of(const QuantumEfficiency& efficiency, const Spectrum& spectrum, double low_m,
                    double high_m) {
   const bool line = spectrum.shape == Spectrum::Shape::gaussian && spectrum.fwhm_m < 2 * step_m;
-  return line ? line_share(efficiency, spectrum.centre_m, low_m, high_m)
+  return line ? line_share(efficiency, spectrum, low_m, high_m)
               : smooth_share(efficiency, spectrum, low_m, high_m);
 }
 

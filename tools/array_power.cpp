@@ -20,6 +20,30 @@ std::vector<double> mean_wavelengths_m(const std::vector<double>& ideal_responsi
   return wavelength_m;
 }
 
+// Within a band all light counts alike, whichever source it is from: said where it is not. From the
+// ampere per watt of each source in the band.
+std::vector<std::string> unlike_sources(const QuantumEfficiency& efficiency, const Bands& bands,
+                                        const std::vector<WeighedSpectrum>& spectra) {
+  constexpr double alike = 0.01;
+  std::vector<std::string> notices;
+  for (size_t b = 0; b < static_cast<size_t>(bands.count()); ++b) {
+    double least = 1e300, most = 0.0;
+    for (const WeighedSpectrum& one : spectra) {
+      if (!(band_fractions(one.spectrum, bands)[b] > 1e-6)) continue;
+      const double a = band_responsivity_A_W(efficiency, bands, std::span(&one, 1))[b];
+      least = std::min(least, a);
+      most = std::max(most, a);
+    }
+    if (!(most > (1.0 + alike) * least)) continue;
+    notices.push_back(
+        "in band " + std::to_string(b + 1) + " the cells turn " + show(least) + " to " +
+        show(most) +
+        " A/W of the sources' light into current; the mean over what they emit is "
+        "taken for all, so give unlike sources bands of their own ([scene] bands_nm)");
+  }
+  return notices;
+}
+
 }  // namespace
 
 ArrayPower read_array_power(OpticalRun& run) {
@@ -47,6 +71,7 @@ ArrayPower read_array_power(OpticalRun& run) {
     return std::vector<double>(values.begin(), values.begin() + bands.count());
   };
   array.responsivity_A_W = over_bands(array.design.efficiency);
+  array.notices = unlike_sources(array.design.efficiency, bands, spectra);
   array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
   if (array.design.front || has_own_front(experiment.scene, map.grid())) {
     const InputLocation where = tables[0].where();

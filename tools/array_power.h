@@ -18,6 +18,7 @@ struct ArrayPower {
   std::optional<size_t> incidence;             // that of the IncidenceReceiver
   std::vector<double> responsivity_A_W;        // per band of the scene
   std::vector<double> ideal_responsivity_A_W;  // were every photon converted
+  std::vector<std::string> notices;            // one line each
   ArrayReport report;
 };
 

@@ -138,8 +138,19 @@ void print_uniformity(const Console& console, const Table& table) {
   }
 }
 
-Product day_report(const Console& console, const ArrayPower& array, const ArrayResult& result) {
-  const DaySettings& settings = *array.report.day;
+// The warmest cells may absorb no less than they deliver.
+void check_heat(const DaySettings& day, const ArrayResult& result,
+                const std::filesystem::path& experiment) {
+  const double share = result.power_W.value / result.power_on_cells_W.value;
+  if (!day.lamps_on || !day.heat || !(day.heat->absorptance < share)) return;
+  throw InputError({experiment.string()}, "array.day.absorptance", show(day.heat->absorptance),
+                   "at least what the cells deliver of the light on them, " + show(share));
+}
+
+Product day_report(const Console& console, const ArrayPower& array, const ArrayResult& result,
+                   double tracker_efficiency) {
+  DaySettings settings = *array.report.day;
+  settings.tracker_efficiency = tracker_efficiency;
   const DayResult day = run_day(array.design, result, settings);
   const double hours = settings.duration_s / 3600.0;
   const double capacity_Wh = settings.battery.capacity_J / 3600.0;
@@ -149,10 +160,11 @@ Product day_report(const Console& console, const ArrayPower& array, const ArrayR
   console.line("  load of " + show(settings.load_W) + " W needs " + show(settings.load_W * hours) +
                " Wh; the battery holds " + show(capacity_Wh) + " Wh, which is " +
                show(capacity_Wh / hours) + " W over the same time");
-  console.line("  battery alone           " +
-               show(capacity_Wh * settings.battery.charge * settings.battery.discharge_efficiency /
-                    settings.load_W) +
-               " h");
+  if (settings.load_W > 0.0) {
+    const double usable_Wh =
+        capacity_Wh * settings.battery.charge * settings.battery.discharge_efficiency;
+    console.line("  battery alone           " + show(usable_Wh / settings.load_W) + " h");
+  }
   console.line(day.empty_after_s
                    ? "  battery is empty after  " + show(*day.empty_after_s / 3600.0) + " h"
                    : "  battery ends at         " + show(day.charge_J.back() / 3600.0) + " Wh");
@@ -249,7 +261,10 @@ Product report_array(const Console& console, const OpticalRun& run, const ArrayP
     append(product, target_report(console, *report.target, report.published, array.design, result,
                                   in, attitude.tilt_rad));
   }
-  if (report.day) append(product, day_report(console, array, result));
+  if (report.day) {
+    check_heat(*report.day, result, run.experiment().file.path);
+    append(product, day_report(console, array, result, in.tracker_efficiency.value_or(1.0)));
+  }
   if (report.layout_most_tried)
     append(product, layout_report(console, array, tables_for(array, result, lights), lights));
   return product;

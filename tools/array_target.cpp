@@ -40,9 +40,11 @@ void print_requirements(const Console& console, const ArrayTarget& target,
   console.line("  a photon has " + show(light.photon_V) + " eV: at most " +
                show(1.0 / light.photon_V) + " A/W; " + show_percent(target.efficiency) +
                " needs EQE V_oc FF = " + show(needed_V) + " V");
-  console.line("  light on the cells for it: " + show(target.power_W / target.efficiency) +
-               " W; at this array's " + show_percent(result.efficiency.value) + ": " +
-               show(target.power_W / result.efficiency.value) + " W");
+  const double ours = result.efficiency.value;
+  console.line("  light on the cells for it: " + show(target.power_W / target.efficiency) + " W" +
+               (ours > 0.0 ? "; at this array's " + show_percent(ours) + ": " +
+                                 show(target.power_W / ours) + " W"
+                           : ""));
 }
 
 // Tilted, an array shows the cosine of its area; a published power below that tells what else was
@@ -99,6 +101,7 @@ Table known_cell_table(const Console& console, const ArrayDesign& design, const 
                {"eqe_voc_ff_V", {}, {}},
                {"efficiency", {}, {}}}};
   for (const double irradiance : {1000.0, irradiance_W_m2}) {
+    if (!(irradiance > 0.0)) continue;  // no light falls on the array
     console.line("  known cells at " + show(irradiance) + " W/m²:");
     for (const CellFigures& f : known_cell_figures(
              irradiance, light.photon_V, light.quantum_efficiency, design.temperature_K)) {

@@ -82,7 +82,7 @@ IvSweep read_sweep(const fs::path& file) {
 
 RatedPoint read_point(const Settings& s) {
   return {s.number_or("irradiance_W_m2", 1000.0, Range::positive()),
-          s.number_or("temperature_K", 298.15, Range::positive()),
+          s.number_or("temperature_K", 298.15, {1.0, 1000.0}),
           s.number("short_circuit_A", Range::positive()),
           s.number("open_circuit_V", Range::positive()),
           s.number("maximum_A", Range::positive()),
@@ -99,6 +99,10 @@ FitTask read_task(const Settings& root, const fs::path& folder) {
                   "either curves = [\"sweep.csv\"] or [[fit.datasheet]]");
   }
   if (s.has("datasheet")) {
+    if (s.has("temperature_K")) {
+      throw s.error("temperature_K", "a temperature beside a datasheet",
+                    "temperature_K in [[fit.datasheet]]");
+    }
     for (const Settings& point : s.tables("datasheet")) task.datasheet.push_back(read_point(point));
     task.slopes.short_circuit_1_K = s.number_or("short_circuit_slope_per_K", 5e-4);
     task.slopes.open_circuit_1_K = s.number_or("open_circuit_slope_per_K", -3e-3);
@@ -115,6 +119,15 @@ FitTask read_task(const Settings& root, const fs::path& folder) {
     task.noise.voltage_fraction = s.number_or("voltage_noise", 5e-4, Range::positive());
     task.noise.correlation_points = s.number_or("correlation_points", 0.0, Range::not_negative());
     task.substrings = static_cast<int>(s.integer_or("substrings", 0, 0, 100));
+    if (task.substrings > 0 && task.cells_in_series > 1 &&
+        task.cells_in_series % task.substrings != 0) {
+      throw s.error("cells_in_series", std::to_string(task.cells_in_series),
+                    "a multiple of substrings, " + std::to_string(task.substrings));
+    }
+    if (task.substrings > 0 && s.has("correlation_points")) {
+      throw s.error("correlation_points", "a correlation for a partly shaded string",
+                    "none: there every point has an error of its own");
+    }
     if (s.flag_or("even_voltage_steps", false)) {
       const EvenSweeps even = with_even_steps(task.sweeps, task.noise);
       task.sweeps = even.sweeps;
@@ -154,9 +167,21 @@ void print_rows(const Console& console, const std::vector<Row>& rows) {
   }
 }
 
-std::vector<Row> diode_rows(const SingleDiode& d, const FitTask& task) {
+double ideality_per_scale(const FitTask& task) {
   const double thermal_V = boltzmann_J_K * task.temperature_K / elementary_charge_C;
-  const double per_cell = 1.0 / (task.cells_in_series * thermal_V);
+  return 1.0 / (task.cells_in_series * thermal_V);
+}
+
+// No diode of one kind of recombination is sharper than its thermal voltage.
+void print_ideality_hint(const Console& console, const SingleDiode& d, const FitTask& task) {
+  const double ideality = d.scale_V.value * ideality_per_scale(task);
+  if (ideality >= 0.9 && ideality <= 3.0) return;
+  console.line("  note: an ideality of " + show(ideality) + " is unusual: are cells_in_series (" +
+               std::to_string(task.cells_in_series) + ") and the temperature right?");
+}
+
+std::vector<Row> diode_rows(const SingleDiode& d, const FitTask& task) {
+  const double per_cell = ideality_per_scale(task);
   return {{"photocurrent_A", d.photocurrent_A},
           {"saturation_A", d.saturation_A},
           {"ideality", {d.scale_V.value * per_cell, d.scale_V.standard_error * per_cell}},
@@ -164,20 +189,35 @@ std::vector<Row> diode_rows(const SingleDiode& d, const FitTask& task) {
           {"shunt_ohm", d.shunt_ohm}};
 }
 
+// Parameters that are positive by their nature and come out with an error as large as themselves,
+// or with none because the data do not feel them.
+void print_undetermined(const Console& console, const std::vector<Row>& rows) {
+  std::string names;
+  for (const Row& row : rows) {
+    const Estimate& e = row.estimate;
+    if (e.standard_error > 0.0 && e.standard_error < e.value) continue;
+    names += (names.empty() ? "" : ", ") + row.name;
+  }
+  if (!names.empty()) console.line("  these data do not determine " + names);
+}
+
+void print_key(const Console& console, const char* name, double value) {
+  char text[80];
+  std::snprintf(text, sizeof text, "  %s = %.9g", name, value);
+  console.line(text);
+}
+
 // The keys of an experiment's [array.cell_parameters] for one of the cells.
 void print_cell(const Console& console, const SingleDiode& d, const FitTask& task, int cells) {
   const double thermal_V = boltzmann_J_K * task.temperature_K / elementary_charge_C;
-  console.heading("One cell, for [array.cell_parameters] (add reference_area_m2)");
-  const auto key = [&](const char* name, double value) {
-    char text[80];
-    std::snprintf(text, sizeof text, "  %s = %.9g", name, value);
-    console.line(text);
-  };
+  console.heading("One cell, for [array.cell_parameters]");
+  const auto key = [&](const char* name, double value) { print_key(console, name, value); };
   key("saturation_1_A", d.saturation_A.value);
   key("ideality_1", d.scale_V.value / (cells * thermal_V));
   key("series_ohm", d.series_ohm.value / cells);
   key("shunt_ohm", d.shunt_ohm.value / cells);
   key("reference_temperature_K", task.temperature_K);
+  console.line("  reference_area_m2 =   # to be filled in: the area of one cell");
 }
 
 // Measured points and a fitted curve, as current and as power.
@@ -238,6 +278,8 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   const CellCurve cell(fit.diode.parameters(task.temperature_K));
   const ArrayPoint best = best_point(cell, fit.diode.photocurrent_A.value);
   print_rows(console, rows);
+  print_undetermined(console, rows);
+  print_ideality_hint(console, fit.diode, task);
   console.line("  rms of current " + show(fit.rms_A) + " A over " + std::to_string(fit.points) +
                " points; scatter over that expected " + show(std::sqrt(fit.variance)));
   console.line("  maximum " + show(best.power_W()) + " W at " + show(best.voltage_V) + " V");
@@ -265,6 +307,9 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
       (t.fraction > 0.0 ? ", each good to " + show_percent(t.fraction) + " (one sigma)" : "") +
       (task.datasheet.size() == 1 ? "; one point leaves the ideality as assumed" : ""));
   print_cell(console, fit.diode, at_first, task.cells_in_series);
+  print_key(console, "gap_eV", fit.model.gap_eV);
+  print_key(console, "gap_slope_per_K", fit.model.gap_slope_1_K);
+  print_key(console, "photocurrent_slope_per_K", fit.model.photocurrent_slope_1_K);
   const CellCurve cell(fit.model.reference);
   Product product = parameter_product(rows);
   add_plots(task, cell_points(cell, fit.diode.photocurrent_A.value),
@@ -288,6 +333,7 @@ Product fit_uneven_light(const FitTask& task, const Console& console) {
   rows.insert(rows.end(), shared.begin() + 1, shared.end());
   rows.push_back({"bypass_drop_V", fit.bypass_drop_V});
   print_rows(console, rows);
+  print_undetermined(console, shared);
   console.line("  rms of current " + show(fit.rms_A) + " A");
   const ArrayCurve::Scan scan = fit.curve(task.temperature_K).scan(400);
   console.heading("Local maxima of the power");

@@ -10,6 +10,7 @@ void run_power(const CommandLine& line) {
   Console console(line);
   OpticalRun run(line, console);
   const ArrayPower array = read_array_power(run);
+  for (const std::string& notice : array.notices) console.line("note: " + notice);
   const OpticalResult result = run.run(run.experiment().lab_from_body, console.progress("tracing"));
   console.done();
   const ArrayResult power = evaluate(array, run, result);

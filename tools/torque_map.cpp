@@ -61,6 +61,9 @@ class PowerTable {
 void map_over_attitude(const CommandLine& line, Console& console, OpticalRun& run) {
   std::optional<ArrayPower> array;
   if (!run.experiment().file.others("array").empty()) array = read_array_power(run);
+  if (array) {
+    for (const std::string& notice : array->notices) console.line("note: " + notice);
+  }
   const AttitudeGrid& grid = run.experiment().file.torque_map;
   const size_t flux_map = array ? array->flux_map : run.flux_map_index("");
 

@@ -5,224 +5,22 @@
 
 #include <filesystem>
 #include <fstream>
-#include <random>
 
 #include "core/constants.h"
-#include "raytrace/chebyshev.h"
-#include "raytrace/disc_light.h"
-#include "raytrace/gauss_legendre.h"
-#include "raytrace/irradiance_table.h"
-#include "raytrace/shadow.h"
-#include "sources/source_kind.h"
 #include "tests/raytrace/test_scenes.h"
+#include "tests/receivers/gather_lamps.h"
 
 namespace photorque {
 namespace {
 
 using testing::add;
 using testing::box;
+using testing::gaussian_led;
+using testing::number;
+using testing::pillbox_disc;
 using testing::rectangle;
-
-SettingsNode number(double x) {
-  return {x, {}};
-}
-SettingsNode text(const char* t) {
-  return {std::string(t), {}};
-}
-SettingsNode vector(const Vec3& v) {
-  return {SettingsNode::Array{number(v.x()), number(v.y()), number(v.z())}, {}};
-}
-
-// One source of the given kind at `at_m`, looking along `direction`.
-Beam source(const char* which, SettingsNode::Table keys, const Vec3& at_m = {0, 0, 1.5},
-            const Vec3& direction = {0, 0, -1}) {
-  keys["direction"] = vector(direction);
-  if (std::string(which) == "led") {
-    keys["position_m"] = vector(at_m);
-    keys["wavelength_nm"] = number(730);
-  }
-  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{std::move(keys), {}}));
-  for (const SourceKind& kind : all_source_kinds()) {
-    if (kind.name == which) return kind.make(settings, {.scene_radius_m = 1.0, .notice = {}})[0];
-  }
-  throw std::logic_error("no such source");
-}
-
-Beam lambertian_disc(double diameter_m) {
-  return source("led", {{"power_W", number(2.0)},
-                        {"aperture_diameter_m", number(diameter_m)},
-                        {"profile", text("cosine_power")},
-                        {"exponent", number(1.0)}});
-}
-
-Beam gaussian_led(double diameter_m, double fwhm_deg, const Vec3& at_m, const Vec3& direction) {
-  return source("led",
-                {{"power_W", number(1.0)},
-                 {"aperture_diameter_m", number(diameter_m)},
-                 {"profile", text("gaussian")},
-                 {"fwhm_deg", number(fwhm_deg)}},
-                at_m, direction);
-}
-
-Beam pillbox_disc(const char* measure) {
-  return source("led", {{"power_W", number(1.0)},
-                        {"aperture_diameter_m", number(0.4)},
-                        {"profile", text("pillbox")},
-                        {"half_angle_deg", number(1.5)},
-                        {"pillbox_measure", text(measure)}});
-}
-
-// View factors from a surface element to a disc of radius r, by contour integration.
-// Source: J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-12 (element
-// parallel to the disc, offset a) and B-15 (element normal to the disc's plane, facing its axis).
-double parallel_view_factor(double h, double a, double r) {
-  const double H = h / a, R = r / a, Z = 1 + H * H + R * R;
-  return 0.5 * (1 - (Z - 2 * R * R) / std::sqrt(Z * Z - 4 * R * R));
-}
-double upright_view_factor(double h, double a, double r) {
-  const double H = h / a, R = r / a, Z = 1 + H * H + R * R;
-  return 0.5 * H * (Z / std::sqrt(Z * Z - 4 * R * R) - 1);
-}
-
-TEST(DiscLight, LambertianDiscMatchesViewFactors) {
-  const double r = 0.2, exitance = 2.0 / (pi * r * r);
-  const Beam beam = lambertian_disc(2 * r);
-  const DiscLight light(*beam.emitter, *beam.aperture);
-  EXPECT_NEAR(light.exitance_W_m2(), exitance, 1e-12 * exitance);
-  for (const double h : {0.05, 0.3, 2.0}) {
-    EXPECT_NEAR(light.irradiance_W_m2({0, 0, h}, {0, 0, -1}), exitance * r * r / (h * h + r * r),
-                1e-5 * exitance);
-    for (const double a : {0.1, 0.2, 0.5, 1.5}) {
-      const double parallel = exitance * parallel_view_factor(h, a, r);
-      EXPECT_NEAR(light.irradiance_W_m2({a, 0, h}, {0, 0, -1}), parallel, 2e-5 * exitance)
-          << h << " " << a;
-    }
-    // An upright element sees the whole disc from the front only beside it.
-    for (const double a : {0.5, 1.5}) {
-      const double upright = exitance * upright_view_factor(h, a, r);
-      EXPECT_NEAR(light.irradiance_W_m2({0, a, h}, {0, -1, 0}), upright, 2e-5 * exitance)
-          << h << " " << a;
-    }
-  }
-}
-
-TEST(DiscLight, LightOnAWidePlaneIsAllItsPower) {
-  for (const double diameter_m : {0.002, 0.02, 0.2}) {
-    const Beam beam = gaussian_led(diameter_m, 6.0, {0, 0, 0}, {0, 0, 1});
-    const DiscLight light(*beam.emitter, *beam.aperture);
-    const double h = 1.0;
-    double power_W = 0.0;
-    for (const auto& [x, weight] : gauss_legendre(64)) {
-      const double r = 0.35 * (1 + x);
-      power_W += 0.35 * weight * 2 * pi * r * light.irradiance_W_m2({r, 0, h}, {0, 0, -1});
-    }
-    EXPECT_NEAR(power_W, 1.0, 3e-5) << diameter_m;
-  }
-}
-
-TEST(DiscLight, HalfOfTheFluxOfAGaussianIsWithinHalfItsWidth) {
-  const Beam beam = gaussian_led(0.01, 3.0, {0, 0, 0}, {0, 0, 1});
-  const DiscLight light(*beam.emitter, *beam.aperture);
-  EXPECT_NEAR(light.half_flux_rad() / degree_rad, 1.5, 1e-3);
-  EXPECT_TRUE(light.fades_out());
-  const Beam sharp = pillbox_disc("angle");
-  EXPECT_FALSE(DiscLight(*sharp.emitter, *sharp.aperture).fades_out());
-}
-
-// Largest difference at scattered points, over the largest irradiance.
-double table_error(const DiscLight& light, const IrradianceTable& table, double low_m,
-                   double high_m, double wide_m) {
-  const SobolSequence points({3, 1, 0});
-  double largest = 0.0, worst = 0.0;
-  for (uint32_t i = 0; i < 2000; ++i) {
-    const auto p = points.point(i);
-    const Vec3 at(wide_m * (2 * p[0] - 1), wide_m * (2 * p[1] - 1),
-                  low_m + p[2] * (high_m - low_m));
-    const double lean = p[3] - 0.5;
-    const Vec3 normal(std::sin(lean), 0, -std::cos(lean));
-    const double expected = light.irradiance_W_m2(at, normal);
-    largest = std::max(largest, expected);
-    worst = std::max(worst, std::abs(table.irradiance_W_m2(at, normal) - expected));
-  }
-  return worst / largest;
-}
-
-TEST(IrradianceTable, AgreesWithTheIntegralForSmoothAndForSharpBeams) {
-  for (const Beam& beam :
-       {gaussian_led(0.045, 3, {0, 0, 1.5}, {0, 0, -1}), pillbox_disc("angle")}) {
-    const DiscLight light(*beam.emitter, *beam.aperture);
-    for (const double high_m : {1.2, 1.8}) {
-      const auto table = IrradianceTable::make(light, 1.2, high_m, 1);
-      ASSERT_TRUE(table.has_value()) << high_m;
-      EXPECT_LT(table_error(light, *table, 1.2, high_m, 0.3), 5e-6) << high_m;
-    }
-  }
-}
-
-TEST(IrradianceTable, RefusesWhatItCannotTabulate) {
-  const Beam pillbox = pillbox_disc("angle"), lambertian = lambertian_disc(0.4);
-  const DiscLight sharp(*pillbox.emitter, *pillbox.aperture);
-  // The beam's edge crosses the axis at 0.2 m / tan 1.5° = 7.6 m.
-  EXPECT_TRUE(IrradianceTable::make(sharp, 6.0, 7.0, 1).has_value());
-  EXPECT_FALSE(IrradianceTable::make(sharp, 6.0, 9.0, 1).has_value());
-  const DiscLight wide(*lambertian.emitter, *lambertian.aperture);
-  EXPECT_FALSE(IrradianceTable::make(wide, 1.0, 2.0, 1).has_value());
-}
-
-TEST(Chebyshev, CellMeansOfAPolynomialAreExact) {
-  const size_t n = 6, cells = 5;
-  const auto f = [](double x) { return 1 - 3 * x + 2 * x * x * x - 7 * std::pow(x, 5); };
-  const auto whole = [](double x) {
-    return x - 1.5 * x * x + 0.5 * std::pow(x, 4) - 7.0 / 6.0 * std::pow(x, 6);
-  };
-  Eigen::VectorXd values(static_cast<Eigen::Index>(n));
-  for (size_t i = 0; i < n; ++i) values(static_cast<Eigen::Index>(i)) = f(chebyshev_fraction(n, i));
-  const Eigen::VectorXd means = chebyshev_cell_means(n, cells) * values;
-  for (size_t c = 0; c < cells; ++c) {
-    const double low = static_cast<double>(c) / cells, high = static_cast<double>(c + 1) / cells;
-    EXPECT_NEAR(means(static_cast<Eigen::Index>(c)), (whole(high) - whole(low)) / (high - low),
-                1e-13);
-  }
-}
-
-TEST(GaussLegendre, RulesIntegratePowersUpToTheirDegree) {
-  for (const size_t n : {1u, 2u, 7u, 33u, 64u}) {
-    for (const size_t power : {size_t{0}, n, 2 * n - 1, 2 * n - 2}) {
-      double sum = 0.0;
-      for (const auto& [x, weight] : gauss_legendre(n))
-        sum += weight * std::pow(x, static_cast<double>(power));
-      const double exact = power % 2 == 1 ? 0.0 : 2.0 / static_cast<double>(power + 1);
-      EXPECT_NEAR(sum, exact, 2e-14) << n << " " << power;
-    }
-  }
-}
-
-// A segment between random points of two balls that crosses a triangle proves that the shaft meets
-// it.
-TEST(Shaft, NeverLosesATriangleThatALineCrosses) {
-  std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
-  const auto point = [&](double scale) {
-    return Vec3(scale * normal(random), scale * normal(random), scale * normal(random));
-  };
-  int crossed = 0, spared = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const Ball from{point(1.0), 0.3 * std::abs(normal(random))};
-    const Ball to{point(1.0), 0.3 * std::abs(normal(random))};
-    const Vec3 a = from.centre_m + from.radius_m * std::cbrt(0.9) * point(1.0).normalized();
-    const Vec3 b = to.centre_m + to.radius_m * std::cbrt(0.9) * point(1.0).normalized();
-    // A triangle about a point of the segment, and one anywhere.
-    const Vec3 on = a + std::uniform_real_distribution<double>(0, 1)(random) * (b - a);
-    const Vec3 e = point(0.5), f = point(0.5);
-    const TriangleCorners hit = {on + e, on + f, on - e - f};
-    EXPECT_TRUE(Shaft(from, to).may_meet(hit));
-    ++crossed;
-    const Vec3 away = point(2.0);
-    spared += Shaft(from, to).may_meet({away, away + point(0.2), away + point(0.2)}) ? 0 : 1;
-  }
-  EXPECT_EQ(crossed, 20000);
-  EXPECT_GT(spared, 12000);  // it does leave out most of what is far away
-}
+using testing::source;
+using testing::text;
 
 Scene shaded_square() {
   Scene scene;
@@ -360,17 +158,20 @@ TEST(Gather, SunOnAPlateIsCosineOfItsAngle) {
   add(scene, rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)), grey_surface("s", 0, 0.25),
       "receiver");
   const TraceableScene traceable(scene);
-  const FluxMapReceiver map = map_of(traceable.scene(), 8);
-  for (const double radius_deg : {0.0, 0.2665, 5.0}) {
-    const Beam sun = source(
-        "sun", {{"irradiance_W_m2", number(1361)}, {"angular_radius_deg", number(radius_deg)}});
-    const Gathered g = gather_direct(traceable, lab_from_body_at(60 * degree_rad, 0.0),
-                                     std::span(&sun, 1), map, {});
-    EXPECT_EQ(g.shadow_rays, 0u);
-    for (const size_t bin : {0u, 27u, 63u}) {
-      const double power_W = 1361 * 0.5 / 64;
-      EXPECT_NEAR(g.direct.of(0)[map.entry(bin, 0)], power_W, 1e-6 * power_W) << radius_deg;
-      EXPECT_NEAR(g.direct.of(0)[map.entry(bin, 0) + 1], 0.75 * power_W, 1e-6 * power_W);
+  for (const int side : {8, 33}) {  // 33: tiles of 16 bins leave some that are one bin wide
+    const FluxMapReceiver map = map_of(traceable.scene(), side);
+    for (const double radius_deg : {0.0, 0.2665, 5.0}) {
+      const Beam sun = source(
+          "sun", {{"irradiance_W_m2", number(1361)}, {"angular_radius_deg", number(radius_deg)}});
+      const Gathered g = gather_direct(traceable, lab_from_body_at(60 * degree_rad, 0.0),
+                                       std::span(&sun, 1), map, {});
+      EXPECT_EQ(g.shadow_rays, 0u);
+      const auto bins = static_cast<size_t>(side * side);
+      for (const size_t bin : {size_t{0}, bins / 2, bins - 2, bins - 1}) {
+        const double power_W = 1361 * 0.5 / static_cast<double>(bins);
+        EXPECT_NEAR(g.direct.of(0)[map.entry(bin, 0)], power_W, 1e-6 * power_W) << radius_deg;
+        EXPECT_NEAR(g.direct.of(0)[map.entry(bin, 0) + 1], 0.75 * power_W, 1e-6 * power_W);
+      }
     }
   }
 }

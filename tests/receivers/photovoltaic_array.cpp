@@ -124,8 +124,9 @@ TEST(PhotovoltaicArray, DarkCellWithoutBreakdownCostsItsSubstring) {
   std::vector<double> irradiance(100, 1000.0);
   irradiance[37] = 0.0;
   SettingsNode circuit;
-  circuit.value =
-      SettingsNode::Table{{"breakdown_fraction", number(0.0)}, {"shunt_ohm", number(1e9)}};
+  circuit.value = SettingsNode::Table{{"breakdown_fraction", number(0.0)},
+                                      {"shunt_ohm", number(1e9)},
+                                      {"reference_area_m2", number(1e-4)}};
   auto table = ten_by_ten();
   table["bypass_every"] = whole(20);
   table["cell_parameters"] = circuit;

@@ -182,14 +182,15 @@ TEST(PhotovoltaicFit, FiguresTellHowFarTheyAreRounded) {
 TEST(PhotovoltaicFit, DatasheetFiguresOfAKnownModuleGiveItBack) {
   const ivcurves::Truth& truth = rated_truth;
   const std::vector<RatedPoint> points = rated_points();
-  const RatedFit fit = fit_rated_points(points, {}, 60 * 1.3 * 0.0257);
+  const RatedFit fit = fit_rated_points(points, {5e-4, -3e-3}, 60 * 1.3 * 0.0257);
   EXPECT_LT(fit.rms, 1e-9);
   EXPECT_NEAR(fit.diode.scale_V.value / truth.scale_V(), 1.0, 1e-5);
   EXPECT_NEAR(fit.diode.series_ohm.value / 0.3, 1.0, 1e-4);
   EXPECT_NEAR(fit.diode.shunt_ohm.value / 400.0, 1.0, 1e-3);
-  // The slope of V_oc that was asked for is the model's.
-  const double warm_V = fit.predict(1000.0, 308.15).open_circuit_V;
-  EXPECT_NEAR((warm_V / points[0].open_circuit_V - 1.0) / 10.0, -3e-3, 1e-9);
+  // The slopes that were asked for are the model's.
+  const RatedPoint warm = fit.predict(1000.0, 308.15);
+  EXPECT_NEAR((warm.open_circuit_V / points[0].open_circuit_V - 1.0) / 10.0, -3e-3, 1e-9);
+  EXPECT_NEAR((warm.short_circuit_A / points[0].short_circuit_A - 1.0) / 10.0, 5e-4, 1e-7);
 }
 
 // --- NREL mPERT: 20 modules over irradiance and temperature ---------------------------------

@@ -189,6 +189,19 @@ TEST(PhotovoltaicDay, EnergyOfTheBatteryIsThatOfTheArrayLessTheLoad) {
               0.9 * result.array_energy_J - result.load_energy_J, 1e-6 * result.array_energy_J);
 }
 
+// A duration that is no whole number of steps is kept: 25 W for 100 s are 2500 J.
+TEST(PhotovoltaicDay, EndsWhenItsDurationIsOver) {
+  const Lit l = lit(0.0);
+  DaySettings day;
+  day.lamps_on = false;
+  day.heat.reset();
+  day.battery.discharge_efficiency = 1.0;
+  day.duration_s = 100.0;
+  const DayResult result = run_day(l.design, l.result, day);
+  EXPECT_NEAR(result.time_s.back(), 100.0, 1e-9);
+  EXPECT_NEAR(result.charge_J.front() - result.charge_J.back(), 2500.0, 1e-6);
+}
+
 // 0.5 % per kelvin over 40 K leave 0.8; half of the rise is reached after τ ln 2.
 TEST(PhotovoltaicDay, WarmLampsGiveLessByTheirRollOff) {
   LampDroop lamp;

@@ -1,0 +1,61 @@
+// Lamps for tests of gathering.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "sources/source_kind.h"
+
+namespace photorque::testing {
+
+inline SettingsNode number(double x) {
+  return {x, {}};
+}
+inline SettingsNode text(const char* t) {
+  return {std::string(t), {}};
+}
+inline SettingsNode vector(const Vec3& v) {
+  return {SettingsNode::Array{number(v.x()), number(v.y()), number(v.z())}, {}};
+}
+
+// One source of the given kind at `at_m`, looking along `direction`.
+inline Beam source(const char* which, SettingsNode::Table keys, const Vec3& at_m = {0, 0, 1.5},
+                   const Vec3& direction = {0, 0, -1}) {
+  keys["direction"] = vector(direction);
+  if (std::string(which) == "led") {
+    keys["position_m"] = vector(at_m);
+    keys["wavelength_nm"] = number(730);
+  }
+  const Settings settings(std::make_shared<const SettingsNode>(SettingsNode{std::move(keys), {}}));
+  for (const SourceKind& kind : all_source_kinds()) {
+    if (kind.name == which) return kind.make(settings, {.scene_radius_m = 1.0, .notice = {}})[0];
+  }
+  throw std::logic_error("no such source");
+}
+
+inline Beam lambertian_disc(double diameter_m) {
+  return source("led", {{"power_W", number(2.0)},
+                        {"aperture_diameter_m", number(diameter_m)},
+                        {"profile", text("cosine_power")},
+                        {"exponent", number(1.0)}});
+}
+
+inline Beam gaussian_led(double diameter_m, double fwhm_deg, const Vec3& at_m,
+                         const Vec3& direction) {
+  return source("led",
+                {{"power_W", number(1.0)},
+                 {"aperture_diameter_m", number(diameter_m)},
+                 {"profile", text("gaussian")},
+                 {"fwhm_deg", number(fwhm_deg)}},
+                at_m, direction);
+}
+
+inline Beam pillbox_disc(const char* measure) {
+  return source("led", {{"power_W", number(1.0)},
+                        {"aperture_diameter_m", number(0.4)},
+                        {"profile", text("pillbox")},
+                        {"half_angle_deg", number(1.5)},
+                        {"pillbox_measure", text(measure)}});
+}
+
+}  // namespace photorque::testing
