@@ -1,9 +1,4 @@
 // Laws of reading glTF: frames, transforms, layouts of the same geometry, names.
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-
 #include "core/constants.h"
 #include "gltf_test_model.h"
 
@@ -351,96 +346,6 @@ TEST(GltfScenes, DeepHierarchiesAreWalked) {
   }
   const Scene scene = model.read().scene;
   EXPECT_THAT(body_corners(scene, 0, 0)[0], IsNear(Vec3(0, 0, 450), 1e-9));
-}
-
-TEST(GltfContainers, TextBinaryAndEmbeddedAreOne) {
-  const TestModel model = triangle_model();
-  const SceneSize text = size_of(model.read().scene);
-  const auto no_file = [](const std::string&) -> std::optional<std::string> {
-    return std::nullopt;
-  };
-  const SceneSize binary = size_of(read_gltf_bytes(glb_bytes(model), "a.glb", no_file).scene);
-  EXPECT_EQ(text.area_m2, binary.area_m2);
-  EXPECT_EQ(text.high_m, binary.high_m);
-
-  // The 36 bytes of the three positions, by Python's base64.b64encode(struct.pack("<9f", ...)).
-  TestModel embedded = model;
-  embedded.json["buffers"] = {
-      {{"byteLength", 36},
-       {"uri",
-        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAABAQAAAAAAAAAAAAAAAAAAAgEAAAAAA"}}};
-  EXPECT_EQ(size_of(embedded.read().scene).area_m2, text.area_m2);
-  embedded.json["buffers"][0]["uri"] =
-      "data:,%00%00%00%00%00%00%00%00%00%00%00%00%00%00@@%00%00%00%00%00%00%00%00%00%00%00%00"
-      "%00%00%80@%00%00%00%00";
-  EXPECT_EQ(size_of(embedded.read().scene).area_m2, text.area_m2);
-}
-
-TEST(GltfContainers, UnknownChunksAndTrailingBytesAreToldOf) {
-  TestModel model = triangle_model();
-  model.json["buffers"] = {{{"byteLength", model.buffer.size()}}};
-  const std::string bytes =
-      glb_bytes(chunk_bytes("JSON", model.json.dump()) +
-                chunk_bytes(std::string("BIN\0", 4), model.buffer) + chunk_bytes("EXTR", "more")) +
-      "tail";
-  const GltfModel read = read_gltf_bytes(bytes, "a.glb", model.opener());
-  EXPECT_EQ(read.scene.instances.size(), 1u);
-  EXPECT_THAT(read.notices, Contains("4 bytes after the end of the GLB are ignored"));
-  EXPECT_THAT(read.notices, Contains("GLB chunk 2 is of unknown type and ignored"));
-}
-
-// A folder that is removed with everything in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("photorque_gltf_" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_ / "sub");
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  void write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-TEST(GltfFiles, ExternalBuffersAreFoundBesideTheModelAndRecorded) {
-  const TemporaryFolder folder;
-  TestModel model = triangle_model();
-  model.json["buffers"] = {{{"byteLength", model.buffer.size()}, {"uri", "sub/my%20data+1.bin"}}};
-  folder.write("sub/my data+1.bin", model.buffer + "more bytes than declared are legal");
-  folder.write("model.gltf", model.json.dump());
-  const GltfModel read = read_gltf(folder.path() / "model.gltf");
-  EXPECT_NEAR(size_of(read.scene).area_m2, 6.0, 1e-15);
-  ASSERT_EQ(read.inputs.size(), 2u);
-  EXPECT_EQ(read.inputs[0].first, "model.gltf");
-  EXPECT_EQ(read.inputs[1].first, "sub/my data+1.bin");
-  EXPECT_EQ(read.inputs[1].second.size(), 32u);
-  EXPECT_NE(read.inputs[0].second, read.inputs[1].second);
-}
-
-TEST(GltfFiles, ImagesAreNeverNeeded) {
-  TestModel model = triangle_model();
-  model.json["images"] = {{{"uri", "missing.png"}},
-                          {{"uri", "data:image/png;base64,not an image"}},
-                          {{"bufferView", 0}, {"mimeType", "image/jpeg"}}};
-  model.json["textures"] = {{{"source", 0}}, {{"source", 77}}};
-  model.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
-  model.json["meshes"][0]["primitives"][0]["material"] = 0;
-  const GltfModel read = model.read();
-  EXPECT_EQ(read.scene.instances.size(), 1u);
-  EXPECT_THAT(read.notices, Contains(HasSubstr("textures are ignored")));
-}
-
-TEST(GltfFiles, SpeakOfMillimetresWhenTheSceneIsHuge) {
-  TestModel model = triangle_model();
-  EXPECT_THAT(model.read().notices, ::testing::Not(Contains(HasSubstr("millimetres"))));
-  model.json["nodes"][0]["scale"] = {100, 100, 100};
-  EXPECT_THAT(model.read().notices, Contains("the scene reaches 400 m from the body's origin; "
-                                             "CAD exports often count millimetres"));
 }
 
 }  // namespace
