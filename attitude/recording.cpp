@@ -105,7 +105,8 @@ class RecordingReader {
       }
       ++recording_.report.preamble_lines;
     }
-    throw error("header", "no line that names t_s", "a header with t_s and the channels");
+    throw InputError({path_.string(), 1}, "header", "no line that names t_s",
+                     "a header with t_s and the channels");
   }
 
   bool take_header(std::string_view line, char separator) {

@@ -29,6 +29,6 @@ std::string message(const InputLocation& where, const std::string& key, const st
 
 InputError::InputError(const InputLocation& where, const std::string& key, const std::string& found,
                        const std::string& expected)
-    : std::runtime_error(message(where, key, found, expected)) {}
+    : std::runtime_error(message(where, key, found, expected)), names_file_(!where.file.empty()) {}
 
 }  // namespace photorque

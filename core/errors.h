@@ -19,6 +19,12 @@ class InputError : public std::runtime_error {
  public:
   InputError(const InputLocation& where, const std::string& key, const std::string& found,
              const std::string& expected);
+
+  // Whether the line begins with a file.
+  bool names_file() const { return names_file_; }
+
+ private:
+  bool names_file_;
 };
 
 // The input is legal and the computation failed (no convergence, loss of precision).

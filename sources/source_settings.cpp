@@ -99,7 +99,7 @@ AngularDistribution read_angular_distribution(const Settings& settings) {
 Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m) {
   Spectrum spectrum;
   spectrum.shape = Spectrum::Shape::gaussian;
-  spectrum.centre_m = settings.number("wavelength_nm", {0.0, 1e-3, true, false});
+  spectrum.centre_m = settings.number("wavelength_nm", {1e-8, 1e-3});
   spectrum.fwhm_m = settings.number_or("spectral_fwhm_nm", default_fwhm_m, {0.0, 1e-3});
   return spectrum;
 }

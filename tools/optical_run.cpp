@@ -78,7 +78,6 @@ size_t OpticalRun::add_receiver(NamedReceiver receiver) {
 OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
                               const std::function<void(double)>& progress,
                               std::optional<uint64_t> rays) const {
-  constexpr uint64_t most_rays = 1ull << 38;
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed_s = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -86,6 +85,9 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
   const TraceEffort& effort = experiment_.file.effort;
   TraceOptions options = experiment_.file.trace;
   options.rays = rays.value_or(options.rays);
+  // A sequence has at most 2^31 points (see trace()).
+  const uint64_t most_rays =
+      std::min<uint64_t>(1ull << 38, static_cast<uint64_t>(options.replicates) << 31);
   options.threads = threads_;
   options.progress = progress;
   const auto receivers = experiment_.receiver_pointers();
@@ -165,6 +167,9 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   row("absorbed", ledger.absorbed_W);
   row("escaped", ledger.escaped_W);
   row("truncated", ledger.truncated_W);
+  if (ledger.escaped_W.value >= ledger.emitted_W) {
+    console.line("  note: no light meets the scene: where do the sources stand and look?");
+  }
   for (size_t i = 0; i < run.experiment().receivers.size(); ++i) {
     const NamedReceiver& receiver = run.experiment().receivers[i];
     if (receiver.kind != "flux_map") continue;

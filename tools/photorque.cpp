@@ -44,6 +44,19 @@ void add_options(CLI::App& command, CommandLine& line) {
   command.add_flag("--json", line.json, "Print the summary as JSON instead of text");
 }
 
+// What is wrong without a file of its own is wrong in the experiment.
+int run_verb(const Verb& verb, const CommandLine& line) {
+  try {
+    verb.run(line);
+    return 0;
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    if (error.names_file() || line.experiment.empty() || what.starts_with("--")) throw;
+    std::fprintf(stderr, "%s: %s\n", line.experiment.c_str(), what.c_str());
+    return 2;
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Light, torque and attitude of free-floating platforms.");
   app.name("photorque");
@@ -56,11 +69,15 @@ int run(int argc, char** argv) {
     CLI::App* command = app.add_subcommand(verb.name, verb.summary);
     add_options(*command, line);
     if (verb.traces_light) {
-      command->add_option("--target-error", line.target_error,
-                          "Add rays until every bin above a tenth of the peak has this relative "
-                          "standard error (0.01: 1 %)");
-      command->add_option("--max-time", line.max_time_s,
-                          "Stop adding rays before this many seconds have passed");
+      command
+          ->add_option("--target-error", line.target_error,
+                       "Add rays until every bin above a tenth of the peak has this relative "
+                       "standard error (0.01: 1 %)")
+          ->check(CLI::Range(1e-6, 1.0));
+      command
+          ->add_option("--max-time", line.max_time_s,
+                       "Stop adding rays before this many seconds have passed")
+          ->check(CLI::PositiveNumber);
     }
     if (verb.takes_recordings) {
       command->add_option("--recording", line.recordings, "A recording (CSV); may be repeated")
@@ -101,7 +118,7 @@ int run(int argc, char** argv) {
     if (app.got_subcommand(verb.name)) {
       line.verb = verb.name;
       if (line.out && line.out->empty()) throw InputError({"--out"}, "", "nothing", "a folder");
-      verb.run(line);
+      return run_verb(verb, line);
     }
   }
   return 0;

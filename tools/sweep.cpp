@@ -210,7 +210,8 @@ void run_sweep(const CommandLine& line) {
       const auto changes = plan.overrides(design);
       one.overrides.insert(one.overrides.end(), changes.begin(), changes.end());
       verb.run(one);
-      ++run;
+      // A figure that no design has is told after the first, not after the last.
+      if (++run == 1) chosen_figures(plan, read_figures(summary_of(design)));
     }
     if (progress) progress(static_cast<double>(design + 1) / static_cast<double>(count));
   }

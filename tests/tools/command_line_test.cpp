@@ -189,7 +189,7 @@ TEST_F(CommandLine, WrongInputIsOneLineStatusTwoAndNoFiles) {
       {"fly " + nominal, "fly"},
       {"trace /nowhere/lab.toml", "/nowhere/lab.toml"},
       {"trace " + nominal + " --max-time 5", "target_error"},
-      {"trace " + nominal + " --target-error 2", "target_error"},
+      {"trace " + nominal + " --target-error 2", "target-error"},
       {"trace " + nominal + " --set trace.direct=magic", "gather"},
       {"torque-map " + nominal + " --set torque_map={azimuth_deg=[0],elevation_deg=[0]}", "sun"},
       {"torque-map " + nominal + " --set torque_map={azimuth_step_deg=7,elevation_deg=[0]}",
