@@ -396,14 +396,5 @@ TEST(GravityGradient, IsZeroOnASphere) {
   }
 }
 
-TEST(Disturbances, UnknownKindIsOneClearLine) {
-  try {
-    make(bench_model(), "bearing_drug", {});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("bearing_drag"), std::string::npos) << error.what();
-  }
-}
-
 }  // namespace
 }  // namespace photorque

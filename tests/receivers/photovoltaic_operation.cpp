@@ -159,12 +159,18 @@ TEST(PhotovoltaicLosses, SensitivitiesHaveTheirSigns) {
 
 // --- a day ------------------------------------------------------------------------------------
 
-TEST(PhotovoltaicDay, BatteryAloneLastsItsCapacityOverTheLoad) {
-  const Lit l = lit(0.0);
+// The battery alone, without losses.
+DaySettings night() {
   DaySettings day;
   day.lamps_on = false;
   day.heat.reset();
   day.battery.discharge_efficiency = 1.0;
+  return day;
+}
+
+TEST(PhotovoltaicDay, BatteryAloneLastsItsCapacityOverTheLoad) {
+  const Lit l = lit(0.0);
+  DaySettings day = night();
   day.load_W = 15.0;
   DayResult result = run_day(l.design, l.result, day);
   EXPECT_FALSE(result.empty_after_s.has_value());  // 360 Wh are 24 h of 15 W to the last second
@@ -192,10 +198,7 @@ TEST(PhotovoltaicDay, EnergyOfTheBatteryIsThatOfTheArrayLessTheLoad) {
 // A duration that is no whole number of steps is kept: 25 W for 100 s are 2500 J.
 TEST(PhotovoltaicDay, EndsWhenItsDurationIsOver) {
   const Lit l = lit(0.0);
-  DaySettings day;
-  day.lamps_on = false;
-  day.heat.reset();
-  day.battery.discharge_efficiency = 1.0;
+  DaySettings day = night();
   day.duration_s = 100.0;
   const DayResult result = run_day(l.design, l.result, day);
   EXPECT_NEAR(result.time_s.back(), 100.0, 1e-9);

@@ -54,16 +54,6 @@ std::string bytes_of_file(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// What reading says: empty when it works. Anything but InputError ends the test.
-std::string message_of(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(GltfCorpus, EveryErrorThatMattersIsRefusedInOneLine) {
   if (!std::filesystem::exists(corpus)) GTEST_SKIP() << "no " << corpus;
   size_t wrong_files = 0, right_files = 0;
@@ -74,7 +64,7 @@ TEST(GltfCorpus, EveryErrorThatMattersIsRefusedInOneLine) {
     const json report = json::parse(bytes_of_file(entry.path().string() + ".report.json"));
     const bool is_wrong = report["issues"]["numErrors"].get<int>() > 0;
     (is_wrong ? wrong_files : right_files) += 1;
-    const std::string message = message_of([&] { read_gltf(entry.path()); });
+    const std::string message = refusal_of([&] { read_gltf(entry.path()); });
     if (refused.contains(name)) {
       EXPECT_THAT(message, HasSubstr(refused.at(name)));
       continue;
@@ -114,9 +104,9 @@ TestModel indexed_model() {
 
 TEST_P(GltfMistakes, AreToldByPlaceAndReason) {
   TestModel model = indexed_model();
-  ASSERT_EQ(message_of([&] { model.read(); }), "");
+  ASSERT_EQ(refusal_of([&] { model.read(); }), "");
   GetParam().make(model);
-  EXPECT_THAT(message_of([&] { model.read(); }),
+  EXPECT_THAT(refusal_of([&] { model.read(); }),
               StartsWith(std::string("model.gltf: ") + GetParam().message));
 }
 
@@ -372,36 +362,6 @@ INSTANTIATE_TEST_SUITE_P(
                 },
                 "/materials/0/pbrMetallicRoughness/metallicFactor: found 1.5, expected a number"}),
     [](const auto& test) { return test.param.name; });
-
-std::string error_of_text(const std::string& text) {
-  return message_of([&] { read_gltf_bytes(text, "model.gltf", TestModel().opener()); });
-}
-
-TEST(GltfText, SyntaxErrorsNameTheirLine) {
-  EXPECT_THAT(error_of_text("{\n\"asset\": {\"version\": \"2.0\"},\n]"),
-              StartsWith("model.gltf:3: found"));
-  EXPECT_THAT(error_of_text(""), StartsWith("model.gltf:1: found"));
-  EXPECT_THAT(error_of_text("[1, 2]"), HasSubstr("found an array of 2, expected a JSON object"));
-  EXPECT_THAT(error_of_text("{\"a\": \"\xff\"}"), StartsWith("model.gltf:1: found"));
-}
-
-TEST(GltfText, DeepNestingIsRefusedBeforeItIsBuilt) {
-  const std::string deep = "{\"extras\": " + std::string(1000000, '[');
-  EXPECT_THAT(error_of_text(deep), HasSubstr("JSON nested deeper than 64"));
-}
-
-TEST(GltfText, BracketsInTextsAreNotNesting) {
-  const std::string text =
-      R"({"asset": {"version": "2.0", "generator": "\"[[[[)" + std::string(100, '{') + "\"}}";
-  EXPECT_EQ(error_of_text(text), "");
-}
-
-TEST(GltfText, MemoryIsBounded) {
-  TestModel model = triangle_model();
-  for (int i = 0; i < 2000; ++i) model.add_node({{"mesh", 0}});
-  EXPECT_THAT(message_of([&] { model.read({.largest_bytes = 1 << 20}); }),
-              HasSubstr("expected a model that takes at most 1048576 bytes"));
-}
 
 }  // namespace
 }  // namespace photorque

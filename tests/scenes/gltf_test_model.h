@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstring>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "core/errors.h"
 #include "scenes/gltf_reader.h"
 
 namespace photorque {
@@ -178,6 +180,16 @@ inline SceneSize size_of(const Scene& scene) {
     }
   }
   return size;
+}
+
+// What reading says: empty when it works. Anything but InputError ends the test.
+inline std::string refusal_of(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 }  // namespace photorque
