@@ -76,6 +76,7 @@ struct Moment {
   T illumination;              // share of the light that arrives: 1 lit, 0 in shadow
   Vec3Of<T> command_body_N_m;  // torque commanded; acts on the body by itself
   T battery_current_A;         // drawn from the battery (positive discharges)
+  bool current_is_measured;    // Schedule::current_is_measured
   T array_power_W;             // that the solar array delivers
 
   // The conditions in body axes: valid after Stage::conditions.

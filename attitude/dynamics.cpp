@@ -123,6 +123,7 @@ Moment<T> Dynamics::begin(const T& time_s, const Command& command, const T* y) c
           .illumination = 1.0,
           .command_body_N_m = command.torque_body_N_m.template cast<T>(),
           .battery_current_A = command.battery_current_A,
+          .current_is_measured = model_.schedule.current_is_measured,
           .array_power_W = 0.0,
           .gravity_body_m_s2 = zero,
           .magnetic_field_body_T = zero,

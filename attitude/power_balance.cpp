@@ -4,7 +4,8 @@
 // load_W; and the array's power
 //   array_power_W (default 0) at zero tilt in full light, falling with the cosine of the tilt; or
 //   tilt_deg = [0, …], power_W = […]: a table, as `sweep` finds it, held beyond its end;
-// in proportion to the light that arrives. array_scale (default 1) multiplies it.
+// in proportion to the light that arrives. array_scale (default 1) multiplies it. Where a recording
+// or a file of commands has the battery's current, that is all that flows.
 //
 // Where the battery's capacity is known its controller tapers the current exponentially within the
 // last per cent or so: a full battery takes no more, an empty one gives no more.
@@ -68,6 +69,7 @@ class PowerBalance final : public LawOf<PowerBalance> {
     const T at_tilt_W =
         from_values(half_tilt_sine_squared(now), [this](double x) { return power_W_.at(x); });
     now.array_power_W += own.parameter(1) * now.illumination * at_tilt_W;
+    if (now.current_is_measured) return;
     T current_A = (own.parameter(0) - now.array_power_W) / now.platform.battery_voltage_V;
     if (now.platform.battery_capacity_C) {
       current_A *= controller(now.charge_drawn_C, current_A, *now.platform.battery_capacity_C);

@@ -250,6 +250,7 @@ Schedule Recording::schedule() const {
   const Channel* command[3] = {find("command_x_N_m"), find("command_y_N_m"), find("command_z_N_m")};
   const Channel* current = find("battery_current_A");
   Schedule schedule;
+  schedule.current_is_measured = current != nullptr;
   Held held;
   // An empty cell holds what was before.
   const auto update = [](const Channel* channel, size_t row, double& value) {

@@ -18,6 +18,8 @@ struct Held {
 struct Schedule {
   std::vector<double> time_s;
   std::vector<Held> held;
+  // The battery's current is what was measured, all of it: no law of the model adds to it.
+  bool current_is_measured = false;
 
   Held at(double t_s) const;
   // Appends unless the values are those that hold already. NumericalError unless `t_s` is later
