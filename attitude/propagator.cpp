@@ -156,7 +156,7 @@ void Propagator::take_step() {
     } else if (outcome.error > 2.0 * options_.tolerance) {
       h_s_ = propose_length(outcome, h_s, false);
       ceiling_s_ = 0.9 * h_s;
-    } else if (sensitivity_ && !sensitivity_->solve(step_, held_)) {
+    } else if (sensitivity_ && !sensitivity_->solve(step_, held_, options_.derivative_tolerance)) {
       h_s_ = 0.5 * h_s;
       ceiling_s_ = 0.7 * h_s;
     } else {

@@ -25,6 +25,8 @@ struct PropagationOptions {
   double tolerance = 1e-8;
   double longest_step_s = std::numeric_limits<double>::infinity();
   int64_t most_steps = 1'000'000'000;
+  // Of derivatives, relative to each one's size within a step: what their iteration leaves.
+  double derivative_tolerance = 1e-16;
 };
 
 // A quantity whose zeros are looked for. Crossings closer together than an eighth of a step may be

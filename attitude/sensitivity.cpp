@@ -127,7 +127,7 @@ void Sensitivity::differentiate_rates(const CollocationStep& step, const Held& h
   }
 }
 
-bool Sensitivity::solve(const CollocationStep& step, const Held& held) {
+bool Sensitivity::solve(const CollocationStep& step, const Held& held, double tolerance) {
   const size_t count = variables_.size();
   differentiate_rates(step, held);
   h_s_ = step.length_s();
@@ -145,7 +145,7 @@ bool Sensitivity::solve(const CollocationStep& step, const Held& held) {
   // the mixed units of the components swell the first changes. Not where a swing of no amplitude
   // yet let the stages settle in a step too long for it.
   constexpr int patience = 25;
-  Settling settling(1e-16, 1e-13, patience);
+  Settling settling(tolerance, 1e-13, patience);
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     for (size_t i = 0; i < start_.size(); ++i) {
       stages[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);

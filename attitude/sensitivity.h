@@ -40,9 +40,9 @@ class Sensitivity {
   const Dynamics& dynamics() const { return dynamics_; }
   const std::vector<Variable>& variables() const { return variables_; }
 
-  // Differentiates an attempted step. False when the iteration does not settle: the step is too
-  // long for the derivatives.
-  bool solve(const CollocationStep& step, const Held& held);
+  // Differentiates an attempted step, to `tolerance` of each derivative's size. False when the
+  // iteration does not settle: the step is too long for the derivatives.
+  bool solve(const CollocationStep& step, const Held& held, double tolerance);
   void accept();
   void restart() { has_polynomial_ = false; }
   // Adds `change` (a derivative of the state) to the derivatives by variable `v`.

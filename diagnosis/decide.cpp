@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/errors.h"
 #include "diagnosis/whiteness.h"
 
 namespace photorque {
@@ -26,17 +25,9 @@ bool is_significant(const Trial& t, const std::vector<Candidate>& all) {
   for (size_t i = 0; i < t.candidates.size(); ++i) {
     const Candidate& c = all[t.candidates[i]];
     if (c.start.parameters.empty() || c.effect.kind == "flexible_mode") continue;
-    if (significance(t, all, i) < least_significance) return false;
+    if (t.significance[i] < least_significance) return false;
   }
   return true;
-}
-
-double excess_sigma(const Trial& t, const std::vector<Observation>& runs) {
-  try {
-    return whiteness(residuals_of(t.fit, runs)).excess_sigma;
-  } catch (const NumericalError&) {
-    return 1e9;
-  }
 }
 
 std::vector<double> posterior(const std::vector<Trial>& trials) {
@@ -73,7 +64,7 @@ Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& 
   const double physics_evidence = physics == 0 ? none : trials[physics].log_evidence;
   const bool law_unknown =
       empirical != 0 && trials[empirical].log_evidence > physics_evidence + least_log_odds;
-  const bool structure_left = excess_sigma(trials[physics], runs) > most_excess_sigma;
+  const bool structure_left = excess_sigma(trials[physics].fit, runs) > most_excess_sigma;
   if (law_unknown || structure_left) {
     d.verdict = Verdict::unexplained;
     d.chosen = law_unknown ? empirical : physics;

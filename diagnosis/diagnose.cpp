@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/errors.h"
-#include "core/parallel.h"
 #include "diagnosis/account.h"
 #include "diagnosis/belief.h"
 #include "diagnosis/conventions.h"
@@ -14,6 +12,7 @@
 #include "diagnosis/locate.h"
 #include "diagnosis/manoeuvre.h"
 #include "diagnosis/search.h"
+#include "diagnosis/weigh.h"
 #include "diagnosis/whiteness.h"
 
 namespace photorque {
@@ -82,61 +81,6 @@ Fit settle(const BelievedModel& believed, Data& data) {
   return belief;
 }
 
-// How well the leaders also explain what was held back: their evidence on all runs together takes
-// the place of that on the fitted ones. The others gain over the belief in the ratio of the best,
-// and stay below the leaders.
-void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>& all,
-                        const Data& data, int threads) {
-  constexpr size_t most_leaders = 12;
-  constexpr double within = 15.0;
-  std::vector<size_t> order(trials.size());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-    return trials[a].log_evidence > trials[b].log_evidence;
-  });
-  std::vector<size_t> leaders;
-  for (const size_t i : order) {
-    if (!trials[i].objection.empty() || leaders.size() == most_leaders) continue;
-    if (trials[i].log_evidence < trials[order.front()].log_evidence - within) break;
-    leaders.push_back(i);
-  }
-  std::vector<Observation> joint = data.train;
-  joint.insert(joint.end(), data.held.begin(), data.held.end());
-  if (std::find(leaders.begin(), leaders.end(), 0u) == leaders.end()) leaders.push_back(0);
-  const int64_t samples = trials.front().fit.samples;
-  std::vector<double> shift(leaders.size());
-  parallel_for(leaders.size(), threads, [&](size_t k) {
-    Trial& t = trials[leaders[k]];
-    // Some were fitted to averages or pieces only.
-    if (t.fit.samples != samples) t = refit(t, all, data.train, t.fit.best.runs);
-    const Fit held = fly(t.fit, data.held);
-    if (std::isfinite(held.chi2)) t.holdout_chi2_per_sample = held.chi2_per_sample();
-    std::vector<RunStart> starts = t.fit.best.runs;
-    starts.insert(starts.end(), held.best.runs.begin(), held.best.runs.end());
-    shift[k] = refit(t, all, joint, starts).log_evidence - t.log_evidence;
-  });
-  const auto found = [&](size_t i) { return std::find(leaders.begin(), leaders.end(), i); };
-  const auto shift_of = [&](size_t i) {
-    return shift[static_cast<size_t>(found(i) - leaders.begin())];
-  };
-  const double belief = trials.front().log_evidence;
-  const double gain = trials[leaders.front()].log_evidence - belief;
-  // Of the leaders, but for the belief. One may go astray on what it never saw.
-  double lowest = std::numeric_limits<double>::infinity(), highest = belief + shift_of(0);
-  for (const size_t i : leaders) {
-    trials[i].log_evidence += shift_of(i);
-    if (i != 0) lowest = std::min(lowest, trials[i].log_evidence);
-    highest = std::max(highest, trials[i].log_evidence);
-  }
-  const double belief_now = trials.front().log_evidence;
-  const double ratio = gain > 0.0 ? (highest - belief_now) / gain : 1.0;
-  for (size_t i = 0; i < trials.size(); ++i) {
-    if (found(i) != leaders.end()) continue;
-    double& evidence = trials[i].log_evidence;
-    evidence = std::min(lowest, belief_now + ratio * (evidence - belief));
-  }
-}
-
 DataQuality quality_of(const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts, const Data& data) {
   DataQuality q;
@@ -201,7 +145,7 @@ Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecordi
   // chance.
   const std::vector<Where::Dependence> depends_on = dependences(trials, all);
   tell(options, "comparing with what was held back");
-  weigh_with_holdout(trials, all, data, options.threads);
+  weigh_with_holdout(trials, all, {data.train, data.held}, options.threads);
   const Decision decision = decide(trials, all, data.train);
   const Trial& chosen = trials[decision.chosen];
 

@@ -32,7 +32,7 @@ struct Prediction {
 };
 
 struct PredictionOptions {
-  PropagationOptions propagation{.tolerance = 1e-7};
+  PropagationOptions propagation{.tolerance = 1e-7, .derivative_tolerance = 1e-9};
   size_t blocks = SIZE_MAX;  // only the first of them
   bool keep_residuals = false;
 };

@@ -17,29 +17,6 @@ std::vector<int> parameters_of(const ScoreGroup& group, const Disturbance& d) {
   return all;
 }
 
-// gᵀ S⁻¹ g in the space that the data determine at all.
-Score solve(const Eigen::MatrixXd& S, const Eigen::VectorXd& g, const Eigen::VectorXd& before) {
-  Score score;
-  if (g.size() == 0) return score;
-  // Scaled by what the information would be with nothing projected out: what is left below 1e-8 of
-  // it is rounding.
-  const Eigen::VectorXd scale =
-      before.cwiseSqrt().unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      Eigen::MatrixXd(scale.asDiagonal() * S * scale.asDiagonal()));
-  const Eigen::VectorXd rotated = eigen.eigenvectors().transpose() * scale.cwiseProduct(g);
-  Eigen::VectorXd solved = Eigen::VectorXd::Zero(g.size());
-  for (Eigen::Index i = 0; i < g.size(); ++i) {
-    const double lambda = eigen.eigenvalues()[i];
-    if (!(lambda > 1e-8)) continue;
-    solved[i] = rotated[i] / lambda;
-    score.gain += rotated[i] * solved[i];
-  }
-  score.estimate = scale.cwiseProduct(eigen.eigenvectors() * solved);
-  score.information = S;
-  return score;
-}
-
 // What the data say about the parameters of some groups, everything fitted (and the starts of the
 // groups' own states) projected out.
 struct Projected {
@@ -81,6 +58,29 @@ Projected project(const Fit& at, const std::vector<Observation>& runs,
 
 }  // namespace
 
+Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& g,
+                  const Eigen::VectorXd& before) {
+  Score score;
+  if (g.size() == 0) return score;
+  // Scaled by what the information would be with nothing projected out: what is left below 1e-8 of
+  // it is rounding.
+  const Eigen::VectorXd scale =
+      before.cwiseSqrt().unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      Eigen::MatrixXd(scale.asDiagonal() * S * scale.asDiagonal()));
+  const Eigen::VectorXd rotated = eigen.eigenvectors().transpose() * scale.cwiseProduct(g);
+  Eigen::VectorXd solved = Eigen::VectorXd::Zero(g.size());
+  for (Eigen::Index i = 0; i < g.size(); ++i) {
+    const double lambda = eigen.eigenvalues()[i];
+    if (!(lambda > 1e-8)) continue;
+    solved[i] = rotated[i] / lambda;
+    score.gain += rotated[i] * solved[i];
+  }
+  score.estimate = scale.cwiseProduct(eigen.eigenvectors() * solved);
+  score.information = S;
+  return score;
+}
+
 std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
                          const std::vector<ScoreGroup>& groups) {
   std::vector<Score> scores(groups.size());
@@ -97,8 +97,8 @@ std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
     const Projected all = project(at, runs, groups, first, last);
     for (size_t g = first; all.known && g < last; ++g) {
       const Eigen::Index a = all.begin[g - first], n = all.begin[g - first + 1] - a;
-      scores[g] = solve(all.information.block(a, a, n, n), all.gradient.segment(a, n),
-                        all.before.segment(a, n));
+      scores[g] = solve_score(all.information.block(a, a, n, n), all.gradient.segment(a, n),
+                              all.before.segment(a, n));
     }
     first = last;
   }
@@ -122,7 +122,7 @@ Eigen::MatrixXd score_pairs(const Fit& at, const std::vector<Observation>& runs,
         if (i == j) break;
       }
       gains(i, j) = gains(j, i) =
-          solve(all.information(both, both), all.gradient(both), all.before(both)).gain;
+          solve_score(all.information(both, both), all.gradient(both), all.before(both)).gain;
     }
   }
   return gains;

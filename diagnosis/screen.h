@@ -13,6 +13,12 @@ struct Score {
   Eigen::MatrixXd information;  // inverse covariance of the estimate
 };
 
+// From the information S about some parameters and their gradient g: the gain gᵀ S⁻¹ g and the
+// estimate S⁻¹ g in the space that the data determine at all. `before`: the diagonal of the
+// information before anything was projected out.
+Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& g,
+                  const Eigen::VectorXd& before);
+
 // One group of parameters that would enter together.
 struct ScoreGroup {
   std::vector<Disturbance> disturbances;

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "diagnosis/averaging.h"
+#include "diagnosis/leaders.h"
 #include "diagnosis/scan.h"
 #include "diagnosis/screen.h"
 #include "diagnosis/whiteness.h"
@@ -16,12 +17,6 @@ struct Task {
   size_t candidate;
   Disturbance start;
 };
-
-// Whether a score test can foretell what a candidate's fit gains.
-bool is_linear(const Candidate& c) {
-  return !c.start.parameters.empty() &&
-         std::none_of(c.searched.begin(), c.searched.end(), [](bool b) { return b; });
-}
 
 // Of a fit, beyond which its slopes say little: the trajectory is elsewhere.
 constexpr double astray_chi2_per_sample = 20.0;
@@ -55,27 +50,35 @@ Runs cut(const std::vector<Observation>& runs, size_t pieces) {
   return result;
 }
 
+// Of the best candidate's gain, to be worth a fit.
+constexpr double least_share = 0.02;
+
+struct Promising {
+  std::vector<size_t> candidates;
+  double least_gain;  // that a scan's start must promise, to be worth a fit beside these
+};
+
 // Where the trajectory is near the readings, the score test foretells what each candidate would
 // gain: those that would gain hardly anything against the best need no fit of their own.
-std::vector<size_t> promising(const Trial& parent, const std::vector<Candidate>& all,
-                              const std::vector<size_t>& candidates,
-                              const std::vector<Observation>& slow_runs) {
-  constexpr double least_gain = 5.0, least_share = 0.02;
-  if (parent.fit.chi2_per_sample() > astray_chi2_per_sample) return candidates;
+Promising promising(const Trial& parent, const std::vector<Candidate>& all,
+                    const std::vector<size_t>& candidates,
+                    const std::vector<Observation>& slow_runs) {
+  constexpr double least_gain = 5.0;
+  if (parent.fit.chi2_per_sample() > astray_chi2_per_sample) return {candidates, 0.0};
   std::vector<ScoreGroup> groups;
   for (const size_t c : candidates) {
     groups.push_back(
-        {is_linear(all[c]) ? std::vector<Disturbance>{all[c].start} : std::vector<Disturbance>{}});
+        {all[c].is_linear() ? std::vector<Disturbance>{all[c].start} : std::vector<Disturbance>{}});
   }
   const std::vector<Score> scores = score(parent.fit, slow_runs, groups);
   double best = 0.0;
   for (const Score& s : scores) best = std::max(best, s.gain);
-  std::vector<size_t> result;
+  Promising result{{}, least_share * best};
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& c = all[candidates[i]];
     const double parameters = static_cast<double>(c.start.parameters.size());
-    const bool worth_it = scores[i].gain > std::max(least_gain + parameters, least_share * best);
-    if (!is_linear(c) || worth_it) result.push_back(candidates[i]);
+    const bool worth_it = scores[i].gain > std::max(least_gain + parameters, result.least_gain);
+    if (!c.is_linear() || worth_it) result.candidates.push_back(candidates[i]);
   }
   return result;
 }
@@ -120,12 +123,13 @@ std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>
   const std::vector<Observation>& runs = run_set.all;
   const std::vector<Observation> slow_runs = run_set.averaged(parent.fit);
   std::vector<double> lines_Hz;
-  std::vector<size_t> worth_it;
+  Promising hopeful;
   parallel_for(2, threads, [&](size_t i) {
-    if (i == 0) lines_Hz = line_frequencies_Hz(parent.fit, runs, slow_runs);
-    if (i == 1) worth_it = promising(parent, all, candidates, slow_runs);
+    if (i == 0) lines_Hz = line_frequencies_Hz(parent.fit, runs);
+    if (i == 1) hopeful = promising(parent, all, candidates, slow_runs);
   });
-  std::vector<std::vector<Disturbance>> starts(worth_it.size());
+  const std::vector<size_t>& worth_it = hopeful.candidates;
+  std::vector<std::vector<Start>> starts(worth_it.size());
   parallel_for(worth_it.size(), threads, [&](size_t i) {
     starts[i] = starts_of(all[worth_it[i]], parent, runs, slow_runs, lines_Hz);
   });
@@ -134,8 +138,9 @@ std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>
     const std::string& kind = all[worth_it[i]].effect.kind;
     const bool is_fast =
         kind == "periodic_torque" || kind == "floor_vibration" || kind == "flexible_mode";
-    for (const Disturbance& start : starts[i]) {
-      (is_fast ? fast : slow).push_back({worth_it[i], start});
+    for (const Start& start : starts[i]) {
+      if (start.gain < hopeful.least_gain) continue;
+      (is_fast ? fast : slow).push_back({worth_it[i], start.disturbance});
     }
   }
   std::vector<Trial> found = extend_by_tasks(parent, all, fast, runs, threads);
@@ -175,17 +180,21 @@ std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candi
                    [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
   FitSettings growing;
   growing.windows = {0.06, 0.25, 1.0};
+  size_t refits = 0;
+  while (refits < std::min(most_refits, found.size()) && is_near(found[refits], found.front())) {
+    ++refits;
+  }
   parallel_for(found.size(), threads, [&](size_t i) {
     Trial& t = found[i];
     const std::vector<RunStart> starts = seen_starts(t.fit.best, runs);
-    if (i < most_refits) {
+    if (i < refits) {
       t = refit(t, all, runs, starts, growing);
     } else {
       t.log_evidence += parent.log_evidence - near.log_evidence;
       t.fit.best.runs = starts;
     }
   });
-  keep_below(found, std::min(most_refits, found.size()));
+  keep_below(found, refits);
   return found;
 }
 
@@ -202,19 +211,6 @@ std::vector<Trial> extend_by_each(const Trial& parent, const std::vector<Candida
 bool contains(const Trial& trial, const std::vector<Candidate>& all, size_t candidate) {
   return std::any_of(trial.candidates.begin(), trial.candidates.end(),
                      [&](size_t c) { return all[c].label == all[candidate].label; });
-}
-
-std::vector<size_t> by_evidence(const std::vector<Trial>& trials) {
-  std::vector<size_t> order(trials.size());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
-    return trials[a].log_evidence > trials[b].log_evidence;
-  });
-  return order;
-}
-
-double excess_sigma(const Trial& t, const std::vector<Observation>& runs) {
-  return whiteness(residuals_of(t.fit, runs)).excess_sigma;
 }
 
 // Of trials of the same effects, found in different order, the best.
@@ -239,21 +235,6 @@ std::vector<Trial> without_twins(std::vector<Trial> trials) {
 bool is_physics(const Trial& trial, const std::vector<Candidate>& all) {
   return std::none_of(trial.candidates.begin(), trial.candidates.end(),
                       [&](size_t c) { return all[c].empirical(); });
-}
-
-// The leaders' fits are carried on until they converge: what only goes on where its parent's fit
-// stopped would seem to gain by the effect that it adds.
-void settle_leaders(std::vector<Trial>& found, const std::vector<Candidate>& all,
-                    const std::vector<Observation>& runs, int threads) {
-  constexpr size_t most_leaders = 6;
-  const std::vector<size_t> order = by_evidence(found);
-  parallel_for(std::min(most_leaders, order.size()), threads, [&](size_t i) {
-    Trial& trial = found[order[i]];
-    FitSettings patient;
-    patient.most_iterations = 60;
-    Trial again = refit(trial, all, runs, trial.fit.best.runs, patient);
-    if (again.log_evidence > trial.log_evidence) trial = std::move(again);
-  });
 }
 
 // A pair is found by way of its stronger half, which may have been another kind that takes its
@@ -288,7 +269,7 @@ std::vector<Trial> best_pairs(const Trial& belief, const std::vector<Candidate>&
   std::vector<size_t> linear;
   std::vector<ScoreGroup> groups;
   for (size_t c = 0; c < all.size(); ++c) {
-    if (all[c].empirical() || !is_linear(all[c])) continue;
+    if (all[c].empirical() || !all[c].is_linear()) continue;
     linear.push_back(c);
     groups.push_back({{all[c].start}});
   }
@@ -366,7 +347,7 @@ std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
       }
     }
     found = without_twins(std::move(found));
-    settle_leaders(found, all, runs, options.threads);
+    settle_leaders(found, parents, trials, all, runs, options.threads);
     // The best physics goes on, and the next best while the best leaves structure behind; when
     // nothing gained, nothing more will.
     const size_t most_parents = effects == 1 ? 2 : 1;
@@ -379,8 +360,10 @@ std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
         continue;
       }
       if (!found[i].objection.empty()) continue;
+      // Two effects that leave the trajectory elsewhere: no third will bring it back.
+      if (effects >= 2 && found[i].fit.chi2_per_sample() > astray_chi2_per_sample) break;
       next.push_back(found[i]);
-      if (excess_sigma(found[i], runs) < explained_sigma) break;
+      if (excess_sigma(found[i].fit, runs) < explained_sigma) break;
     }
     for (Trial& t : found) trials.push_back(std::move(t));
     if (next.empty()) break;

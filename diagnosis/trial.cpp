@@ -1,6 +1,7 @@
 #include "diagnosis/trial.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -156,6 +157,27 @@ double log_evidence(const Trial& trial, const std::vector<Candidate>& all) {
          log_strength_evidence(strengths, fit.shared_covariance(), trial.candidates.size());
 }
 
+// The largest change of a principal moment by a fitted error of the inertia, as a share of the
+// believed one. The torque equation is homogeneous: hardly any inertia at all explains nearly
+// everything, but nobody weighs a platform that badly.
+double inertia_change(const Trial& trial, const std::vector<Candidate>& all) {
+  const Mat3& believed_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
+  const Vec3 believed = believed_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
+  double largest = 0.0;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    if (all[trial.candidates[i]].effect.kind != "inertia_error") continue;
+    const auto& delta = trial.fit.best.model.disturbances[trial.disturbances[i]].parameters;
+    Mat3 found = believed_kg_m2;
+    for (Eigen::Index k = 0; k < 3; ++k) found(k, k) += delta[static_cast<size_t>(k)].value;
+    found(1, 0) += delta[3].value;
+    found(2, 0) += delta[4].value;
+    found(2, 1) += delta[5].value;
+    const Vec3 moments = found.selfadjointView<Eigen::Lower>().eigenvalues();
+    largest = std::max(largest, (moments - believed).cwiseQuotient(believed).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
 std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) {
   if (!std::isfinite(trial.fit.chi2)) return "cannot be propagated";
   const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
@@ -174,6 +196,11 @@ std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) 
       }
     }
   }
+  constexpr double most_inertia_change = 0.4;
+  if (const double change = inertia_change(trial, all); change > most_inertia_change) {
+    return "a principal moment of inertia would change by " +
+           std::to_string(static_cast<int>(std::lround(100.0 * change))) + " %";
+  }
   double drag = 0.0;
   bool has_drag = false;
   for (const Disturbance& d : trial.fit.best.model.disturbances) {
@@ -185,7 +212,41 @@ std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) 
   return "";
 }
 
+double significance(const Trial& trial, const std::vector<Candidate>& all, size_t which) {
+  const Candidate& c = all[trial.candidates[which]];
+  const std::vector<Eigen::Index> where = shared_indices(trial, which);
+  const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
+  std::vector<std::pair<Eigen::Index, double>> linear;
+  size_t k = 0;
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (!is_fitted(c, p)) continue;
+    const Eigen::Index at = where[k++];
+    if (c.searched[p]) continue;
+    linear.emplace_back(
+        at, trial.fit.best.model.disturbances[trial.disturbances[which]].parameters[p].value);
+  }
+  const auto n = static_cast<Eigen::Index>(linear.size());
+  if (n == 0) return 0.0;
+  Eigen::MatrixXd C(n, n);
+  Eigen::VectorXd theta(n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    theta[a] = linear[static_cast<size_t>(a)].second;
+    for (Eigen::Index b = 0; b < n; ++b) {
+      C(a, b) =
+          covariance(linear[static_cast<size_t>(a)].first, linear[static_cast<size_t>(b)].first);
+    }
+  }
+  const Eigen::VectorXd scale = C.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * C * scale.asDiagonal();
+  const Eigen::VectorXd scaled = scale.cwiseProduct(theta);
+  return std::sqrt(std::max(0.0, scaled.dot(correlation.ldlt().solve(scaled))));
+}
+
 void judge(Trial& trial, const std::vector<Candidate>& all) {
+  trial.significance.clear();
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    trial.significance.push_back(significance(trial, all, i));
+  }
   trial.log_evidence = log_evidence(trial, all);
   trial.objection = objection_to(trial, all);
 }
@@ -302,34 +363,27 @@ Trial refit(const Trial& trial, const std::vector<Candidate>& all,
   return result;
 }
 
-double significance(const Trial& trial, const std::vector<Candidate>& all, size_t which) {
-  const Candidate& c = all[trial.candidates[which]];
-  const std::vector<Eigen::Index> where = shared_indices(trial, which);
-  const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
-  std::vector<std::pair<Eigen::Index, double>> linear;
-  size_t k = 0;
-  for (size_t p = 0; p < c.scale.size(); ++p) {
-    if (!is_fitted(c, p)) continue;
-    const Eigen::Index at = where[k++];
-    if (c.searched[p]) continue;
-    linear.emplace_back(
-        at, trial.fit.best.model.disturbances[trial.disturbances[which]].parameters[p].value);
+Trial refit_near(const Trial& trial, const Trial& other, const std::vector<Candidate>& all,
+                 const std::vector<Observation>& runs, const FitSettings& settings) {
+  Trial from = trial;
+  std::vector<Disturbance>& to = from.fit.best.model.disturbances;
+  const std::vector<Disturbance>& source = other.fit.best.model.disturbances;
+  const size_t believed = to.size() - trial.candidates.size();
+  for (size_t d = 0; d < believed; ++d) to[d].parameters = source[d].parameters;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const auto twin =
+        std::find(other.candidates.begin(), other.candidates.end(), trial.candidates[i]);
+    if (twin == other.candidates.end()) continue;
+    const auto j = static_cast<size_t>(twin - other.candidates.begin());
+    to[trial.disturbances[i]].parameters = source[other.disturbances[j]].parameters;
   }
-  const auto n = static_cast<Eigen::Index>(linear.size());
-  if (n == 0) return 0.0;
-  Eigen::MatrixXd C(n, n);
-  Eigen::VectorXd theta(n);
-  for (Eigen::Index a = 0; a < n; ++a) {
-    theta[a] = linear[static_cast<size_t>(a)].second;
-    for (Eigen::Index b = 0; b < n; ++b) {
-      C(a, b) =
-          covariance(linear[static_cast<size_t>(a)].first, linear[static_cast<size_t>(b)].first);
-    }
+  std::vector<RunStart> starts = other.fit.best.runs;
+  for (size_t run = 0; run < starts.size(); ++run) {
+    std::vector<double>& extra = starts[run].initial.extra;
+    const std::vector<double>& own = from.fit.best.runs[run].initial.extra;
+    if (extra.size() != own.size()) extra = own;
   }
-  const Eigen::VectorXd scale = C.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd correlation = scale.asDiagonal() * C * scale.asDiagonal();
-  const Eigen::VectorXd scaled = scale.cwiseProduct(theta);
-  return std::sqrt(std::max(0.0, scaled.dot(correlation.ldlt().solve(scaled))));
+  return refit(from, all, runs, starts, settings);
 }
 
 }  // namespace photorque

@@ -1,6 +1,7 @@
 // Candidates that may explain what is left, and models that contain some of them, fitted in full.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,11 @@ struct Candidate {
   std::vector<bool> searched;
 
   bool empirical() const { return !variable.empty(); }
+  // Whether a score test can foretell what its fit gains.
+  bool is_linear() const {
+    return !start.parameters.empty() &&
+           std::none_of(searched.begin(), searched.end(), [](bool b) { return b; });
+  }
 };
 std::vector<Candidate> all_candidates(const BelievedModel& believed,
                                       const std::vector<Observation>& runs);
@@ -37,6 +43,8 @@ struct Trial {
   // Laplace's approximation (MacKay, Information Theory, Inference, and Learning Algorithms, 2003,
   // eq. 28.5), with the prior probability of the candidates' names.
   double log_evidence = 0.0;
+  // Of each candidate: the square root of θᵀ C⁻¹ θ over its parameters that are not searched.
+  std::vector<double> significance;
   std::string objection;                               // why physics forbids it; empty: nothing
   std::optional<double> holdout_chi2_per_sample = {};  // where it flew what was held back
 };
@@ -53,8 +61,11 @@ Trial refit(const Trial& trial, const std::vector<Candidate>& all,
             const std::vector<Observation>& runs, const std::vector<RunStart>& starts,
             const FitSettings& settings = {});
 
-// Significance of the candidate added last: the square root of θᵀ C⁻¹ θ.
-double significance(const Trial& trial, const std::vector<Candidate>& all, size_t which);
+// The same trial from where another on the same runs ended: its starts, and its values of all that
+// the two share. Of a long run that tumbles a fit may end in one of many valleys; what others found
+// is a second chance.
+Trial refit_near(const Trial& trial, const Trial& other, const std::vector<Candidate>& all,
+                 const std::vector<Observation>& runs, const FitSettings& settings = {});
 
 // Indices of a candidate's parameters among the shared ones of the fit.
 std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which);

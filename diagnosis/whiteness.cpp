@@ -84,6 +84,14 @@ Whiteness whiteness(const std::vector<Prediction>& residuals) {
   return result;
 }
 
+double excess_sigma(const Fit& fit, const std::vector<Observation>& runs) {
+  try {
+    return whiteness(residuals_of(fit, runs)).excess_sigma;
+  } catch (const NumericalError&) {
+    return 1e9;
+  }
+}
+
 bool correct_noise(const Whiteness& found, std::vector<Observation>& runs) {
   bool any = false;
   for (size_t k = 0; k < 6; ++k) {

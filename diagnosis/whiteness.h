@@ -24,6 +24,9 @@ struct Whiteness {
 };
 Whiteness whiteness(const std::vector<Prediction>& residuals);
 
+// The excess of what is left of a fit; huge where it cannot be propagated.
+double excess_sigma(const Fit& fit, const std::vector<Observation>& runs);
+
 // Gives every channel of the runs the noise that was found, where it is off by more than 5 % and
 // more than five standard errors. Returns whether any was.
 bool correct_noise(const Whiteness& found, std::vector<Observation>& runs);

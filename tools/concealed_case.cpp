@@ -30,7 +30,9 @@ void draw_platform(RandomDraw& draw, ConcealedCase& c) {
     inertia = {draw.uniform(0.10, 0.13), draw.uniform(0.11, 0.13), draw.uniform(0.17, 0.205)};
   } else if (c.topology == "dumbbell") {
     c.world.mass_kg = draw.uniform(10.0, 15.5);
-    inertia = {draw.uniform(0.05, 0.08), draw.uniform(0.47, 0.55), draw.uniform(0.47, 0.52)};
+    do {
+      inertia = {draw.uniform(0.05, 0.08), draw.uniform(0.47, 0.55), draw.uniform(0.47, 0.52)};
+    } while (inertia[1] > inertia[0] + inertia[2]);  // no body has such moments
   } else {
     c.world.mass_kg = draw.uniform(4.5, 5.5);
     inertia = {draw.uniform(0.050, 0.056), draw.uniform(0.053, 0.058), draw.uniform(0.052, 0.057)};

@@ -12,6 +12,7 @@
 #include "core/constants.h"
 #include "diagnosis/belief.h"
 #include "diagnosis/diagnose.h"
+#include "diagnosis/scan.h"
 #include "diagnosis/screen.h"
 #include "diagnosis/trial.h"
 
@@ -181,6 +182,42 @@ TEST(Score, ForetellsWhatTwoEffectsGainTogether) {
   const double gained = believed.chi2 - both.fit.chi2;
   EXPECT_NEAR(gains(0, 1), gained, 0.05 * gained);
   EXPECT_GT(gained, believed.chi2 - one.fit.chi2 + 20.0);
+}
+
+// A camera that sees every second row: what is slow has a mirror image at half the rate of the
+// rows, 2.5 Hz, in its readings, which is no line.
+TEST(Scan, TakesNoMirrorImageForALine) {
+  NamedRecording seen = recorded(5, [](const State&) { return Vec3(3e-6, -2e-6, 2e-5); });
+  for (size_t c = 0; c < 4; ++c) {
+    std::vector<double>& values = seen.recording.channels[c].values;
+    for (size_t row = 1; row < values.size(); row += 2) values[row] = NAN;
+  }
+  const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
+  const Fit fit = fit_belief(belief(), runs);
+  EXPECT_GT(fit.chi2_per_sample(), 1.5);  // there is something slow
+  for (const double line_Hz : line_frequencies_Hz(fit, runs)) EXPECT_LT(line_Hz, 2.0);
+}
+
+// The torque equation is homogeneous: a third of the inertia explains a torque three times as
+// large.
+TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
+  const auto thrice = [](const State& s) {
+    const Vec3 gravity = s.lab_from_body.conjugate() * Vec3(0, 0, -gravity_m_s2);
+    return Vec3(2.0 * mass_kg * offset_m.cross(gravity));
+  };
+  const NamedRecording seen = recorded(6, thrice);
+  const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
+  const BelievedModel believed = belief();
+  const std::vector<Candidate> all = all_candidates(believed, runs);
+  const auto error = std::find_if(
+      all.begin(), all.end(), [](const Candidate& c) { return c.effect.kind == "inertia_error"; });
+  ASSERT_NE(error, all.end());
+  FitSettings settings;
+  settings.most_iterations = 60;
+  const Trial trial =
+      extend(believed_trial(fit_belief(believed, runs)), all,
+             static_cast<size_t>(error - all.begin()), error->start, runs, settings);
+  EXPECT_NE(trial.objection.find("inertia would change by"), std::string::npos) << trial.objection;
 }
 
 TEST(Diagnose, CallsCoggingUnexplainedAndMeasuresItsTorque) {
