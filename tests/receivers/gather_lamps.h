@@ -1,10 +1,12 @@
-// Lamps for tests of gathering.
+// Lamps and a scene for tests of gathering.
 #pragma once
 
 #include <stdexcept>
 #include <string>
 
+#include "receivers/flux_map.h"
 #include "sources/source_kind.h"
+#include "tests/raytrace/test_scenes.h"
 
 namespace photorque::testing {
 
@@ -56,6 +58,21 @@ inline Beam pillbox_disc(const char* measure) {
                         {"profile", text("pillbox")},
                         {"half_angle_deg", number(1.5)},
                         {"pillbox_measure", text(measure)}});
+}
+
+// A square of 1 m and, half a metre above it, a box.
+inline Scene shaded_square() {
+  Scene scene;
+  const auto black = grey_surface("black", 0.1, 0.2);
+  add(scene, rectangle(Vec3::Zero(), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0)), black, "receiver");
+  add(scene, box(Vec3(0, -0.02, 0.5), Vec3(0.1, 0.08, 0.55)), black, "box");
+  return scene;
+}
+
+inline FluxMapReceiver map_of(const Scene& scene, int bins) {
+  SurfaceGridOptions options;
+  options.width = options.height = bins;
+  return {"receiver", scene, make_surface_grid(scene, scene.instances_of("receiver"), options)};
 }
 
 }  // namespace photorque::testing

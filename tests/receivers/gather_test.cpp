@@ -16,25 +16,13 @@ namespace {
 using testing::add;
 using testing::box;
 using testing::gaussian_led;
+using testing::map_of;
 using testing::number;
 using testing::pillbox_disc;
 using testing::rectangle;
+using testing::shaded_square;
 using testing::source;
 using testing::text;
-
-Scene shaded_square() {
-  Scene scene;
-  const auto black = grey_surface("black", 0.1, 0.2);
-  add(scene, rectangle(Vec3::Zero(), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0)), black, "receiver");
-  add(scene, box(Vec3(0, -0.02, 0.5), Vec3(0.1, 0.08, 0.55)), black, "box");
-  return scene;
-}
-
-FluxMapReceiver map_of(const Scene& scene, int bins) {
-  SurfaceGridOptions options;
-  options.width = options.height = bins;
-  return {"receiver", scene, make_surface_grid(scene, scene.instances_of("receiver"), options)};
-}
 
 Estimate direct(const Gathered& gathered, const FluxMapReceiver& map, size_t bin) {
   std::vector<double> values;
