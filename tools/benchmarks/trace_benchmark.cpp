@@ -13,6 +13,7 @@
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "raytrace/find_hits.h"
+#include "raytrace/shadow.h"
 #include "receivers/flux_map.h"
 #include "receivers/gather.h"
 #include "scenes/experiment.h"
@@ -205,6 +206,50 @@ void gather(benchmark::State& state, const Case& which) {
   gather(state, scene, flux_map(which.scene), {}, which.beams);
 }
 
+// Shadow rays from points of 1 mm patches of the plate to points of a disc above, as gathering
+// sends them: a batch for each patch.
+void shadow_rays(benchmark::State& state, const Case& which, double disc_radius_m) {
+  const TraceableScene scene(which.scene, false);
+  constexpr size_t patches = 2048, rays = shadow_batch;
+  std::vector<ShadowRay> all;
+  const double lift_m = shadow_lift_m(scene);
+  for (size_t i = 0; i < patches * rays; ++i) {
+    const auto golden = [](size_t n, double step) { return std::fmod(0.5 + step * n, 1.0); };
+    const size_t patch = i / rays;
+    const Vec3 from(0.498 * (golden(patch, 0.7548776662) - 0.5) + 1e-3 * golden(i, 0.8191725134),
+                    0.498 * (golden(patch, 0.5698402910) - 0.5) + 1e-3 * golden(i, 0.6710436067),
+                    lift_m);
+    const double radius_m = disc_radius_m * std::sqrt(golden(i, 0.5497004779));
+    const double turn = 2.0 * pi * golden(i, 0.4503);
+    const Vec3 to(radius_m * std::cos(turn), radius_m * std::sin(turn), 1.5);
+    const double length_m = (to - from).norm();
+    const Eigen::Vector3f along = ((to - from) / length_m).cast<float>();
+    all.push_back(
+        {{static_cast<float>(from.x()), static_cast<float>(from.y()), static_cast<float>(from.z())},
+         {along.x(), along.y(), along.z()},
+         static_cast<float>(length_m)});
+  }
+  const int threads = static_cast<int>(state.range(0));
+  std::vector<uint8_t> lit(all.size());
+  for (auto _ : state) {
+    parallel_for(patches, threads, [&](size_t patch) {
+      find_shadows(scene, std::span(all).subspan(patch * rays, rays),
+                   std::span(lit).subspan(patch * rays, rays));
+    });
+  }
+  state.counters["Mrays/s"] = benchmark::Counter(
+      1e-6 * static_cast<double>(all.size() * state.iterations()), benchmark::Counter::kIsRate);
+  state.counters["lit_%"] =
+      100.0 * std::accumulate(lit.begin(), lit.end(), 0.0) / static_cast<double>(lit.size());
+}
+
+void case_a_shadow_rays(benchmark::State& state) {
+  shadow_rays(state, case_a(), 0.2);
+}
+void case_b_shadow_rays(benchmark::State& state) {
+  shadow_rays(state, case_b(), 0.0225);
+}
+
 void case_a_gather(benchmark::State& state) {
   gather(state, case_a());
 }
@@ -248,6 +293,8 @@ BENCHMARK(stasis_30_deg_gather)
     ->Args({2, 16})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(case_a_shadow_rays)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(case_b_shadow_rays)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(case_a_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(case_a_bare_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(case_b_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
