@@ -60,7 +60,9 @@ std::string nearest(std::string_view word, const std::set<std::string>& candidat
   std::string best;
   size_t best_distance = std::max<size_t>(2, word.size() / 2) + 1;
   for (const auto& candidate : candidates) {
-    const size_t distance = edit_distance(word, candidate);
+    // A name without its unit is as near as one wrong letter.
+    const bool lacks_unit = candidate.starts_with(std::string(word) + "_");
+    const size_t distance = lacks_unit ? 1 : edit_distance(word, candidate);
     if (distance < best_distance) {
       best = candidate;
       best_distance = distance;
@@ -68,6 +70,26 @@ std::string nearest(std::string_view word, const std::set<std::string>& candidat
   }
   return best;
 }
+
+namespace {
+
+// What is expected in the place of an unknown key: the likest of the known ones, else the first of
+// them all.
+std::string known_instead_of(std::string_view key, const std::set<std::string>& known) {
+  constexpr size_t most = 12;
+  if (const std::string hint = nearest(key, known); !hint.empty()) {
+    return "a known key, perhaps \"" + hint + "\"";
+  }
+  std::string list;
+  size_t count = 0;
+  for (const std::string& name : known) {
+    if (++count > most) break;
+    list += (count > 1 ? ", " : "") + name;
+  }
+  return "one of " + list + (count > most ? ", …" : "");
+}
+
+}  // namespace
 
 Settings::Settings(std::shared_ptr<const SettingsNode> root, std::string name)
     : node_(root.get()),
@@ -199,10 +221,9 @@ void Settings::finish() const {
   for (const auto& [key, node] : std::get<SettingsNode::Table>(node_->value)) {
     if (!log_->read.contains(&node)) {
       const auto asked = log_->asked.find(node_);
-      const std::string hint = asked == log_->asked.end() ? "" : nearest(key, asked->second);
-      throw InputError(
-          node.where, full_name(key), "an unknown key",
-          hint.empty() ? "only known keys here" : "a known key, perhaps \"" + hint + "\"");
+      throw InputError(node.where, full_name(key), "an unknown key",
+                       asked == log_->asked.end() ? "only known keys here"
+                                                  : known_instead_of(key, asked->second));
     }
     if (node.is_table()) Settings(&node, root_, log_, full_name(key)).finish();
     if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {

@@ -64,6 +64,19 @@ TEST(Keys, UnreadKeyIsAnErrorWithTheNearestName) {
             "\"aperture_m\"");
 }
 
+TEST(Keys, UnreadKeyWithoutUnitIsTheOneWithAUnit) {
+  const Settings settings = lab({{"tilt", leaf(3.0, 4)}});
+  for (const char* key : {"heading_deg", "tilt_deg"}) settings.number_or(key, 0.0);
+  EXPECT_THAT(message([&] { settings.finish(); }), testing::HasSubstr("perhaps \"tilt_deg\""));
+}
+
+TEST(Keys, UnreadKeyLikeNoneListsThoseThatAreKnown) {
+  const Settings settings = lab({{"wavelength_nm", leaf(730.0, 4)}});
+  for (const char* key : {"power_W", "exponent"}) settings.number_or(key, 0.0);
+  EXPECT_EQ(message([&] { settings.finish(); }),
+            "lab.toml:4: wavelength_nm: found an unknown key, expected one of exponent, power_W");
+}
+
 TEST(Keys, MissingKeyPointsToItsMisspelling) {
   const Settings settings = lab({{"power_W", leaf(1.0, 2)}, {"apperture_m", leaf(0.1, 5)}});
   settings.number("power_W");
