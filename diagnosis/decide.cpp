@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "diagnosis/whiteness.h"
 
@@ -13,6 +14,8 @@ namespace {
 constexpr double least_log_odds = 4.5;
 // Of a named effect.
 constexpr double least_significance = 4.0;
+// Of the probability, for a name that only the recordings and what was held back show together.
+constexpr double least_share_of_a_hint = 0.7;
 // Of the structure left, before the best physics is called insufficient.
 constexpr double most_excess_sigma = 6.0;
 
@@ -21,13 +24,25 @@ bool has_empirical(const Trial& t, const std::vector<Candidate>& all) {
                      [&](size_t c) { return all[c].empirical(); });
 }
 
-bool is_significant(const Trial& t, const std::vector<Candidate>& all) {
+bool is_significant(const Trial& t, const std::vector<Candidate>& all,
+                    const std::vector<double>& significance) {
   for (size_t i = 0; i < t.candidates.size(); ++i) {
     const Candidate& c = all[t.candidates[i]];
     if (c.start.parameters.empty() || c.effect.kind == "flexible_mode") continue;
-    if (t.significance[i] < least_significance) return false;
+    if (significance[i] < least_significance) return false;
   }
   return true;
+}
+
+bool is_significant(const Trial& t, const std::vector<Candidate>& all) {
+  return is_significant(t, all,
+                        t.joint_significance.empty() ? t.significance : t.joint_significance);
+}
+
+std::multiset<std::string> names_of(const Trial& t, const std::vector<Candidate>& all) {
+  std::multiset<std::string> names;
+  for (const size_t c : t.candidates) names.insert(all[c].label);
+  return names;
 }
 
 std::vector<double> posterior(const std::vector<Trial>& trials) {
@@ -73,10 +88,16 @@ Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& 
     }
     if (structure_left) d.confidence = std::max(d.confidence, 0.95);
   } else if (physics != 0) {
-    d.verdict = Verdict::missing_physics;
-    d.chosen = physics;
     // The same names with another parametrisation are the same answer.
-    d.confidence = d.probability[physics];
+    const auto names = names_of(trials[physics], all);
+    for (size_t i = 0; i < trials.size(); ++i) {
+      if (names_of(trials[i], all) == names) d.confidence += d.probability[i];
+    }
+    d.undecided = d.confidence < least_share_of_a_hint &&
+                  !is_significant(trials[physics], all, trials[physics].significance);
+    d.verdict = d.undecided ? Verdict::consistent : Verdict::missing_physics;
+    d.chosen = d.undecided ? 0 : physics;
+    if (d.undecided) d.confidence = 1.0 - d.confidence;
   } else {
     d.verdict = Verdict::consistent;
     d.confidence = d.probability.front();

@@ -173,6 +173,11 @@ Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecordi
         "the noise of the readings is not what the experiment states: the level "
         "found in the recording was used");
   }
+  if (decision.undecided) {
+    d.warnings.push_back(
+        "the recordings and what was held back show together what neither shows alone, but not "
+        "which effect it is: see the alternatives");
+  }
   d.data = quality_of(recordings, holdouts, data);
   for (size_t run = 0; run < data.train.size(); ++run) {
     d.series.push_back(series_of(belief, chosen.fit, data.train[run], run));

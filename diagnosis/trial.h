@@ -45,7 +45,8 @@ struct Trial {
   double log_evidence = 0.0;
   // Of each candidate: the square root of θᵀ C⁻¹ θ over its parameters that are not searched.
   std::vector<double> significance;
-  std::string objection;                               // why physics forbids it; empty: nothing
+  std::vector<double> joint_significance = {};  // with what was held back, where that was weighed
+  std::string objection;                        // why physics forbids it; empty: nothing
   std::optional<double> holdout_chi2_per_sample = {};  // where it flew what was held back
 };
 

@@ -54,7 +54,7 @@ class Weighing {
     for (const Leader& leader : leaders_) {
       Trial& trial = trials_[leader.at];
       trial.log_evidence = leader.joint.log_evidence;
-      trial.significance = leader.joint.significance;
+      trial.joint_significance = leader.joint.significance;
       if (trial.objection.empty()) trial.objection = leader.joint.objection;
     }
     keep_below(found, belief, gain);
