@@ -15,6 +15,9 @@ namespace {
 // looks as wide as its damping: enough of it for the grid of frequencies.
 constexpr double scanned_damping = 0.08;
 
+// Six strengths fall by six of χ² on noise alone.
+constexpr double least_ringing_gain = 14.0;
+
 // Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.
 ScoreGroup appendages(const Disturbance& start, double frequency_Hz) {
   ScoreGroup group;
@@ -83,13 +86,21 @@ Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& ine
   return best;
 }
 
+// What two scores tell that share no reading's news, about the same parameters.
+Score together(const Score& a, const Score& b) {
+  if (a.estimate.size() != b.estimate.size()) return b;
+  const Eigen::MatrixXd information = a.information + b.information;
+  const Eigen::VectorXd gradient = a.information * a.estimate + b.information * b.estimate;
+  return solve_score(information, gradient, information.diagonal());
+}
+
 }  // namespace
 
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,
                                         const std::vector<Observation>& slow_runs) {
   constexpr double step = 1.2, most_Hz = 5.0;
-  constexpr size_t most_starts = 3;
+  constexpr size_t most_starts = 3, most_fast_starts = 2;
   const auto interval_s = [](const Observation& seen) {
     return seen.duration_s() / static_cast<double>(seen.blocks());
   };
@@ -101,20 +112,34 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
   const std::vector<Prediction> flown = residuals_of(fit, runs);
   std::vector<FlownRun> all;
   for (size_t run = 0; run < runs.size(); ++run) all.push_back({runs[run], flown[run]});
-  std::vector<Mode> modes;
-  std::vector<double> gain;
-  for (double f_Hz = std::max(0.02, 2.0 / span_s(runs)); f_Hz < highest_Hz; f_Hz *= step) {
-    const ScoreGroup group = appendages(start, f_Hz);
-    const Score together = f_Hz < slow_Hz ? score(fit, slow_runs, {group}).front()
-                                          : score_of_ringing(all, inertia_kg_m2, axes_of(group),
-                                                             f_Hz, scanned_damping);
-    modes.push_back(best_appendage(group, together, inertia_kg_m2));
-    gain.push_back(modes.back().gain);
-  }
   std::vector<Start> starts;
-  for (const size_t i : peaks(gain, most_starts)) {
-    if (gain[i] > least_scan_gain) starts.push_back({modes[i].start, gain[i]});
+  const auto start_at_peaks = [&](const std::vector<Mode>& modes, size_t most) {
+    std::vector<double> gain;
+    for (const Mode& mode : modes) gain.push_back(mode.gain);
+    for (const size_t i : peaks(gain, most)) {
+      if (gain[i] > least_scan_gain) starts.push_back({modes[i].start, gain[i]});
+    }
+  };
+  std::vector<Mode> modes;
+  double f_Hz = std::max(0.02, 2.0 / span_s(runs));
+  for (; f_Hz < slow_Hz; f_Hz *= step) {
+    const ScoreGroup group = appendages(start, f_Hz);
+    modes.push_back(best_appendage(group, score(fit, slow_runs, {group}).front(), inertia_kg_m2));
   }
+  start_at_peaks(modes, most_starts);
+  // What swings fast turns along with slow motion, as a part of the inertia: the same for all.
+  constexpr double stiff = 5.0;  // times slow_Hz
+  const Score carried = score(fit, slow_runs, {appendages(start, stiff * slow_Hz)}).front();
+  modes.clear();
+  for (; f_Hz < highest_Hz; f_Hz *= step) {
+    const ScoreGroup group = appendages(start, f_Hz);
+    const Score ringing =
+        score_of_ringing(all, inertia_kg_m2, axes_of(group), f_Hz, scanned_damping);
+    modes.push_back(ringing.gain < least_ringing_gain
+                        ? Mode{}
+                        : best_appendage(group, together(carried, ringing), inertia_kg_m2));
+  }
+  start_at_peaks(modes, most_fast_starts);
   return starts;
 }
 

@@ -156,16 +156,26 @@ double fit_strength(ConcealedCase& c, size_t index, const Recipe& recipe, double
   return own_gain(c, index, recipe.outside);
 }
 
-// Kinds that could pass for the one effect: what they leave of it is within the noise.
-void add_doubles(ConcealedCase& c) {
+// Kinds that could pass for one of the effects: what they leave of it is within the noise.
+void add_doubles(ConcealedCase& c, const std::vector<std::string>& names) {
   const ConcealedInformation information(c);
-  const ConcealedEffect& effect = c.world.effects[0];
-  const Eigen::VectorXd change = information.change_by(0, std::min(1e-2, share_of(c.chi2_gain)));
   constexpr double within_noise = 12.0;
-  for (const std::string& kind : information.competitors()) {
-    if (kind == effect.kind) continue;
-    const double left = information.gain(change, {information.columns_of(kind)});
-    if (left < within_noise) c.accept.push_back({kind});
+  for (size_t i = 0; i < names.size(); ++i) {
+    const double share = std::min(1e-2, share_of(c.chi2_gain));
+    const Eigen::VectorXd change = information.change_by(i, share);
+    std::vector<Eigen::MatrixXd> others;  // free as well
+    for (size_t k = 0; k < names.size(); ++k) {
+      if (k != i) others.push_back(information.columns_of(names[k]));
+    }
+    for (const std::string& kind : information.competitors()) {
+      if (std::ranges::find(names, kind) != names.end()) continue;
+      others.push_back(information.columns_of(kind));
+      const double left = information.gain(change, others);
+      others.pop_back();
+      if (left >= within_noise) continue;
+      c.accept.push_back(names);
+      c.accept.back()[i] = kind;
+    }
   }
 }
 
@@ -174,6 +184,11 @@ struct Choice {
   std::vector<Recipe> recipes;
   int number = 0;  // within its kind
 };
+
+// A torque about the vertical is a draught too: both together are one effect.
+bool is_part_of(const std::string& kind, const std::string& other) {
+  return kind == "turbine_torque" && other == "room_draft";
+}
 
 Choice choose(const ConcealedPlan& plan, size_t index) {
   auto i = static_cast<int>(index);
@@ -190,10 +205,14 @@ Choice choose(const ConcealedPlan& plan, size_t index) {
   if (i < plan.pairs) {
     std::erase_if(inside, [](const Recipe& r) { return !r.pairs; });
     RandomDraw draw(plan.seed, 1000003 + static_cast<uint64_t>(i));
-    const auto a = static_cast<size_t>(draw.below(static_cast<int>(inside.size())));
-    const auto b = (a + 1 + static_cast<size_t>(draw.below(static_cast<int>(inside.size()) - 1))) %
-                   inside.size();
-    return {"pair", inside[a].kind + "+" + inside[b].kind, {inside[a], inside[b]}, i};
+    const auto count = static_cast<int>(inside.size());
+    Recipe a, b;
+    do {
+      const int first = draw.below(count), second = first + 1 + draw.below(count - 1);
+      a = inside[static_cast<size_t>(first)];
+      b = inside[static_cast<size_t>(second % count)];
+    } while (is_part_of(a.kind, b.kind) || is_part_of(b.kind, a.kind));
+    return {"pair", a.kind + "+" + b.kind, {a, b}, i};
   }
   i -= plan.pairs;
   const auto k = static_cast<size_t>(i) % outside.size();
@@ -227,7 +246,7 @@ void judge(ConcealedCase& c, const Choice& choice) {
   }
   c.verdict = names.empty() || c.chi2_gain < hopeless ? "consistent" : "missing_physics";
   c.accept = {names};
-  if (choice.family == "single" && c.verdict == "missing_physics") add_doubles(c);
+  if (c.verdict == "missing_physics") add_doubles(c, names);
   if (c.chi2_gain < limit && !names.empty()) c.accept.push_back({});
 }
 
