@@ -1,4 +1,5 @@
-// A lamp as its maker measured it: an IES LM-63 or EULUMDAT file, or a table in the experiment.
+// A lamp as its maker measured it: an IES LM-63, IES TM-33 or EULUMDAT file, or a table in the
+// experiment.
 //
 //   [[source]]
 //   kind = "ies"
@@ -82,7 +83,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 
 SourceKind ies_kind() {
   return {"ies",
-          "A lamp with a measured intensity: an IES LM-63 or EULUMDAT file, or a table",
+          "A lamp with a measured intensity: an IES LM-63, IES TM-33 or EULUMDAT file, or a table",
           make,
           {{"polar_deg", {SettingsNode::Array{{0.0}, {5.0}, {10.0}, {20.0}, {40.0}, {90.0}}}},
            {"intensity", {SettingsNode::Array{{1.0}, {0.9}, {0.6}, {0.2}, {0.05}, {0.0}}}},

@@ -1,4 +1,4 @@
-// Files that describe a luminaire by its luminous intensity: IES LM-63 and EULUMDAT.
+// Files that describe a luminaire by its intensity: IES LM-63, IES TM-33 and EULUMDAT.
 //
 // Candela mean little to this program: at 730 nm the luminous efficiency is 5e-4, and a file seldom
 // says of which spectrum it speaks. Only the shape of the intensity is used; radiant power comes
@@ -23,11 +23,12 @@ struct Opening {
 };
 
 struct PhotometricFile {
-  std::string format;  // "IESNA:LM-63-2002", "LM-63-1986", "EULUMDAT"
+  std::string format;  // "IESNA:LM-63-2002", "LM-63-1986", "EULUMDAT", "IESTM33-22"
   std::vector<std::pair<std::string, std::string>> labels;  // keyword and text, in order
-  IntensityTable table;                                     // [cd]; all factors applied
-  std::optional<double> stated_flux_lm;                     // nothing: absolute photometry
-  double input_power_W = 0.0;                               // electrical; 0: not stated
+  // [cd], in TM-33 also [W/sr] or [µmol/(s sr)]; all factors applied
+  IntensityTable table;
+  std::optional<double> stated_flux_lm;  // nothing: absolute photometry
+  double input_power_W = 0.0;            // electrical; 0: not stated
   Opening opening;
   std::vector<std::string> notices;  // what was passed over or mended, one line each
 };
@@ -40,6 +41,11 @@ PhotometricFile read_ies(const std::string& bytes, const std::string& name);
 
 // EULUMDAT (.ldt); symmetries 0 to 4 are unfolded, cd/klm become cd with the stated lamp flux.
 PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name);
+
+// IES TM-33 (ATLA S001): radiant, photon or luminous intensity of one emitter on a grid of
+// directions, types A, B and C; the first of these that the file has. TiltAngles are passed over
+// with a notice. InputError with the line of what is wrong.
+PhotometricFile read_tm33(const std::string& bytes, const std::string& name);
 
 // Whichever of them the text is.
 PhotometricFile read_photometric(const std::string& bytes, const std::string& name);

@@ -26,7 +26,25 @@ std::vector<double> images_of(double azimuth_deg, PlaneSymmetry symmetry) {
   return images;
 }
 
+// Types A and B: angles from 0 stand for both sides.
+void mirror(std::vector<double>& angles_deg, std::vector<size_t>& from) {
+  for (size_t i = 0; i < angles_deg.size(); ++i) from.push_back(i);
+  if (angles_deg.front() != 0.0 || angles_deg.size() < 2) return;
+  for (size_t i = 1; i < from.size(); i += 2) {
+    angles_deg.insert(angles_deg.begin(), -angles_deg[i]);
+    from.insert(from.begin(), from[i]);
+  }
+}
+
 }  // namespace
+
+PlaneSymmetry implied_symmetry(const std::vector<double>& azimuth_deg) {
+  const double first = azimuth_deg.front(), last = azimuth_deg.back();
+  if (first == 0.0 && last == 90.0) return PlaneSymmetry::both;
+  if (first == 0.0 && last == 180.0) return PlaneSymmetry::across_0_180;
+  if (first == 90.0 && last == 270.0) return PlaneSymmetry::across_90_270;
+  return PlaneSymmetry::none;
+}
 
 IntensityTable unfold(const StoredPlanes& stored, PlaneSymmetry symmetry,
                       const InputLocation& where) {
@@ -63,6 +81,43 @@ IntensityTable unfold(const StoredPlanes& stored, PlaneSymmetry symmetry,
                            first + static_cast<std::ptrdiff_t>(knots));
   }
   return table;
+}
+
+IntensityTable sideways_table(Pole pole, const StoredPlanes& stored, const InputLocation& where) {
+  std::vector<double> vertical_deg = stored.polar_deg, horizontal_deg = stored.azimuth_deg;
+  std::vector<size_t> from_v, from_h;
+  mirror(vertical_deg, from_v);
+  mirror(horizontal_deg, from_h);
+  const bool latitude_is_vertical = pole == Pole::vertical;
+  const std::vector<double>& latitude = latitude_is_vertical ? vertical_deg : horizontal_deg;
+  const std::vector<double>& longitude = latitude_is_vertical ? horizontal_deg : vertical_deg;
+  const auto inside = [](const std::vector<double>& a, double limit) {
+    return a.size() >= 2 && a.front() >= -limit && a.back() <= limit;
+  };
+  if (!inside(latitude, 90.0) || !inside(longitude, 179.0)) {
+    throw InputError(where, "angles", "a range that types A and B do not have",
+                     "at least two angles from -90 to 90 degrees");
+  }
+  IntensityTable table{pole, {}, {}, false, {}};
+  for (size_t i = latitude.size(); i-- > 0;) {
+    table.polar_rad.push_back((90.0 - latitude[i]) * degree_rad);
+  }
+  for (size_t j = 0; j < longitude.size(); ++j) {
+    table.azimuth_rad.push_back(longitude[j] * degree_rad);
+    for (size_t i = latitude.size(); i-- > 0;) {
+      const size_t v = latitude_is_vertical ? from_v[i] : from_v[j];
+      const size_t h = latitude_is_vertical ? from_h[j] : from_h[i];
+      table.intensity.push_back(stored.intensity[h * stored.polar_deg.size() + v]);
+    }
+  }
+  return table;
+}
+
+void require_goniometer_range(const std::vector<double>& polar_deg, const InputLocation& where) {
+  if (polar_deg.front() >= 0.0 && polar_deg.back() <= 180.0) return;
+  std::ostringstream found;
+  found << polar_deg.front() << " to " << polar_deg.back();
+  throw InputError(where, "vertical angles", found.str(), "angles from 0 to 180 degrees");
 }
 
 void require_ascending(const std::vector<double>& angles_deg, const std::string& key,

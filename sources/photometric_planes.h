@@ -18,10 +18,13 @@ enum class PlaneSymmetry {
   both,
 };
 
-// Planes as stored: azimuths in degrees, [plane][polar].
+// What LM-63 says by the range of its planes: 0 to 90, 0 to 180, 90 to 270 or anything else.
+PlaneSymmetry implied_symmetry(const std::vector<double>& azimuth_deg);
+
+// Planes as stored: ascending angles in degrees, intensities [plane][polar].
 struct StoredPlanes {
-  std::vector<double> azimuth_deg;
-  std::vector<double> polar_deg;  // from the pole
+  std::vector<double> azimuth_deg;  // or the horizontal angles of types A and B
+  std::vector<double> polar_deg;    // from the beam, or the vertical angles of types A and B
   std::vector<double> intensity;
 };
 
@@ -29,6 +32,14 @@ struct StoredPlanes {
 // and stands for all. Throws InputError at `where` when planes leave more than half a turn out.
 IntensityTable unfold(const StoredPlanes& stored, PlaneSymmetry symmetry,
                       const InputLocation& where);
+
+// Types A (pole `vertical`) and B (`horizontal`): latitude and longitude about an axis across the
+// beam; angles that start at 0 stand for both sides. Throws InputError at `where` for angles beyond
+// a sphere's.
+IntensityTable sideways_table(Pole pole, const StoredPlanes& stored, const InputLocation& where);
+
+// Throws InputError unless ascending polar angles lie in 0 to 180 degrees.
+void require_goniometer_range(const std::vector<double>& polar_deg, const InputLocation& where);
 
 // Throws InputError unless angles ascend strictly.
 void require_ascending(const std::vector<double>& angles_deg, const std::string& key,

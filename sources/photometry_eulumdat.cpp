@@ -169,10 +169,7 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
   }
   stored.polar_deg = lines.numbers("gamma angle", angles);
   require_ascending(stored.polar_deg, "gamma angles", lines.where());
-  if (stored.polar_deg.front() < 0.0 || stored.polar_deg.back() > 180.0) {
-    throw InputError(lines.where(), "gamma angles", shortest(stored.polar_deg.back()),
-                     "angles from 0 to 180 degrees");
-  }
+  require_goniometer_range(stored.polar_deg, lines.where());
   for (size_t i = 0; i < range.count * angles; ++i) {
     stored.intensity.push_back(factor * lines.number("intensity"));
     if (!std::isfinite(stored.intensity.back())) {
@@ -185,6 +182,8 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
 }
 
 PhotometricFile read_photometric(const std::string& bytes, const std::string& name) {
+  const size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");  // after a byte order mark
+  if (first != std::string::npos && bytes[first] == '<') return read_tm33(bytes, name);
   for (const std::string_view line : lines_of(bytes)) {
     const std::string_view start = trimmed(line);
     if (start.starts_with("TILT") || start.starts_with("IES")) return read_ies(bytes, name);

@@ -139,57 +139,6 @@ Opening read_opening(double width_m, double length_m, double height_m, Photometr
   return opening;
 }
 
-PlaneSymmetry symmetry_of(const std::vector<double>& horizontal_deg) {
-  const double first = horizontal_deg.front(), last = horizontal_deg.back();
-  if (first == 0.0 && last == 90.0) return PlaneSymmetry::both;
-  if (first == 0.0 && last == 180.0) return PlaneSymmetry::across_0_180;
-  if (first == 90.0 && last == 270.0) return PlaneSymmetry::across_90_270;
-  return PlaneSymmetry::none;
-}
-
-// Types A and B: angles from 0 stand for both sides.
-void mirror(std::vector<double>& angles_deg, std::vector<size_t>& from) {
-  for (size_t i = 0; i < angles_deg.size(); ++i) from.push_back(i);
-  if (angles_deg.front() != 0.0 || angles_deg.size() < 2) return;
-  for (size_t i = 1; i < from.size(); i += 2) {
-    angles_deg.insert(angles_deg.begin(), -angles_deg[i]);
-    from.insert(from.begin(), from[i]);
-  }
-}
-
-// Latitude and longitude about an axis across the beam.
-IntensityTable sideways_table(Pole pole, std::vector<double> vertical_deg,
-                              std::vector<double> horizontal_deg, const std::vector<double>& values,
-                              const InputLocation& where) {
-  const size_t stored = vertical_deg.size();
-  std::vector<size_t> from_v, from_h;
-  mirror(vertical_deg, from_v);
-  mirror(horizontal_deg, from_h);
-  const bool latitude_is_vertical = pole == Pole::vertical;
-  const std::vector<double>& latitude = latitude_is_vertical ? vertical_deg : horizontal_deg;
-  const std::vector<double>& longitude = latitude_is_vertical ? horizontal_deg : vertical_deg;
-  const auto inside = [](const std::vector<double>& a, double limit) {
-    return a.size() >= 2 && a.front() >= -limit && a.back() <= limit;
-  };
-  if (!inside(latitude, 90.0) || !inside(longitude, 179.0)) {
-    throw InputError(where, "angles", "a range that types A and B do not have",
-                     "at least two angles from -90 to 90 degrees");
-  }
-  IntensityTable table{pole, {}, {}, false, {}};
-  for (size_t i = latitude.size(); i-- > 0;) {
-    table.polar_rad.push_back((90.0 - latitude[i]) * degree_rad);
-  }
-  for (size_t j = 0; j < longitude.size(); ++j) {
-    table.azimuth_rad.push_back(longitude[j] * degree_rad);
-    for (size_t i = latitude.size(); i-- > 0;) {
-      const size_t v = latitude_is_vertical ? from_v[i] : from_v[j];
-      const size_t h = latitude_is_vertical ? from_h[j] : from_h[i];
-      table.intensity.push_back(values[h * stored + v]);
-    }
-  }
-  return table;
-}
-
 struct IesHeader {
   size_t type = 1;  // 1 C, 2 B, 3 A
   size_t vertical = 0, horizontal = 0;
@@ -231,32 +180,25 @@ PhotometricFile read_ies(const std::string& bytes, const std::string& name) {
   NumberStream stream(lines, tilt + 1, name);
   read_tilt(trimmed(lines[tilt]), stream, file);
   const IesHeader header = read_header(stream, file);
-  std::vector<double> vertical_deg = stream.numbers("vertical angle", header.vertical);
-  require_ascending(vertical_deg, "vertical angles", stream.where());
+  StoredPlanes stored;
+  stored.polar_deg = stream.numbers("vertical angle", header.vertical);
+  require_ascending(stored.polar_deg, "vertical angles", stream.where());
   const InputLocation angles_at = stream.where();
-  std::vector<double> horizontal_deg = stream.numbers("horizontal angle", header.horizontal);
-  require_ascending(horizontal_deg, "horizontal angles", stream.where());
-  std::vector<double> candela;
+  stored.azimuth_deg = stream.numbers("horizontal angle", header.horizontal);
+  require_ascending(stored.azimuth_deg, "horizontal angles", stream.where());
   for (size_t i = 0; i < header.horizontal * header.vertical; ++i) {
-    candela.push_back(header.factor * stream.next("candela value"));
-    if (!std::isfinite(candela.back())) {
+    stored.intensity.push_back(header.factor * stream.next("candela value"));
+    if (!std::isfinite(stored.intensity.back())) {
       throw InputError(stream.where(), "candela value", "a number that overflows",
                        "a finite intensity");
     }
   }
   if (header.type == 1) {
-    if (vertical_deg.front() < 0.0 || vertical_deg.back() > 180.0) {
-      throw InputError(angles_at, "vertical angles",
-                       shortest(vertical_deg.front()) + " to " + shortest(vertical_deg.back()),
-                       "angles from 0 to 180 degrees");
-    }
-    const PlaneSymmetry symmetry = symmetry_of(horizontal_deg);
-    file.table = unfold({horizontal_deg, std::move(vertical_deg), std::move(candela)}, symmetry,
-                        stream.where());
+    require_goniometer_range(stored.polar_deg, angles_at);
+    file.table = unfold(stored, implied_symmetry(stored.azimuth_deg), stream.where());
   } else {
-    file.table =
-        sideways_table(header.type == 2 ? Pole::horizontal : Pole::vertical,
-                       std::move(vertical_deg), std::move(horizontal_deg), candela, angles_at);
+    const Pole pole = header.type == 2 ? Pole::horizontal : Pole::vertical;
+    file.table = sideways_table(pole, stored, angles_at);
   }
   require_light(file, stream.where());
   return file;

@@ -1,5 +1,5 @@
-// Fuzz target: any bytes, read as an IES LM-63 and as an EULUMDAT file, give a table that can
-// be interpolated and written back, or an InputError.
+// Fuzz target: any bytes, read as an IES LM-63, an EULUMDAT and an IES TM-33 file, give a table
+// that can be interpolated and written back, or an InputError.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -33,5 +33,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   try_to_read(photorque::read_ies, bytes);
   try_to_read(photorque::read_eulumdat, bytes);
+  try_to_read(photorque::read_tm33, bytes);
   return 0;
 }

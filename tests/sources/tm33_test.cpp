@@ -1,0 +1,176 @@
+// IES TM-33: the same lamps in XML and in LM-63, whose reader is tested by itself, and every way in
+// which such a file can be wrong.
+#include <gmock/gmock.h>
+
+#include "core/errors.h"
+#include "sources/photometric_file.h"
+
+namespace photorque {
+namespace {
+
+struct Direction {
+  double h_deg, v_deg, value;
+};
+
+std::string int_data(const std::vector<Direction>& directions) {
+  std::ostringstream text;
+  for (const auto& [h_deg, v_deg, value] : directions) {
+    text << "        <IntData h=\"" << h_deg << "\" v=\"" << v_deg << "\">" << value
+         << "</IntData>\n";
+  }
+  return text.str();
+}
+
+std::string document(const std::string& emitter, const std::string& type = "IES_C") {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<IESTM33-22>\n  <Version>1.1</Version>\n"
+         "  <Header>\n    <Manufacturer>nobody &amp; sons</Manufacturer>\n"
+         "    <Description>a lamp\n in two lines</Description>\n"
+         "    <ReportNumber>7</ReportNumber>\n  </Header>\n"
+         "  <Equipment><Gonioradiometer><Type>" +
+         type + "</Type></Gonioradiometer></Equipment>\n" + emitter + "</IESTM33-22>\n";
+}
+
+std::string emitter(const std::string& data, const std::string& kind = "Radiant") {
+  return "  <Emitter>\n    <Quantity>1</Quantity>\n    <InputWattage>10</InputWattage>\n    <" +
+         kind + "Data>\n      <" + kind + "Intensity>\n" + data + "      </" + kind +
+         "Intensity>\n    </" + kind + "Data>\n  </Emitter>\n";
+}
+
+// 100 (2 − v/45) in one plane, as LM-63 and as TM-33.
+const std::string small_ies =
+    "IESNA:LM-63-2002\nTILT=NONE\n1 1000 2 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n100 50 0\n";
+const std::vector<Direction> small_table = {{0, 0, 100}, {0, 45, 50}, {0, 90, 0}};
+const std::string small_data = "        <Multiplier>2</Multiplier>\n" + int_data(small_table);
+
+void expect_same_table(const PhotometricFile& a, const PhotometricFile& b) {
+  EXPECT_EQ(a.table.pole, b.table.pole);
+  EXPECT_EQ(a.table.polar_rad, b.table.polar_rad);
+  EXPECT_EQ(a.table.azimuth_rad, b.table.azimuth_rad);
+  EXPECT_EQ(a.table.closed, b.table.closed);
+  EXPECT_EQ(a.table.intensity, b.table.intensity);
+}
+
+void expect_refused(const std::string& text, const std::string& words, int line = 0) {
+  try {
+    read_photometric(text, "lamp.xml");
+    ADD_FAILURE() << "accepted, instead of: " << words;
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(words));
+    const std::string place = line > 0 ? "lamp.xml:" + std::to_string(line) : "lamp.xml:";
+    EXPECT_THAT(error.what(), testing::HasSubstr(place));
+  }
+}
+
+TEST(Tm33File, IsTheSameLampAsInLm63) {
+  const PhotometricFile file = read_photometric(document(emitter(small_data)), "lamp.xml");
+  expect_same_table(file, read_ies(small_ies, ""));
+  EXPECT_EQ(file.format, "IESTM33-22");
+  EXPECT_EQ(file.input_power_W, 10.0);
+  EXPECT_FALSE(file.stated_flux_lm);
+  EXPECT_THAT(
+      file.labels,
+      testing::ElementsAre(testing::Pair("TEST", "7"), testing::Pair("MANUFAC", "nobody & sons"),
+                           testing::Pair("LUMINAIRE", "a lamp  in two lines")));
+  EXPECT_TRUE(file.notices.empty());
+  expect_same_table(read_ies(write_ies(file), ""), file);
+}
+
+// Any order of directions, blanks in the name of the symmetry as some copies of the schema have
+// them, a byte order mark, and the root of the older standard.
+TEST(Tm33File, UnfoldsStatedSymmetriesAsLm63DoesImpliedOnes) {
+  const std::string ies =
+      "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 2 1 2 0 0 0\n1 1 0\n0 45 90\n0 90\n9 6 1 9 4 2\n";
+  std::string text = document(emitter(
+      "        <Symm>Symm _ Quad</Symm>\n"
+      "        <NumberMeasured>6</NumberMeasured><NumberHorz>2</NumberHorz>\n"
+      "        <NumberVert>3</NumberVert>\n" +
+          int_data({{90, 90, 2}, {90, 45, 4}, {90, 0, 9}, {0, 90, 1}, {0, 45, 6}, {0, 0, 9}}),
+      "Photon"));
+  const PhotometricFile file = read_photometric("\xef\xbb\xbf" + text, "lamp.xml");
+  expect_same_table(file, read_ies(ies, ""));
+  EXPECT_EQ(file.table.planes(), 4u);
+  const std::string without = text.substr(0, text.find("        <Symm>")) +
+                              text.substr(text.find("        <NumberMeasured>"));
+  expect_same_table(read_photometric(without, "lamp.xml"), file);
+}
+
+TEST(Tm33File, ReadsTypeBAsLm63Does) {
+  const std::string ies =
+      "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 3 2 2 0 0 0\n1 1 0\n0 40\n-30 0 30\n5 1 7 2 6 3\n";
+  const std::string text = document(
+      emitter(
+          int_data({{-30, 0, 5}, {-30, 40, 1}, {0, 0, 7}, {0, 40, 2}, {30, 0, 6}, {30, 40, 3}})),
+      "CIE_B");
+  expect_same_table(read_photometric(text, "lamp.xml"), read_ies(ies, ""));
+}
+
+TEST(Tm33File, TakesTheIntensityNearestToWatts) {
+  std::string luminous = emitter(int_data({{0, 0, 3}, {0, 90, 2}}), "Luminous");
+  const std::string flux = "<LuminousFlux>55</LuminousFlux>\n    </LuminousData>";
+  luminous.replace(luminous.find("</LuminousData>"), 15, flux);
+  const PhotometricFile alone = read_photometric(document(luminous), "lamp.xml");
+  EXPECT_EQ(alone.table.intensity, (std::vector<double>{3, 2}));
+  EXPECT_EQ(alone.stated_flux_lm, 55.0);
+  std::string both = luminous;
+  const std::string radiant = "    <RadiantData><RadiantIntensity>\n" +
+                              int_data({{0, 0, 8}, {0, 90, 4}}) +
+                              "    </RadiantIntensity></RadiantData>\n  </Emitter>";
+  both.replace(both.find("  </Emitter>"), 12, radiant);
+  const PhotometricFile file = read_photometric(document(both), "lamp.xml");
+  EXPECT_EQ(file.table.intensity, (std::vector<double>{8, 4}));
+  EXPECT_FALSE(file.stated_flux_lm);
+}
+
+// Lengths lie along C90, the emitter's y.
+TEST(Tm33File, LightLeavesTheBottomFace) {
+  const auto with_areas = [](const std::string& areas) {
+    std::string text = emitter(small_data);
+    text.replace(text.find("  </Emitter>"), 12,
+                 "    <EmissionAreas>" + areas + "</EmissionAreas>\n  </Emitter>");
+    return read_photometric(document(text), "lamp.xml");
+  };
+  const auto area = [](const std::string& length, const std::string& width,
+                       const std::string& offset, const std::string& more) {
+    return "<BottomArea><Length>" + length + "</Length><Width>" + width + "</Width><LengthOffset>" +
+           offset + "</LengthOffset><WidthOffset>0</WidthOffset>" + more + "</BottomArea>";
+  };
+  const auto face = [](const std::string& areas) {
+    return "<BottomFace><NumberBottom>1</NumberBottom>" + areas + "</BottomFace>";
+  };
+  const PhotometricFile disc =
+      with_areas(face(area("0.02", "0.02", "0", "<Circular>true</Circular>")));
+  EXPECT_EQ(disc.opening.shape, Opening::Shape::ellipse);
+  EXPECT_EQ(disc.opening.x_m, 0.02);
+  EXPECT_TRUE(disc.notices.empty());
+  const PhotometricFile pair = with_areas(
+      face(area("0.5", "0.6", "-0.1", "") + area("0.5", "0.6", "0.1", "")) + "<TopFace/>");
+  EXPECT_EQ(pair.opening.shape, Opening::Shape::rectangle);
+  EXPECT_DOUBLE_EQ(pair.opening.x_m, 0.6);
+  EXPECT_DOUBLE_EQ(pair.opening.y_m, 0.7);
+  EXPECT_EQ(pair.notices.size(), 2u);
+}
+
+TEST(Tm33File, SaysWhatIsWrongAndWhere) {
+  expect_refused("<IESTM33-22>\n<Header>\n</Emitter>", "well-formed XML", 3);
+  expect_refused("<html>\n</html>", "<html>", 1);
+  expect_refused(document(""), "none with a table of intensities");
+  expect_refused(document(emitter(small_data) + emitter(small_data)), "a second one", 23);
+  expect_refused(document(emitter(small_data), "CUSTOM"), "CUSTOM");
+  const auto refused = [](const std::string& data, const std::string& words) {
+    expect_refused(document(emitter(data)), words);
+  };
+  refused(int_data({{0, 0, 1}, {0, 90, 1}, {90, 0, 1}}), "none at h 90, v 90");
+  refused(int_data({{0, 0, 1}, {0, 90, 1}, {0, 0, 1}}), "h 0, v 0 twice");
+  refused(int_data({{0, 0, 1}}), "1 vertical angles");
+  refused(int_data({{0, 0, 0}, {0, 90, 0}}), "none above zero");
+  refused(int_data({{0, -5, 1}, {0, 90, 1}}), "-5 to 90");
+  refused("<Symm>Symm_Arbitrary</Symm>" + small_data, "Symm_Arbitrary");
+  refused("<NumberHorz>2</NumberHorz>" + small_data, "1, as many as there are");
+  refused("<Multiplier>1e400</Multiplier>" + small_data, "a number");
+  refused("<Multiplier>1e308</Multiplier>" + small_data, "overflows");
+  refused("<IntData h=\"0\">1</IntData>" + small_data, "no attribute v");
+  refused("<IntData h=\"x\" v=\"1\">1</IntData>" + small_data, "found \"x\"");
+}
+
+}  // namespace
+}  // namespace photorque
