@@ -24,11 +24,13 @@ struct Hits {
   using Column = std::array<T, rows>;
 
   int count = 0;
-  int bands = 1;                             // only this many rows of the band columns are filled
-  Column<uint32_t> instance;                 // index into Scene::instances
-  Column<uint32_t> triangle;                 // index into that mesh's triangles
-  Column<uint8_t> front;                     // 1: hit from the front, 0: from the back
-  Column<uint16_t> depth;                    // 0: straight from the emitter
+  int bands = 1;              // only this many rows of the band columns are filled
+  Column<uint32_t> instance;  // index into Scene::instances
+  Column<uint32_t> triangle;  // index into that mesh's triangles
+  Column<uint8_t> front;      // 1: hit from the front, 0: from the back
+  Column<uint16_t> depth;     // 0: straight from the emitter
+  // Of the arriving rays, unit vectors in single precision; each of `count` entries.
+  std::array<const float*, 3> direction{};
   Column<double> cosine;                     // of the angle of incidence, in [0, 1]; to 3e-7
   std::array<Column<double>, 3> position_m;  // on the triangle's plane to 2e-10 of the scene size
   std::array<Column<float>, 2> barycentric;  // weights of the triangle's vertices 1 and 2

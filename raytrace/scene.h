@@ -17,6 +17,7 @@ struct Mesh {
   std::vector<Vec3> vertices_m;
   std::vector<std::array<uint32_t, 3>> triangles;  // indices into vertices_m
   std::vector<Vec2> uv;                            // texture coordinates, per vertex, or empty
+  bool encloses = false;  // closed but perhaps for a few edges: has an inside (see MeshClosure)
 };
 
 // A mesh placed in the body frame, with a surface on each side.

@@ -90,10 +90,13 @@ class BatchTracer {
         options_(options),
         hits_(std::make_unique<HitBuffer>()) {
     hits_->hits.bands = scene.scene.bands.count();
+    for (size_t k = 0; k < 3; ++k) hits_->hits.direction[k] = hits_->ray[3 + k].data();
   }
 
-  void run(const BeamPlan& plan, const SobolStream& stream, uint32_t batch, Sums& sums) {
+  void run(const BeamPlan& plan, const SobolStream& stream, uint32_t batch, const HitOrigin& origin,
+           Sums& sums) {
     sums_ = &sums;
+    origin_ = origin;
     context_ = {&scene_, stream, 0, options_.cutoff * plan.watt_per_ray};
     launch(*plan.beam->emitter, plan.launch, stream, batch, launched_);
     next_.clear();
@@ -125,6 +128,7 @@ class BatchTracer {
       for (size_t r = 0; r < receivers_.size(); ++r) {
         receivers_[r]->score(hits_->hits, sums_->receivers[r]);
       }
+      if (options_.observe) options_.observe(origin_, hits_->hits);
     }
   }
 
@@ -189,6 +193,7 @@ class BatchTracer {
   LaunchBuffer launched_;
   Continuation current_, next_;
   InteractionContext context_{};
+  HitOrigin origin_;
   Hits::Column<int> kept_{};
   Sums* sums_ = nullptr;
 };
@@ -225,16 +230,19 @@ class TracerPool {
 };
 
 Sums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
-                std::span<const Receiver* const> receivers, uint64_t seed, int replicate,
-                uint64_t first_batch, uint64_t end_batch) {
+                std::span<const Receiver* const> receivers, uint64_t seed, size_t item,
+                uint64_t parts) {
+  const uint64_t replicate = item / parts, part = item % parts;
+  const uint64_t first_batch = plan.batches * part / parts;
+  const uint64_t end_batch = plan.batches * (part + 1) / parts;
   Sums sums(instances, receivers);
   for (size_t b = 0; b < plan.beams.size(); ++b) {
     const BeamPlan& beam = plan.beams[b];
-    const SobolStream stream{seed, hash_words(b, static_cast<uint64_t>(replicate)), 0};
+    const SobolStream stream{seed, hash_words(b, replicate), 0};
     const uint64_t begin = std::max(first_batch, beam.first_batch);
     const uint64_t end = std::min(end_batch, beam.first_batch + beam.launch.cells.cells());
     for (uint64_t batch = begin; batch < end; ++batch) {
-      tracer.run(beam, stream, static_cast<uint32_t>(batch - beam.first_batch), sums);
+      tracer.run(beam, stream, static_cast<uint32_t>(batch - beam.first_batch), {item, b}, sums);
     }
   }
   return sums;
@@ -301,6 +309,10 @@ void check(const TraceOptions& options, std::span<const Beam> beams) {
 
 }  // namespace
 
+size_t trace_parts(const TraceOptions& options) {
+  return most_parts * static_cast<size_t>(options.replicates);
+}
+
 TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_body,
                   std::span<const Beam> beams, std::span<const Receiver* const> receivers,
                   const TraceOptions& options) {
@@ -315,11 +327,9 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   TracerPool pool(data, receivers, options);
   std::atomic<size_t> finished = 0;
   parallel_for(done.size(), options.threads, [&](size_t item) {
-    const uint64_t part = item % parts;
     auto tracer = pool.take();
     done[item] = trace_part(*tracer, data.scene.instances.size(), plan, receivers, options.seed,
-                            static_cast<int>(item / parts), plan.batches * part / parts,
-                            plan.batches * (part + 1) / parts);
+                            item, parts);
     pool.give_back(std::move(tracer));
     const size_t now = ++finished;
     if (options.progress)

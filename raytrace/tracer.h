@@ -39,6 +39,12 @@ class TraceableScene {
   std::unique_ptr<Data> data_;
 };
 
+// Where the hits that are observed together come from.
+struct HitOrigin {
+  size_t part = 0;  // of the work, below trace_parts()
+  size_t beam = 0;  // index into the beams
+};
+
 struct TraceOptions {
   uint64_t rays =
       1ull << 23;       // in total; rounded up per beam and replicate to a power of two ≥ 256
@@ -48,6 +54,10 @@ struct TraceOptions {
   double cutoff = 1e-9;  // truncate rays with less than this fraction of their first power
   int threads = 0;       // 0: all
   std::function<void(double)> progress;  // called with the finished fraction, from any thread
+  // Called with all hits, from any thread; those of one part of the work come from one thread at a
+  // time, in an order that does not depend on the number of threads. Their powers are those of one
+  // replicate, which carries all of the light.
+  std::function<void(const HitOrigin&, const Hits&)> observe = {};
 };
 
 // Where the power went. Sums over bands; emitted − absorbed − escaped − truncated is zero to 1e-12
@@ -73,6 +83,9 @@ struct TraceResult {
   uint64_t segments = 0;      // traced, bounces included
   double wall_s = 0.0;
 };
+
+// The largest number of parts that a trace with these options is cut into.
+size_t trace_parts(const TraceOptions& options);
 
 // Traces `beams` onto the scene at the attitude `lab_from_body`. Throws InputError for options out
 // of range and for no beams.

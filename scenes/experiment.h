@@ -49,6 +49,8 @@ struct TraceEffort {
   // More rays until every bin above a tenth of its map's peak has this relative standard error,
   std::optional<double> target_error;
   std::optional<double> max_time_s;  // or until the next round would end later than this
+  // Of how many emitted rays those that arrive on each flux map become a file; nothing: no file.
+  std::optional<uint64_t> arriving_rays;
 };
 
 // [camera]: where a picture is taken from. Lab frame, z up in the picture.

@@ -64,7 +64,11 @@ class Assembly {
         if (mesh) add_instance(placement, *mesh, primitives[p].material);
       }
     }
-    add_notices();
+    const MeshClosure closure = closure_of(model_.scene);
+    for (size_t i = 0; i < closure.encloses.size(); ++i) {
+      model_.scene.meshes[i].encloses = closure.encloses[i] != 0;
+    }
+    add_notices(closure);
     if (options_.picture) apply_pictures();
     return std::move(model_);
   }
@@ -244,7 +248,7 @@ class Assembly {
     return static_cast<uint32_t>(model_.scene.surfaces.size() - 1);
   }
 
-  void add_notices() {
+  void add_notices(const MeshClosure& closure) {
     const auto count = [&](size_t number, const std::string& what) {
       if (number > 0) model_.notices.push_back(std::to_string(number) + " " + what);
     };
@@ -258,7 +262,7 @@ class Assembly {
            << " m from the body's origin; CAD exports often count millimetres";
       model_.notices.push_back(line.str());
     }
-    const std::string leaks = describe_closure(closure_of(model_.scene));
+    const std::string leaks = describe_closure(closure);
     if (!leaks.empty()) model_.notices.push_back(leaks);
     if (document_.json.contains("animations")) {
       model_.notices.emplace_back("animations are ignored: everything is in its rest pose");

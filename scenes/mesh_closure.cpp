@@ -92,8 +92,10 @@ void add(const Mesh& mesh, MeshClosure& closure) {
     i = end;
   }
   ++closure.meshes;
+  const bool closed = open.empty() && distinct > 0, few_open = 20 * open.size() < distinct;
   if (open.empty()) ++closure.closed;
-  if (!open.empty() && 20 * open.size() < distinct) ++closure.almost_closed;
+  if (!open.empty() && few_open) ++closure.almost_closed;
+  closure.encloses.push_back(closed || few_open ? 1 : 0);
   closure.open_edges += open.size();
   if (open.size() <= most_open_edges) closure.t_junctions += count_t_junctions(mesh, open);
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "raytrace/scene.h"
 
@@ -20,6 +22,7 @@ struct MeshClosure {
   size_t t_junctions = 0;
   // Meshes with open edges, but fewer than one in twenty: meant to be closed, it seems.
   size_t almost_closed = 0;
+  std::vector<uint8_t> encloses;  // per mesh: closed or almost
 };
 
 // Meshes with more than 100,000 open edges are not searched for T-junctions.

@@ -38,6 +38,14 @@ size_t whole_wrench(Experiment& experiment) {
   return experiment.receivers.size() - 1;
 }
 
+// A watch over the closed parts, if there are any.
+std::optional<size_t> watch_insides(Experiment& experiment) {
+  auto watch = std::make_shared<InsideLightReceiver>(experiment.scene);
+  if (watch->bins() == 0) return std::nullopt;
+  experiment.receivers.push_back({"inside", "inside_light", std::move(watch)});
+  return experiment.receivers.size() - 1;
+}
+
 // The largest disagreement, in standard errors, between the force and torque summed over surfaces
 // and the same from the rays alone.
 double momentum_disagreement(const Ledger& ledger, const BinSums& sums,
@@ -62,6 +70,7 @@ double momentum_disagreement(const Ledger& ledger, const BinSums& sums,
 OpticalRun::OpticalRun(const CommandLine& line, const Console& console)
     : experiment_(read(line)), scene_(experiment_.scene), threads_(line.threads) {
   wrench_ = whole_wrench(experiment_);
+  inside_light_ = watch_insides(experiment_);
   provenance_ = build_provenance();
   provenance_.seed = experiment_.file.trace.seed;
   provenance_.inputs = experiment_.inputs;
@@ -123,6 +132,14 @@ const WrenchReceiver& OpticalRun::wrench() const {
 
 const FluxMapReceiver& OpticalRun::flux_map(size_t index) const {
   return dynamic_cast<const FluxMapReceiver&>(*experiment_.receivers[index].receiver);
+}
+
+std::string OpticalRun::inside_light(const TraceResult& result) const {
+  if (!inside_light_) return "";
+  const auto& watch =
+      dynamic_cast<const InsideLightReceiver&>(*experiment_.receivers[*inside_light_].receiver);
+  return describe_inside_light(experiment_.scene, watch.lit_inside(result.sums[*inside_light_]),
+                               result.ledger.emitted_W);
 }
 
 Product OpticalRun::product(const OpticalResult& result) const {
@@ -192,6 +209,8 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   console.line("  momentum: surfaces and rays differ by at most " +
                show(momentum_disagreement(ledger, result.sums[run.wrench_index()], run.wrench())) +
                " standard errors");
+  const std::string inside = run.inside_light(result);
+  if (!inside.empty()) console.line("  note: " + inside);
   for (const std::string& notice : result.direct.notices) console.line("  note: " + notice);
   for (const DirectLight& direct : result.direct.gathered) {
     console.line("  direct light on " + direct.name + ": gathered and by rays differ by " +

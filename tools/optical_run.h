@@ -10,6 +10,7 @@
 #include "core/provenance.h"
 #include "images/summary.h"
 #include "receivers/flux_map.h"
+#include "receivers/inside_light.h"
 #include "receivers/wrench.h"
 #include "scenes/experiment.h"
 #include "tools/console.h"
@@ -23,8 +24,8 @@ struct OpticalResult : TraceResult {
   double worst_bin_error = 0.0;  // see worst_bin_error()
 };
 
-// An experiment made ready to trace: its scene built once, its receivers, and always a wrench over
-// the whole scene ("body", added if the experiment names none).
+// An experiment made ready to trace: its scene built once, its receivers, always a wrench over the
+// whole scene ("body", added if the experiment names none), and a watch over closed parts.
 class OpticalRun {
  public:
   // Reads the experiment; prints its notices and the shapes of its sources.
@@ -50,6 +51,8 @@ class OpticalRun {
 
   const WrenchReceiver& wrench() const;
   const FluxMapReceiver& flux_map(size_t index) const;
+  // Light on the inside of closed parts, as a line for people; empty if there is none.
+  std::string inside_light(const TraceResult& result) const;
 
   // Ledger, shapes of the sources, and the product of every receiver.
   Product product(const OpticalResult& result) const;
@@ -59,6 +62,7 @@ class OpticalRun {
   TraceableScene scene_;
   Provenance provenance_;
   size_t wrench_ = 0;
+  std::optional<size_t> inside_light_;  // none where no part is closed
   int threads_ = 0;
 };
 

@@ -165,6 +165,7 @@ const Broken cases[] = {
     {"negative_seed", 20, "seed = -1", ":20: trace.seed", "found -1"},
     {"no_depth", 20, "max_depth = 0", ":20: trace.max_depth", "found 0"},
     {"cutoff_one", 20, "cutoff = 1", ":20: trace.cutoff", "expected a number in [0, 1)"},
+    {"no_arriving_rays", 20, "arriving_rays = 0", ":20: trace.arriving_rays", "found 0"},
     {"grid_empty", 22, "tilt_deg = []", ":22: torque_map.tilt_deg", "at least one number"},
     {"grid_repeats", 22, "tilt_deg = [0, 10, 10]", ":22: torque_map.tilt_deg",
      "numbers in rising order"},

@@ -21,6 +21,8 @@ TEST(MeshClosure, FindsClosedBodiesAndSheets) {
       closure_of(scene_of(testing::rectangle(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0))));
   EXPECT_EQ(sheet.closed, 0u);
   EXPECT_EQ(sheet.open_edges, 4u);
+  EXPECT_EQ(box.encloses, std::vector<uint8_t>{1});
+  EXPECT_EQ(sheet.encloses, std::vector<uint8_t>{0});
   EXPECT_EQ(describe_closure(sheet), "");  // a sheet is no crack
 }
 

@@ -1,0 +1,46 @@
+// The rays that `trace` saves for other optics programs.
+#include "core/files.h"
+#include "sources/ray_set.h"
+#include "tests/tools/command_test.h"
+
+namespace photorque {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string nominal_file = std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml";
+
+class ArrivingRaysCommand : public CommandTest {
+ protected:
+  std::string saved(const std::string& name, const std::string& options) {
+    const Outcome done = run("trace " + nominal_file + " --set trace.rays=65536 " + options +
+                             " --set trace.arriving_rays=100000 --out " + at(name));
+    EXPECT_EQ(done.status, 0) << done.err;
+    EXPECT_THAT(done.out, HasSubstr("rays_solar_array.tm25ray"));
+    return read_file(at(name) + "/rays_solar_array.tm25ray");
+  }
+};
+
+// 90.15 % of 88 W reach the array (docs/validation.md).
+TEST_F(ArrivingRaysCommand, CarryThePowerOnTheSurface) {
+  const RaySet rays = read_tm25(saved("o", ""), "rays");
+  EXPECT_GT(rays.rays.size(), 80'000u);
+  EXPECT_NEAR(rays.ray_flux(), 0.9015 * 88.0, 0.005 * 88.0);
+  EXPECT_NEAR(rays.stated_radiant_flux_W.value(), rays.ray_flux(), 1e-4);
+  double least_m = 1.0, most_m = -1.0;
+  for (const RaySet::Ray& ray : rays.rays) {
+    EXPECT_NEAR(ray.direction.norm(), 1.0, 1e-6);
+    EXPECT_LT(ray.direction.z(), -0.9);
+    EXPECT_NEAR(ray.wavelength_m, 730e-9, 1e-13);
+    least_m = std::min(least_m, ray.origin_m.z());
+    most_m = std::max(most_m, ray.origin_m.z());
+  }
+  EXPECT_LT(most_m - least_m, 1e-6);  // a flat array
+}
+
+TEST_F(ArrivingRaysCommand, AreTheSameAtAnyNumberOfThreads) {
+  EXPECT_EQ(saved("one", "--threads 1"), saved("two", "--threads 2"));
+}
+
+}  // namespace
+}  // namespace photorque
