@@ -165,7 +165,7 @@ Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecordi
   const Fit held_before = fly(belief, data.held), held_after = fly(chosen.fit, data.held);
   d.holdout = compare_holdout(held_before, held_after, data.held);
   d.alternatives = alternatives(decision, trials, all);
-  d.manoeuvres = manoeuvres(d.effects, decision, trials, all, data.train);
+  d.manoeuvres = manoeuvres(d.effects, decision, trials, all, data.train, options.threads);
   d.beliefs_refined = refined_beliefs(chosen);
   d.warnings = data.warnings;
   if (data.noise_corrected) {

@@ -7,16 +7,17 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/parallel.h"
 
 namespace photorque {
 namespace {
 
 using StartChange = std::function<void(PlatformState&)>;
 
-struct Advice {
-  std::set<std::string> kinds;
+// The same run from another start.
+struct StartManoeuvre {
   const char* text;
-  StartChange start;  // of the run; empty: the manoeuvre is not one of its start
+  StartChange change;
 };
 
 // How fast a platform is spun up, at least.
@@ -43,32 +44,30 @@ void lean_further(PlatformState& state) {
   state.lab_from_body = state.lab_from_body * Quat(Eigen::AngleAxisd(0.2, Vec3::UnitX()));
 }
 
-std::vector<Advice> advice() {
+std::vector<StartManoeuvre> start_manoeuvres() {
   return {
-      {{"bearing_drag", "air_friction", "air_pressure_drag", "dry_friction", "eddy_damping"},
-       "spin the platform up to three times the present rate, 0.3 rad/s at least, and let it run "
-       "down: the laws of drag differ in their power of the rate",
+      {"spin the platform up to three times its present rate, 0.3 rad/s at least, and let it run "
+       "down: laws of drag and errors of gyros grow with the rate, each in its own way",
        spin_up},
-      {{"turbine_torque", "dry_friction", "room_draft"},
-       "repeat the run with the opposite sense of rotation: a driving torque keeps its sign, "
+      {"repeat the run with the opposite sense of rotation: a driving torque keeps its sign, "
        "friction changes it",
        turn_back},
-      {{"room_draft", "magnetic_dipole", "static_unbalance", "gravity_tilt"},
-       "repeat the run with the platform starting a quarter turn further about the vertical: what "
-       "is fixed to the body turns with it",
+      {"repeat the run from a heading a quarter turn further: what is fixed to the body turns with "
+       "it, what is fixed to the room does not",
        turn_a_quarter},
-      {{"elastic_sag", "static_unbalance", "gravity_gradient", "inertia_error"},
-       "start the run at 0.2 rad more tilt: the righting torque departs from the sine",
+      {"start the run at 0.2 rad more tilt: righting torques depart from the sine, each in its own "
+       "way",
        lean_further},
-      {{"battery_discharge", "mass_shift", "static_unbalance"},
-       "record through a change of the battery current: only a shift by discharge follows the "
-       "charge",
-       {}},
-      {{"gyro_scale", "gyro_misalignment", "gyro_bias", "camera_misalignment", "attitude_latency"},
-       "turn about each body axis in both senses, three times as fast: the instruments' errors "
-       "separate by axis, sign and rate",
-       spin_up},
   };
+}
+
+constexpr const char* longer = "record longer, at larger tilt and over a wider range of rates";
+
+// What follows the battery's charge shows by its current alone, whatever the start.
+bool is_told_by_charge(const std::string& kind, const std::string& rival) {
+  const std::set<std::string> kinds = {"battery_discharge", "mass_shift", "static_unbalance"};
+  return kinds.contains(kind) && kinds.contains(rival) &&
+         (kind == "battery_discharge" || rival == "battery_discharge");
 }
 
 // The first run from another start as the trial foretells it, without noise.
@@ -89,22 +88,60 @@ Observation flown_from(const Trial& truth, const PlatformState& start, const Obs
   return seen;
 }
 
-double expected_lead(const Trial& truth, const Trial& rival, const std::vector<Candidate>& all,
-                     const std::vector<Observation>& runs, const StartChange& change) {
-  constexpr size_t blocks = 1000;
+// The rival on the recordings that there are, in fewer blocks.
+struct Rival {
+  Trial fitted;
+  std::vector<Observation> runs;
+
+  Rival(const Trial& trial, const std::vector<Candidate>& all,
+        const std::vector<Observation>& recorded) {
+    constexpr size_t blocks = 1000;
+    for (const Observation& seen : recorded) runs.push_back(seen.averaged(blocks));
+    fitted = refit(trial, all, runs, trial.fit.best.runs);
+  }
+};
+
+// What the manoeuvre would add to the rival's χ², halved.
+double expected_lead(const Trial& truth, const Rival& rival, const std::vector<Candidate>& all,
+                     const StartChange& change) {
   try {
     PlatformState start = truth.fit.best.runs.front().initial;
     change(start);
-    const Observation seen = flown_from(truth, start, runs.front().averaged(blocks));
-    RunStart from = rival.fit.best.runs.front();
-    change(from.initial);
+    std::vector<Observation> runs = rival.runs;
+    runs.push_back(flown_from(truth, start, rival.runs.front()));
+    std::vector<RunStart> starts = rival.fitted.fit.best.runs;
+    starts.push_back(starts.front());
+    starts.back().initial = start;
     FitSettings growing;
     growing.windows = {0.1, 0.4, 1.0};
-    const Trial fitted = refit(rival, all, {seen}, {from}, growing);
-    return std::isfinite(fitted.fit.data_chi2) ? 0.5 * fitted.fit.data_chi2 : 0.0;
+    const Trial both = refit(rival.fitted, all, runs, starts, growing);
+    const double more = both.fit.chi2 - rival.fitted.fit.chi2;  // bent beliefs count
+    return std::isfinite(more) ? std::max(0.0, 0.5 * more) : 0.0;
   } catch (const NumericalError&) {
     return 0.0;
   }
+}
+
+// The start that promises most.
+Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival,
+                     const std::vector<Candidate>& all, const std::vector<Observation>& recorded,
+                     int threads) {
+  constexpr double worth_it = 3.0;  // as much as names need to be told apart
+  const std::vector<StartManoeuvre> known = start_manoeuvres();
+  const Rival other(rival, all, recorded);
+  std::vector<double> lead(known.size());
+  parallel_for(known.size(), threads,
+               [&](size_t i) { lead[i] = expected_lead(truth, other, all, known[i].change); });
+  const auto best = static_cast<size_t>(std::max_element(lead.begin(), lead.end()) - lead.begin());
+  m.log_evidence_expected = lead[best];
+  m.text = known[best].text;
+  if (lead[best] < worth_it) {
+    m.text = std::string(longer) +
+             "; of four other starts of the same run none would tell them "
+             "apart, the best of them this: " +
+             m.text;
+  }
+  return m;
 }
 
 // The best trial in which `rival` stands in for `kind`.
@@ -131,24 +168,19 @@ const Trial* stand_in(const std::string& kind, const std::string& rival, const T
 std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects, const Decision& decision,
                                   const std::vector<Trial>& trials,
                                   const std::vector<Candidate>& all,
-                                  const std::vector<Observation>& runs) {
-  const std::vector<Advice> known = advice();
+                                  const std::vector<Observation>& runs, int threads) {
   const Trial& chosen = trials[decision.chosen];
   std::vector<Manoeuvre> result;
   for (const FoundEffect& effect : effects) {
     for (const std::string& rival : effect.indistinguishable_from) {
-      Manoeuvre m{{effect.kind, rival},
-                  "record longer, at larger tilt and over a wider range of rates",
-                  0.0};
-      const auto fits = std::find_if(known.begin(), known.end(), [&](const Advice& a) {
-        return a.kinds.contains(effect.kind) && a.kinds.contains(rival);
-      });
-      if (fits != known.end()) {
-        m.text = fits->text;
-        const Trial* other = stand_in(effect.kind, rival, chosen, trials, all);
-        if (fits->start && other != nullptr) {
-          m.log_evidence_expected = expected_lead(chosen, *other, all, runs, fits->start);
-        }
+      Manoeuvre m{{effect.kind, rival}, longer, 0.0};
+      const Trial* other = stand_in(effect.kind, rival, chosen, trials, all);
+      if (is_told_by_charge(effect.kind, rival)) {
+        m.text =
+            "record through a change of the battery current: only a shift by discharge "
+            "follows the charge";
+      } else if (other != nullptr) {
+        m = best_start(std::move(m), chosen, *other, all, runs, threads);
       }
       result.push_back(std::move(m));
     }

@@ -6,13 +6,13 @@
 
 namespace photorque {
 
-// One for every pair of an effect found and a kind that explains the recordings as well. Where the
-// manoeuvre is another start of the first run, the lead that it would give the right kind is
-// foretold: that run is flown by the chosen trial and its exact readings are fitted by the rival;
-// half of the χ² that stays is the expected difference of log evidence.
+// One for every pair of an effect found and a kind that explains the recordings as well. Of four
+// other starts of the first run, each is flown by the chosen trial, and the rival is fitted to its
+// exact readings together with the recordings that there are: half of what χ² gains is the expected
+// lead in log evidence. The start with the largest is proposed.
 std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects, const Decision& decision,
                                   const std::vector<Trial>& trials,
                                   const std::vector<Candidate>& all,
-                                  const std::vector<Observation>& runs);
+                                  const std::vector<Observation>& runs, int threads);
 
 }  // namespace photorque
