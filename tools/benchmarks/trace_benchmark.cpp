@@ -6,6 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -137,9 +138,9 @@ void forward(benchmark::State& state, const Case& which) {
       benchmark::Counter(static_cast<double>(rays) / 1e6, benchmark::Counter::kIsRate);
 }
 
-// Embree alone: rays of one batch per beam, already sorted, traced over and over in packets.
-void bare_embree(benchmark::State& state, const Case& which) {
-  const TraceableScene scene(which.scene, false);
+// Rays of one batch per beam, as they are made or in the order of their landing cells.
+std::vector<std::vector<Ray>> batches_of(const Case& which, const TraceableScene& scene,
+                                         bool sorted) {
   std::vector<std::vector<Ray>> batches(std::min<size_t>(which.beams.size(), 8));
   LaunchBuffer launched;
   // Of one replicate of one beam in `forward`.
@@ -149,18 +150,70 @@ void bare_embree(benchmark::State& state, const Case& which) {
     const LaunchPlan plan =
         plan_launch(*beam.emitter, beam.lab_from_emitter, scene.data(), log2_rays);
     launch(*beam.emitter, plan, {1, b, 0}, 0, launched);
-    for (const uint32_t i : launched.order) batches[b].push_back(launched.rays[i]);
+    if (!sorted) batches[b] = launched.rays;
+    if (sorted) {
+      for (const uint32_t i : launched.order) batches[b].push_back(launched.rays[i]);
+    }
   }
+  return batches;
+}
+
+// By octant of direction and, within it, along a Morton curve over 32 × 32 cells of the plane z = 0
+// on which they land.
+void sort_by_landing(std::span<const Ray> rays, std::vector<uint16_t>& key,
+                     std::vector<uint16_t>& order) {
+  constexpr float cells = 32.0f;
+  const auto landing = [](const Ray& ray, int k) {
+    return ray.origin_m[k] - ray.origin_m[2] / ray.direction[2] * ray.direction[k];
+  };
+  std::array<float, 2> low = {1e9f, 1e9f}, high = {-1e9f, -1e9f};
+  for (size_t i = 0; i < 256; ++i) {
+    for (const int k : {0, 1}) {
+      low[static_cast<size_t>(k)] = std::min(low[static_cast<size_t>(k)], landing(rays[i], k));
+      high[static_cast<size_t>(k)] = std::max(high[static_cast<size_t>(k)], landing(rays[i], k));
+    }
+  }
+  const auto spread = [](uint32_t x) {
+    x = (x | (x << 4)) & 0x0f0fu;
+    x = (x | (x << 2)) & 0x3333u;
+    return (x | (x << 1)) & 0x5555u;
+  };
+  key.resize(rays.size());
+  order.resize(rays.size());
+  std::array<uint32_t, 4097> start{};
+  for (size_t i = 0; i < rays.size(); ++i) {
+    std::array<uint32_t, 2> cell{};
+    for (const size_t k : {0u, 1u}) {
+      const float at = (landing(rays[i], static_cast<int>(k)) - low[k]) / (high[k] - low[k]);
+      cell[k] = static_cast<uint32_t>(std::clamp(at * cells, 0.0f, cells - 1.0f));
+    }
+    const uint32_t octant =
+        (rays[i].direction[0] < 0.0f ? 1u : 0u) + (rays[i].direction[1] < 0.0f ? 2u : 0u);
+    key[i] = static_cast<uint16_t>((octant << 10) | spread(cell[0]) | (spread(cell[1]) << 1));
+    ++start[key[i] + 1u];
+  }
+  for (size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
+  for (size_t i = 0; i < rays.size(); ++i) {
+    order[start[key[i]]++] = static_cast<uint16_t>(i);
+  }
+}
+
+// Embree alone on rays that are there already: in their order, or sorted first, as a program must.
+void bare_embree(benchmark::State& state, const Case& which, bool sorts) {
+  const TraceableScene scene(which.scene, false);
+  const auto batches = batches_of(which, scene, !sorts);
   const int threads = static_cast<int>(state.range(0));
   constexpr size_t repeats = 64;
   uint64_t rays = 0;
   for (auto _ : state) {
     parallel_for(repeats * batches.size(), threads, [&](size_t item) {
       const auto buffer = std::make_unique<HitBuffer>();
-      const std::span<const Ray> all = batches[item % batches.size()];
+      const std::span<const Ray> batch = batches[item % batches.size()];
+      std::vector<uint16_t> key, order;
+      if (sorts) sort_by_landing(batch, key, order);
+      const RayList all{batch, order};
       for (size_t begin = 0; begin < all.size(); begin += Hits::capacity) {
-        find_hits(scene.data(), {all.subspan(begin, Hits::capacity), {}}, Coherence::coherent,
-                  *buffer);
+        find_hits(scene.data(), all.part(begin, Hits::capacity), Coherence::coherent, *buffer);
         benchmark::DoNotOptimize(buffer->hits.instance[0]);
       }
     });
@@ -272,13 +325,19 @@ void case_a_forward(benchmark::State& state) {
   forward(state, case_a());
 }
 void case_a_bare_embree(benchmark::State& state) {
-  bare_embree(state, case_a());
+  bare_embree(state, case_a(), false);
+}
+void case_a_sorted_embree(benchmark::State& state) {
+  bare_embree(state, case_a(), true);
 }
 void case_b_forward(benchmark::State& state) {
   forward(state, case_b());
 }
 void case_b_bare_embree(benchmark::State& state) {
-  bare_embree(state, case_b());
+  bare_embree(state, case_b(), false);
+}
+void case_b_sorted_embree(benchmark::State& state) {
+  bare_embree(state, case_b(), true);
 }
 
 // Threads, points per replicate in what may be shaded.
@@ -297,8 +356,10 @@ BENCHMARK(case_a_shadow_rays)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kM
 BENCHMARK(case_b_shadow_rays)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(case_a_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(case_a_bare_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(case_a_sorted_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(case_b_forward)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(case_b_bare_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(case_b_sorted_embree)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace photorque
