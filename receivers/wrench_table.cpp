@@ -5,6 +5,11 @@
 #include "core/constants.h"
 
 namespace photorque {
+
+double stated_deg(double angle_rad) {
+  return std::round(1e10 * angle_rad / degree_rad) / 1e10;
+}
+
 namespace {
 
 // One of the four vector columns of a WrenchTable.
@@ -40,8 +45,8 @@ Table rows(const WrenchTable& table, const std::string& name) {
   Table::Column polar{names.polar + "_deg", {}, {}}, around{names.around + "_deg", {}, {}};
   for (const double around_rad : table.around_rad) {
     for (const double polar_rad : table.polar_rad) {
-      around.values.push_back(around_rad / degree_rad);
-      polar.values.push_back(polar_rad / degree_rad);
+      around.values.push_back(stated_deg(around_rad));
+      polar.values.push_back(stated_deg(polar_rad));
     }
   }
   result.columns = {std::move(around), std::move(polar)};
@@ -113,7 +118,7 @@ Plot component_plot(const WrenchTable& table, const VectorColumn& column, const 
     Plot::Curve curve;
     curve.label = letter(axis);
     for (size_t polar = 0; polar < table.polar_rad.size(); ++polar) {
-      curve.x.push_back(table.polar_rad[polar] / degree_rad);
+      curve.x.push_back(stated_deg(table.polar_rad[polar]));
       curve.y.push_back((*column.value)[polar][axis]);
       curve.y_error.push_back((*column.error)[polar][axis]);
     }

@@ -8,6 +8,9 @@
 
 namespace photorque {
 
+// An angle as somebody stated it: −60 and not −60.00000000000001.
+double stated_deg(double angle_rad);
+
 // The table "wrench_table_NAME" with a row per node (angles in degrees, components and standard
 // errors in the body frame), and
 // - the longest force and torque, "largest_force_NAME_N" and "largest_torque_NAME_N_m",

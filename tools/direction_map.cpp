@@ -69,17 +69,29 @@ void copy_node(WrenchTable& table, size_t to, size_t from) {
   }
 }
 
-void print_summary(const Console& console, const WrenchTable& table, const SunLight& sun) {
-  double force_N = 0.0, torque_N_m = 0.0;
-  for (size_t i = 0; i < table.nodes(); ++i) {
-    force_N = std::max(force_N, table.force_body_N[i].norm());
-    torque_N_m = std::max(torque_N_m, table.torque_body_N_m[i].norm());
+// The longest of these vectors; its error is that of the component along it.
+Estimate longest(const std::vector<Vec3>& vectors, const std::vector<Vec3>& errors) {
+  Estimate result;
+  for (size_t i = 0; i < vectors.size(); ++i) {
+    const double length = vectors[i].norm();
+    if (length <= result.value) continue;
+    result = {length, (vectors[i] / length).cwiseProduct(errors[i]).norm()};
   }
+  return result;
+}
+
+void print_summary(const Console& console, const WrenchTable& table, const SunLight& sun) {
+  const Estimate force_N = longest(table.force_body_N, table.force_error_N);
+  const Estimate torque_N_m = longest(table.torque_body_N_m, table.torque_error_N_m);
+  const auto over_pressure = [&](const Estimate& e) {
+    return Estimate{e.value / sun.pressure_Pa, e.standard_error / sun.pressure_Pa};
+  };
   console.heading("Light pressure over " + std::to_string(table.nodes()) + " directions");
-  console.line("  largest force    " + show(force_N) + " N, over pressure " +
-               show(force_N / sun.pressure_Pa) + " m2");
-  console.line("  largest torque   " + show(torque_N_m) + " N m, over pressure " +
-               show(torque_N_m / sun.pressure_Pa) + " m3");
+  console.line("  torques are about the origin of the body frame (of the model's file)");
+  console.line("  largest force    " + show(force_N, "N") + ", over pressure " +
+               show(over_pressure(force_N), "m2"));
+  console.line("  largest torque   " + show(torque_N_m, "N m") + ", over pressure " +
+               show(over_pressure(torque_N_m), "m3"));
   console.line("  mean push along the light's travel over all directions " +
                show(mean_push_N(table) / sun.pressure_Pa) + " m2");
 }

@@ -173,6 +173,18 @@ Product sweep_product(const SweepPlan& plan, const std::vector<std::vector<Quant
   return product;
 }
 
+// The same error, said of the plan: its values reach a design as if by --set.
+InputError in_design(const CommandLine& line, size_t design, size_t count,
+                     const InputError& error) {
+  std::string text = error.what();
+  constexpr std::string_view by_set = "--set: ";
+  if (text.starts_with(by_set)) text.erase(0, by_set.size());
+  return {{line.experiment.string()},
+          "design " + std::to_string(design + 1) + " of " + std::to_string(count) + ": " + text,
+          "",
+          ""};
+}
+
 void run_sweep(const CommandLine& line) {
   Console console(line);
   const ExperimentFile file = read_experiment_file(line.experiment, line.all_overrides());
@@ -209,7 +221,11 @@ void run_sweep(const CommandLine& line) {
       one.json = false;
       const auto changes = plan.overrides(design);
       one.overrides.insert(one.overrides.end(), changes.begin(), changes.end());
-      verb.run(one);
+      try {
+        verb.run(one);
+      } catch (const InputError& error) {
+        throw in_design(line, design, count, error);
+      }
       // A figure that no design has is told after the first, not after the last.
       if (++run == 1) chosen_figures(plan, read_figures(summary_of(design)));
     }

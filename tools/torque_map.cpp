@@ -25,7 +25,7 @@ class PowerTable {
   }
   void add(double tilt_rad, double heading_rad, const Estimate& light,
            const std::optional<Estimate>& electric) {
-    std::vector<double> row = {tilt_rad / degree_rad, heading_rad / degree_rad, light.value,
+    std::vector<double> row = {stated_deg(tilt_rad), stated_deg(heading_rad), light.value,
                                light.standard_error};
     if (electric) row.insert(row.end(), {electric->value, electric->standard_error});
     for (size_t c = 0; c < row.size(); ++c) table_.columns[c].values.push_back(row[c]);

@@ -147,6 +147,9 @@ TEST_F(Sweep, WrongInputIsOneLine) {
   refuses("[sweep]\nverb = \"trace\"\n[[sweep.axis]]\nkey = \"source[0].power_w\"\nvalues = [1]\n",
           "power_w");
   refuses(grid, "K/N", "--shard 3/2");
+  // The first design stays; the message is about the plan, not about --set.
+  EXPECT_EQ(sweep("[sweep]\nverb = \"trace\"\n" + axis + "values = [1, -3]\n"), 2);
+  EXPECT_THAT(complained(), HasSubstr("e.toml: design 2 of 2: source[0].power_W: found -3"));
 }
 
 }  // namespace
