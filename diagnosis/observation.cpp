@@ -39,60 +39,118 @@ struct Columns {
   }
 };
 
-// Weighted sums over readings that become one. Attitudes are averaged as rotations from the first
-// of them, and the block stands at their mean time, because they move.
-struct Block {
-  double first_time_s = 0.0;
-  double time_sum_s = 0.0;
-  int64_t readings = 0;
-  Quat reference = Quat::Identity();
-  Vec3 rotation_sum = Vec3::Zero();
-  double attitude_time_sum_s = 0.0;
-  double attitude_rows = 0.0;
-  Vec3 gyro_sum = Vec3::Zero();
-  Vec3 gyro_rows = Vec3::Zero();
+Quat turned_by(const Vec3& rotation_rad) {
+  const double angle = rotation_rad.norm();
+  if (angle == 0.0) return Quat::Identity();
+  return Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
+}
 
-  void add(const Observation& from, size_t i) {
-    if (readings == 0) first_time_s = from.time_s[i];
-    time_sum_s += from.time_s[i];
-    ++readings;
-    const double rows = from.attitude_rows[i];
-    if (rows > 0.0) {
-      if (attitude_rows == 0.0) reference = from.attitude[i];
-      rotation_sum += rows * rotation_vector(from.attitude[i] * reference.conjugate());
-      attitude_time_sum_s += rows * from.time_s[i];
-      attitude_rows += rows;
+// Rows [first, last) of an observation, which become one block.
+struct BlockRows {
+  const Observation& from;
+  size_t first, last;
+
+  // The mean time of the attitudes, because they move; of all rows where there is none.
+  double time_s() const {
+    double rows = 0.0, sum_s = 0.0;
+    for (size_t i = first; i < last; ++i) {
+      rows += from.attitude_rows[i];
+      sum_s += from.attitude_rows[i] * from.time_s[i];
     }
-    for (int k = 0; k < 3; ++k) {
-      if (!(from.gyro_rows[i][k] > 0.0)) continue;
-      gyro_sum[k] += from.gyro_rows[i][k] * from.gyro_rad_s[i][k];
-      gyro_rows[k] += from.gyro_rows[i][k];
-    }
+    if (rows > 0.0) return sum_s / rows;
+    for (size_t i = first; i < last; ++i) sum_s += from.time_s[i];
+    return sum_s / static_cast<double>(last - first);
   }
 
-  Quat mean_attitude() const {
-    if (attitude_rows == 0.0) return Quat(NAN, NAN, NAN, NAN);
-    const Vec3 mean = rotation_sum / attitude_rows;
-    const double angle = mean.norm();
-    if (angle == 0.0) return reference;
-    return (Quat(Eigen::AngleAxisd(angle, mean / angle)) * reference).normalized();
+  // A rate in body axes at a time, and how it changes.
+  struct Rate {
+    double rad_s = NAN, slope_rad_s2 = 0.0;
+  };
+
+  // The mean of the gyro's readings about one axis, moved to `at_s` with the slope over three
+  // blocks: a camera that sees every second row has another mean time.
+  Rate gyro_rate(int axis, double at_s) const {
+    const size_t length = last - first;
+    const double reach_s = 1.5 * (from.time_s[last - 1] - from.time_s[first]) + 1e-9;
+    double rows = 0.0, rate_sum = 0.0, time_sum_s = 0.0;
+    double all = 0.0, all_rate = 0.0, all_s = 0.0, all_s2 = 0.0, all_product = 0.0;
+    const size_t end = std::min(from.blocks(), last + length);
+    for (size_t i = first - std::min(first, length); i < end; ++i) {
+      const double weight = from.gyro_rows[i][axis], since_s = from.time_s[i] - at_s;
+      if (!(weight > 0.0) || std::abs(since_s) > reach_s) continue;
+      const double rate_rad_s = from.gyro_rad_s[i][axis];
+      all += weight;
+      all_rate += weight * rate_rad_s;
+      all_s += weight * since_s;
+      all_s2 += weight * since_s * since_s;
+      all_product += weight * since_s * rate_rad_s;
+      if (i < first || i >= last) continue;
+      rows += weight;
+      rate_sum += weight * rate_rad_s;
+      time_sum_s += weight * since_s;
+    }
+    if (rows == 0.0) return {};
+    const double spread_s2 = all * all_s2 - all_s * all_s;
+    if (!(spread_s2 > 0.0)) return {rate_sum / rows};
+    const double slope_rad_s2 = (all * all_product - all_s * all_rate) / spread_s2;
+    return {(rate_sum - slope_rad_s2 * time_sum_s) / rows, slope_rad_s2};
+  }
+
+  // From the first attitude to the last: where the gyro does not tell all axes.
+  Vec3 rate_between_attitudes_rad_s() const {
+    size_t begin = last, end = last;
+    for (size_t i = first; i < last; ++i) {
+      if (!(from.attitude_rows[i] > 0.0)) continue;
+      if (begin == last) begin = i;
+      end = i;
+    }
+    if (begin == end) return Vec3::Zero();
+    return rotation_vector(from.attitude[begin].conjugate() * from.attitude[end]) /
+           (from.time_s[end] - from.time_s[begin]);
+  }
+
+  // Each attitude moved to the mean time of all, then their mean as rotations from the first of
+  // them. A wrong rate does no harm: times before and after the mean count alike.
+  Quat mean_attitude(double at_s, const std::array<Rate, 3>& gyro) const {
+    Vec3 rate_rad_s(gyro[0].rad_s, gyro[1].rad_s, gyro[2].rad_s), slope_rad_s2 = Vec3::Zero();
+    if (rate_rad_s.allFinite()) {
+      slope_rad_s2 = {gyro[0].slope_rad_s2, gyro[1].slope_rad_s2, gyro[2].slope_rad_s2};
+    } else {
+      rate_rad_s = rate_between_attitudes_rad_s();
+    }
+    const auto moved = [&](size_t i) {
+      const double by_s = at_s - from.time_s[i];
+      return from.attitude[i] * turned_by(by_s * (rate_rad_s - 0.5 * by_s * slope_rad_s2));
+    };
+    Quat reference(NAN, NAN, NAN, NAN);
+    Vec3 sum = Vec3::Zero();
+    double rows = 0.0;
+    for (size_t i = first; i < last; ++i) {
+      const double weight = from.attitude_rows[i];
+      if (!(weight > 0.0)) continue;
+      if (rows == 0.0) reference = moved(i);
+      sum += weight * rotation_vector(moved(i) * reference.conjugate());
+      rows += weight;
+    }
+    return rows > 0.0 ? (turned_by(sum / rows) * reference).normalized() : reference;
+  }
+
+  void append_to(Observation& seen) const {
+    const double at_s = time_s();
+    seen.time_s.push_back(at_s);
+    const std::array<Rate, 3> gyro = {gyro_rate(0, at_s), gyro_rate(1, at_s), gyro_rate(2, at_s)};
+    seen.attitude.push_back(mean_attitude(at_s, gyro));
+    double attitude_rows = 0.0;
+    Vec3 gyro_rows = Vec3::Zero();
+    for (size_t i = first; i < last; ++i) {
+      attitude_rows += from.attitude_rows[i];
+      gyro_rows += from.gyro_rows[i];
+    }
+    seen.attitude_rows.push_back(attitude_rows);
+    seen.gyro_rad_s.emplace_back(gyro[0].rad_s, gyro[1].rad_s, gyro[2].rad_s);
+    seen.gyro_rows.push_back(gyro_rows);
   }
 };
-
-void append(Observation& seen, const Block& block) {
-  if (block.readings == 0) return;
-  seen.time_s.push_back(block.attitude_rows > 0.0
-                            ? block.attitude_time_sum_s / block.attitude_rows
-                            : block.time_sum_s / static_cast<double>(block.readings));
-  seen.attitude.push_back(block.mean_attitude());
-  seen.attitude_rows.push_back(block.attitude_rows);
-  seen.gyro_rows.push_back(block.gyro_rows);
-  Vec3 rate = Vec3::Constant(NAN);
-  for (int k = 0; k < 3; ++k) {
-    if (block.gyro_rows[k] > 0.0) rate[k] = block.gyro_sum[k] / block.gyro_rows[k];
-  }
-  seen.gyro_rad_s.push_back(rate);
-}
 
 }  // namespace
 
@@ -138,17 +196,12 @@ Observation Observation::averaged(size_t most_blocks) const {
   result.gyro_rad_s.clear();
   result.gyro_rows.clear();
   const double block_s = duration_s() / static_cast<double>(most_blocks);
-  Block block;
-  for (size_t i = 0; i < blocks(); ++i) {
+  for (size_t first = 0, last = 0; first < blocks(); first = last) {
     // Half a row of slack, so that rounding of the times does not make uneven blocks.
-    const double end_s = block.first_time_s + block_s - 0.5 * row_interval_s;
-    if (block.readings > 0 && time_s[i] > end_s) {
-      append(result, block);
-      block = {};
-    }
-    block.add(*this, i);
+    const double end_s = time_s[first] + block_s - 0.5 * row_interval_s;
+    for (last = first + 1; last < blocks() && time_s[last] <= end_s;) ++last;
+    BlockRows{*this, first, last}.append_to(result);
   }
-  append(result, block);
   return result;
 }
 
