@@ -181,14 +181,17 @@ std::string concealed_recording(const ConcealedCase& c, size_t run_index) {
       "command_x_N_m,command_y_N_m,command_z_N_m,battery_current_A\n";
   Instruments instruments(draw, c.sensors);
   size_t held = 0;
+  // As many digits as the times have: a pulse 50 µs off shows after minutes.
+  const double interval_ten_us = 1e5 / c.sensors.rate_Hz;
+  const bool few = !c.sensors.dirty && std::remainder(interval_ten_us, 10.0) == 0.0;
+  const char* const time_format = few ? "%.4f," : "%.6f,";
   for (size_t i = 0; i < moments.size(); ++i) {
     const std::string attitude = instruments.attitude(seen[i].camera, i);
     const std::string gyro = instruments.gyro(moments[i].gyro_rad_s);
     if (rows.lost[i]) continue;
     while (held + 1 < commands.size() && commands[held + 1].time_s <= rows.time_s[i] + 1e-9) ++held;
     const Triple& torque = commands[held].torque_N_m;
-    const std::string row = print(c.sensors.dirty ? "%.6f," : "%.4f,", rows.time_s[i]) + attitude +
-                            "," + gyro +
+    const std::string row = print(time_format, rows.time_s[i]) + attitude + "," + gyro +
                             print(",%.8e,%.8e,%.8e,%.4f\n", torque[0], torque[1], torque[2],
                                   commands[held].battery_current_A);
     text += row;
