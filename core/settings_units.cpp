@@ -16,6 +16,8 @@ constexpr Unit units[] = {
     {"kg_m2", "inertia", 1.0},
     {"m_per_Ah", "shift per charge", 1.0 / 3600.0},
     {"kg_m3", "density", 1.0},
+    {"N_m_s2", "drag by the square of the rate", 1.0},
+    {"N_m_s_per_T2", "drag in a magnetic field", 1.0},
     {"N_m_s", "angular momentum", 1.0},
     {"N_m", "torque", 1.0},
     {"mN_m", "torque", 1e-3},

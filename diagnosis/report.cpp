@@ -125,7 +125,7 @@ std::string manoeuvres(const Diagnosis& d) {
   if (d.manoeuvres.empty()) return "";
   std::string list;
   for (const Manoeuvre& m : d.manoeuvres) {
-    std::string item = html(m.text);
+    std::string item = html(m.text) + ".";
     if (!m.separates.empty()) item += " <i>Separates " + joined(m.separates, ", ") + ".</i>";
     if (m.log_evidence_expected > 0.0) {
       item += " Expected lead of the right one: " + html_number(m.log_evidence_expected, 2) +
@@ -230,7 +230,7 @@ std::string ranking(const Diagnosis& d) {
     const double behind = d.alternatives.front().log_evidence_relative - a.log_evidence_relative;
     std::string note = behind > 0.0 ? "−" + plain_number(behind) + " to the best" : "";
     if (!a.remark.empty()) {
-      note = a.remark;
+      note = spoken(a.remark);
     } else if (a.holdout_chi2_per_sample) {
       note +=
           (note.empty() ? "" : "; ") + ("χ² held out " + plain_number(*a.holdout_chi2_per_sample));

@@ -281,7 +281,7 @@ std::string line_chart_svg(const LineChart& chart, const std::string& title) {
 
 std::string bar_chart_svg(const std::vector<Bar>& bars, const std::string& x_label,
                           const std::string& title) {
-  constexpr double row = 27.0, notes = 225.0;
+  constexpr double row = 27.0, notes = 275.0;
   // As wide as the longest label needs, which is cut where the bars would have no room.
   constexpr size_t most_letters = 62;
   constexpr double letter = 6.6, least_names = 150.0;

@@ -120,8 +120,8 @@ std::string spoken_unit(const std::string& key) {
     replace_all(unit, std::string(1, digit), digit == '2' ? "²" : "³");
   }
   replace_all(unit, "rad_s", "rad/s");
-  replace_all(unit, "m_s²", "m/s²");
   replace_all(unit, "N_m_s²", "N m s²");
+  replace_all(unit, "m_s²", "m/s²");
   return html(spoken(unit));
 }
 

@@ -144,6 +144,9 @@ TEST(ReportText, WritesNumbersAsPeopleReadThem) {
   EXPECT_EQ(html_estimate(0.01264, 0.00021), "0.01264 ± 0.00021");
   EXPECT_EQ(html_estimate(3.23e-6, 4e-8), "(3.230 ± 0.040)&nbsp;×&nbsp;10<sup>−6</sup>");
   EXPECT_EQ(spoken_unit("dipole_A_m2"), "A m²");
+  EXPECT_EQ(spoken_unit("coefficient_N_m_s2"), "N m s²");
+  EXPECT_EQ(spoken_unit("coefficient_N_m_s_per_T2"), "N m s/T²");
+  EXPECT_EQ(spoken_key("coefficient_N_m_s2"), "coefficient");
   EXPECT_EQ(spoken_key("dipole_A_m2"), "dipole");
 }
 
