@@ -36,7 +36,7 @@ class InsideLightReceiver final : public Receiver {
 };
 
 // One line for people: how much of `emitted_W` reached the inside of which parts, and whether by
-// cracks or because a part is turned inside out. Empty where no part was lit inside.
+// cracks or because a part is turned inside out. Empty where it is less than a millionth.
 std::string describe_inside_light(const Scene& scene,
                                   const std::vector<InsideLightReceiver::Part>& lit,
                                   double emitted_W);

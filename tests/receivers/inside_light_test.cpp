@@ -68,6 +68,8 @@ TEST(InsideLight, IsWhatFallsThroughTheHole) {
   leak[0].inside_W.value = 0.04;
   EXPECT_EQ(describe_inside_light(box.scene, leak, 4.0),
             "1 % of the light falls on the inside of closed parts: box (1 %, by cracks)");
+  leak[0].inside_W.value = 3e-6;  // of 4 W: rays that meet an edge exactly
+  EXPECT_EQ(describe_inside_light(box.scene, leak, 4.0), "");
 }
 
 TEST(InsideLight, SaysWhenABodyIsTurnedInsideOut) {
