@@ -70,7 +70,8 @@ Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& ine
     const Eigen::VectorXd six = as_six(axis);
     const double along = six.dot(score.information * score.estimate);
     const double curvature = six.dot(score.information * six);
-    if (!(along > 0.0) || along * along < best.gain * curvature) continue;
+    if (!(along > 0.0 && curvature > 0.0)) continue;
+    if (along * along < best.gain * curvature) continue;
     best.gain = along * along / curvature;
     const double whole_kg_m2 = axis.dot(inertia_kg_m2 * axis);
     const double share = std::min(along / curvature / whole_kg_m2, 0.5);

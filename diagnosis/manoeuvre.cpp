@@ -41,7 +41,10 @@ void turn_a_quarter(PlatformState& state) {
 }
 
 void lean_further(PlatformState& state) {
-  state.lab_from_body = state.lab_from_body * Quat(Eigen::AngleAxisd(0.2, Vec3::UnitX()));
+  const Vec3 up_body = state.lab_from_body.conjugate() * Vec3::UnitZ();
+  const Vec3 across = up_body.cross(Vec3::UnitZ());  // away from the vertical
+  const Vec3 axis = across.norm() > 1e-6 ? Vec3(across.normalized()) : Vec3::UnitX();
+  state.lab_from_body = state.lab_from_body * Quat(Eigen::AngleAxisd(0.2, axis));
 }
 
 std::vector<StartManoeuvre> start_manoeuvres() {
@@ -101,7 +104,9 @@ struct Rival {
   }
 };
 
-// What the manoeuvre would add to the rival's χ², halved.
+constexpr double not_known = -1.0;
+
+// What the manoeuvre would add to the rival's χ², halved; not_known where its fit does not end.
 double expected_lead(const Trial& truth, const Rival& rival, const std::vector<Candidate>& all,
                      const StartChange& change) {
   try {
@@ -115,10 +120,11 @@ double expected_lead(const Trial& truth, const Rival& rival, const std::vector<C
     FitSettings growing;
     growing.windows = {0.1, 0.4, 1.0};
     const Trial both = refit(rival.fitted, all, runs, starts, growing);
+    if (!both.fit.converged) return not_known;
     const double more = both.fit.chi2 - rival.fitted.fit.chi2;  // bent beliefs count
-    return std::isfinite(more) ? std::max(0.0, 0.5 * more) : 0.0;
+    return std::isfinite(more) ? std::max(0.0, 0.5 * more) : not_known;
   } catch (const NumericalError&) {
-    return 0.0;
+    return not_known;
   }
 }
 
@@ -133,6 +139,7 @@ Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival,
   parallel_for(known.size(), threads,
                [&](size_t i) { lead[i] = expected_lead(truth, other, all, known[i].change); });
   const auto best = static_cast<size_t>(std::max_element(lead.begin(), lead.end()) - lead.begin());
+  if (lead[best] == not_known) return m;
   m.log_evidence_expected = lead[best];
   m.text = known[best].text;
   if (lead[best] < worth_it) {

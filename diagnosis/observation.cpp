@@ -96,7 +96,7 @@ struct BlockRows {
     return {(rate_sum - slope_rad_s2 * time_sum_s) / rows, slope_rad_s2};
   }
 
-  // From the first attitude to the last: where the gyro does not tell all axes.
+  // From the first attitude to the last.
   Vec3 rate_between_attitudes_rad_s() const {
     size_t begin = last, end = last;
     for (size_t i = first; i < last; ++i) {
@@ -112,11 +112,14 @@ struct BlockRows {
   // Each attitude moved to the mean time of all, then their mean as rotations from the first of
   // them. A wrong rate does no harm: times before and after the mean count alike.
   Quat mean_attitude(double at_s, const std::array<Rate, 3>& gyro) const {
-    Vec3 rate_rad_s(gyro[0].rad_s, gyro[1].rad_s, gyro[2].rad_s), slope_rad_s2 = Vec3::Zero();
-    if (rate_rad_s.allFinite()) {
+    Vec3 rate_rad_s = rate_between_attitudes_rad_s(), slope_rad_s2 = Vec3::Zero();
+    const Vec3 by_gyro_rad_s(gyro[0].rad_s, gyro[1].rad_s, gyro[2].rad_s);
+    // What the gyro's numbers mean is only found out later; here they count where they agree, as
+    // far as two attitudes can tell.
+    constexpr double cameras_rad_s = 0.01;
+    if ((by_gyro_rad_s - rate_rad_s).norm() < cameras_rad_s + 0.1 * rate_rad_s.norm()) {
+      rate_rad_s = by_gyro_rad_s;
       slope_rad_s2 = {gyro[0].slope_rad_s2, gyro[1].slope_rad_s2, gyro[2].slope_rad_s2};
-    } else {
-      rate_rad_s = rate_between_attitudes_rad_s();
     }
     const auto moved = [&](size_t i) {
       const double by_s = at_s - from.time_s[i];

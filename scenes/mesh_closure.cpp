@@ -92,7 +92,7 @@ void add(const Mesh& mesh, MeshClosure& closure) {
     i = end;
   }
   ++closure.meshes;
-  const bool closed = open.empty() && distinct > 0, few_open = 20 * open.size() < distinct;
+  const bool closed = open.empty() && distinct > 0, few_open = open.size() * open.size() < distinct;
   if (open.empty()) ++closure.closed;
   if (!open.empty() && few_open) ++closure.almost_closed;
   closure.encloses.push_back(closed || few_open ? 1 : 0);

@@ -168,6 +168,11 @@ PlaneSymmetry stated_symmetry(const XmlText& text, const pugi::xml_node& intensi
   const pugi::xml_node node = intensity.child("Symm");
   if (!node) return implied_symmetry(stored.azimuth_deg);
   const std::string symmetry = without_blanks(node.child_value());
+  if (symmetry == "Symm_Full" && stored.azimuth_deg.size() > 1) {
+    throw InputError(text.at(node), "Symm",
+                     "Symm_Full with " + std::to_string(stored.azimuth_deg.size()) + " planes",
+                     "one plane, which stands for all");
+  }
   if (symmetry == "Symm_None" || symmetry == "Symm_Full") return PlaneSymmetry::none;
   if (symmetry == "Symm_Bi_0") return PlaneSymmetry::across_0_180;
   if (symmetry == "Symm_Bi_90") return PlaneSymmetry::across_90_270;
@@ -201,12 +206,14 @@ Opening opening_of(const XmlText& text, const pugi::xml_node& emitter, Photometr
     };
     opening.x_m = std::max(opening.x_m, reach_m("Width", "WidthOffset"));
     opening.y_m = std::max(opening.y_m, reach_m("Length", "LengthOffset"));
-    circular = std::string_view(area.child_value("Circular")) == "true";
+    const std::string_view round = trimmed(area.child_value("Circular"));
+    circular = round == "true" || round == "1";
     ++pieces;
   }
   if (faces > (face ? 1u : 0u)) {
     file.notices.emplace_back(
-        "light leaves the bottom face alone; its other faces are passed over");
+        pieces > 0 ? "light leaves the bottom face alone; the other faces are passed over"
+                   : "no luminous area on the bottom face: light leaves a point");
   }
   if (pieces > 1) {
     file.notices.push_back(std::to_string(pieces) +
@@ -262,6 +269,13 @@ PhotometricFile read_tm33(const std::string& bytes, const std::string& name) {
     const PlaneSymmetry symmetry = stated_symmetry(text, found.intensity, stored);
     file.table = unfold(stored, symmetry, where);
   } else {
+    // Angles from 0 stand for both sides, as in LM-63.
+    const pugi::xml_node symmetry = found.intensity.child("Symm");
+    const bool one_sided = stored.polar_deg.front() == 0.0 || stored.azimuth_deg.front() == 0.0;
+    if (one_sided && without_blanks(symmetry.child_value()) == "Symm_None") {
+      throw InputError(text.at(symmetry), "Symm", "Symm_None with angles from 0",
+                       "angles on both sides, for types A and B");
+    }
     file.table = sideways_table(pole, stored, where);
   }
   require_light(file, where);

@@ -55,9 +55,11 @@ std::vector<RaySet> arriving_rays(const TraceableScene& scene, const RigidTransf
   for (size_t s = 0; s < surfaces.size(); ++s) {
     sets[s].format = "TM-25-13";
     sets[s].name = "light on " + surfaces[s]->name();
-    for (const auto& part : parts) {
+    for (auto& part : parts) {
       sets[s].rays.insert(sets[s].rays.end(), part[s].begin(), part[s].end());
+      part[s] = {};
     }
+    if (sets[s].rays.empty()) continue;
     sets[s].stated_radiant_flux_W = sets[s].ray_flux();
   }
   return sets;

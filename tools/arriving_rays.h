@@ -15,8 +15,8 @@ namespace photorque {
 // Traces `options.rays` rays and keeps those that meet each of the surfaces, in the body frame:
 // where, the direction of arrival, the power, and the wavelength where the source is a line. A ray
 // that comes back after bounces is there once for every arrival. Their flux sums to the power on
-// the surface; their number varies with options.rays alone, not with options.threads. Nothing is
-// kept for surfaces that no ray meets.
+// the surface; their number varies with options.rays alone, not with options.threads. The set of
+// a surface that no ray meets is empty.
 std::vector<RaySet> arriving_rays(const TraceableScene& scene, const RigidTransform& lab_from_body,
                                   std::span<const Beam> beams,
                                   std::span<const FluxMapReceiver* const> surfaces,

@@ -75,6 +75,18 @@ TEST(Observation, BlocksStandWhereTheMotionIs) {
   }
 }
 
+// A gyro in other units than its header says: that is found out later, and must not have bent the
+// attitudes by then.
+TEST(Observation, AGyroThatDisagreesMovesNoAttitude) {
+  Observation seen = seen_by(1, true);
+  for (Vec3& rate_rad_s : seen.gyro_rad_s) rate_rad_s /= degree_rad;
+  const Observation blocks = seen.averaged(100);
+  for (size_t i = 0; i < blocks.blocks(); ++i) {
+    const Quat off = blocks.attitude[i] * Top::lab_from_body(blocks.time_s[i]).conjugate();
+    EXPECT_LT(rotation_vector(off).norm(), 7.0 * arcsecond_rad) << blocks.time_s[i];
+  }
+}
+
 TEST(Observation, BlocksOfOneRowStayAsTheyAre) {
   const Observation seen = seen_by(2, true);
   const Observation same = seen.averaged(1599);

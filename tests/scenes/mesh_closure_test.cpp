@@ -51,6 +51,26 @@ TEST(MeshClosure, WeldsCornersThatExportersSplit) {
   EXPECT_EQ(closure_of(scene_of(split)).open_edges, 3u);
 }
 
+// The rim of a fine sheet has few of its edges: it is a sheet all the same.
+TEST(MeshClosure, AFineSheetEnclosesNothing) {
+  constexpr uint32_t side = 40;
+  Mesh mesh;
+  for (uint32_t j = 0; j <= side; ++j) {
+    for (uint32_t i = 0; i <= side; ++i) mesh.vertices_m.emplace_back(i, j, 0.01 * i * i);
+  }
+  for (uint32_t j = 0; j < side; ++j) {
+    for (uint32_t i = 0; i < side; ++i) {
+      const uint32_t at = j * (side + 1) + i, up = at + side + 1;
+      mesh.triangles.push_back({at, at + 1, up + 1});
+      mesh.triangles.push_back({at, up + 1, up});
+    }
+  }
+  const MeshClosure closure = closure_of(scene_of(mesh));
+  EXPECT_EQ(closure.open_edges, 4 * side);
+  EXPECT_EQ(closure.almost_closed, 0u);
+  EXPECT_EQ(closure.encloses, std::vector<uint8_t>{0});
+}
+
 TEST(MeshClosure, CountsEdgesOfThreeTriangles) {
   Mesh fork;
   fork.vertices_m = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};

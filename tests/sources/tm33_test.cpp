@@ -165,6 +165,10 @@ TEST(Tm33File, SaysWhatIsWrongAndWhere) {
   refused(int_data({{0, 0, 0}, {0, 90, 0}}), "none above zero");
   refused(int_data({{0, -5, 1}, {0, 90, 1}}), "-5 to 90");
   refused("<Symm>Symm_Arbitrary</Symm>" + small_data, "Symm_Arbitrary");
+  refused("<Symm>Symm_Full</Symm>" + int_data({{0, 0, 1}, {0, 90, 1}, {90, 0, 1}, {90, 90, 1}}),
+          "Symm_Full with 2 planes");
+  expect_refused(document(emitter("<Symm>Symm_None</Symm>" + small_data), "IES_B"),
+                 "Symm_None with angles from 0");
   refused("<NumberHorz>2</NumberHorz>" + small_data, "1, as many as there are");
   refused("<Multiplier>1e400</Multiplier>" + small_data, "a number");
   refused("<Multiplier>1e308</Multiplier>" + small_data, "overflows");
