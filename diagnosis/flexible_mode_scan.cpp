@@ -15,7 +15,7 @@ namespace {
 // looks as wide as its damping: enough of it for the grid of frequencies.
 constexpr double scanned_damping = 0.08;
 
-// Six strengths fall by six of χ² on noise alone.
+// On noise alone χ² falls by six with six strengths.
 constexpr double least_ringing_gain = 14.0;
 
 // Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.

@@ -45,11 +45,12 @@ std::vector<RayFile> ray_files(const OpticalRun& run, const CommandLine& line) {
   options.rays = *rays;
   options.replicates = 8;  // whose spread nobody looks at
   options.threads = line.threads;
-  const std::vector<RaySet> sets =
+  std::vector<RaySet> sets =
       arriving_rays(run.scene(), experiment.lab_from_body, experiment.beams, maps, options);
   std::vector<RayFile> files;
   for (size_t i = 0; i < sets.size(); ++i) {
     if (sets[i].rays.empty()) continue;  // no ray meets it
+    sets[i].name += "; " + run.provenance().one_line();
     files.push_back({"rays_" + maps[i]->name() + ".tm25ray", write_tm25(sets[i])});
   }
   return files;
