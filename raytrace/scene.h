@@ -8,7 +8,7 @@
 
 #include "core/spectrum.h"
 #include "core/vector.h"
-#include "raytrace/surface.h"
+#include "raytrace/surfaces/surface.h"
 
 namespace photorque {
 

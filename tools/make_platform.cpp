@@ -7,8 +7,8 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "scenes/platform_generator.h"
-#include "scenes/toml_reader.h"
+#include "scenes/experiment/toml_reader.h"
+#include "scenes/platforms/generator.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "attitude/air_bearing.h"
+#include "attitude/disturbances/bearing/air_bearing.h"
 
 #include <gtest/gtest.h>
 

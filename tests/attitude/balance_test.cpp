@@ -1,10 +1,10 @@
-#include "attitude/balance.h"
+#include "attitude/studies/balance.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "attitude/run.h"
+#include "attitude/propagation/run.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"
 

@@ -1,5 +1,5 @@
 // The budget, and the paper's figures beside ours.
-#include "attitude/budget.h"
+#include "attitude/studies/budget.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,9 +6,9 @@
 #include <map>
 #include <sstream>
 
-#include "attitude/ccsds_acm.h"
-#include "attitude/ccsds_aem.h"
-#include "attitude/ccsds_epoch.h"
+#include "attitude/ccsds/acm.h"
+#include "attitude/ccsds/aem.h"
+#include "attitude/environment/epoch.h"
 #include "core/errors.h"
 
 namespace photorque {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "attitude/coil_cage.h"
-#include "attitude/current_loop.h"
+#include "attitude/disturbances/fields/coil_cage.h"
+#include "attitude/disturbances/fields/current_loop.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/settings_bench.h"

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "attitude/disturbance_kind.h"
-#include "attitude/dynamics.h"
-#include "attitude/propagator.h"
+#include "attitude/disturbances/kind.h"
+#include "attitude/model/dynamics.h"
+#include "attitude/propagation/propagator.h"
 #include "tests/attitude/settings_bench.h"
 
 namespace photorque {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "attitude/air_bearing.h"
-#include "attitude/air_film.h"
-#include "attitude/external_air.h"
+#include "attitude/disturbances/air/external_air.h"
+#include "attitude/disturbances/bearing/air_bearing.h"
+#include "attitude/disturbances/bearing/air_film.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "attitude/eclipse.h"
-#include "attitude/propagator.h"
+#include "attitude/environment/eclipse.h"
+#include "attitude/propagation/propagator.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"
 

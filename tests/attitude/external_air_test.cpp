@@ -1,4 +1,4 @@
-#include "attitude/external_air.h"
+#include "attitude/disturbances/air/external_air.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "attitude/coil_cage.h"
+#include "attitude/disturbances/fields/coil_cage.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/wrench_table.h"

@@ -1,4 +1,4 @@
-#include "attitude/igrf.h"
+#include "attitude/environment/igrf.h"
 
 #include <gtest/gtest.h>
 
@@ -150,7 +150,7 @@ TEST(Igrf, CommittedCoefficientsAreTheOfficialOnes) {
   std::ifstream official(reference_folder / "igrf14coeffs.txt");
   if (!official) GTEST_SKIP() << "reference/igrf14coeffs.txt is not at hand";
   std::ifstream committed(std::filesystem::path(PHOTORQUE_SOURCE_DIR) /
-                          "attitude/igrf14_coefficients.inc");
+                          "attitude/environment/igrf14_coefficients.inc");
   ASSERT_TRUE(committed);
   const auto next_row = [&] {
     std::string line;

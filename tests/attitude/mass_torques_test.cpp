@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "attitude/sag_compliance.h"
+#include "attitude/disturbances/mass/sag_compliance.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"

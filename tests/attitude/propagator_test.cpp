@@ -1,4 +1,4 @@
-#include "attitude/propagator.h"
+#include "attitude/propagation/propagator.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

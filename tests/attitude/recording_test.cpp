@@ -1,4 +1,4 @@
-#include "attitude/recording.h"
+#include "attitude/recordings/recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <random>
 
-#include "attitude/text_lines.h"
+#include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/settings_bench.h"

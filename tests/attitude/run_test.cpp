@@ -1,4 +1,4 @@
-#include "attitude/run.h"
+#include "attitude/propagation/run.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

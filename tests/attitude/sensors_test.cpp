@@ -1,11 +1,11 @@
-#include "attitude/sensors.h"
+#include "attitude/recordings/sensors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "attitude/run.h"
+#include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "tests/attitude/disturbance_bench.h"
 

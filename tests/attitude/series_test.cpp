@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "attitude/time_series.h"
-#include "attitude/torque_surface.h"
-#include "attitude/vibration.h"
+#include "attitude/disturbances/fields/torque_surface.h"
+#include "attitude/disturbances/motion/vibration.h"
+#include "attitude/environment/time_series.h"
 #include "core/constants.h"
 #include "core/errors.h"
 

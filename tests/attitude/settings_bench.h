@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/constants.h"
-#include "core/settings.h"
+#include "core/settings/settings.h"
 
 namespace photorque {
 

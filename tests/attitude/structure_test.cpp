@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "attitude/battery.h"
-#include "attitude/moving_masses.h"
-#include "attitude/sag_compliance.h"
+#include "attitude/disturbances/mass/battery.h"
+#include "attitude/disturbances/mass/moving_masses.h"
+#include "attitude/disturbances/mass/sag_compliance.h"
 #include "core/constants.h"
 #include "tests/attitude/settings_bench.h"
 

@@ -1,4 +1,4 @@
-#include "core/sobol_cells.h"
+#include "core/numerics/sobol_cells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "core/sobol.h"
+#include "core/numerics/sobol.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "core/random.h"
+#include "core/numerics/random.h"
 
 namespace photorque {
 namespace {

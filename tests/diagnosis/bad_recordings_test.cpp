@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "core/errors.h"
-#include "diagnosis/diagnose.h"
-#include "diagnosis/observation.h"
+#include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/attitude/observation.h"
 
 namespace photorque {
 namespace {

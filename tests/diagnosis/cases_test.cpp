@@ -6,8 +6,8 @@
 #include <set>
 
 #include "core/files.h"
-#include "diagnosis/diagnose.h"
-#include "scenes/toml_reader.h"
+#include "diagnosis/attitude/diagnose.h"
+#include "scenes/experiment/toml_reader.h"
 
 namespace photorque {
 namespace {

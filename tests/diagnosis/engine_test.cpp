@@ -7,11 +7,11 @@
 #include <functional>
 #include <random>
 
-#include "diagnosis/belief.h"
-#include "diagnosis/diagnose.h"
-#include "diagnosis/scan.h"
-#include "diagnosis/screen.h"
-#include "diagnosis/trial.h"
+#include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/attitude/nominal_model.h"
+#include "diagnosis/attitude/scan.h"
+#include "diagnosis/attitude/screen.h"
+#include "diagnosis/attitude/trial.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 
 namespace photorque {

@@ -1,11 +1,11 @@
 // improved.toml: what the user wrote, and what was found, read back by the program itself.
-#include "diagnosis/improved.h"
+#include "diagnosis/report/improved.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "attitude/run.h"
-#include "scenes/toml_reader.h"
+#include "attitude/propagation/run.h"
+#include "scenes/experiment/toml_reader.h"
 #include "tests/diagnosis/sample_diagnosis.h"
 
 namespace photorque {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "diagnosis/diagnosis_json.h"
+#include "diagnosis/report/json.h"
 #include "tests/diagnosis/sample_diagnosis.h"
 
 namespace photorque {

@@ -1,4 +1,4 @@
-#include "tools/proof_score.h"
+#include "tools/proof/score.h"
 
 #include <gtest/gtest.h>
 

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "attitude/disturbance_kind.h"
-#include "attitude/run.h"
-#include "tools/concealed_draw.h"
-#include "tools/concealed_motion.h"
-#include "tools/concealed_vectors.h"
+#include "attitude/disturbances/kind.h"
+#include "attitude/propagation/run.h"
+#include "tools/proof/draw.h"
+#include "tools/proof/motion.h"
+#include "tools/proof/vectors.h"
 
 namespace photorque {
 namespace {

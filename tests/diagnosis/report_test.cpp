@@ -1,5 +1,5 @@
 // report.html: complete, self-contained, well-formed.
-#include "diagnosis/report.h"
+#include "diagnosis/report/page.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <regex>
 #include <vector>
 
-#include "diagnosis/report_chart.h"
-#include "diagnosis/report_text.h"
+#include "diagnosis/report/chart.h"
+#include "diagnosis/report/text.h"
 #include "tests/diagnosis/sample_diagnosis.h"
 
 namespace photorque {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <random>
 
-#include "attitude/disturbance_kind.h"
+#include "attitude/disturbances/kind.h"
 #include "core/constants.h"
-#include "diagnosis/diagnose.h"
+#include "diagnosis/attitude/diagnose.h"
 
 namespace photorque::rigid_body {
 

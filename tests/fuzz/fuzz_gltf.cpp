@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "scenes/gltf_lights.h"
-#include "scenes/gltf_reader.h"
+#include "scenes/gltf/lights.h"
+#include "scenes/gltf/reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using photorque::GltfOptions;

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/errors.h"
-#include "sources/photometric_file.h"
-#include "sources/tabulated_intensity.h"
+#include "sources/photometry/file.h"
+#include "sources/profiles/tabulated_intensity.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/errors.h"
-#include "sources/ray_lamp.h"
-#include "sources/ray_set.h"
+#include "sources/lamps/rays.h"
+#include "sources/rayfiles/set.h"
 
 namespace {
 

@@ -10,13 +10,13 @@
 #include <filesystem>
 #include <string>
 
-#include "attitude/ccsds_acm.h"
-#include "attitude/ccsds_aem.h"
-#include "attitude/number_columns.h"
-#include "attitude/recording.h"
-#include "attitude/torque_surface.h"
+#include "attitude/ccsds/acm.h"
+#include "attitude/ccsds/aem.h"
+#include "attitude/disturbances/fields/torque_surface.h"
+#include "attitude/recordings/recording.h"
 #include "core/errors.h"
-#include "scenes/brdf_file.h"
+#include "core/text/columns.h"
+#include "scenes/surfaces/brdf_file.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/errors.h"
-#include "scenes/toml_reader.h"
+#include "scenes/experiment/toml_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "images/colour.h"
-#include "images/colour_map.h"
+#include "images/drawing/colour.h"
+#include "images/drawing/colour_map.h"
 
 namespace photorque {
 namespace {

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
-#include "images/colour_map.h"
-#include "images/map_picture.h"
-#include "images/write_product.h"
+#include "images/drawing/colour_map.h"
+#include "images/drawing/map_picture.h"
+#include "images/writers/product.h"
 #include "tests/images/sample_product.h"
 
 namespace photorque {

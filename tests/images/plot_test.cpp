@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include "images/plot_curves.h"
-#include "images/plot_picture.h"
+#include "images/drawing/plot_curves.h"
+#include "images/drawing/plot_picture.h"
 #include "tests/images/sample_product.h"
 
 namespace photorque {

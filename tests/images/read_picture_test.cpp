@@ -1,5 +1,5 @@
 // Pictures into memory, as linear light.
-#include "images/read_picture.h"
+#include "images/writers/read_picture.h"
 
 #include <gtest/gtest.h>
 

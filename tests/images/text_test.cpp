@@ -1,10 +1,10 @@
-#include "images/text.h"
+#include "images/drawing/text.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "images/furniture.h"
+#include "images/drawing/page_layout.h"
 
 namespace photorque {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <random>
 
-#include "images/axis.h"
-#include "images/text.h"
-#include "images/ticks.h"
+#include "images/drawing/axis.h"
+#include "images/drawing/text.h"
+#include "images/drawing/ticks.h"
 
 namespace photorque {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "images/write_product.h"
-#include "images/writer_kind.h"
+#include "images/writers/kind.h"
+#include "images/writers/product.h"
 #include "tests/images/sample_product.h"
 
 namespace photorque {

@@ -1,9 +1,9 @@
 // Measured scattering: what the table says is what light does.
-#include "raytrace/measured_brdf.h"
+#include "raytrace/surfaces/measured_brdf.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/raytrace/finish_kinds.h"
+#include "tests/raytrace/bsdf_kinds.h"
 
 namespace photorque {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/constants.h"
-#include "raytrace/tracer.h"
+#include "raytrace/tracing/tracer.h"
 
 namespace photorque::testing {
 

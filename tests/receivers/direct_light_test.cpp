@@ -5,11 +5,11 @@
 #include <random>
 
 #include "core/constants.h"
-#include "raytrace/chebyshev.h"
-#include "raytrace/disc_light.h"
-#include "raytrace/gauss_legendre.h"
-#include "raytrace/irradiance_table.h"
-#include "raytrace/shadow.h"
+#include "core/numerics/chebyshev.h"
+#include "core/numerics/gauss_legendre.h"
+#include "raytrace/direct/disc_light.h"
+#include "raytrace/direct/irradiance_table.h"
+#include "raytrace/tracing/shadow.h"
 #include "tests/receivers/gather_lamps.h"
 
 namespace photorque {

@@ -1,9 +1,9 @@
-#include "receivers/flux_map.h"
+#include "receivers/maps/flux_map.h"
 
 #include <random>
 
 #include "receiver_scenes.h"
-#include "receivers/flux_statistics.h"
+#include "receivers/maps/flux_statistics.h"
 
 namespace photorque {
 namespace {

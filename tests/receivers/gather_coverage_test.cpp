@@ -1,7 +1,7 @@
 // Whether the stated errors of gathered light hold the truth as often as they should.
 #include <gtest/gtest.h>
 
-#include "receivers/gather.h"
+#include "receivers/gather/gather.h"
 #include "tests/receivers/gather_lamps.h"
 
 namespace photorque {

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "receivers/flux_map.h"
-#include "sources/source_kind.h"
+#include "receivers/maps/flux_map.h"
+#include "sources/kind.h"
 #include "tests/raytrace/test_scenes.h"
 
 namespace photorque::testing {

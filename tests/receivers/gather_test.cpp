@@ -1,5 +1,5 @@
 // Direct light gathered from the surface's side.
-#include "receivers/gather.h"
+#include "receivers/gather/gather.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "receiver_scenes.h"
-#include "receivers/receiver_kind.h"
+#include "receivers/kind.h"
 
 namespace photorque {
 namespace {

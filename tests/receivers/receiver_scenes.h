@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/constants.h"
-#include "core/settings.h"
+#include "core/settings/settings.h"
 #include "raytrace/receiver.h"
 #include "raytrace/scene.h"
 

@@ -1,7 +1,7 @@
-#include "receivers/torque_map.h"
+#include "receivers/maps/torque_map.h"
 
 #include "receiver_scenes.h"
-#include "receivers/wrench.h"
+#include "receivers/wrench/wrench.h"
 
 namespace photorque {
 namespace {

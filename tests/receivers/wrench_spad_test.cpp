@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "receiver_scenes.h"
-#include "receivers/spad.h"
+#include "receivers/wrench/spad.h"
 
 namespace photorque {
 namespace {

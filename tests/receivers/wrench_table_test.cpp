@@ -1,4 +1,4 @@
-#include "receivers/wrench_table.h"
+#include "receivers/wrench/table_product.h"
 
 #include "receiver_scenes.h"
 

@@ -1,4 +1,4 @@
-#include "receivers/wrench.h"
+#include "receivers/wrench/wrench.h"
 
 #include <gmock/gmock.h>
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "receivers/photovoltaic_array.h"
-#include "scenes/experiment.h"
-#include "scenes/gltf_writer.h"
+#include "photovoltaics/array/array.h"
+#include "scenes/experiment/experiment.h"
+#include "scenes/gltf/writer.h"
 
 namespace photorque {
 namespace {

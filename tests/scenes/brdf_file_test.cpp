@@ -1,10 +1,10 @@
 // Tables of measured scattering, from text to the surface of a material.
-#include "scenes/brdf_file.h"
+#include "scenes/surfaces/brdf_file.h"
 
 #include "core/constants.h"
 #include "gltf_test_model.h"
-#include "raytrace/finish.h"
-#include "scenes/surface_settings.h"
+#include "raytrace/surfaces/bsdf.h"
+#include "scenes/surfaces/settings.h"
 
 namespace photorque {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scenes/experiment.h"
+#include "scenes/experiment/experiment.h"
 
 namespace photorque {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "core/constants.h"
-#include "scenes/experiment.h"
+#include "scenes/experiment/experiment.h"
 
 namespace photorque {
 namespace {

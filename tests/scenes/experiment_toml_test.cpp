@@ -1,5 +1,5 @@
 // TOML into settings, and overrides from the command line.
-#include "scenes/toml_reader.h"
+#include "scenes/experiment/toml_reader.h"
 
 namespace photorque {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "raytrace/tracer.h"
-#include "sources/source_kind.h"
+#include "raytrace/tracing/tracer.h"
+#include "sources/kind.h"
 #include "tests/raytrace/test_scenes.h"
 
 namespace photorque {

@@ -1,5 +1,5 @@
 // Lamps that a glTF file places, as sources of an experiment.
-#include "scenes/gltf_lights.h"
+#include "scenes/gltf/lights.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,10 +10,10 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/sobol.h"
-#include "receivers/flux_map.h"
-#include "scenes/experiment.h"
-#include "scenes/gltf_writer.h"
+#include "core/numerics/sobol.h"
+#include "receivers/maps/flux_map.h"
+#include "scenes/experiment/experiment.h"
+#include "scenes/gltf/writer.h"
 
 namespace photorque {
 namespace {

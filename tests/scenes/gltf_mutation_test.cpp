@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/random.h"
+#include "core/numerics/random.h"
 #include "gltf_test_model.h"
 
 namespace photorque {

@@ -1,7 +1,7 @@
 // Optical properties from extras, from an experiment's [[material]] and from drawing values.
 #include "gltf_test_model.h"
-#include "raytrace/finish.h"
-#include "scenes/surface_settings.h"
+#include "raytrace/surfaces/bsdf.h"
+#include "scenes/surfaces/settings.h"
 
 namespace photorque {
 namespace {
@@ -292,7 +292,7 @@ TEST_P(DerivedOptics, FollowTheStatedRule) {
   EXPECT_THAT(read.notices, Contains(HasSubstr("derived from PBR values: absorptance ")));
 }
 
-// By hand from the rule in scenes/gltf_optics.h; F0 = 0.04 at n = 1.5 and 1/9 at n = 2.
+// By hand from the rule in scenes/gltf/optics.h; F0 = 0.04 at n = 1.5 and 1/9 at n = 2.
 INSTANTIATE_TEST_SUITE_P(
     Rule, DerivedOptics,
     ::testing::Values(

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/errors.h"
-#include "scenes/gltf_reader.h"
+#include "scenes/gltf/reader.h"
 
 namespace photorque {
 

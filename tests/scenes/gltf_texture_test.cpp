@@ -1,5 +1,5 @@
 // Base colours from pictures: which triangle gets what, and that even light is absorbed as before.
-#include "scenes/gltf_texture.h"
+#include "scenes/gltf/texture.h"
 
 #include "gltf_test_model.h"
 

@@ -8,10 +8,10 @@
 #include "core/constants.h"
 #include "core/files.h"
 #include "core/provenance.h"
-#include "raytrace/tracer.h"
-#include "scenes/experiment.h"
-#include "sources/photometric_file.h"
-#include "sources/source_kind.h"
+#include "raytrace/tracing/tracer.h"
+#include "scenes/experiment/experiment.h"
+#include "sources/kind.h"
+#include "sources/photometry/file.h"
 #include "tests/raytrace/test_scenes.h"
 
 namespace photorque {

@@ -1,4 +1,4 @@
-#include "scenes/mesh_closure.h"
+#include "scenes/gltf/mesh_closure.h"
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@
 #include "core/constants.h"
 #include "core/files.h"
 #include "platform_closed_mesh.h"
-#include "scenes/experiment.h"
-#include "scenes/gltf_reader.h"
-#include "scenes/platform_generator.h"
-#include "scenes/toml_reader.h"
+#include "scenes/experiment/experiment.h"
+#include "scenes/experiment/toml_reader.h"
+#include "scenes/gltf/reader.h"
+#include "scenes/platforms/generator.h"
 
 namespace photorque {
 namespace {

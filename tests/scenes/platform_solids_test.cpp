@@ -3,8 +3,8 @@
 // Weast (ed.), CRC Handbook of Chemistry and Physics.
 #include "core/constants.h"
 #include "platform_closed_mesh.h"
-#include "scenes/platform_generator.h"
-#include "scenes/toml_reader.h"
+#include "scenes/experiment/toml_reader.h"
+#include "scenes/platforms/generator.h"
 
 namespace photorque {
 namespace {

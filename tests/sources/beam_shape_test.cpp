@@ -1,8 +1,8 @@
-#include "sources/beam_shape.h"
+#include "sources/profiles/beam_shape.h"
 
 #include "core/constants.h"
 #include "sampling.h"
-#include "sources/disc_lamp.h"
+#include "sources/lamps/disc.h"
 
 namespace photorque {
 namespace {

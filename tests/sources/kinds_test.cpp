@@ -1,7 +1,7 @@
 // Laws that every kind of source obeys, tested on its example.
 #include "core/constants.h"
 #include "sampling.h"
-#include "sources/beam_shape.h"
+#include "sources/profiles/beam_shape.h"
 
 namespace photorque {
 namespace {

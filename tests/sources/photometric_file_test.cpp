@@ -1,14 +1,14 @@
 // IES LM-63 and EULUMDAT files: those that makers and other programs wrote, and every way to damage
 // one.
-#include "sources/photometric_file.h"
+#include "sources/photometry/file.h"
 
 #include <filesystem>
 
 #include "core/constants.h"
 #include "core/files.h"
 #include "sampling.h"
-#include "sources/beam_shape.h"
-#include "sources/photometric_lamp.h"
+#include "sources/lamps/photometric.h"
+#include "sources/profiles/beam_shape.h"
 
 namespace photorque {
 namespace {

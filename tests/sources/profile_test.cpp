@@ -2,12 +2,12 @@
 #include <numbers>
 
 #include "core/constants.h"
-#include "core/random.h"
+#include "core/numerics/random.h"
 #include "sampling.h"
-#include "sources/beam_shape.h"
-#include "sources/block_maps.h"
-#include "sources/disc_lamp.h"
-#include "sources/inverse_flux.h"
+#include "sources/lamps/disc.h"
+#include "sources/profiles/beam_shape.h"
+#include "sources/profiles/block_maps.h"
+#include "sources/profiles/inverse_flux.h"
 
 namespace photorque {
 namespace {

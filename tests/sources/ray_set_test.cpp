@@ -1,13 +1,13 @@
 // Ray files of three programs: read, written, damaged, and traced as they are.
-#include "sources/ray_set.h"
+#include "sources/rayfiles/set.h"
 
 #include <filesystem>
 
 #include "core/constants.h"
 #include "core/files.h"
 #include "sampling.h"
-#include "sources/beam_shape.h"
-#include "sources/ray_lamp.h"
+#include "sources/lamps/rays.h"
+#include "sources/profiles/beam_shape.h"
 
 namespace photorque {
 namespace {

@@ -10,11 +10,11 @@
 
 #include "core/constants.h"
 #include "core/files.h"
-#include "core/settings.h"
-#include "core/sobol.h"
+#include "core/numerics/sobol.h"
+#include "core/settings/settings.h"
 #include "raytrace/emitter.h"
-#include "sources/ray_set.h"
-#include "sources/source_kind.h"
+#include "sources/kind.h"
+#include "sources/rayfiles/set.h"
 
 namespace photorque {
 

@@ -1,6 +1,6 @@
 #include "core/constants.h"
 #include "sampling.h"
-#include "sources/beam_shape.h"
+#include "sources/profiles/beam_shape.h"
 
 namespace photorque {
 namespace {

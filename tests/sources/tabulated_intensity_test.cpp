@@ -1,14 +1,14 @@
 // The interpolant of an intensity table: monotone, of exactly known flux, sampled exactly.
-#include "sources/tabulated_intensity.h"
+#include "sources/profiles/tabulated_intensity.h"
 
 #include <random>
 
 #include "core/constants.h"
-#include "raytrace/disc_light.h"
+#include "raytrace/direct/disc_light.h"
 #include "sampling.h"
-#include "sources/beam_shape.h"
-#include "sources/monotone_cubic.h"
-#include "sources/photometric_lamp.h"
+#include "sources/lamps/photometric.h"
+#include "sources/profiles/beam_shape.h"
+#include "sources/profiles/monotone_cubic.h"
 
 namespace photorque {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "core/errors.h"
-#include "sources/photometric_file.h"
+#include "sources/photometry/file.h"
 
 namespace photorque {
 namespace {

@@ -2,7 +2,7 @@
 // of the tabletop platform with every disturbance, and ten minutes with and without derivatives.
 #include <benchmark/benchmark.h>
 
-#include "attitude/run.h"
+#include "attitude/propagation/run.h"
 #include "core/constants.h"
 
 namespace photorque {

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "core/random.h"
-#include "receivers/photovoltaic_batch.h"
-#include "receivers/photovoltaic_curve.h"
-#include "receivers/photovoltaic_design.h"
+#include "core/numerics/random.h"
+#include "photovoltaics/array/design.h"
+#include "photovoltaics/cell/batch.h"
+#include "photovoltaics/network/curve.h"
 
 namespace photorque {
 namespace {

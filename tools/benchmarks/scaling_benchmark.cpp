@@ -11,8 +11,8 @@
 #include <cstdlib>
 
 #include "core/constants.h"
-#include "receivers/gather.h"
-#include "sources/source_kind.h"
+#include "receivers/gather/gather.h"
+#include "sources/kind.h"
 #include "tools/benchmarks/benchmark_scene.h"
 
 namespace photorque {

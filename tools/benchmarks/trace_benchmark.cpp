@@ -13,12 +13,12 @@
 
 #include "core/constants.h"
 #include "core/parallel.h"
-#include "raytrace/find_hits.h"
-#include "raytrace/shadow.h"
-#include "receivers/flux_map.h"
-#include "receivers/gather.h"
-#include "scenes/experiment.h"
-#include "sources/source_kind.h"
+#include "raytrace/tracing/find_hits.h"
+#include "raytrace/tracing/shadow.h"
+#include "receivers/gather/gather.h"
+#include "receivers/maps/flux_map.h"
+#include "scenes/experiment/experiment.h"
+#include "sources/kind.h"
 #include "tools/benchmarks/benchmark_scene.h"
 
 namespace photorque {

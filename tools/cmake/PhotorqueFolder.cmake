@@ -29,9 +29,9 @@ function(photorque_folder name)
   photorque_unity(${target})
 endfunction()
 
-# photorque_kinds(FOLDER TYPE HEADER name ...)
-#   The registry of a folder. Each NAME is one file FOLDER/NAME.cpp that defines
-#   `TYPE photorque::NAME_kind()` (`NAME_verb()` for the type Verb); generates a source with
+# photorque_kinds(FOLDER TYPE HEADER word ...)
+#   The registry of a folder. Each WORD, such as lamps/led, is one file FOLDER/WORD.cpp that defines
+#   `TYPE photorque::led_kind()` (`led_verb()` for the type Verb); generates a source with
 #   `std::vector<TYPE> all_TYPEs()` in this order, which HEADER declares. Explicit calls, because objects that register
 #   themselves are dropped by the linker from a static library.
 function(photorque_kinds folder type header)
@@ -41,10 +41,11 @@ function(photorque_kinds folder type header)
   endif()
   set(declarations "")
   set(calls "")
-  foreach(kind IN LISTS ARGN)
+  foreach(word IN LISTS ARGN)
+    get_filename_component(kind ${word} NAME)
     string(APPEND declarations "${type} ${kind}_${suffix}();\n")
     string(APPEND calls "      ${kind}_${suffix}(),\n")
-    list(APPEND files ${kind}.cpp)
+    list(APPEND files ${word}.cpp)
   endforeach()
   string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" snake "${type}")
   string(TOLOWER "${snake}" snake)

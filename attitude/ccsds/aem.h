@@ -1,0 +1,66 @@
+// CCSDS attitude ephemeris messages (AEM), version 1, keyword-value notation.
+//
+// Source: CCSDS 504.0-B-1 (2008), section 4. An attitude from frame A to frame B as a quaternion is
+// the Hamilton quaternion that rotates vectors of B into A: with A the lab and B the body, that is
+// lab_from_body. Checked against the two GMAT files that hold the same attitude as quaternions and
+// as Euler angles.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "attitude/ccsds/kvn.h"
+#include "attitude/model/state.h"
+
+namespace photorque {
+
+struct AttitudeEphemeris {
+  struct Row {
+    std::string epoch;           // as written
+    std::vector<double> values;  // in the order of the file
+    bool operator==(const Row&) const = default;
+  };
+  struct Segment {
+    std::string object_name, object_id, center_name;
+    std::string ref_frame_a, ref_frame_b;
+    std::string attitude_dir = "A2B";  // or B2A
+    std::string time_system = "UTC";
+    std::string start_time, stop_time;
+    std::string useable_start_time, useable_stop_time;  // empty: not given
+    std::string attitude_type = "QUATERNION";           // or EULER_ANGLE, or others of the book
+    std::string quaternion_type;                        // FIRST or LAST: where the scalar is
+    std::string euler_rot_seq;                          // "321": axes in order of rotation
+    std::string rate_frame;
+    std::string interpolation_method, interpolation_degree;
+    std::vector<std::string> comments;
+    std::vector<Row> rows;
+    bool operator==(const Segment&) const = default;
+
+    struct Sample {
+      double time_s;  // since the first row
+      Quat a_from_b;  // unit; of rows of quaternions or Euler angles
+    };
+    // The rows as attitudes. InputError when the type is another, an epoch is no calendar time, or
+    // a quaternion is not of unit norm to 1 %.
+    std::vector<Sample> attitudes() const;
+  };
+  std::string version = "1.0";
+  std::string creation_date, originator;
+  std::vector<std::string> comments;
+  std::vector<Segment> segments;
+  bool operator==(const AttitudeEphemeris&) const = default;
+};
+
+// InputError for files that are no AEM, lack a keyword that the book requires, or hold rows of the
+// wrong length.
+AttitudeEphemeris read_aem(const std::filesystem::path& path);
+KvnItem to_kvn(const AttitudeEphemeris& aem);
+void write_aem(const std::filesystem::path& path, const AttitudeEphemeris& aem);
+
+// One segment of quaternions, scalar last, from a flown platform: `epoch` is the calendar time of
+// t = 0. InputError when it is none.
+AttitudeEphemeris make_aem(const std::vector<PlatformState>& states, const std::string& epoch,
+                           const std::string& object_name, const std::string& creation_date);
+
+}  // namespace photorque

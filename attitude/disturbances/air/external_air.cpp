@@ -1,0 +1,198 @@
+#include "attitude/disturbances/air/external_air.h"
+
+#include <cmath>
+
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+// Von Kármán's disc: the slope G'(0) = −0.6159 of the similarity solution at the wall (White,
+// Viscous Fluid Flow, 3rd ed., table 3-5). One face feels ½ π 0.6159 ρ R⁴ √(ν ω³).
+constexpr double disc_wall_slope = 0.6159;
+// Mean friction coefficient of a plate of length l, one side: 1.328/√Re_l (Blasius).
+constexpr double blasius_mean = 1.328;
+
+// Transition: disc on R²ω/ν (Kobayashi, Kohama, Takamadate 1980), plate on v l/ν (Schlichting),
+// sphere on R²ω/ν (Kohama and Kobayashi 1983, where turbulence starts), cylinder on v d/ν (the
+// drag crisis).
+constexpr double disc_transition = 2.8e5, plate_transition = 5e5, sphere_transition = 1.5e5,
+                 cylinder_transition = 2e5;
+// A boundary layer of thickness 5 l/√Re is a fifth of the length at Re = 600; below 100 it is half.
+constexpr double smallest_for_layer = 100.0;
+// Drag coefficients of order one need a separated wake.
+constexpr double smallest_for_wake = 100.0;
+
+double power4(double x) {
+  return x * x * x * x;
+}
+
+}  // namespace
+
+AirCoefficients& AirCoefficients::operator+=(const AirCoefficients& other) {
+  friction_N_m_s1_5 += other.friction_N_m_s1_5;
+  form_N_m_s2 += other.form_N_m_s2;
+  return *this;
+}
+
+double AirCoefficients::torque_N_m(double rate_rad_s) const {
+  return friction_N_m_s1_5 * std::pow(rate_rad_s, 1.5) + form_N_m_s2 * rate_rad_s * rate_rad_s;
+}
+
+AirCoefficients air_coefficients(const AirPart& part, const Air& air) {
+  const double rho = air.density_kg_m3, nu = air.kinematic_viscosity_m2_s();
+  const auto friction = [&](double x) { return AirCoefficients{part.count * x, 0.0}; };
+  const auto form = [&](double x) { return AirCoefficients{0.0, part.count * x}; };
+  switch (part.shape) {
+    case AirShape::disc:
+      return friction(0.5 * part.faces * disc_wall_slope * pi * rho * power4(part.radius_m) *
+                      std::sqrt(nu));
+    case AirShape::plate:  // ½ ρ v² A c_f d with v = ω d
+      return friction(0.5 * part.faces * blasius_mean * rho * std::sqrt(nu / part.length_m) *
+                      part.area_m2 * std::pow(part.distance_m, 2.5));
+    case AirShape::swept_plate:
+      return friction(0.5 * part.faces * blasius_mean * rho * std::sqrt(nu * part.length_m) *
+                      (std::pow(part.outer_m, 3.5) - std::pow(part.inner_m, 3.5)) / 3.5);
+    case AirShape::sphere:
+      return friction(part.moment_coefficient * rho * std::sqrt(nu) * power4(part.radius_m));
+    case AirShape::radial_cylinder:
+      return form(0.25 * part.drag_coefficient * rho * part.radius_m *
+                  (power4(part.inner_m + part.length_m) - power4(part.inner_m)));
+    case AirShape::upright_cylinder:
+      return form(part.drag_coefficient * rho * part.radius_m * part.length_m *
+                  std::pow(part.distance_m, 3));
+    case AirShape::blunt_face:
+      return form(0.5 * part.drag_coefficient * rho * part.area_m2 * std::pow(part.distance_m, 3));
+  }
+  return {};
+}
+
+AirCoefficients air_coefficients(const std::vector<AirPart>& parts, const Air& air) {
+  AirCoefficients sum;
+  for (const AirPart& part : parts) sum += air_coefficients(part, air);
+  return sum;
+}
+
+double disc_torque_as_published(const AirPart& disc, const Air& air, double rate_rad_s) {
+  return disc.count * 1.94 * power4(disc.radius_m) * air.density_kg_m3 *
+         std::sqrt(air.viscosity_Pa_s * std::pow(rate_rad_s, 3));
+}
+
+double plate_torque_as_published(const AirPart& plate, const Air& air, double rate_rad_s) {
+  const double reynolds = air_flow(plate, air, rate_rad_s).reynolds;
+  return plate.count * blasius_mean / (2.0 * std::sqrt(reynolds)) * air.density_kg_m3 *
+         air.viscosity_Pa_s * rate_rad_s * rate_rad_s * std::pow(plate.distance_m, 3) *
+         plate.area_m2;
+}
+
+AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s) {
+  const double per_m2 = rate_rad_s / air.kinematic_viscosity_m2_s();
+  const double outermost_m = part.shape == AirShape::radial_cylinder
+                                 ? part.inner_m + part.length_m
+                                 : std::max(part.distance_m, part.outer_m);
+  switch (part.shape) {
+    case AirShape::disc:
+      return {per_m2 * part.radius_m * part.radius_m, disc_transition, smallest_for_layer};
+    case AirShape::sphere:
+      return {per_m2 * part.radius_m * part.radius_m, sphere_transition, smallest_for_layer};
+    case AirShape::plate:
+    case AirShape::swept_plate:
+      return {per_m2 * outermost_m * part.length_m, plate_transition, smallest_for_layer};
+    case AirShape::radial_cylinder:
+    case AirShape::upright_cylinder:
+      return {per_m2 * outermost_m * 2.0 * part.radius_m, cylinder_transition, smallest_for_wake};
+    case AirShape::blunt_face:  // sharp edges fix the separation: no drag crisis
+      return {per_m2 * outermost_m * std::sqrt(part.area_m2), 1e9, smallest_for_wake};
+  }
+  return {};
+}
+
+double exposed_share(double socket_half_angle_rad) {
+  const double s = std::sin(0.5 * socket_half_angle_rad);
+  return 1.0 - s * s * s * s * (3.0 - 2.0 * s * s);
+}
+
+double exposed_share_as_published(double socket_half_angle_rad) {
+  return socket_half_angle_rad / pi;
+}
+
+std::vector<AirPart> parts_of_topology(Topology topology, AirPart plate, AirPart cylinder,
+                                       AirPart sphere, int cylinders, double sphere_exposed_share) {
+  switch (topology) {
+    case Topology::dumbbell:
+      plate.count *= 2.0;
+      cylinder.count *= 2.0;
+      return {plate, cylinder, sphere};
+    case Topology::tabletop:
+      cylinder.count *= cylinders;
+      return {plate, cylinder};
+    case Topology::hollow:
+      sphere.count *= sphere_exposed_share;
+      return {sphere};
+    case Topology::free:
+      break;
+  }
+  return {};
+}
+
+std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts) {
+  std::vector<AirPart> all;
+  for (const Settings& s : parts) {
+    AirPart part;
+    part.shape = static_cast<AirShape>(
+        s.choice("shape", {"disc", "plate", "swept_plate", "sphere", "radial_cylinder",
+                           "upright_cylinder", "blunt_face"}));
+    part.name = s.text_or("name", s.text("shape"));
+    part.count = s.number_or("count", 1.0, Range::not_negative());
+    const auto is = [&](auto... shapes) { return ((part.shape == shapes) || ...); };
+    using enum AirShape;
+    if (is(disc, plate, swept_plate)) part.faces = static_cast<int>(s.integer_or("faces", 2, 1, 2));
+    if (is(disc, sphere, radial_cylinder, upright_cylinder)) {
+      part.radius_m = s.number("radius_m", Range::positive());
+    }
+    if (is(plate, swept_plate, radial_cylinder, upright_cylinder)) {
+      part.length_m = s.number("length_m", Range::positive());
+    }
+    if (is(plate, blunt_face)) part.area_m2 = s.number("area_m2", Range::positive());
+    if (is(plate, upright_cylinder, blunt_face)) {
+      part.distance_m = s.number("distance_m", Range::not_negative());
+    }
+    if (is(swept_plate, radial_cylinder)) {
+      part.inner_m = s.number_or("inner_m", 0.0, Range::not_negative());
+    }
+    if (is(swept_plate)) part.outer_m = s.number("outer_m", {part.inner_m, 1e308, true, false});
+    if (is(radial_cylinder, upright_cylinder, blunt_face)) {
+      part.drag_coefficient = s.number("drag_coefficient", Range::not_negative());
+    }
+    if (is(sphere)) {
+      part.moment_coefficient =
+          s.number_or("moment_coefficient", sphere_moment_howarth, Range::positive());
+    }
+    all.push_back(part);
+  }
+  return all;
+}
+
+Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_rad_s) {
+  Table table{"external_air", "External air by part", {}};
+  Table::Column name{"part", {}, {}}, law{"law_holds", {}, {}};
+  Table::Column torque{"torque_N_m", {}, {}}, share{"share", {}, {}}, reynolds{"reynolds", {}, {}},
+      transition{"transition_reynolds", {}, {}};
+  const double whole_N_m = air_coefficients(parts, air).torque_N_m(rate_rad_s);
+  for (const AirPart& part : parts) {
+    const AirFlow flow = air_flow(part, air, rate_rad_s);
+    const double torque_N_m = air_coefficients(part, air).torque_N_m(rate_rad_s);
+    name.texts.push_back(part.name);
+    law.texts.emplace_back(flow.laminar_law_holds()                   ? "yes"
+                           : flow.reynolds > flow.transition_reynolds ? "no: turbulent"
+                                                                      : "no: creeping");
+    torque.values.push_back(torque_N_m);
+    share.values.push_back(whole_N_m > 0.0 ? torque_N_m / whole_N_m : 0.0);
+    reynolds.values.push_back(flow.reynolds);
+    transition.values.push_back(flow.transition_reynolds);
+  }
+  table.columns = {name, law, torque, share, reynolds, transition};
+  return table;
+}
+
+}  // namespace photorque

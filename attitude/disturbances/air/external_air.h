@@ -1,0 +1,108 @@
+// The torque of still air on a platform that turns steadily about its vertical axis.
+//
+// The platform is taken apart into plates, discs, spheres and cylinders that do not disturb each
+// other, as the paper does (section II.B.2). Laminar friction grows as ω^1.5, form drag as ω²; the
+// coefficients of both powers are what the disturbances air_friction and air_pressure_drag take.
+// The paper's own CFD shows the limits of this: about ten times the lumped torque, from air that
+// stagnates on stiffeners; such faces can be added as parts of their own (blunt_face).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "attitude/model/platform.h"
+#include "core/product.h"
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+enum class AirShape {
+  disc,              // thin disc spinning in its plane about its centre
+  plate,             // flat plate moved edgewise, its centre at a distance (eq. 20)
+  swept_plate,       // flat strip from an inner to an outer radius, local speed (eq. 19 integrated)
+  sphere,            // ball spinning about its diameter (eq. 21)
+  radial_cylinder,   // cylinder whose axis points away from the axis of rotation (eq. 22)
+  upright_cylinder,  // cylinder parallel to the axis of rotation, at a distance
+  blunt_face,        // a face that meets the air square: a stiffener, a box
+};
+
+// One or several equal parts. Which lengths a shape needs is said at read_air_parts().
+struct AirPart {
+  std::string name = {};
+  AirShape shape = AirShape::disc;
+  double count = 1.0;                // may be fractional: the share of a sphere that is exposed
+  int faces = 2;                     // wetted faces of discs and plates, 1 or 2
+  double radius_m = 0.0;             // disc, sphere, cylinder
+  double length_m = 0.0;             // plates: along the flow; cylinders: along their axis
+  double area_m2 = 0.0;              // plate, blunt_face
+  double distance_m = 0.0;           // of the centre (plate, upright_cylinder, blunt_face)
+  double inner_m = 0.0;              // swept_plate, radial_cylinder: nearest to the axis
+  double outer_m = 0.0;              // swept_plate
+  double drag_coefficient = 1.0;     // cylinders and faces, on their frontal area
+  double moment_coefficient = 2.93;  // sphere: torque / √(μρ) R⁴ ω^1.5
+};
+
+struct Air {
+  double density_kg_m3 = 1.2041;
+  double viscosity_Pa_s = 1.813e-5;
+
+  double kinematic_viscosity_m2_s() const { return viscosity_Pa_s / density_kg_m3; }
+};
+
+// Howarth's coefficient as the paper prints it (eq. 21), and the one that follows from the moment
+// coefficient 6.54/√Re that is also quoted for the laminar sphere.
+inline constexpr double sphere_moment_howarth = 2.93;
+inline constexpr double sphere_moment_654 = 3.27;
+
+// Torque = friction · ω^1.5 + form · ω².
+struct AirCoefficients {
+  double friction_N_m_s1_5 = 0.0;
+  double form_N_m_s2 = 0.0;
+
+  AirCoefficients& operator+=(const AirCoefficients& other);
+  double torque_N_m(double rate_rad_s) const;  // magnitude, for a rate ≥ 0
+};
+
+AirCoefficients air_coefficients(const AirPart& part, const Air& air);
+AirCoefficients air_coefficients(const std::vector<AirPart>& parts, const Air& air);
+
+// Eq. 18 and 20 as printed, with the symbol μ read as the dynamic viscosity, for comparison alone.
+// Neither is a torque by its units.
+double disc_torque_as_published(const AirPart& disc, const Air& air, double rate_rad_s);
+double plate_torque_as_published(const AirPart& plate, const Air& air, double rate_rad_s);
+
+// Whether the laws' assumptions hold at a rate.
+struct AirFlow {
+  double reynolds = 0.0;             // by the length that the law uses
+  double transition_reynolds = 0.0;  // above: turbulent, the law underestimates
+  double smallest_reynolds = 0.0;    // below: no thin boundary layer or no separated wake
+  bool laminar_law_holds() const {
+    return reynolds >= smallest_reynolds && reynolds <= transition_reynolds;
+  }
+};
+AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s);
+
+// Share of the torque on a whole sphere that a ball feels which sits in a socket up to the polar
+// angle θ_S, if the shear is taken proportional to the surface's speed: 1 − ∫₀^θS sin³ / (4/3).
+double exposed_share(double socket_half_angle_rad);
+// θ_S / π, as the paper's figure of the hollow platform prints: the share of the socket.
+double exposed_share_as_published(double socket_half_angle_rad);
+
+// The paper's decomposition of a platform. Dumbbell: two plates, two cylinders, one sphere.
+// Tabletop: one plate, `cylinders` cylinders. Hollow: the exposed share of one sphere. The counts
+// of the given parts are multiplied by these. A free body has no decomposition: empty.
+std::vector<AirPart> parts_of_topology(Topology topology, AirPart plate, AirPart cylinder,
+                                       AirPart sphere, int cylinders, double sphere_exposed_share);
+
+// The parts of an experiment: `[[disturbance.part]]` or the like. Keys: name, shape, count,
+//   disc: radius_m, faces; plate: length_m, area_m2, distance_m, faces;
+//   swept_plate: length_m, inner_m, outer_m, faces; sphere: radius_m, moment_coefficient;
+//   radial_cylinder: radius_m, inner_m, length_m, drag_coefficient;
+//   upright_cylinder: radius_m, distance_m, length_m, drag_coefficient;
+//   blunt_face: area_m2, distance_m, drag_coefficient.
+std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts);
+
+// One row per part: torque, share, Reynolds number, transition, and whether the law holds.
+Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_rad_s);
+
+}  // namespace photorque

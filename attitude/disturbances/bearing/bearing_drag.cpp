@@ -1,0 +1,90 @@
+// Viscous drag of the air film: T = −c ω (eq. 5, 14–17).
+//
+// coefficient_N_m_s: the same about every axis; or
+// axial_N_m_s and transverse_N_m_s: about the socket's axis, lab z, and across it; or
+// the table socket = {radius_m, half_angle_deg, gap_m, recess_half_angle_deg (0), sheared_share
+// (1)} of air_bearing.h, whose gap holds at the platform's own weight unless it also has
+//   rated_load_N, stiffness_N_m: gap_m is the rated gap of a spring (the paper's model), or
+//   supply_Pa (absolute), hole_area_mm2, discharge_coefficient (0.8): gap_m is found from the
+//   balance of air_film.h and must not be given.
+#include "attitude/disturbances/bearing/air_bearing.h"
+#include "attitude/disturbances/bearing/air_film.h"
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+struct IsotropicDrag final : TorqueLaw<IsotropicDrag> {
+  template <class T>
+  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+    return -own.parameter(0) * now.rate_body_rad_s;
+  }
+};
+
+struct SocketDrag final : TorqueLaw<SocketDrag> {
+  template <class T>
+  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+    const T axial = own.parameter(0), transverse = own.parameter(1);
+    const Vec3Of<T> axis_body = now.lab_from_body.row(2).transpose();
+    const T spin = axis_body.dot(now.rate_body_rad_s);
+    return -transverse * now.rate_body_rad_s - (axial - transverse) * spin * axis_body;
+  }
+};
+
+double read_gap_m(const Settings& s, SphericalSocket socket, const DisturbanceContext& context) {
+  const double load_N = context.platform.mass_kg * context.environment.gravity_lab_m_s2.norm();
+  if (s.has("supply_Pa")) {
+    const FilmAir air{context.environment.air_pressure_Pa, context.environment.air_temperature_K,
+                      context.environment.air_viscosity_Pa_s};
+    const OrificeFeed feed{s.number("supply_Pa", {air.pressure_Pa, 1e308, true, false}),
+                           s.number("hole_area_mm2", Range::positive()) * 1e-6,
+                           s.number_or("discharge_coefficient", 0.8, {0.0, 1.0, true, false})};
+    if (!(socket.recess_half_angle_rad > 0.0)) {
+      throw s.error("recess_half_angle_deg", "none", "a recess that the holes feed");
+    }
+    return gap_under_load_m(socket, feed, air, load_N);
+  }
+  const double gap_m = s.number("gap_m", Range::positive());
+  if (!s.has("stiffness_N_m")) return gap_m;
+  const double loaded_m = spring_gap_m(gap_m, s.number("rated_load_N", Range::positive()),
+                                       s.number("stiffness_N_m", Range::positive()), load_N);
+  if (!(loaded_m > 0.0)) {
+    throw s.error("stiffness_N_m", "a gap that the platform's weight closes", "a stiffer bearing");
+  }
+  return loaded_m;
+}
+
+FilmDrag read_socket_drag(const Settings& s, const DisturbanceContext& context) {
+  SphericalSocket socket;
+  socket.radius_m = s.number("radius_m", Range::positive());
+  socket.half_angle_rad = s.number("half_angle_deg", {0.0, pi, true, false});
+  socket.recess_half_angle_rad =
+      s.number_or("recess_half_angle_deg", 0.0, {0.0, socket.half_angle_rad, false, true});
+  socket.sheared_share = s.number_or("sheared_share", 1.0, Range::fraction());
+  socket.gap_m = read_gap_m(s, socket, context);
+  return film_drag(socket, context.environment.air_viscosity_Pa_s);
+}
+
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  if (settings.has("socket")) {
+    const FilmDrag drag = read_socket_drag(settings.table("socket"), context);
+    return make_disturbance<SocketDrag>(
+        {fixed_parameter("axial_N_m_s", {&drag.axial_N_m_s, 1}),
+         fixed_parameter("transverse_N_m_s", {&drag.transverse_N_m_s, 1})});
+  }
+  if (settings.has("axial_N_m_s")) {
+    return make_disturbance<SocketDrag>(
+        {scalar_parameter(settings, "axial_N_m_s", Range::not_negative()),
+         scalar_parameter(settings, "transverse_N_m_s", Range::not_negative())});
+  }
+  return make_disturbance<IsotropicDrag>(
+      {scalar_parameter(settings, "coefficient_N_m_s", Range::not_negative())});
+}
+
+}  // namespace
+
+DisturbanceKind bearing_drag_kind() {
+  return {"bearing_drag", "viscous drag of the bearing's air film, linear in the rate", read};
+}
+
+}  // namespace photorque

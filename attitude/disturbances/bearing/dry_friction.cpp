@@ -1,0 +1,37 @@
+// Friction that does not depend on the rate's size: T = −τ ω/|ω|, a bearing that touches.
+//
+// torque_N_m: τ ≥ 0. creep_rate_rad_s (default 1e-6): below this rate the torque fades linearly to
+// zero, so that the law has a derivative at rest: T = −τ ω/√(ω² + creep²). Sticking is thus a slow
+// creep, too slow for an instrument to tell.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+class DryFriction final : public TorqueLaw<DryFriction> {
+ public:
+  explicit DryFriction(double creep_rate_rad_s) : creep_rate_rad_s_(creep_rate_rad_s) {}
+
+  template <class T>
+  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+    const Vec3Of<T>& w = now.rate_body_rad_s;
+    const T speed = sqrt(w.dot(w) + T(creep_rate_rad_s_ * creep_rate_rad_s_));
+    return -(own.parameter(0) / speed) * w;
+  }
+
+ private:
+  double creep_rate_rad_s_;
+};
+
+}  // namespace
+
+DisturbanceKind dry_friction_kind() {
+  return {"dry_friction", "rubbing contact: a torque against the motion, whatever the rate",
+          [](const Settings& settings, const DisturbanceContext&) {
+            return make_disturbance<DryFriction>(
+                {scalar_parameter(settings, "torque_N_m", Range::not_negative())}, Stage::torque,
+                {}, settings.number_or("creep_rate_rad_s", 1e-6, Range::positive()));
+          }};
+}
+
+}  // namespace photorque

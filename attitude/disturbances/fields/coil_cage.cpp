@@ -1,0 +1,96 @@
+#include "attitude/disturbances/fields/coil_cage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/disturbances/fields/current_loop.h"
+#include "attitude/environment/environment.h"
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+// One coil of the pair about `axis`, at ±½ spacing; positive current makes a field along +axis.
+std::array<Vec3, 4> coil_corners_m(const CoilPair& pair, int axis, double sign) {
+  const Vec3 along = sign * 0.5 * pair.spacing_m * Vec3::Unit(axis);
+  const Vec3 u = 0.5 * pair.side_m * Vec3::Unit((axis + 1) % 3);
+  const Vec3 v = 0.5 * pair.side_m * Vec3::Unit((axis + 2) % 3);
+  return {along + u + v, along - u + v, along - u - v, along + u - v};
+}
+
+Vec3 pair_field_T(const CoilPair& pair, int axis, const Vec3& at_m) {
+  return polygon_field_T(coil_corners_m(pair, axis, 1.0), pair.turns, at_m) +
+         polygon_field_T(coil_corners_m(pair, axis, -1.0), pair.turns, at_m);
+}
+
+}  // namespace
+
+Vec3 CoilCage::field_lab_T(const Vec3& currents_A, const Vec3& at_lab_m) const {
+  Vec3 sum_T = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    sum_T += currents_A[axis] * pair_field_T(pairs[axis], axis, at_lab_m);
+  }
+  return sum_T;
+}
+
+Vec3 CoilCage::currents_A(const Vec3& field_lab_T) const {
+  // At the centre a pair's field is along its own axis by symmetry.
+  Vec3 currents_A;
+  for (int axis = 0; axis < 3; ++axis) {
+    currents_A[axis] = field_lab_T[axis] / pair_field_T(pairs[axis], axis, Vec3::Zero())[axis];
+  }
+  return currents_A;
+}
+
+double CoilCage::nonuniformity(double edge_m) const {
+  double worst = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 centre_T = pair_field_T(pairs[axis], axis, Vec3::Zero());
+    for (int i = 0; i < 27; ++i) {
+      const Vec3 at_m = 0.5 * edge_m * Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      const Vec3 field_T = pair_field_T(pairs[axis], axis, at_m);
+      worst = std::max(worst, (field_T - centre_T).norm() / centre_T.norm());
+    }
+  }
+  return worst;
+}
+
+double CircularOrbit::motion_rad_s() const {
+  return std::sqrt(earth_gravitation_m3_s2 / std::pow(radius_m, 3));
+}
+
+Vec3 CircularOrbit::node() const {
+  return {std::cos(ascending_node_rad), std::sin(ascending_node_rad), 0.0};
+}
+
+Vec3 CircularOrbit::ahead() const {
+  const Vec3 pole = Vec3::UnitZ();
+  return std::cos(inclination_rad) * pole.cross(node()) + std::sin(inclination_rad) * pole;
+}
+
+Vec3 CircularOrbit::up(double time_s) const {
+  const double u = phase_rad + motion_rad_s() * time_s;
+  return std::cos(u) * node() + std::sin(u) * ahead();
+}
+
+TimeSeries orbit_field_T(const CircularOrbit& orbit, double decimal_year, double duration_s,
+                         double interval_s) {
+  const GeomagneticModel model(decimal_year);
+  const auto samples = static_cast<int>(std::ceil(duration_s / interval_s)) + 1;
+  std::vector<double> times_s;
+  std::vector<Vec3> fields_T;
+  for (int i = 0; i < samples; ++i) {
+    const double t_s = i * interval_s;
+    const Vec3 up = orbit.up(t_s);
+    const double right_ascension_rad = std::atan2(up.y(), up.x());
+    const Vec3 ned_T = model.north_east_down_T(GeocentricPosition{
+        orbit.radius_m, std::acos(std::clamp(up.z(), -1.0, 1.0)),
+        right_ascension_rad - orbit.greenwich_angle_rad - earth_rate_rad_s * t_s});
+    const Vec3 east(-std::sin(right_ascension_rad), std::cos(right_ascension_rad), 0.0);
+    times_s.push_back(t_s);
+    fields_T.push_back(ned_T.x() * up.cross(east) + ned_T.y() * east - ned_T.z() * up);
+  }
+  return TimeSeries(std::move(times_s), std::move(fields_T));
+}
+
+}  // namespace photorque

@@ -1,0 +1,56 @@
+// A Helmholtz cage: three pairs of square coils around the platform, and what they are asked for.
+// The fields are those of straight wires, exact everywhere off the wires.
+#pragma once
+
+#include <array>
+
+#include "attitude/environment/igrf.h"
+#include "attitude/environment/time_series.h"
+#include "core/vector.h"
+
+namespace photorque {
+
+// Two equal square coils about a lab axis through the centre, one on each side of it.
+struct CoilPair {
+  double side_m = 0.0;     // > 0
+  double spacing_m = 0.0;  // between the coils; most uniform at square_pair_spacing · side
+  double turns = 1.0;      // of one coil
+};
+// Spacing over side at which the second derivative of the field on the axis vanishes.
+inline constexpr double square_pair_spacing = 0.544506;
+
+struct CoilCage {
+  std::array<CoilPair, 3> pairs;  // about lab x, y and z
+
+  // Field of all coils at a point of the lab [T], with these currents in the three pairs.
+  Vec3 field_lab_T(const Vec3& currents_A, const Vec3& at_lab_m) const;
+  // Currents that make this field at the centre [A].
+  Vec3 currents_A(const Vec3& field_lab_T) const;
+  // Largest deviation of the field from that at the centre over the corners and faces of a cube of
+  // this edge, relative, for the worst of the three pairs: what a platform of this size feels.
+  double nonuniformity(double edge_m) const;
+};
+
+// A circular orbit about the Earth's centre, in inertial axes whose z is the Earth's.
+struct CircularOrbit {
+  double radius_m = 6871.2e3;
+  double inclination_rad = 0.0;
+  double ascending_node_rad = 0.0;
+  double phase_rad = 0.0;            // argument of latitude at time 0
+  double greenwich_angle_rad = 0.0;  // of the Earth's zero meridian at time 0
+
+  double motion_rad_s() const;
+  // Unit vectors in inertial axes: towards the ascending node, a quarter turn further along the
+  // orbit, and from the Earth's centre to the spacecraft.
+  Vec3 node() const;
+  Vec3 ahead() const;
+  Vec3 up(double time_s) const;
+};
+inline constexpr double earth_gravitation_m3_s2 = 3.986004418e14;  // EGM2008
+
+// Field along an orbit, in the inertial axes that the lab stands for, sampled every `interval_s`
+// over `duration_s` [T]. The Earth and its field turn under the orbit.
+TimeSeries orbit_field_T(const CircularOrbit& orbit, double decimal_year, double duration_s,
+                         double interval_s);
+
+}  // namespace photorque

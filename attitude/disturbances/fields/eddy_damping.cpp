@@ -1,0 +1,32 @@
+// Eddy currents in a conductor that turns in the ambient field: T = k (ω × B_B) × B_B.
+//
+// coefficient_N_m_s_per_T2: k ≥ 0; for a thin spherical shell (2π/3) σ R⁴ δ. Valid while the field
+// changes slowly inside the conductor (skin depth ≫ thickness: always, at these rates).
+// Source: G. L. Smith, A theoretical study of the torques induced by a magnetic field on rotating
+// cylinders and spinning thin-wall cones, cone frustums, and general body of revolution, NASA
+// TR R-129 (1962).
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+struct EddyDamping final : TorqueLaw<EddyDamping> {
+  template <class T>
+  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+    const Vec3Of<T>& B_T = now.magnetic_field_body_T;
+    const Vec3Of<T> swept = now.rate_body_rad_s.cross(B_T);
+    return own.parameter(0) * swept.cross(B_T);
+  }
+};
+
+}  // namespace
+
+DisturbanceKind eddy_damping_kind() {
+  return {"eddy_damping", "eddy currents brake what turns across the ambient field",
+          [](const Settings& settings, const DisturbanceContext&) {
+            return make_disturbance<EddyDamping>(
+                {scalar_parameter(settings, "coefficient_N_m_s_per_T2", Range::not_negative())});
+          }};
+}
+
+}  // namespace photorque

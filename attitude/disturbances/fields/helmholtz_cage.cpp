@@ -1,0 +1,71 @@
+// A cage of coils sets the field at the platform: cancels the ambient one, or plays a history.
+//
+// Wanted field, lab axes, one of
+//   nothing: zero;
+//   field_lab_T[3]: constant;
+//   field_file: a CSV with t_s, field_x_T, field_y_T, field_z_T, its ends held;
+//   the table orbit = {altitude_m, inclination_deg, date_year, duration_s, ascending_node_deg (0),
+//     phase_deg (0), greenwich_angle_deg (0), interval_s (20)}: IGRF along a circular orbit, the
+//     lab axes standing for inertial ones (coil_cage.h).
+// gain_error (default 0): the coils give 1 + gain_error of the difference to the environment's
+// field. The field is taken as uniform over the platform; CoilCage::nonuniformity() says how far it
+// is.
+#include "attitude/disturbances/fields/coil_cage.h"
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+class HelmholtzCage final : public LawOf<HelmholtzCage> {
+ public:
+  explicit HelmholtzCage(TimeSeries wanted_lab_T) : wanted_lab_T_(std::move(wanted_lab_T)) {}
+
+  template <class T>
+  void apply(const Own<T>& own, Moment<T>& now) const {
+    const Vec3Of<T> missing_T =
+        wanted_lab_T_.sample(now.time_s) - now.environment.magnetic_field_lab_T.template cast<T>();
+    now.magnetic_field_lab_T += (1.0 + own.parameter(0)) * missing_T;
+  }
+
+  std::vector<Switch> switches(std::span<const Parameter>, double from_s,
+                               double to_s) const override {
+    std::vector<Switch> ends;
+    for (const double t_s : wanted_lab_T_.ends_within(from_s, to_s)) ends.push_back({t_s, -1});
+    return ends;
+  }
+
+ private:
+  TimeSeries wanted_lab_T_;
+};
+
+TimeSeries read_wanted_field_T(const Settings& settings) {
+  if (settings.has("field_file")) {
+    return read_time_series(file_of(settings, "field_file"),
+                            {"field_x_T", "field_y_T", "field_z_T"}, TimeSeries::Outside::hold);
+  }
+  if (settings.has("orbit")) {
+    const Settings s = settings.table("orbit");
+    const CircularOrbit orbit{6371.2e3 + s.number("altitude_m", Range::not_negative()),
+                              s.number("inclination_deg"), s.number_or("ascending_node_deg", 0.0),
+                              s.number_or("phase_deg", 0.0),
+                              s.number_or("greenwich_angle_deg", 0.0)};
+    return orbit_field_T(orbit, s.number("date_year", {1900.0, 2035.0, false, false}),
+                         s.number("duration_s", Range::positive()),
+                         s.number_or("interval_s", 20.0, Range::positive()));
+  }
+  const Vec3 field_lab_T = settings.vector3_or("field_lab_T", Vec3::Zero());
+  return TimeSeries({0.0, 1.0}, {field_lab_T, field_lab_T});
+}
+
+}  // namespace
+
+DisturbanceKind helmholtz_cage_kind() {
+  return {"helmholtz_cage", "coils around the platform set the magnetic field",
+          [](const Settings& settings, const DisturbanceContext&) {
+            return make_disturbance<HelmholtzCage>(
+                {scalar_parameter_or(settings, "gain_error", 0.0)}, Stage::conditions, {},
+                read_wanted_field_T(settings));
+          }};
+}
+
+}  // namespace photorque

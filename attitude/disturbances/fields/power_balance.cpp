@@ -1,0 +1,128 @@
+// What the battery must give: the load less what the solar array delivers, at the battery's
+// voltage.
+//
+// load_W; and the array's power
+//   array_power_W (default 0) at zero tilt in full light, falling with the cosine of the tilt; or
+//   tilt_deg = [0, …], power_W = […]: a table, as `sweep` finds it, held beyond its end;
+// in proportion to the light that arrives. array_scale (default 1) multiplies it. Where a recording
+// or a file of commands has the battery's current, that is all that flows.
+//
+// Where the battery's capacity is known its controller tapers the current exponentially within the
+// last per cent or so: a full battery takes no more, an empty one gives no more.
+#include <algorithm>
+
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+// A monotone cubic through points (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984)
+// 300): smooth, and without a maximum that the points do not have.
+class MonotoneCurve {
+ public:
+  MonotoneCurve(std::vector<double> x, std::vector<double> y)
+      : x_(std::move(x)), y_(std::move(y)), slope_(x_.size(), 0.0) {
+    const auto secant = [this](size_t i) { return (y_[i + 1] - y_[i]) / (x_[i + 1] - x_[i]); };
+    for (size_t i = 1; i + 1 < x_.size(); ++i) {
+      const double before = secant(i - 1), after = secant(i);
+      if (before * after <= 0.0) continue;
+      const double part =
+          (x_[i + 1] - x_[i] + (x_[i + 1] - x_[i - 1])) / (3.0 * (x_[i + 1] - x_[i - 1]));
+      slope_[i] = before * after / (part * after + (1.0 - part) * before);
+    }
+    if (x_.size() > 1) {
+      slope_.front() = secant(0);
+      slope_.back() = secant(x_.size() - 2);
+    }
+  }
+
+  // Value and slope; the last value beyond the end.
+  std::array<double, 2> at(double x) const {
+    if (x >= x_.back() || x_.size() == 1) return {y_.back(), 0.0};
+    const auto after = std::upper_bound(x_.begin() + 1, x_.end() - 1, x);
+    const size_t i = static_cast<size_t>(after - x_.begin()) - 1;
+    const double h = x_[i + 1] - x_[i], u = (x - x_[i]) / h, v = 1.0 - u;
+    const double value = v * v * (1 + 2 * u) * y_[i] + u * u * (1 + 2 * v) * y_[i + 1] +
+                         h * u * v * (v * slope_[i] - u * slope_[i + 1]);
+    const double slope = 6 * u * v * (y_[i + 1] - y_[i]) / h + v * (1 - 3 * u) * slope_[i] +
+                         u * (3 * u - 2) * slope_[i + 1];
+    return {value, slope};
+  }
+
+ private:
+  std::vector<double> x_, y_, slope_;
+};
+
+// sin²(tilt/2), which is smooth where the tilt itself has a corner.
+template <class T>
+T half_tilt_sine_squared(const Moment<T>& now) {
+  return now.attitude.x() * now.attitude.x() + now.attitude.y() * now.attitude.y();
+}
+
+class PowerBalance final : public LawOf<PowerBalance> {
+ public:
+  explicit PowerBalance(MonotoneCurve power_W) : power_W_(std::move(power_W)) {}
+
+  // Parameters: load, scale.
+  template <class T>
+  void apply(const Own<T>& own, Moment<T>& now) const {
+    const T at_tilt_W =
+        from_values(half_tilt_sine_squared(now), [this](double x) { return power_W_.at(x); });
+    now.array_power_W += own.parameter(1) * now.illumination * at_tilt_W;
+    if (now.current_is_measured) return;
+    T current_A = (own.parameter(0) - now.array_power_W) / now.platform.battery_voltage_V;
+    if (now.platform.battery_capacity_C) {
+      current_A *= controller(now.charge_drawn_C, current_A, *now.platform.battery_capacity_C);
+    }
+    now.battery_current_A += current_A;
+  }
+
+ private:
+  // Share of the current that flows: 1 − exp(−room/δ), room the charge that can still move.
+  template <class T>
+  static T controller(const T& drawn_C, const T& current_A, double capacity_C) {
+    const T room_C = where_at_least(values(current_A), 0.0, T(capacity_C - drawn_C), drawn_C);
+    const T bounded_C = where_at_least(values(room_C), 0.0, room_C, T(0.0));
+    return 1.0 - exp(-bounded_C / (taper_share * capacity_C));
+  }
+
+  static constexpr double taper_share = 0.002;
+
+  MonotoneCurve power_W_;
+};
+
+MonotoneCurve read_curve(const Settings& settings) {
+  if (!settings.has("tilt_deg")) {
+    // cos(tilt) = 1 − 2 sin²(tilt/2): a straight line down to zero at 90 deg.
+    const double power_W = settings.number_or("array_power_W", 0.0, Range::not_negative());
+    return {{0.0, 0.5}, {power_W, 0.0}};
+  }
+  const std::vector<double> tilt_rad = settings.numbers("tilt_deg", {0.0, pi, false, false});
+  const std::vector<double> power_W = settings.numbers("power_W", Range::not_negative());
+  if (tilt_rad.empty() || power_W.size() != tilt_rad.size()) {
+    throw settings.error("power_W", std::to_string(power_W.size()) + " numbers",
+                         std::to_string(tilt_rad.size()) + ", one for each tilt");
+  }
+  std::vector<double> x;
+  for (const double tilt : tilt_rad) {
+    x.push_back(std::pow(std::sin(tilt / 2), 2));
+    if (x.size() > 1 && !(x.back() > x[x.size() - 2])) {
+      throw settings.error("tilt_deg", "tilts out of order", "rising tilts");
+    }
+  }
+  return {x, power_W};
+}
+
+}  // namespace
+
+DisturbanceKind power_balance_kind() {
+  return {"power_balance", "the battery gives what the load takes and the array does not deliver",
+          [](const Settings& settings, const DisturbanceContext&) {
+            return make_disturbance<PowerBalance>(
+                {scalar_parameter(settings, "load_W", Range::not_negative()),
+                 scalar_parameter_or(settings, "array_scale", 1.0, Range::not_negative())},
+                Stage::torque, {}, read_curve(settings));
+          }};
+}
+
+}  // namespace photorque

@@ -1,0 +1,48 @@
+// Lithium wanders through the battery: T = m s Q(t) × g_B, Q the charge drawn (eq. 30–34).
+//
+// shift_m_per_Ah[3]: shift of the centre of mass per charge, body axes; or one [[disturbance.cell]]
+// per cell with
+//   electrodes_m[3]: from the lithium's mean place when charged to that when empty, body axes. Half
+//     a cell's length is the paper's upper bound; wound cells shift by orders of magnitude less;
+//   charge_share: 1 in series (default), 1/n of n in parallel;
+// and lithium: "exact" (Faraday, default) or "rounded" (the paper's 0.3 g/Ah).
+#include "attitude/disturbances/kind.h"
+#include "attitude/disturbances/mass/battery.h"
+
+namespace photorque {
+namespace {
+
+struct BatteryDischarge final : LawOf<BatteryDischarge> {
+  template <class T>
+  void apply(const Own<T>& own, Moment<T>& now) const {
+    now.move_mass(now.charge_drawn_C * own.vector(0));
+  }
+};
+
+Parameters shift_from_cells(const Settings& settings, double platform_mass_kg) {
+  std::vector<BatteryCell> cells;
+  for (const Settings& s : settings.tables("cell")) {
+    BatteryCell cell;
+    cell.electrodes_body_m = s.vector3("electrodes_m");
+    cell.charge_share = s.number_or("charge_share", 1.0, Range::fraction());
+    cells.push_back(cell);
+  }
+  const bool rounded = settings.choice_or("lithium", {"exact", "rounded"}, 0) == 1;
+  const Vec3 shift_m_C =
+      com_shift_m_C(cells, platform_mass_kg, rounded ? lithium_as_published_kg_C : lithium_kg_C);
+  return fixed_parameter("shift_m_per_Ah", {shift_m_C.data(), 3});
+}
+
+}  // namespace
+
+DisturbanceKind battery_discharge_kind() {
+  return {"battery_discharge", "lithium moves inside the battery as it discharges",
+          [](const Settings& settings, const DisturbanceContext& context) {
+            return make_disturbance<BatteryDischarge>(
+                {settings.has("cell") ? shift_from_cells(settings, context.platform.mass_kg)
+                                      : vector_parameter(settings, "shift_m_per_Ah")},
+                Stage::mass);
+          }};
+}
+
+}  // namespace photorque

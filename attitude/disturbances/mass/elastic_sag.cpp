@@ -1,0 +1,76 @@
+// The structure bends under its own weight: T = m C (g_B − g_ref) × g_B, g_ref the gravity at zero
+// attitude, where the platform was balanced (eq. 2–3, corrected and made general).
+//
+// compliance_s2: displacement of the centre of mass per unit of gravity, body axes; three numbers
+// (its diagonal) or a symmetric 3 × 3 matrix; or the table dumbbell = {length_m, end_mass_kg,
+// beam_mass_kg, bending_stiffness_N_m2, axis (default x)}, or tabletop = {length_m, total_mass_kg,
+// bending_stiffness_N_m2, count}: see sag_compliance.h.
+#include "attitude/disturbances/kind.h"
+#include "attitude/disturbances/mass/sag_compliance.h"
+
+namespace photorque {
+namespace {
+
+template <class T>
+Vec3Of<T> gravity_change(const Moment<T>& now) {
+  return now.gravity_body_m_s2 - now.gravity_lab_m_s2;  // at zero attitude both axes agree
+}
+
+struct DiagonalSag final : LawOf<DiagonalSag> {
+  template <class T>
+  void apply(const Own<T>& own, Moment<T>& now) const {
+    now.move_mass(own.vector(0).cwiseProduct(gravity_change(now)));
+  }
+};
+
+struct MatrixSag final : LawOf<MatrixSag> {
+  template <class T>
+  void apply(const Own<T>& own, Moment<T>& now) const {
+    now.move_mass(own.matrix(0) * gravity_change(now));
+  }
+};
+
+Mat3 read_compliance_s2(const Settings& settings, double platform_mass_kg) {
+  if (settings.has("dumbbell")) {
+    const Settings s = settings.table("dumbbell");
+    const DumbbellArms arms{s.vector3_or("axis", Vec3::UnitX()),
+                            s.number("length_m", Range::positive()),
+                            s.number("end_mass_kg", Range::not_negative()),
+                            s.number("beam_mass_kg", Range::not_negative()),
+                            s.number("bending_stiffness_N_m2", Range::positive())};
+    if (!(arms.axis_body.norm() > 0.0)) throw s.error("axis", "a zero vector", "a direction");
+    return sag_compliance_s2(arms, platform_mass_kg);
+  }
+  if (settings.has("tabletop")) {
+    const Settings s = settings.table("tabletop");
+    return sag_compliance_s2(
+        CounterbalanceBeams{s.number("length_m", Range::positive()),
+                            s.number("total_mass_kg", Range::not_negative()),
+                            s.number("bending_stiffness_N_m2", Range::positive()),
+                            static_cast<int>(s.integer("count", 1, 1000))},
+        platform_mass_kg);
+  }
+  const Mat3 compliance_s2 = settings.matrix3("compliance_s2");
+  if ((compliance_s2 - compliance_s2.transpose()).norm() > 1e-9 * compliance_s2.norm()) {
+    throw settings.error("compliance_s2", "a matrix that is not symmetric", "a symmetric matrix");
+  }
+  return compliance_s2;
+}
+
+}  // namespace
+
+DisturbanceKind elastic_sag_kind() {
+  return {"elastic_sag", "the structure bends differently at every tilt",
+          [](const Settings& settings, const DisturbanceContext& context) {
+            const bool computed = settings.has("dumbbell") || settings.has("tabletop");
+            if (!computed && count_as_written(settings, "compliance_s2") == 3) {
+              return make_disturbance<DiagonalSag>({vector_parameter(settings, "compliance_s2")},
+                                                   Stage::mass);
+            }
+            const Mat3 compliance_s2 = read_compliance_s2(settings, context.platform.mass_kg);
+            return make_disturbance<MatrixSag>(
+                {fixed_parameter("compliance_s2", {compliance_s2.data(), 9})}, Stage::mass);
+          }};
+}
+
+}  // namespace photorque

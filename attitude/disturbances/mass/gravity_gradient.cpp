@@ -1,0 +1,26 @@
+// Gravity is weaker higher up: T = 3 g/R up_B × I up_B; in orbit g/R is μ/r³.
+//
+// No parameters. The field of a point mass, to first order in the platform's size over R.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+struct GravityGradient final : TorqueLaw<GravityGradient> {
+  template <class T>
+  Vec3Of<T> torque(const Own<T>&, const Moment<T>& now) const {
+    const Vec3Of<T> pull = now.inertia_kg_m2 * now.up_body;
+    return 3.0 * now.gravity_gradient_1_s2 * now.up_body.cross(pull);
+  }
+};
+
+}  // namespace
+
+DisturbanceKind gravity_gradient_kind() {
+  return {"gravity_gradient", "gravity is weaker higher up and aligns the long axis with it",
+          [](const Settings&, const DisturbanceContext&) {
+            return make_disturbance<GravityGradient>({});
+          }};
+}
+
+}  // namespace photorque

@@ -1,0 +1,88 @@
+#include "attitude/disturbances/mass/moving_masses.h"
+
+#include <Eigen/QR>
+#include <cmath>
+
+#include "core/constants.h"
+
+namespace photorque {
+
+double MovingMass::pitch_m() const {
+  return step_angle_rad / (2.0 * pi) * lead_m / microsteps;
+}
+
+Vec3 MovingMass::com_step_m(double platform_mass_kg) const {
+  return pitch_m() * mass_kg / platform_mass_kg * direction_body;
+}
+
+double com_resolution_m(const MovingMass& mass, double platform_mass_kg) {
+  return 0.5 * mass.com_step_m(platform_mass_kg).norm();
+}
+
+double horizontal_rounding_torque_N_m(const MovingMass& mass, double tilt_rad,
+                                      double gravity_m_s2) {
+  return 0.5 * mass.pitch_m() * mass.mass_kg * gravity_m_s2 * std::cos(tilt_rad);
+}
+
+double vertical_rounding_torque_N_m(const MovingMass& mass, double tilt_rad, double gravity_m_s2) {
+  return 0.5 * mass.pitch_m() * mass.mass_kg * gravity_m_s2 * std::sin(tilt_rad);
+}
+
+std::vector<MovingMass> eight_masses(const MovingMass& pattern) {
+  std::vector<MovingMass> masses(8, pattern);
+  for (size_t i = 0; i < masses.size(); ++i) {
+    masses[i].direction_body = i < 2 ? Vec3::UnitX() : i < 4 ? Vec3::UnitY() : Vec3::UnitZ();
+  }
+  return masses;
+}
+
+BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<MovingMass>& masses,
+                                 double platform_mass_kg) {
+  Eigen::Matrix3Xd shift_m(3, masses.size());
+  for (size_t i = 0; i < masses.size(); ++i) {
+    shift_m.col(static_cast<Eigen::Index>(i)) = masses[i].com_step_m(platform_mass_kg);
+  }
+  const Eigen::VectorXd wanted =
+      shift_m.completeOrthogonalDecomposition().solve((-offset_body_m).eval());
+  Eigen::VectorXd steps = wanted.array().round().matrix();
+  Vec3 left_m = offset_body_m + shift_m * steps;
+  // Each pass makes the rest strictly shorter, by at least a part in 1e12: it ends.
+  for (bool better = true; better;) {
+    better = false;
+    for (Eigen::Index i = 0; i < steps.size(); ++i) {
+      const Vec3 one_m = shift_m.col(i);
+      const double extra = -std::round(one_m.dot(left_m) / one_m.squaredNorm());
+      const Vec3 now_m = left_m + extra * one_m;
+      if (extra != 0.0 && now_m.norm() < left_m.norm() * (1.0 - 1e-12)) {
+        steps[i] += extra;
+        left_m = now_m;
+        better = true;
+      }
+    }
+  }
+  BalanceCommand command;
+  command.left_over_m = left_m;
+  for (const double s : steps) command.steps.push_back(std::llround(s));
+  return command;
+}
+
+std::vector<MovingMass> read_moving_masses(const Settings& settings) {
+  MovingMass pattern;
+  pattern.mass_kg = settings.number("moving_mass_kg", Range::positive());
+  pattern.lead_m = settings.number("lead_m", Range::positive());
+  pattern.step_angle_rad =
+      settings.number_or("step_angle_deg", 1.8 * degree_rad, {0.0, 2.0 * pi, true, false});
+  pattern.microsteps = static_cast<int>(settings.integer_or("microsteps", 1, 1, 1024));
+  if (!settings.has("directions")) return eight_masses(pattern);
+  std::vector<MovingMass> masses;
+  for (const Vec3& direction : settings.vectors3("directions")) {
+    if (!(direction.norm() > 0.0)) {
+      throw settings.error("directions", "a direction of zero length", "directions of travel");
+    }
+    masses.push_back(pattern);
+    masses.back().direction_body = direction.normalized();
+  }
+  return masses;
+}
+
+}  // namespace photorque

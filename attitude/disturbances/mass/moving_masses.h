@@ -1,0 +1,54 @@
+// Balancing masses on stepper-driven screws: where they can put the centre of mass, and how finely.
+// Source: eq. 1.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/settings/settings.h"
+#include "core/vector.h"
+
+namespace photorque {
+
+struct MovingMass {
+  Vec3 direction_body = Vec3::UnitX();  // of travel, unit
+  double mass_kg = 0.0;                 // m_m > 0
+  double lead_m = 0.0;                  // of the screw: travel per turn, > 0
+  double step_angle_rad = 0.0;          // Δφ, of one full step
+  int microsteps = 1;                   // commanded positions per full step
+
+  // Travel between two commanded positions [m].
+  double pitch_m() const;
+  // What one such step does to the centre of mass of a platform [m].
+  Vec3 com_step_m(double platform_mass_kg) const;
+};
+
+// Resolution of the centre of mass along one axis [m]: half a step, ½ Δφ/2π · lead · m_m/m_tot.
+double com_resolution_m(const MovingMass& mass, double platform_mass_kg);
+
+// Eq. 1: torque of half a step on an axis that is horizontal (∝ cos θ) or vertical (∝ sin θ) at
+// zero tilt, at a tilt across it [N m].
+double horizontal_rounding_torque_N_m(const MovingMass& mass, double tilt_rad, double gravity_m_s2);
+double vertical_rounding_torque_N_m(const MovingMass& mass, double tilt_rad, double gravity_m_s2);
+
+// Eight equal masses as the paper's platform has them: two along each horizontal axis and four
+// along the vertical one.
+std::vector<MovingMass> eight_masses(const MovingMass& pattern);
+
+// Whole steps of each mass, and what they leave.
+struct BalanceCommand {
+  std::vector<int64_t> steps;
+  Vec3 left_over_m = Vec3::Zero();  // of the centre of mass, body axes
+};
+
+// The steps that best undo an offset of the centre of mass: the least travel, rounded, then mended
+// step by step while that brings the rest closer to zero. Directions that no mass can reach are
+// left over.
+BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<MovingMass>& masses,
+                                 double platform_mass_kg);
+
+// Reads moving_mass_kg, lead_m, step_angle_deg (default 1.8), microsteps (default 1) and
+// directions (default: those of eight_masses()).
+std::vector<MovingMass> read_moving_masses(const Settings& settings);
+
+}  // namespace photorque

@@ -1,0 +1,69 @@
+// Balancing masses stop at whole steps: the centre of mass is off by up to half a step of each
+// (eq. 1).
+//
+// moving_mass_kg, lead_m, step_angle_deg (default 1.8), microsteps (default 1), directions
+// (default: the paper's eight masses, 2 + 2 + 4 along x, y, z): see moving_masses.h.
+// rounding_steps[N]: where each mass stands beside where it should, in steps, within ±½ of a
+// commanded step; default ½ for the first mass along each direction and 0 for its parallels, the
+// worst case of eq. 1.
+#include "attitude/disturbances/kind.h"
+#include "attitude/disturbances/mass/moving_masses.h"
+
+namespace photorque {
+namespace {
+
+class StepperQuantization final : public LawOf<StepperQuantization> {
+ public:
+  explicit StepperQuantization(std::vector<Vec3> com_step_m) : com_step_m_(std::move(com_step_m)) {}
+
+  template <class T>
+  void apply(const Own<T>& own, Moment<T>& now) const {
+    Vec3Of<T> offset_m = Vec3Of<T>::Constant(T(0.0));
+    for (size_t i = 0; i < com_step_m_.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        offset_m[k] += com_step_m_[i][k] * own.parameter(static_cast<int>(i));
+      }
+    }
+    now.move_mass(offset_m);
+  }
+
+ private:
+  std::vector<Vec3> com_step_m_;
+};
+
+Parameters worst_rounding(const std::vector<MovingMass>& masses) {
+  std::vector<double> steps(masses.size(), 0.0);
+  for (size_t i = 0; i < masses.size(); ++i) {
+    bool parallel_to_earlier = false;
+    for (size_t j = 0; j < i; ++j) {
+      const double cosine = masses[i].direction_body.dot(masses[j].direction_body);
+      parallel_to_earlier = parallel_to_earlier || std::abs(cosine) > 1.0 - 1e-9;
+    }
+    if (!parallel_to_earlier) steps[i] = 0.5;
+  }
+  return fixed_parameter("rounding_steps", steps);
+}
+
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  const std::vector<MovingMass> masses = read_moving_masses(settings);
+  Parameters rounding = settings.has("rounding_steps")
+                            ? array_parameter(settings, "rounding_steps", masses.size())
+                            : worst_rounding(masses);
+  std::vector<Vec3> com_step_m;
+  for (size_t i = 0; i < masses.size(); ++i) {
+    if (std::abs(rounding[i].value) > 0.5) {
+      throw settings.error("rounding_steps", std::to_string(rounding[i].value),
+                           "numbers in [-0.5, 0.5]");
+    }
+    com_step_m.push_back(masses[i].com_step_m(context.platform.mass_kg));
+  }
+  return make_disturbance<StepperQuantization>({rounding}, Stage::mass, {}, com_step_m);
+}
+
+}  // namespace
+
+DisturbanceKind stepper_quantization_kind() {
+  return {"stepper_quantization", "balancing masses can only stand at whole steps", read};
+}
+
+}  // namespace photorque

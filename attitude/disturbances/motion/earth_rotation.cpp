@@ -1,0 +1,33 @@
+// The lab turns with the Earth: the inertial rate is ω + Ω_B; gyros and rotors feel it.
+//
+// No parameters; the Earth's rate in lab axes comes from the environment's latitude. In the body's
+// axes Ω_B changes as −ω × Ω_B, so Euler's equations for the inertial rate, written for ω, gain
+// T = I (ω × Ω) − Ω × I ω − (ω + Ω) × I Ω.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+struct EarthRotation final : LawOf<EarthRotation> {
+  template <class T>
+  void apply(const Own<T>&, Moment<T>& now) const {
+    const Vec3Of<T>& w = now.rate_body_rad_s;
+    const Mat3Of<T>& inertia = now.inertia_kg_m2;
+    const Vec3Of<T> earth = now.to_body(now.environment.earth_rate_lab_rad_s.template cast<T>());
+    const Vec3Of<T> turned = w.cross(earth), sum = w + earth;
+    const Vec3Of<T> own_momentum = inertia * w, carried = inertia * earth;
+    now.torque_body_N_m += inertia * turned - earth.cross(own_momentum) - sum.cross(carried);
+    now.inertial_rate_body_rad_s += earth;
+  }
+};
+
+}  // namespace
+
+DisturbanceKind earth_rotation_kind() {
+  return {"earth_rotation", "the laboratory itself turns once a day",
+          [](const Settings&, const DisturbanceContext&) {
+            return make_disturbance<EarthRotation>({}, Stage::mass);
+          }};
+}
+
+}  // namespace photorque

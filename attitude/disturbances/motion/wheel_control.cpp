@@ -1,0 +1,123 @@
+// Three reaction wheels along the body axes under quaternion feedback.
+//
+// The wheels are asked for the body torque −k_p sgn(e_w) 2 e_v − k_d (ω − ω_t) that turns the body
+// to the target attitude: e = target⁻¹ ⊗ attitude. Each motor gives at most largest_torque_N_m, and
+// nothing that drives its wheel beyond largest_rate_rad_s; the bearings rub.
+//
+// gain_N_m_per_rad (k_p), gain_N_m_s (k_d);
+// target_axis[3], target_angle_deg (default 0: zero attitude), target_rate_rad_s[3] (body, default
+//   0);
+// wheel_inertia_kg_m2 (axial, of each; part of the platform's inertia), largest_torque_N_m,
+// largest_rate_rad_s (of a wheel against the body);
+// viscous_N_m_s (default 0), dry_N_m (default 0): friction of a wheel's bearing.
+//
+// Source of the feedback law: B. Wie, H. Weiss, A. Arapostathis, J. Guid. Control Dyn. 12 (1989)
+// 375.
+#include "attitude/disturbances/kind.h"
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+// x for |x| far below `limit`, ±limit far above: 1.5 % short at half the limit, smooth.
+template <class T>
+T saturated(const T& x, double limit) {
+  const T u = x / limit, square = u * u;
+  return x / sqrt(sqrt(1.0 + square * square));
+}
+
+// 1 while the wheel is below its largest rate, falling to 0 over its last per cent; `share` is its
+// rate over the largest, positive where the motor drives it further.
+template <class T>
+T headroom(const T& share) {
+  // Beyond the bound the exponential would overflow, and the result is 0 anyway.
+  const T bounded = where_at_least(share, 1.2, T(1.2), share);
+  return 1.0 / (1.0 + exp(1200.0 * (bounded - 0.995)));
+}
+
+struct WheelSettings {
+  Quat lab_from_target = Quat::Identity();
+  Vec3 target_rate_body_rad_s = Vec3::Zero();
+  double wheel_inertia_kg_m2 = 0.0;
+  double largest_torque_N_m = 0.0;
+  double largest_rate_rad_s = 0.0;
+};
+
+class WheelControl final : public LawOf<WheelControl> {
+ public:
+  explicit WheelControl(const WheelSettings& settings) : settings_(settings) {}
+
+  // Parameters: k_p, k_d, viscous, dry. States: absolute axial rate of each wheel.
+  template <class T>
+  void apply(const Own<T>& own, Moment<T>& now) const {
+    const double inertia = settings_.wheel_inertia_kg_m2;
+    const Vec3Of<T> wanted_N_m = feedback(own, now);
+    Vec3Of<T> momentum, on_wheel;
+    for (int k = 0; k < 3; ++k) {
+      const T relative = own.states[k] - now.rate_body_rad_s[k];
+      const T share = relative / settings_.largest_rate_rad_s;
+      const T motor = saturated(T(-wanted_N_m[k]), settings_.largest_torque_N_m);
+      // A motor cannot speed up a wheel that is at its largest rate in that direction.
+      const T forward = where_at_least(values(motor), 0.0, T(1.0), T(-1.0));
+      on_wheel[k] = motor * headroom(T(share * forward)) - friction(own, relative);
+      momentum[k] = inertia * own.states[k];
+      own.state_rates[k] = on_wheel[k] / inertia;
+    }
+    now.torque_body_N_m -= on_wheel + now.inertial_rate_body_rad_s.cross(momentum);
+    now.detach_inertia(Mat3(inertia * Mat3::Identity()).template cast<T>());
+  }
+
+ private:
+  template <class T>
+  Vec3Of<T> feedback(const Own<T>& own, const Moment<T>& now) const {
+    const QuatOf<T> error = settings_.lab_from_target.conjugate().template cast<T>() * now.attitude;
+    const T shortest = where_at_least(values(error.w()), 0.0, T(1.0), T(-1.0));
+    const Vec3Of<T> off = now.rate_body_rad_s - settings_.target_rate_body_rad_s.template cast<T>();
+    return T(-2.0 * shortest * own.parameter(0)) * error.vec() - own.parameter(1) * off;
+  }
+
+  template <class T>
+  T friction(const Own<T>& own, const T& relative) const {
+    // Dry friction turns over within this rate, a wheel's creep.
+    constexpr double creep_rad_s = 0.1;
+    return own.parameter(2) * relative +
+           own.parameter(3) * relative / sqrt(relative * relative + creep_rad_s * creep_rad_s);
+  }
+
+  WheelSettings settings_;
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  WheelSettings wheels;
+  const double angle_rad = settings.number_or("target_angle_deg", 0.0);
+  const Vec3 axis = settings.vector3_or("target_axis", Vec3::UnitZ());
+  if (!(axis.norm() > 0.0)) throw settings.error("target_axis", "a zero vector", "a direction");
+  wheels.lab_from_target = Quat(Eigen::AngleAxisd(angle_rad, axis.normalized()));
+  wheels.target_rate_body_rad_s = settings.vector3_or("target_rate_rad_s", Vec3::Zero());
+  const double least_kg_m2 = context.platform.inertia_kg_m2.diagonal().minCoeff();
+  wheels.wheel_inertia_kg_m2 =
+      settings.number("wheel_inertia_kg_m2", {0.0, least_kg_m2, true, true});
+  wheels.largest_torque_N_m = settings.number("largest_torque_N_m", Range::positive());
+  wheels.largest_rate_rad_s = settings.number("largest_rate_rad_s", Range::positive());
+  std::vector<ExtraState> states;
+  for (int k = 0; k < 3; ++k) {
+    states.push_back({.name = std::string("wheel_") + "xyz"[k] + "_rad_s",
+                      .initial = 0.0,
+                      .scale = wheels.largest_rate_rad_s,
+                      .per_body_rate = Vec3::Unit(k)});
+  }
+  return make_disturbance<WheelControl>(
+      {scalar_parameter(settings, "gain_N_m_per_rad", Range::not_negative()),
+       scalar_parameter(settings, "gain_N_m_s", Range::not_negative()),
+       scalar_parameter_or(settings, "viscous_N_m_s", 0.0, Range::not_negative()),
+       scalar_parameter_or(settings, "dry_N_m", 0.0, Range::not_negative())},
+      Stage::torque, std::move(states), wheels);
+}
+
+}  // namespace
+
+DisturbanceKind wheel_control_kind() {
+  return {"wheel_control", "reaction wheels turn the platform to a target attitude", read};
+}
+
+}  // namespace photorque

@@ -1,0 +1,55 @@
+// A vector that is known at some times, made smooth in between.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/numerics/dual.h"
+#include "core/vector.h"
+
+namespace photorque {
+
+// A natural cubic spline through samples: twice continuously differentiable, so that an integrator
+// can take steps longer than the sampling. Before the first and after the last sample the value is
+// that of the end ("hold") or zero.
+class TimeSeries {
+ public:
+  enum class Outside { hold, zero };
+
+  // At least two samples, times rising strictly, all finite; NumericalError otherwise.
+  TimeSeries(std::vector<double> times_s, const std::vector<Vec3>& values,
+             Outside outside = Outside::hold);
+
+  double first_s() const { return times_s_.front(); }
+  double last_s() const { return times_s_.back(); }
+  // First and last time, as far as they lie in (from_s, to_s): where the series is not smooth.
+  std::vector<double> ends_within(double from_s, double to_s) const;
+
+  // Value and time derivative of one component.
+  std::array<double, 2> at(double time_s, int component) const;
+  Vec3 at(double time_s) const;
+
+  template <class T>
+  Vec3Of<T> sample(const T& time_s) const {
+    Vec3Of<T> v;
+    for (int k = 0; k < 3; ++k) {
+      v[k] = from_values(time_s, [&](double t_s) { return at(t_s, k); });
+    }
+    return v;
+  }
+
+ private:
+  std::vector<double> times_s_;
+  std::array<std::vector<double>, 3> value_;
+  std::array<std::vector<double>, 3> curvature_;  // second derivatives at the samples
+  Outside outside_;
+};
+
+// Reads a CSV whose header names a time column `t_s` and the three columns given, in any order
+// among others. InputError with the line for what is missing, not a number or not in order of time.
+TimeSeries read_time_series(const std::filesystem::path& path,
+                            const std::array<std::string, 3>& columns, TimeSeries::Outside outside);
+
+}  // namespace photorque

@@ -1,0 +1,96 @@
+#include "attitude/model/disturbance.h"
+
+namespace photorque {
+namespace {
+
+// The key under which the user wrote `key`: the same quantity, perhaps in another unit.
+std::string written_key(const Settings& settings, const std::string& key) {
+  const KeyUnit wanted = unit_of_key(key);
+  for (const std::string& other : settings.keys()) {
+    const KeyUnit unit = unit_of_key(other);
+    if (unit.stem == wanted.stem && unit.dimension == wanted.dimension) return other;
+  }
+  return key;
+}
+
+}  // namespace
+
+Parameters scalar_parameter(const Settings& settings, const std::string& key, Range range) {
+  const Uncertain x = settings.uncertain(key, range);
+  return {{key, -1, x.value, x.sigma}};
+}
+
+Parameters scalar_parameter_or(const Settings& settings, const std::string& key,
+                               double otherwise_SI, Range range) {
+  if (settings.has(key)) return scalar_parameter(settings, key, range);
+  return {{key, -1, otherwise_SI, 0.0}};
+}
+
+Parameters vector_parameter(const Settings& settings, const std::string& key) {
+  const UncertainVec3 v = settings.uncertain_vector(key);
+  Parameters all;
+  for (int i = 0; i < 3; ++i) all.push_back({key, i, v.value[i], v.sigma[i]});
+  return all;
+}
+
+Parameters vector_parameter_or(const Settings& settings, const std::string& key,
+                               const Vec3& otherwise_SI) {
+  if (settings.has(key)) return vector_parameter(settings, key);
+  return fixed_parameter(key, {otherwise_SI.data(), 3});
+}
+
+Parameters array_parameter(const Settings& settings, const std::string& key, size_t size) {
+  const auto require_size = [&](const std::vector<double>& x) {
+    if (x.size() != size) {
+      throw settings.error(key, "an array of " + std::to_string(x.size()),
+                           "an array of " + std::to_string(size) + " numbers");
+    }
+    return x;
+  };
+  // Settings knows uncertain numbers and triples; longer arrays come apart here. Inside their table
+  // the keys carry no unit, so its factor is applied by hand.
+  const bool with_sigma = settings.raw(key).is_table();
+  const double factor = with_sigma ? unit_of_key(written_key(settings, key)).to_SI : 1.0;
+  const std::vector<double> value =
+      require_size(with_sigma ? settings.table(key).numbers("value") : settings.numbers(key));
+  const std::vector<double> sigma =
+      with_sigma ? require_size(settings.table(key).numbers("sigma", Range::not_negative()))
+                 : std::vector<double>(size, 0.0);
+  Parameters all;
+  for (size_t i = 0; i < size; ++i) {
+    all.push_back({key, static_cast<int>(i), factor * value[i], factor * sigma[i]});
+  }
+  return all;
+}
+
+size_t count_as_written(const Settings& settings, const std::string& key) {
+  const SettingsNode* node = &settings.raw(key);
+  if (const auto* table = std::get_if<SettingsNode::Table>(&node->value)) {
+    const auto value = table->find("value");
+    if (value == table->end()) return 0;
+    node = &value->second;
+  }
+  const auto* array = std::get_if<SettingsNode::Array>(&node->value);
+  if (array == nullptr) return 0;
+  size_t count = 0;
+  for (const SettingsNode& item : *array) {
+    const auto* row = std::get_if<SettingsNode::Array>(&item.value);
+    count += row == nullptr ? 1 : row->size();
+  }
+  return count;
+}
+
+std::filesystem::path file_of(const Settings& settings, const std::string& key) {
+  const std::filesystem::path experiment = settings.where().file;
+  return experiment.parent_path() / settings.text(key);
+}
+
+Parameters fixed_parameter(const std::string& key, std::span<const double> values_SI) {
+  Parameters all;
+  for (size_t i = 0; i < values_SI.size(); ++i) {
+    all.push_back({key, values_SI.size() == 1 ? -1 : static_cast<int>(i), values_SI[i], 0.0});
+  }
+  return all;
+}
+
+}  // namespace photorque

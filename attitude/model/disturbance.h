@@ -1,0 +1,268 @@
+// The interface between the dynamics and everything that acts on the platform.
+//
+// A disturbance is one file NAME.cpp and the word NAME in CMakeLists.txt. Its law is written once,
+// as a template over the scalar type, and runs on Lanes (values at eight instants) and on DualLanes
+// (the same with exact derivatives). A complete file:
+//
+//   #include "attitude/disturbances/kind.h"
+//
+//   namespace photorque {
+//   namespace {
+//
+//   // T = −c ω.
+//   struct BearingDrag final : TorqueLaw<BearingDrag> {
+//     template <class T>
+//     Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+//       return -own.parameter(0) * now.rate_body_rad_s;
+//     }
+//   };
+//
+//   }  // namespace
+//
+//   DisturbanceKind bearing_drag_kind() {
+//     return {"bearing_drag", "viscous drag of the bearing's air film, linear in the rate",
+//             [](const Settings& settings, const DisturbanceContext&) {
+//               return make_disturbance<BearingDrag>(
+//                   {scalar_parameter(settings, "coefficient_N_m_s", Range::not_negative())});
+//             }};
+//   }
+//
+//   }  // namespace photorque
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "attitude/environment/environment.h"
+#include "attitude/model/platform.h"
+#include "core/numerics/dual.h"
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+// When in the evaluation of a moment a disturbance acts. Within a stage the order is that of the
+// experiment file and must not matter.
+enum class Stage {
+  conditions,   // changes what all others see: gravity, field, command, inertia
+  mass,         // moves the centre of mass, by Moment::move_mass(), or turns the lab
+  torque,       // acts on the body
+  measurement,  // changes only what the instruments read
+};
+
+// Everything about eight instants that a disturbance may read, and what it may add to. Body vectors
+// are in body axes and about the centre of rotation; `_lab` vectors are in lab axes.
+template <class T>
+struct Moment {
+  const Platform& platform;
+  const Environment& environment;
+
+  // The state.
+  T time_s;
+  QuatOf<T> attitude;       // lab from body, unit
+  Mat3Of<T> lab_from_body;  // the same as a matrix
+  Vec3Of<T> rate_body_rad_s;
+  T charge_drawn_C;
+
+  // Conditions, from platform, environment and schedule; Stage::conditions may change these.
+  T mass_kg;
+  Mat3Of<T> inertia_kg_m2;  // about the centre of rotation
+  Vec3Of<T> gravity_lab_m_s2;
+  Vec3Of<T> magnetic_field_lab_T;
+  Vec3Of<T> up_lab;            // unit, away from the Earth's centre
+  T gravity_gradient_1_s2;     // g/R on the ground, μ/r³ in orbit
+  T illumination;              // share of the light that arrives: 1 lit, 0 in shadow
+  Vec3Of<T> command_body_N_m;  // torque commanded; acts on the body by itself
+  T battery_current_A;         // drawn from the battery (positive discharges)
+  bool current_is_measured;    // Schedule::current_is_measured
+  T array_power_W;             // that the solar array delivers
+
+  // The conditions in body axes: valid after Stage::conditions.
+  Vec3Of<T> gravity_body_m_s2;
+  Vec3Of<T> magnetic_field_body_T;
+  Vec3Of<T> up_body;
+
+  // Displacement of the centre of mass from the centre of rotation so far: complete after
+  // Stage::mass. Use move_mass().
+  Vec3Of<T> mass_offset_body_m;
+
+  // Results.
+  Vec3Of<T> torque_body_N_m;  // add to it
+  // Inertia that does not turn with the body: use detach_inertia().
+  Mat3Of<T> detached_inertia_kg_m2;
+  bool inertia_changed = false;  // false: inertia_kg_m2 is the platform's and nothing is detached
+  // The inertial rate, which an ideal gyro senses and a rotor resists: earth_rotation adds to it.
+  // Complete after Stage::mass.
+  Vec3Of<T> inertial_rate_body_rad_s;
+  // Stage::measurement adds to these.
+  Vec3Of<T> gyro_error_rad_s;  // reading − inertial rate, body axes
+  Vec3Of<T> camera_error_rad;  // rotation vector of the seen from the true body axes
+  T camera_delay_s;            // the camera reports the attitude this much earlier
+
+  // A lab vector in body axes.
+  Vec3Of<T> to_body(const Vec3Of<T>& v_lab) const { return lab_from_body.transpose() * v_lab; }
+
+  // For Stage::conditions: the inertia differs by this much.
+  void change_inertia(const Mat3Of<T>& by_kg_m2) {
+    inertia_kg_m2 += by_kg_m2;
+    inertia_changed = true;
+  }
+
+  // This part of the inertia, J a aᵀ, sits on its own spring or bearing about the axis a and does
+  // not follow the body's acceleration. The law also adds the torque −ω × (J a σ) of its own
+  // absolute rate σ about that axis, and the torque of its spring or motor.
+  void detach_inertia(const Mat3Of<T>& part_kg_m2) {
+    detached_inertia_kg_m2 += part_kg_m2;
+    inertia_changed = true;
+  }
+
+  // The centre of mass moves by `offset_body_m`; adds the torque m r × g that this causes.
+  void move_mass(const Vec3Of<T>& offset_body_m) {
+    mass_offset_body_m += offset_body_m;
+    torque_body_N_m += mass_kg * offset_body_m.cross(gravity_body_m_s2);
+  }
+};
+
+// One number of a disturbance that can be read, edited and differentiated with respect to.
+struct Parameter {
+  std::string key;     // as in the experiment file, ends in the unit as written: "shift_m_per_Ah"
+  int component = -1;  // of an array, row by row for a matrix; −1: the key is one number
+  double value = 0.0;  // SI: multiply by 1/unit_of_key(key).to_SI to show it in the key's unit
+  double sigma = 0.0;  // the user's one-sigma uncertainty, SI; 0: exact
+};
+
+// A state of its own that a disturbance adds to the attitude and rates.
+struct ExtraState {
+  std::string name;  // ends in its unit
+  double initial = 0.0;
+  double scale = 1.0;  // > 0, a deviation of this size matters as much as 1 rad of attitude
+  // What it begins with besides when the platform begins by turning as one rigid body: this times
+  // the rate, body axes. For states that count from the inertial frame.
+  Vec3 per_body_rate = Vec3::Zero();
+};
+
+// What belongs to one disturbance alone.
+template <class T>
+struct Own {
+  const T* parameters;
+  const T* states;  // of the ExtraStates that it declared
+  T* state_rates;   // to be set: d/dt of each
+
+  const T& parameter(int index) const { return parameters[index]; }
+  Vec3Of<T> vector(int first) const {
+    return {parameters[first], parameters[first + 1], parameters[first + 2]};
+  }
+  // Nine parameters, row by row.
+  Mat3Of<T> matrix(int first) const {
+    Mat3Of<T> m;
+    for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = parameters[first + i];
+    return m;
+  }
+};
+
+// An instant at which a law jumps. The propagator ends a step there exactly.
+struct Switch {
+  double time_s = 0.0;
+  int parameter = -1;  // index of the parameter that is this time, −1 if none is
+};
+
+// A law: immutable, without state, called from many threads. It must be smooth between switches;
+// the smoother, the longer the steps. Derive from TorqueLaw or LawOf below.
+class Law {
+ public:
+  virtual ~Law() = default;
+
+  virtual void act(const Own<Lanes>& own, Moment<Lanes>& now) const = 0;
+  virtual void act(const Own<DualLanes>& own, Moment<DualLanes>& now) const = 0;
+
+  // Jumps in (from_s, to_s), in any order. A law that jumps uses active_from() or the like, which
+  // look at each lane.
+  virtual std::vector<Switch> switches(std::span<const Parameter> /*parameters*/, double /*from_s*/,
+                                       double /*to_s*/) const {
+    return {};
+  }
+};
+
+// For laws that change the moment: Derived has
+//   template <class T> void apply(const Own<T>& own, Moment<T>& now) const;
+template <class Derived>
+class LawOf : public Law {
+ public:
+  void act(const Own<Lanes>& own, Moment<Lanes>& now) const final { self().apply(own, now); }
+  void act(const Own<DualLanes>& own, Moment<DualLanes>& now) const final {
+    self().apply(own, now);
+  }
+
+ private:
+  const Derived& self() const { return static_cast<const Derived&>(*this); }
+};
+
+// For laws that are just a torque: Derived has
+//   template <class T> Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const;
+template <class Derived>
+class TorqueLaw : public Law {
+ public:
+  void act(const Own<Lanes>& own, Moment<Lanes>& now) const final {
+    now.torque_body_N_m += self().torque(own, now);
+  }
+  void act(const Own<DualLanes>& own, Moment<DualLanes>& now) const final {
+    now.torque_body_N_m += self().torque(own, now);
+  }
+
+ private:
+  const Derived& self() const { return static_cast<const Derived&>(*this); }
+};
+
+// A disturbance that acts on the platform: plain data and the law that reads it. Copies share the
+// law; editing `parameters` of one copy changes that copy alone.
+struct Disturbance {
+  std::string kind;  // set by whoever reads the kind
+  Stage stage = Stage::torque;
+  std::vector<Parameter> parameters;
+  std::vector<ExtraState> states;
+  std::shared_ptr<const Law> law;
+};
+
+// Parameters from settings, in SI, with their sigma. A missing key is an InputError, or
+// `otherwise_SI` with sigma 0 where that is given.
+using Parameters = std::vector<Parameter>;
+Parameters scalar_parameter(const Settings& settings, const std::string& key, Range range = {});
+Parameters scalar_parameter_or(const Settings& settings, const std::string& key,
+                               double otherwise_SI, Range range = {});
+Parameters vector_parameter(const Settings& settings, const std::string& key);
+Parameters vector_parameter_or(const Settings& settings, const std::string& key,
+                               const Vec3& otherwise_SI);
+// `size` numbers, e.g. the six of a symmetric matrix.
+Parameters array_parameter(const Settings& settings, const std::string& key, size_t size);
+// How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine
+// for three rows of three; looks into { value = …, sigma = … }.
+size_t count_as_written(const Settings& settings, const std::string& key);
+// The file that `key` names; a relative path counts from the experiment file.
+std::filesystem::path file_of(const Settings& settings, const std::string& key);
+// Parameters that were not written but computed (a compliance from a beam's dimensions).
+Parameters fixed_parameter(const std::string& key, std::span<const double> values_SI);
+
+// The parameters of all groups in order, and a law built from `law_arguments`.
+template <class LawType, class... Arguments>
+Disturbance make_disturbance(std::initializer_list<Parameters> groups, Stage stage = Stage::torque,
+                             std::vector<ExtraState> states = {}, Arguments&&... law_arguments) {
+  Disturbance d;
+  d.stage = stage;
+  for (const Parameters& group : groups) {
+    d.parameters.insert(d.parameters.end(), group.begin(), group.end());
+  }
+  d.states = std::move(states);
+  d.law = std::make_shared<const LawType>(std::forward<Arguments>(law_arguments)...);
+  return d;
+}
+
+// 1 in the lanes at or after `start_s`, 0 before: for laws that begin with a jump. `start_s` must
+// be one of the law's switches; its derivative is the propagator's business.
+template <class T>
+T active_from(const T& time_s, double start_s) {
+  return where_at_least(time_s, start_s, T(1.0), T(0.0));
+}
+
+}  // namespace photorque

@@ -1,0 +1,329 @@
+#include "attitude/model/dynamics.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+// q' = ½ q ⊗ (0, ω).
+template <class T>
+void put_attitude_rates(const QuatOf<T>& q, const Vec3Of<T>& w, T* rates) {
+  rates[0] = -0.5 * (q.x() * w.x() + q.y() * w.y() + q.z() * w.z());
+  rates[1] = 0.5 * (q.w() * w.x() + q.y() * w.z() - q.z() * w.y());
+  rates[2] = 0.5 * (q.w() * w.y() + q.z() * w.x() - q.x() * w.z());
+  rates[3] = 0.5 * (q.w() * w.z() + q.x() * w.y() - q.y() * w.x());
+}
+
+}  // namespace
+
+std::vector<double> to_vector(const PlatformState& state) {
+  const Quat& q = state.lab_from_body;
+  const Vec3& w = state.rate_body_rad_s;
+  std::vector<double> y = {q.w(), q.x(), q.y(), q.z(), w.x(), w.y(), w.z(), state.charge_drawn_C};
+  y.insert(y.end(), state.extra.begin(), state.extra.end());
+  return y;
+}
+
+PlatformState to_state(double time_s, std::span<const double> y) {
+  PlatformState state;
+  state.time_s = time_s;
+  state.lab_from_body = Quat(y[0], y[1], y[2], y[3]).normalized();
+  state.rate_body_rad_s = {y[4], y[5], y[6]};
+  state.charge_drawn_C = y[component::charge];
+  state.extra.assign(y.begin() + component::extra, y.end());
+  return state;
+}
+
+Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
+  const auto& all = model_.disturbances;
+  scales_.assign(component::extra, 1.0);
+  for (const Disturbance& d : all) {
+    layout_.push_back({size_, static_cast<int>(parameters_.size())});
+    for (const ExtraState& state : d.states) scales_.push_back(state.scale);
+    for (const Parameter& parameter : d.parameters) parameters_.emplace_back(parameter.value);
+    size_ += static_cast<int>(d.states.size());
+  }
+  for (const Stage stage : {Stage::conditions, Stage::mass, Stage::torque}) {
+    for (size_t d = 0; d < all.size(); ++d) {
+      if (all[d].stage == stage) order_.push_back(d);
+    }
+  }
+  for (size_t d = 0; d < all.size(); ++d) {
+    if (all[d].stage == Stage::measurement) instruments_.push_back(d);
+  }
+  const Eigen::FullPivLU<Mat3> lu(model_.platform.inertia_kg_m2);
+  if (!lu.isInvertible()) throw NumericalError("the platform's inertia is singular");
+  inverse_inertia_1_kg_m2_ = lu.inverse();
+  inertia_changes_ = changes_inertia();
+}
+
+// Whether some law does, tried at the start: none does so only now and then.
+bool Dynamics::changes_inertia() const {
+  const std::vector<double> start = to_vector(initial_state());
+  const std::vector<Lanes> y(start.begin(), start.end());
+  std::vector<Lanes> rates(y.size(), Lanes(0.0));
+  Moment<Lanes> now = begin(Lanes(0.0), broadcast({}), y.data());
+  run_stages(order_, now, [&](size_t d) {
+    const Layout& own = layout_[d];
+    model_.disturbances[d].law->act({parameters_.data() + own.first_parameter,
+                                     y.data() + own.first_state, rates.data() + own.first_state},
+                                    now);
+  });
+  return now.inertia_changed;
+}
+
+PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
+  PlatformState state;
+  state.rate_body_rad_s = rate_body_rad_s;
+  for (const Disturbance& d : model_.disturbances) {
+    for (const ExtraState& extra : d.states) {
+      state.extra.push_back(extra.initial + extra.per_body_rate.dot(rate_body_rad_s));
+    }
+  }
+  return state;
+}
+
+Dynamics::Command Dynamics::broadcast(const Held& held) {
+  return {held.command_body_N_m.cast<Lanes>(), held.battery_current_A};
+}
+
+Dynamics::Command Dynamics::gather(const std::array<Held, Lanes::count>& held) {
+  Command command;
+  for (int i = 0; i < Lanes::count; ++i) {
+    const Held& lane = held[static_cast<size_t>(i)];
+    for (int k = 0; k < 3; ++k) command.torque_body_N_m[k].set(i, lane.command_body_N_m[k]);
+    command.battery_current_A.set(i, lane.battery_current_A);
+  }
+  return command;
+}
+
+template <class T>
+Moment<T> Dynamics::begin(const T& time_s, const Command& command, const T* y) const {
+  const Platform& platform = model_.platform;
+  const Environment& environment = model_.environment;
+  const Vec3Of<T> zero = Vec3Of<T>::Constant(T(0.0));
+  const QuatOf<T> attitude(y[0], y[1], y[2], y[3]);
+  const Vec3Of<T> rate(y[4], y[5], y[6]);
+  return {.platform = platform,
+          .environment = environment,
+          .time_s = time_s,
+          .attitude = attitude,
+          .lab_from_body = attitude.toRotationMatrix(),
+          .rate_body_rad_s = rate,
+          .charge_drawn_C = y[component::charge],
+          .mass_kg = platform.mass_kg,
+          .inertia_kg_m2 = platform.inertia_kg_m2.cast<T>(),
+          .gravity_lab_m_s2 = environment.gravity_lab_m_s2.cast<T>(),
+          .magnetic_field_lab_T = environment.magnetic_field_lab_T.cast<T>(),
+          .up_lab = environment.up_lab.cast<T>(),
+          .gravity_gradient_1_s2 = environment.gravity_gradient_1_s2,
+          .illumination = 1.0,
+          .command_body_N_m = command.torque_body_N_m.template cast<T>(),
+          .battery_current_A = command.battery_current_A,
+          .current_is_measured = model_.schedule.current_is_measured,
+          .array_power_W = 0.0,
+          .gravity_body_m_s2 = zero,
+          .magnetic_field_body_T = zero,
+          .up_body = zero,
+          .mass_offset_body_m = zero,
+          .torque_body_N_m = zero,
+          .detached_inertia_kg_m2 = Mat3Of<T>::Constant(T(0.0)),
+          .inertial_rate_body_rad_s = rate,
+          .gyro_error_rad_s = zero,
+          .camera_error_rad = zero,
+          .camera_delay_s = 0.0};
+}
+
+// Calls act(d) for every disturbance of `order`, and brings the conditions into body axes as soon
+// as they are final.
+template <class T, class Act>
+void Dynamics::run_stages(const std::vector<size_t>& order, Moment<T>& now, const Act& act) const {
+  auto d = order.begin();
+  for (; d != order.end() && model_.disturbances[*d].stage == Stage::conditions; ++d) act(*d);
+  now.gravity_body_m_s2 = now.to_body(now.gravity_lab_m_s2);
+  now.magnetic_field_body_T = now.to_body(now.magnetic_field_lab_T);
+  now.up_body = now.to_body(now.up_lab);
+  now.torque_body_N_m += now.command_body_N_m;
+  for (; d != order.end(); ++d) act(*d);
+}
+
+template <class T>
+void Dynamics::solve(const Moment<T>& now, T* rates) const {
+  const Vec3Of<T>& w = now.rate_body_rad_s;
+  put_attitude_rates(now.attitude, w, rates);
+  Vec3Of<T> acceleration;
+  if (now.inertia_changed) {
+    const Mat3Of<T> inertia = now.inertia_kg_m2 - now.detached_inertia_kg_m2;
+    // The inverse from cross products of the columns: Eigen's wants comparisons of scalars.
+    const Vec3Of<T> a = inertia.col(0), b = inertia.col(1), c = inertia.col(2);
+    const Vec3Of<T> bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
+    const Vec3Of<T> torque = now.torque_body_N_m - w.cross(Vec3Of<T>(inertia * w));
+    acceleration = Vec3Of<T>(bc.dot(torque), ca.dot(torque), ab.dot(torque)) / a.dot(bc);
+  } else {
+    const Vec3Of<T> momentum = now.inertia_kg_m2 * w;
+    acceleration = inverse_inertia_1_kg_m2_.cast<T>() * (now.torque_body_N_m - w.cross(momentum));
+  }
+  for (int i = 0; i < 3; ++i) rates[component::rate + i] = acceleration[i];
+  rates[component::charge] = now.battery_current_A;
+}
+
+// What solve() gives when nothing but the command acts, without a moment for others to look at.
+void Dynamics::free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const {
+  const Vec3Of<Lanes> w(y[4], y[5], y[6]);
+  put_attitude_rates(QuatOf<Lanes>(y[0], y[1], y[2], y[3]), w, rates);
+  const Mat3& inertia = model_.platform.inertia_kg_m2;
+  const Vec3Of<Lanes> momentum = inertia.cast<Lanes>() * w;
+  const Vec3Of<Lanes> acceleration =
+      inverse_inertia_1_kg_m2_.cast<Lanes>() * (command.torque_body_N_m - w.cross(momentum));
+  for (int i = 0; i < 3; ++i) rates[component::rate + i] = acceleration[i];
+  rates[component::charge] = command.battery_current_A;
+}
+
+void Dynamics::rates(const Lanes& time_s, const Held& held, const Lanes* y, Lanes* rates) const {
+  if (order_.empty()) return free_body_rates(broadcast(held), y, rates);
+  Moment<Lanes> now = begin(time_s, broadcast(held), y);
+  run_stages(order_, now, [&](size_t d) {
+    const Layout& own = layout_[d];
+    model_.disturbances[d].law->act(
+        {parameters_.data() + own.first_parameter, y + own.first_state, rates + own.first_state},
+        now);
+  });
+  solve(now, rates);
+}
+
+Dynamics::Instants Dynamics::at(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+                                const Lanes* y) const {
+  Instants result;
+  result.torque_body_N_m.assign(model_.disturbances.size(), Vec3Of<Lanes>::Constant(Lanes(0.0)));
+  result.rates.assign(static_cast<size_t>(size_), Lanes(0.0));
+  Moment<Lanes> now = begin(time_s, gather(held), y);
+  const auto act = [&](size_t d) {
+    const Layout& own = layout_[d];
+    const Vec3Of<Lanes> before = now.torque_body_N_m;
+    const Mat3Of<Lanes> attached = now.detached_inertia_kg_m2;
+    model_.disturbances[d].law->act({parameters_.data() + own.first_parameter, y + own.first_state,
+                                     result.rates.data() + own.first_state},
+                                    now);
+    // Of a part that swings with the body nothing is felt beside the rigid body's own gyroscopic
+    // torque, which the detached part no longer has.
+    const Vec3Of<Lanes>& w = now.rate_body_rad_s;
+    const Vec3Of<Lanes> carried = Mat3Of<Lanes>(now.detached_inertia_kg_m2 - attached) * w;
+    result.torque_body_N_m[d] = now.torque_body_N_m - before + w.cross(carried);
+  };
+  run_stages(order_, now, act);
+  solve(now, result.rates.data());
+  for (const size_t d : instruments_) act(d);
+  result.command_body_N_m = now.command_body_N_m;
+  result.mass_offset_body_m = now.mass_offset_body_m;
+  result.battery_current_A = now.battery_current_A;
+  result.array_power_W = now.array_power_W;
+  result.illumination = now.illumination;
+  result.gyro_rad_s = now.inertial_rate_body_rad_s + now.gyro_error_rad_s;
+  result.camera_error_rad = now.camera_error_rad;
+  result.camera_delay_s = now.camera_delay_s;
+  return result;
+}
+
+Moment<DualLanes> Dynamics::differentiate(const Lanes& time_s, const Command& command,
+                                          const Lanes* y, const Block& block, bool with_instruments,
+                                          std::vector<DualLanes>& rates) const {
+  std::vector<DualLanes> y_dual(y, y + size_);
+  // Any law may change the inertia that all torques are divided by.
+  bool everything = inertia_changes_;
+  for (int k = 0; k < DualLanes::block; ++k) {
+    if (block.state[k] < 0) continue;
+    y_dual[static_cast<size_t>(block.state[k])].partial[k] = 1.0;
+    everything = everything || block.state[k] < component::extra;
+  }
+  // A torque depends on the body's state, on what is its own, and on what those of earlier stages
+  // did: these always act.
+  const auto owns = [&](size_t d) {
+    const Disturbance& disturbance = model_.disturbances[d];
+    const Layout& own = layout_[d];
+    const auto inside = [](int index, int first, size_t count) {
+      return index >= first && index < first + static_cast<int>(count);
+    };
+    for (int k = 0; k < DualLanes::block; ++k) {
+      if (inside(block.parameter[k], own.first_parameter, disturbance.parameters.size()) ||
+          inside(block.state[k], own.first_state, disturbance.states.size())) {
+        return true;
+      }
+    }
+    return false;
+  };
+  std::vector<size_t> owners;
+  for (const size_t d : order_) {
+    const bool earlier = model_.disturbances[d].stage < Stage::torque, owner = owns(d);
+    if (earlier || owner) owners.push_back(d);
+    everything = everything || (earlier && owner);
+  }
+  // An instrument's error may scale with what it senses.
+  everything = everything ||
+               (with_instruments && std::any_of(instruments_.begin(), instruments_.end(), owns));
+
+  std::vector<DualLanes> own_parameters;
+  rates.assign(static_cast<size_t>(size_), DualLanes(0.0));
+  Moment<DualLanes> now = begin(DualLanes(time_s), command, y_dual.data());
+  const auto act = [&](size_t d) {
+    const Disturbance& disturbance = model_.disturbances[d];
+    const Layout& own = layout_[d];
+    const Lanes* first = parameters_.data() + own.first_parameter;
+    own_parameters.assign(first, first + disturbance.parameters.size());
+    for (int k = 0; k < DualLanes::block; ++k) {
+      const int index = block.parameter[k] - own.first_parameter;
+      if (index >= 0 && index < static_cast<int>(own_parameters.size())) {
+        own_parameters[static_cast<size_t>(index)].partial[k] = 1.0;
+      }
+    }
+    disturbance.law->act(
+        {own_parameters.data(), y_dual.data() + own.first_state, rates.data() + own.first_state},
+        now);
+  };
+  run_stages(everything ? order_ : owners, now, act);
+  solve(now, rates.data());
+  if (with_instruments) {
+    for (const size_t d : instruments_) act(d);
+  }
+  return now;
+}
+
+void Dynamics::derivatives(const Lanes& time_s, const Held& held, const Lanes* y,
+                           const Block& block, Lanes* derivatives) const {
+  std::vector<DualLanes> rates;
+  differentiate(time_s, broadcast(held), y, block, false, rates);
+  for (const DualLanes& rate : rates) {
+    derivatives = std::copy(rate.partial.begin(), rate.partial.end(), derivatives);
+  }
+}
+
+void Dynamics::reading_derivatives(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+                                   const Lanes* y, const Block& block, Lanes* derivatives) const {
+  std::vector<DualLanes> rates;
+  const Moment<DualLanes> now = differentiate(time_s, gather(held), y, block, true, rates);
+  const auto put = [&](const DualLanes& x) {
+    derivatives = std::copy(x.partial.begin(), x.partial.end(), derivatives);
+  };
+  for (int i = 0; i < 3; ++i) put(now.inertial_rate_body_rad_s[i] + now.gyro_error_rad_s[i]);
+  for (int i = 0; i < 3; ++i) put(now.camera_error_rad[i]);
+  put(now.camera_delay_s);
+}
+
+std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,
+                                               const PlatformState& state) {
+  const Dynamics dynamics(model);
+  std::vector<Lanes> y;
+  for (const double x : to_vector(state)) y.emplace_back(x);
+  std::array<Held, Lanes::count> held;
+  held.fill(model.schedule.at(state.time_s));
+  const Dynamics::Instants now = dynamics.at(state.time_s, held, y.data());
+  std::vector<Vec3> torques;
+  for (const Vec3Of<Lanes>& torque : now.torque_body_N_m) {
+    torques.emplace_back(torque[0][0], torque[1][0], torque[2][0]);
+  }
+  return torques;
+}
+
+}  // namespace photorque

@@ -1,0 +1,134 @@
+// Euler's equations of the platform under all its disturbances.
+//
+//   q' = ½ q ⊗ (0, ω)
+//   (I − I_d) ω' = T − ω × (I − I_d) ω
+//   Q' = battery current
+//
+// and the extra states of the disturbances; I_d is the inertia that sits on its own springs and
+// bearings (Moment::detach_inertia). The lab counts as inertial: earth_rotation is a disturbance.
+#pragma once
+
+#include <vector>
+
+#include "attitude/model/disturbance.h"
+#include "attitude/model/schedule.h"
+#include "attitude/model/state.h"
+
+namespace photorque {
+
+// Everything that is believed about a platform and what acts on it.
+struct AttitudeModel {
+  Platform platform;
+  Environment environment;
+  std::vector<Disturbance> disturbances;
+  Schedule schedule;
+};
+
+// The state as the flat vector that is integrated: w, x, y, z, ω, charge, extra states.
+namespace component {
+inline constexpr int attitude = 0, rate = 4, charge = 7, extra = 8;
+}
+
+std::vector<double> to_vector(const PlatformState& state);
+// Normalises the quaternion.
+PlatformState to_state(double time_s, std::span<const double> y);
+
+// A copy of a model, laid out for evaluation. Const and usable from many threads.
+class Dynamics {
+ public:
+  // NumericalError when the inertia is singular.
+  explicit Dynamics(AttitudeModel model);
+
+  const AttitudeModel& model() const { return model_; }
+  // Components of the state: 8 and the extra states.
+  int size() const { return size_; }
+  // Sizes at which deviations of the components matter equally (1 rad, 1 rad/s, 1 C, as declared).
+  const std::vector<double>& scales() const { return scales_; }
+  // Where the extra states of disturbance d begin in the state vector.
+  int first_state(size_t d) const { return layout_[d].first_state; }
+  // Where the parameters of disturbance d begin in the list of all parameters.
+  int first_parameter(size_t d) const { return layout_[d].first_parameter; }
+  int parameter_count() const { return static_cast<int>(parameters_.size()); }
+
+  // At zero attitude, turning at this rate as one rigid body, the extra states at their initial
+  // values.
+  PlatformState initial_state(const Vec3& rate_body_rad_s = Vec3::Zero()) const;
+
+  // dy/dt at eight instants; `y` and `rates` hold size() components.
+  void rates(const Lanes& time_s, const Held& held, const Lanes* y, Lanes* rates) const;
+
+  // What is differentiated, at most DualLanes::block variables: component `state`[k] of the state
+  // or parameter `parameter`[k], −1 for neither.
+  struct Block {
+    std::array<int, DualLanes::block> state;
+    std::array<int, DualLanes::block> parameter;
+  };
+  // ∂(dy/dt)/∂(variable k) of every component c at derivatives[c·block + k].
+  void derivatives(const Lanes& time_s, const Held& held, const Lanes* y, const Block& block,
+                   Lanes* derivatives) const;
+
+  // Everything known about eight instants. `held` may differ from lane to lane.
+  struct Instants {
+    std::vector<Vec3Of<Lanes>> torque_body_N_m;  // of each disturbance, in the model's order
+    Vec3Of<Lanes> command_body_N_m;              // as it acts
+    Vec3Of<Lanes> mass_offset_body_m;
+    Lanes battery_current_A;
+    Lanes array_power_W;
+    Lanes illumination;
+    // What noiseless instruments read; see Moment.
+    Vec3Of<Lanes> gyro_rad_s;
+    Vec3Of<Lanes> camera_error_rad;
+    Lanes camera_delay_s;
+    std::vector<Lanes> rates;  // dy/dt
+  };
+  Instants at(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+              const Lanes* y) const;
+
+  // Derivatives of the instruments' readings by the variables of `block`: gyro [0, 3), camera error
+  // [3, 6), camera delay [6], each a row of `block` numbers.
+  static constexpr int reading_count = 7;
+  void reading_derivatives(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+                           const Lanes* y, const Block& block, Lanes* derivatives) const;
+
+ private:
+  struct Layout {
+    int first_state = 0;
+    int first_parameter = 0;
+  };
+  // Held values as lanes.
+  struct Command {
+    Vec3Of<Lanes> torque_body_N_m;
+    Lanes battery_current_A;
+  };
+  static Command broadcast(const Held& held);
+  static Command gather(const std::array<Held, Lanes::count>& held);
+
+  template <class T>
+  Moment<T> begin(const T& time_s, const Command& command, const T* y) const;
+  template <class T, class Act>
+  void run_stages(const std::vector<size_t>& order, Moment<T>& now, const Act& act) const;
+  template <class T>
+  void solve(const Moment<T>& now, T* rates) const;
+  bool changes_inertia() const;
+  void free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const;
+  // Evaluates with derivatives, leaving out disturbances that cannot depend on the block.
+  Moment<DualLanes> differentiate(const Lanes& time_s, const Command& command, const Lanes* y,
+                                  const Block& block, bool with_instruments,
+                                  std::vector<DualLanes>& rates) const;
+
+  AttitudeModel model_;
+  int size_ = component::extra;
+  std::vector<double> scales_;
+  std::vector<Layout> layout_;
+  std::vector<size_t> order_;        // disturbances by stage, without those of Stage::measurement
+  std::vector<size_t> instruments_;  // those
+  std::vector<Lanes> parameters_;
+  Mat3 inverse_inertia_1_kg_m2_;
+  bool inertia_changes_ = false;
+};
+
+// The torque of every disturbance at one state [N m], in the model's order, body axes.
+std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,
+                                               const PlatformState& state);
+
+}  // namespace photorque

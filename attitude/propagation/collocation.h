@@ -1,0 +1,72 @@
+// One step of Gauss collocation with eight stages: order 16 at its end, a polynomial of degree 8 in
+// between.
+//
+// The stages are found by fixed-point iteration from the continued polynomial of the step before;
+// all eight are evaluated at once. Symmetric and symplectic: the norm of the quaternion, the energy
+// and the momentum of a free body change by rounding alone. Between the ends the polynomial is less
+// accurate than at the end itself; the error estimate is that of the polynomial, so that the dense
+// output is as good as the tolerance says and the ends are better.
+//
+// Source: M. Antoñana, E. Alberdi, J. Makazaga, A. Murua, "SIMD-vectorized implicit symplectic
+// integrators can outperform explicit symplectic ones", arXiv:2211.03655 (2022).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "attitude/model/dynamics.h"
+#include "core/numerics/collocation_points.h"
+
+namespace photorque {
+
+class CollocationStep {
+ public:
+  // Starts at `y` (Dynamics::size() components). `dynamics` must outlive the step.
+  CollocationStep(const Dynamics& dynamics, double time_s, std::vector<double> y);
+
+  // Attempts a step of length `h_s` from the current start with held values; the start does not
+  // move. `settled` is the size, relative to the scales, at which iteration errors are left alone.
+  struct Outcome {
+    bool converged = false;
+    int iterations = 0;
+    double error = 0.0;  // of the polynomial, relative to the scales; an upper estimate
+  };
+  Outcome attempt(double h_s, const Held& held, double settled);
+  // Moves the start to the end of the attempted step, in compensated summation, and to the time
+  // `end_s`, which is start + length but for rounding.
+  void accept(double end_s);
+  // Forgets the polynomial (after a jump of the right-hand side), and starts the next attempt from
+  // constant rates.
+  void restart() { has_polynomial_ = false; }
+
+  double start_s() const { return time_s_; }
+  const std::vector<double>& start() const { return y_; }
+  double length_s() const { return h_s_; }
+  // Of the last attempt, whether accepted or not. `stages` are at start + c h.
+  std::span<const Lanes> stages() const { return stages_; }
+  Lanes stage_times_s() const;
+  std::vector<double> end() const;
+
+  // The polynomial at fractions θ ∈ [0, 1] of the attempted step; `y` receives size() components.
+  // Valid until accept().
+  void dense(const Lanes& fraction, Lanes* y) const;
+
+ private:
+  double estimate_error() const;
+  void predict(double h_s, const Held& held);
+
+  const Dynamics& dynamics_;
+  std::vector<double> inverse_scales_;
+  double time_s_;
+  double h_s_ = 0.0;
+  bool has_polynomial_ = false;             // increments_ describe the accepted step before
+  std::vector<double> y_, carry_;           // the start and what rounding has taken from it
+  std::vector<Lanes> increments_;           // h b_j f_j of the attempt
+  std::vector<Lanes> accepted_increments_;  // of the step before
+  double accepted_h_s_ = 0.0;
+  std::vector<Lanes> stages_, rates_;
+  double continuation_ratio_ = 0.0;
+  std::array<gauss::Row, gauss::points> continuation_{};
+};
+
+}  // namespace photorque

@@ -1,0 +1,376 @@
+#include "attitude/propagation/propagator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+// `h` without its last bits, so that sums of steps of one length are exact: the time then carries
+// no rounding that would show as a phase error after 1e5 s.
+double with_few_bits(double h) {
+  int exponent = 0;
+  const double mantissa = std::frexp(h, &exponent);
+  return std::ldexp(std::floor(std::ldexp(mantissa, 12)), exponent - 12);
+}
+
+std::string shown(double x) {
+  std::ostringstream out;
+  out << x;
+  return out.str();
+}
+
+std::vector<double> checked_start(const Dynamics& dynamics, const PlatformState& initial) {
+  const double norm = initial.lab_from_body.norm();
+  if (!(std::abs(norm - 1.0) <= 1e-6)) {
+    throw InputError({}, "initial attitude", "a quaternion of norm " + std::to_string(norm),
+                     "a quaternion of unit norm");
+  }
+  if (initial.extra.size() + component::extra != static_cast<size_t>(dynamics.size())) {
+    throw InputError({}, "initial state", std::to_string(initial.extra.size()) + " extra states",
+                     std::to_string(dynamics.size() - component::extra) + ", as the model has");
+  }
+  PlatformState unit = initial;
+  unit.lab_from_body.normalize();
+  return to_vector(unit);
+}
+
+}  // namespace
+
+EventFunction tilt_event(double limit_rad) {
+  const double limit_cosine = std::cos(limit_rad);
+  return {"tilt_stop", true, true, [limit_cosine](const Lanes&, const Lanes* y) {
+            return limit_cosine - 1.0 + 2.0 * (y[1] * y[1] + y[2] * y[2]);
+          }};
+}
+
+EventFunction battery_empty_event(double capacity_C) {
+  return {"battery_empty", true, true,
+          [capacity_C](const Lanes&, const Lanes* y) { return y[component::charge] - capacity_C; }};
+}
+
+EventFunction eclipse_event(const Dynamics& dynamics) {
+  return {.name = "eclipse_ends",
+          .value = [&dynamics](
+                       const Lanes& time_s,
+                       const Lanes* y) { return dynamics.at(time_s, {}, y).illumination - 0.5; },
+          .falling_name = "eclipse_begins"};
+}
+
+Propagator::Propagator(const Dynamics& dynamics, const PlatformState& initial, double end_s,
+                       const PropagationOptions& options, std::vector<Variable> variables,
+                       std::vector<EventFunction> events)
+    : dynamics_(dynamics),
+      begin_s_(initial.time_s),
+      end_s_(end_s),
+      options_(options),
+      step_(dynamics, initial.time_s, checked_start(dynamics, initial)),
+      event_functions_(std::move(events)),
+      held_(dynamics.model().schedule.at(initial.time_s)),
+      step_end_s_(initial.time_s) {
+  if (!variables.empty()) sensitivity_.emplace(dynamics, std::move(variables), step_.start());
+  collect_jumps(initial.time_s);
+  const std::vector<Lanes> start(step_.start().begin(), step_.start().end());
+  for (const EventFunction& event : event_functions_) {
+    event_values_.push_back(event.value(initial.time_s, start.data())[0]);
+  }
+  // A first guess that the error control mends.
+  h_s_ = std::min(0.1, options.longest_step_s);
+}
+
+void Propagator::collect_jumps(double from_s) {
+  const AttitudeModel& model = dynamics_.model();
+  for (const double t_s : model.schedule.time_s) {
+    if (t_s > from_s && t_s < end_s_) jumps_.push_back({t_s, -1});
+  }
+  for (size_t d = 0; d < model.disturbances.size(); ++d) {
+    const Disturbance& disturbance = model.disturbances[d];
+    for (const Switch& s : disturbance.law->switches(disturbance.parameters, from_s, end_s_)) {
+      if (!(s.time_s > from_s && s.time_s < end_s_)) continue;
+      int variable = -1;
+      if (sensitivity_ && s.parameter >= 0) {
+        const std::vector<Variable>& all = sensitivity_->variables();
+        for (size_t v = 0; v < all.size(); ++v) {
+          if (all[v].initial < 0 && all[v].disturbance == d && all[v].parameter == s.parameter) {
+            variable = static_cast<int>(v);
+          }
+        }
+      }
+      jumps_.push_back({s.time_s, variable});
+    }
+  }
+  std::stable_sort(jumps_.begin(), jumps_.end(),
+                   [](const Jump& a, const Jump& b) { return a.time_s < b.time_s; });
+}
+
+bool Propagator::advance() {
+  if (ended_by_event_ || step_end_s_ >= end_s_) return false;
+  if (has_step_) {
+    step_.accept(step_end_s_);
+    if (sensitivity_) sensitivity_->accept();
+    cross_jumps();
+  }
+  take_step();
+  has_step_ = true;
+  find_events();
+  return true;
+}
+
+// Gives up early on motions that would need more steps than allowed.
+void Propagator::check_pace() const {
+  constexpr int64_t every = 1 << 16;
+  if (statistics_.steps == 0 || statistics_.steps % every != 0) return;
+  const double pace_s = (step_.start_s() - begin_s_) / static_cast<double>(statistics_.steps);
+  const double left_s = end_s_ - step_.start_s();
+  if (pace_s * static_cast<double>(options_.most_steps - statistics_.steps) < left_s) {
+    throw NumericalError("steps of " + shown(pace_s) + " s on average will not reach " +
+                         shown(end_s_) + " s: the motion is too fast for its duration");
+  }
+}
+
+void Propagator::take_step() {
+  check_pace();
+  const double start_s = step_.start_s();
+  const double stop_s = next_jump_ < jumps_.size() ? jumps_[next_jump_].time_s : end_s_;
+  // A free body's phase shows every bit of its iterations after a day; torques hide them.
+  const bool is_free = dynamics_.model().disturbances.empty();
+  const double settled = (is_free ? 1e-10 : 1e-6) * options_.tolerance;
+  for (;;) {
+    // Half of what is left rather than nearly all of it: no slivers.
+    const double left_s = stop_s - start_s;
+    double h_s = std::min(h_s_, options_.longest_step_s);
+    const bool cut = h_s >= left_s;
+    h_s = cut ? left_s : with_few_bits(h_s > 0.5 * left_s ? 0.5 * left_s : h_s);
+    if (++statistics_.steps > options_.most_steps || start_s + h_s <= start_s) {
+      throw NumericalError("the step length of the propagator fell to " + shown(h_s) +
+                           " s at t = " + shown(start_s) + " s");
+    }
+    const CollocationStep::Outcome outcome = step_.attempt(h_s, held_, settled);
+    statistics_.iterations += outcome.iterations;
+    if (!outcome.converged) {
+      h_s_ = 0.5 * h_s;
+      ceiling_s_ = 0.7 * h_s;
+    } else if (outcome.error > 2.0 * options_.tolerance) {
+      h_s_ = propose_length(outcome, h_s, false);
+      ceiling_s_ = 0.9 * h_s;
+    } else if (sensitivity_ && !sensitivity_->solve(step_, held_, options_.derivative_tolerance)) {
+      h_s_ = 0.5 * h_s;
+      ceiling_s_ = 0.7 * h_s;
+    } else {
+      ceiling_s_ *= 1.01;
+      h_s_ = std::min(propose_length(outcome, h_s, cut), ceiling_s_);
+      step_end_s_ = cut ? stop_s : start_s + h_s;
+      return;
+    }
+    --statistics_.steps;
+    ++statistics_.rejected;
+  }
+}
+
+// The length for the next attempt. Small changes are not worth a new continuation matrix, and a
+// step that a jump cut short says nothing about growth. Many iterations mean that the length is
+// close to where they stop converging, and that shorter steps would be cheaper.
+double Propagator::propose_length(const CollocationStep::Outcome& outcome, double h_s,
+                                  bool cut) const {
+  constexpr int many = 20, too_many = 30;
+  double factor = 0.9 * std::pow(options_.tolerance / outcome.error, 1.0 / gauss::points);
+  if (outcome.iterations > too_many) factor = std::min(factor, 0.8);
+  if (factor < 0.9) return std::max(factor, 0.2) * h_s;
+  if (cut) return std::max(h_s, h_s_);
+  const bool worth_it = factor > 1.15 && outcome.iterations < many;
+  return (worth_it ? std::min(factor, 2.0) : 1.0) * h_s;
+}
+
+// Switches to the values after the jumps at the start of the next step. Where the time of a jump is
+// a variable p, the derivative by it jumps by (f⁻ − f⁺) ∂t/∂p.
+void Propagator::cross_jumps() {
+  const double now_s = step_.start_s();
+  if (next_jump_ == jumps_.size() || jumps_[next_jump_].time_s > now_s) return;
+  const std::vector<Lanes> y(step_.start().begin(), step_.start().end());
+  std::vector<Lanes> before(y.size()), after(y.size());
+  for (; next_jump_ < jumps_.size() && jumps_[next_jump_].time_s <= now_s; ++next_jump_) {
+    if (jumps_[next_jump_].variable < 0) continue;
+    dynamics_.rates(std::nextafter(now_s, -1e300), held_, y.data(), before.data());
+    dynamics_.rates(now_s, held_, y.data(), after.data());
+    std::vector<double> change;
+    for (size_t c = 0; c < y.size(); ++c) change.push_back(before[c][0] - after[c][0]);
+    sensitivity_->add(static_cast<size_t>(jumps_[next_jump_].variable), change);
+  }
+  held_ = dynamics_.model().schedule.at(now_s);
+  step_.restart();
+  if (sensitivity_) sensitivity_->restart();
+}
+
+Lanes Propagator::fraction(const Lanes& time_s) const {
+  if (!has_step_) return 0.0;
+  return (time_s - step_.start_s()) / step_.length_s();
+}
+
+void Propagator::dense(const Lanes& time_s, Lanes* y) const {
+  step_.dense(fraction(time_s), y);
+}
+
+void Propagator::dense_derivatives(const Lanes& time_s, Lanes* derivatives) const {
+  sensitivity_->dense(fraction(time_s), derivatives);
+}
+
+void Propagator::find_events() {
+  if (event_functions_.empty()) return;
+  const std::vector<double> end = step_.end();
+  const std::vector<Lanes> at_end(end.begin(), end.end());
+  const Lanes stage_times_s = step_.stage_times_s();
+  std::vector<Event> found;
+  const EventFunction* last = nullptr;
+  for (size_t e = 0; e < event_functions_.size(); ++e) {
+    const EventFunction& event = event_functions_[e];
+    const Lanes inside = event.value(stage_times_s, step_.stages().data());
+    double low_s = step_.start_s(), low = event_values_[e];
+    for (int i = 0; i <= Lanes::count; ++i) {
+      const bool is_end = i == Lanes::count;
+      const double high_s = is_end ? step_end_s_ : stage_times_s[i];
+      const double high = is_end ? event.value(step_end_s_, at_end.data())[0] : inside[i];
+      const bool rising = low <= 0.0 && high > 0.0, falling = low >= 0.0 && high < 0.0;
+      if (rising || (falling && !event.rising_only)) {
+        const bool own_name = falling && !event.falling_name.empty();
+        found.push_back(
+            {own_name ? event.falling_name : event.name, locate(event, low_s, high_s), rising});
+        if (event.ends_run && (last == nullptr || found.back().time_s < step_end_s_)) {
+          last = &event;
+          step_end_s_ = found.back().time_s;
+          ended_by_event_ = true;
+          break;
+        }
+      }
+      low_s = high_s;
+      low = high;
+      if (is_end) event_values_[e] = high;
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
+  for (const Event& event : found) {
+    if (event.time_s <= step_end_s_) events_.push_back(event);
+  }
+}
+
+// Cuts the interval in nine, eight values at a time, until the time cannot be told better.
+double Propagator::locate(const EventFunction& event, double low_s, double high_s) const {
+  std::vector<Lanes> y(step_.start().size());
+  dense(low_s, y.data());
+  const bool rising = event.value(low_s, y.data())[0] <= 0.0;
+  for (int cut = 0; cut < 20 && high_s > std::nextafter(low_s, high_s); ++cut) {
+    const double width_s = high_s - low_s;
+    Lanes times_s;
+    for (int i = 0; i < Lanes::count; ++i) times_s.set(i, low_s + width_s * (i + 1) / 9.0);
+    dense(times_s, y.data());
+    const Lanes values = event.value(times_s, y.data());
+    int first_beyond = 0;
+    while (first_beyond < Lanes::count &&
+           (rising ? values[first_beyond] <= 0.0 : values[first_beyond] >= 0.0)) {
+      ++first_beyond;
+    }
+    if (first_beyond < Lanes::count) high_s = times_s[first_beyond];
+    if (first_beyond > 0) low_s = times_s[first_beyond - 1];
+  }
+  return high_s;
+}
+
+size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
+              const std::function<void(const Samples&)>& sink) {
+  const size_t n = static_cast<size_t>(propagator.dynamics().size());
+  const bool with_derivatives = propagator.sensitivity().has_value();
+  std::vector<Lanes> y(n);
+  std::vector<Lanes> derivatives(with_derivatives ? n * propagator.sensitivity()->variables().size()
+                                                  : 0);
+  Samples samples{.time_s = 0.0, .held = {}, .y = y, .derivatives = derivatives};
+
+  const auto flush = [&] {
+    if (samples.count == 0) return;
+    const int last = samples.count - 1;
+    const auto repeat = [&](Lanes& x) {
+      for (int i = samples.count; i < Lanes::count; ++i) x.set(i, x[last]);
+    };
+    repeat(samples.time_s);
+    for (Lanes& x : samples.y) repeat(x);
+    for (Lanes& x : samples.derivatives) repeat(x);
+    for (int i = samples.count; i < Lanes::count; ++i) {
+      samples.held[static_cast<size_t>(i)] = samples.held[static_cast<size_t>(last)];
+    }
+    sink(samples);
+    samples.first += static_cast<size_t>(samples.count);
+    samples.count = 0;
+  };
+
+  // Times within one step share one evaluation of the polynomial; the lanes are then filed singly,
+  // because a batch may span several short steps.
+  const auto take = [&](size_t next, double end_s, bool including_end) {
+    const auto inside = [&](double t_s) { return including_end ? t_s <= end_s : t_s < end_s; };
+    while (next < count && inside(time_s(next))) {
+      Lanes times_s = time_s(next);
+      int batch = 0;
+      for (; batch < Lanes::count - samples.count && next < count && inside(time_s(next));
+           ++batch) {
+        times_s.set(batch, time_s(next++));
+      }
+      propagator.dense(times_s, y.data());
+      if (with_derivatives) propagator.dense_derivatives(times_s, derivatives.data());
+      for (int i = 0; i < batch; ++i) {
+        const int lane = samples.count++;
+        samples.time_s.set(lane, times_s[i]);
+        samples.held[static_cast<size_t>(lane)] = propagator.held();
+        for (size_t c = 0; c < y.size(); ++c) samples.y[c].set(lane, y[c][i]);
+        for (size_t c = 0; c < derivatives.size(); ++c) {
+          samples.derivatives[c].set(lane, derivatives[c][i]);
+        }
+      }
+      if (samples.count == Lanes::count) flush();
+    }
+    return next;
+  };
+
+  size_t next = 0;
+  while (propagator.advance()) next = take(next, propagator.step_end_s(), false);
+  next = take(next, propagator.step_end_s(), true);
+  flush();
+  return next;
+}
+
+Trajectory propagate(const Dynamics& dynamics, const PlatformState& initial,
+                     std::span<const double> times_s, const PropagationOptions& options,
+                     const std::vector<Variable>& variables,
+                     const std::vector<EventFunction>& events) {
+  const size_t n = static_cast<size_t>(dynamics.size());
+  const double end_s = times_s.empty() ? initial.time_s : times_s.back();
+  Propagator propagator(dynamics, initial, end_s, options, variables, events);
+  Trajectory trajectory;
+  trajectory.components = n - 1;
+  trajectory.variables = variables.size();
+  trajectory.states.reserve(times_s.size());
+  const auto sink = [&](const Samples& samples) {
+    std::vector<double> y(n), change(n);
+    for (int i = 0; i < samples.count; ++i) {
+      for (size_t c = 0; c < n; ++c) y[c] = samples.y[c][i];
+      trajectory.states.push_back(to_state(samples.time_s[i], y));
+      if (variables.empty()) continue;
+      const size_t first = trajectory.derivatives.size();
+      trajectory.derivatives.resize(first + trajectory.components * variables.size());
+      for (size_t v = 0; v < variables.size(); ++v) {
+        for (size_t c = 0; c < n; ++c) change[c] = samples.derivatives[c * variables.size() + v][i];
+        const std::vector<double> seen = tangent(y, change);
+        for (size_t c = 0; c < seen.size(); ++c) {
+          trajectory.derivatives[first + c * variables.size() + v] = seen[c];
+        }
+      }
+    }
+  };
+  sample(
+      propagator, times_s.size(), [&](size_t i) { return times_s[i]; }, sink);
+  trajectory.events = propagator.events();
+  trajectory.statistics = propagator.statistics();
+  return trajectory;
+}
+
+}  // namespace photorque

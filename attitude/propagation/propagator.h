@@ -1,0 +1,159 @@
+// Flies a platform through its disturbances.
+//
+// Gauss collocation (see collocation.h) with steps as long as the tolerance allows, ending exactly
+// at every jump of a command or a law; dense output, events found on it, and derivatives on
+// request. On a free asymmetric body after 1e5 s the attitude is right to better than 1e-9 rad,
+// energy and momentum to 1e-13 (tests/attitude/propagator_test.cpp; attitude_benchmark compares
+// methods). The same inputs give the same bits.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "attitude/propagation/sensitivity.h"
+
+namespace photorque {
+
+struct PropagationOptions {
+  // Bound on the estimated error of the polynomial within a step, relative to Dynamics::scales(): 1
+  // rad, 1 rad/s. The dense output is some ten times better, and the ends of steps, whose errors
+  // are the ones that add up, better by many powers of ten.
+  double tolerance = 1e-8;
+  double longest_step_s = std::numeric_limits<double>::infinity();
+  int64_t most_steps = 1'000'000'000;
+  // Of derivatives, relative to each one's size within a step: what their iteration leaves.
+  double derivative_tolerance = 1e-16;
+};
+
+// A quantity whose zeros are looked for. Crossings closer together than an eighth of a step may be
+// missed in pairs.
+struct EventFunction {
+  std::string name;
+  bool ends_run = false;
+  bool rising_only = false;  // only where the value becomes positive
+  std::function<Lanes(const Lanes& time_s, const Lanes* y)> value;
+  std::string falling_name = {};  // where it becomes negative; empty: the same
+};
+struct Event {
+  std::string name;
+  double time_s = 0.0;
+  bool rising = true;
+};
+
+// The tilt of body z from lab z reaches `limit_rad`.
+EventFunction tilt_event(double limit_rad);
+// The charge drawn reaches `capacity_C`.
+EventFunction battery_empty_event(double capacity_C);
+// "eclipse_begins" and "eclipse_ends": half of the light arrives.
+EventFunction eclipse_event(const Dynamics& dynamics);
+
+class Propagator {
+ public:
+  // From `initial` to `end_s` ≥ initial.time_s. `dynamics` must outlive the propagator.
+  // InputError when the initial quaternion is not of unit norm to 1e-6 or the number of extra
+  // states is not the model's.
+  Propagator(const Dynamics& dynamics, const PlatformState& initial, double end_s,
+             const PropagationOptions& options = {}, std::vector<Variable> variables = {},
+             std::vector<EventFunction> events = {});
+
+  // Computes the next step; false when the run has ended. NumericalError when the step length falls
+  // below what the time can resolve, or below what reaches the end in `most_steps`.
+  bool advance();
+
+  // The last step; its end is the event's time when one ended the run. Held values are those of its
+  // whole length. Before the first step: both the initial time.
+  double step_start_s() const { return step_.start_s(); }
+  double step_end_s() const { return step_end_s_; }
+  const Held& held() const { return held_; }
+  // State at eight times within the last step.
+  void dense(const Lanes& time_s, Lanes* y) const;
+  // Its derivatives by the variables: component c by variable v at [c · variables + v].
+  void dense_derivatives(const Lanes& time_s, Lanes* derivatives) const;
+
+  const Dynamics& dynamics() const { return dynamics_; }
+  const std::optional<Sensitivity>& sensitivity() const { return sensitivity_; }
+  // Events so far, in order of time.
+  const std::vector<Event>& events() const { return events_; }
+  bool ended_by_event() const { return ended_by_event_; }
+
+  struct Statistics {
+    int64_t steps = 0;
+    int64_t rejected = 0;
+    int64_t iterations = 0;
+  };
+  const Statistics& statistics() const { return statistics_; }
+
+ private:
+  struct Jump {
+    double time_s;
+    int variable;  // whose parameter this time is, −1 for none
+  };
+  void collect_jumps(double from_s);
+  double next_stop_s() const;
+  void check_pace() const;
+  void take_step();
+  double propose_length(const CollocationStep::Outcome& outcome, double h_s, bool cut) const;
+  void cross_jumps();
+  void find_events();
+  double locate(const EventFunction& event, double low_s, double high_s) const;
+  Lanes fraction(const Lanes& time_s) const;
+
+  const Dynamics& dynamics_;
+  double begin_s_;
+  double end_s_;
+  PropagationOptions options_;
+  CollocationStep step_;
+  std::optional<Sensitivity> sensitivity_;
+  std::vector<EventFunction> event_functions_;
+  std::vector<Event> events_;
+  std::vector<double> event_values_;  // at the start of the step
+  std::vector<Jump> jumps_;           // by time
+  size_t next_jump_ = 0;
+  Held held_;
+  double h_s_ = 0.0;  // length to try next
+  // Just below the last length that failed; rises slowly, so that it is tried again some day.
+  double ceiling_s_ = std::numeric_limits<double>::infinity();
+  double step_end_s_ = 0.0;
+  bool has_step_ = false;
+  bool ended_by_event_ = false;
+  Statistics statistics_;
+};
+
+// States at given times, with derivatives if variables are given.
+struct Trajectory {
+  std::vector<PlatformState> states;  // as many as were reached before an event ended the run
+  // By variable v of tangent component c (see tangent()) at time i:
+  // derivatives[(i · components + c) · variables + v].
+  std::vector<double> derivatives;
+  size_t components = 0;
+  size_t variables = 0;
+  std::vector<Event> events;
+  Propagator::Statistics statistics;
+};
+// `times_s` must not fall and not begin before initial.time_s.
+Trajectory propagate(const Dynamics& dynamics, const PlatformState& initial,
+                     std::span<const double> times_s, const PropagationOptions& options = {},
+                     const std::vector<Variable>& variables = {},
+                     const std::vector<EventFunction>& events = {});
+
+// Up to eight states on their way to a user, in lanes; lanes from `count` on repeat the last.
+struct Samples {
+  size_t first = 0;  // index of lane 0 among the times asked for
+  int count = 0;
+  Lanes time_s;
+  std::array<Held, Lanes::count> held;
+  std::vector<Lanes> y;  // Dynamics::size()
+  std::vector<Lanes>
+      derivatives;  // of y, as Propagator::dense_derivatives; empty without variables
+};
+// Calls `sink` with the states at time_s(0), time_s(1), …, time_s(count − 1), which must not fall,
+// as the propagator passes them. Uses the same memory however many there are. At a jump the values
+// after it are given. Returns the number of times reached before the run ended.
+size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
+              const std::function<void(const Samples&)>& sink);
+
+}  // namespace photorque

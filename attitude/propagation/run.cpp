@@ -1,0 +1,264 @@
+#include "attitude/propagation/run.h"
+
+#include <cmath>
+#include <deque>
+#include <optional>
+
+#include "attitude/environment/epoch.h"
+#include "attitude/propagation/time_history.h"
+#include "core/transform.h"
+
+namespace photorque {
+namespace {
+
+constexpr double longest_run_s = 1e10;  // three centuries
+
+std::vector<Disturbance> read_own_disturbances(const Settings& root,
+                                               const DisturbanceContext& context) {
+  if (!root.has("disturbance")) return {};
+  SettingsNode holder;
+  holder.value = SettingsNode::Table{{"disturbance", root.raw("disturbance")}};
+  const Settings own(std::make_shared<const SettingsNode>(std::move(holder)));
+  std::vector<Disturbance> disturbances = read_disturbances(own, context);
+  own.finish();
+  return disturbances;
+}
+
+std::filesystem::path beside_experiment(const Settings& settings, const std::string& name) {
+  return std::filesystem::path(settings.where().file).parent_path() / name;
+}
+
+Schedule read_schedule(const Settings& settings) {
+  if (settings.has("commands")) {
+    const std::string name = settings.text("commands");
+    const std::filesystem::path path = beside_experiment(settings, name);
+    if (!std::filesystem::is_regular_file(path)) {
+      throw settings.error("commands", "\"" + name + "\"", "a file beside the experiment");
+    }
+    return read_command_file(path);
+  }
+  Schedule schedule;
+  std::optional<double> before_s;
+  for (const Settings& command : settings.tables("command")) {
+    const double time_s = command.number("time_s");
+    if (before_s && time_s <= *before_s) {
+      throw command.error("time_s", std::to_string(time_s) + " after " + std::to_string(*before_s),
+                          "commands in order of time");
+    }
+    before_s = time_s;
+    schedule.append(time_s, {command.vector3_or("torque_N_m", Vec3::Zero()),
+                             command.number_or("battery_current_A", 0.0)});
+  }
+  return schedule;
+}
+
+Quat read_initial_attitude(const Settings& settings) {
+  if (!settings.has("initial_attitude")) {
+    const double tilt_rad = settings.number_or("initial_tilt_deg", 0.0, {0.0, pi, false, false});
+    const double heading_rad = settings.number_or("initial_heading_deg", 0.0);
+    return lab_from_body_at(tilt_rad, heading_rad).rotation;
+  }
+  const std::vector<double> q = settings.numbers("initial_attitude");
+  if (q.size() != 4) {
+    throw settings.error("initial_attitude", std::to_string(q.size()) + " numbers",
+                         "a quaternion [w, x, y, z]");
+  }
+  const Quat attitude(q[0], q[1], q[2], q[3]);
+  if (!(std::abs(attitude.norm() - 1.0) < 1e-3)) {
+    throw settings.error("initial_attitude",
+                         "a quaternion of norm " + std::to_string(attitude.norm()),
+                         "a quaternion of unit norm");
+  }
+  return attitude.normalized();
+}
+
+std::vector<EventFunction> events_of(const Dynamics& dynamics) {
+  const Platform& platform = dynamics.model().platform;
+  std::vector<EventFunction> events;
+  if (platform.tilt_limit_rad) events.push_back(tilt_event(*platform.tilt_limit_rad));
+  if (platform.battery_capacity_C) {
+    events.push_back(battery_empty_event(*platform.battery_capacity_C));
+    // The platform turns on without power.
+    events.back().ends_run = false;
+  }
+  for (const Disturbance& d : dynamics.model().disturbances) {
+    if (d.kind == "orbit") events.push_back(eclipse_event(dynamics));
+  }
+  return events;
+}
+
+struct Seen {
+  const PropagationRun& run;
+  double time_s(size_t row) const {
+    return run.initial.time_s + static_cast<double>(row) / run.output_rate_Hz;
+  }
+  size_t rows() const {
+    return static_cast<size_t>(std::floor(run.duration_s * run.output_rate_Hz + 1e-6)) + 1;
+  }
+};
+
+double camera_delay_s(const Dynamics& dynamics, const PlatformState& state) {
+  std::vector<Lanes> y;
+  for (const double x : to_vector(state)) y.emplace_back(x);
+  return dynamics.at(state.time_s, {}, y.data()).camera_delay_s[0];
+}
+
+// The times at which a run is looked at: its rows and, for a camera with latency, what it sees in
+// them. In order; of two equal times what is seen comes first. What lies before the start is looked
+// at there, `before_s` too late.
+struct Look {
+  double time_s;
+  bool is_row;
+  double before_s = 0.0;
+};
+std::vector<Look> looks(const PropagationRun& run, double delay_s) {
+  const Seen seen{run};
+  std::vector<Look> all;
+  size_t next_seen = 0;
+  for (size_t row = 0; row < seen.rows(); ++row) {
+    const double time_s = seen.time_s(row);
+    for (; delay_s > 0.0 && next_seen < seen.rows(); ++next_seen) {
+      const double wanted_s = seen.time_s(next_seen) - delay_s;
+      const double seen_s = std::max(run.initial.time_s, wanted_s);
+      if (seen_s > time_s) break;
+      all.push_back({seen_s, false, seen_s - wanted_s});
+    }
+    all.push_back({time_s, true});
+  }
+  return all;
+}
+
+// The attitude so long before `state`, turning as it does there.
+Quat attitude_before(const PlatformState& state, double before_s) {
+  const Vec3 turn_rad = state.rate_body_rad_s * before_s;
+  const double angle_rad = turn_rad.norm();
+  if (!(angle_rad > 0.0)) return state.lab_from_body;
+  return state.lab_from_body * Quat(Eigen::AngleAxisd(-angle_rad, turn_rad / angle_rad));
+}
+
+Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
+  return {v[0][lane], v[1][lane], v[2][lane]};
+}
+
+}  // namespace
+
+Settings own_table(const Settings& root, const std::string& key, bool required) {
+  if (!root.has(key) && !required) {
+    return Settings(std::make_shared<const SettingsNode>(), key);
+  }
+  const Settings table = root.table(key);  // complains when it is no table
+  return Settings(std::make_shared<const SettingsNode>(root.raw(key)), table.name());
+}
+
+BelievedModel read_attitude_model(const Settings& root) {
+  const Settings platform = own_table(root, "platform", true);
+  const Settings environment = own_table(root, "environment", false);
+  const Settings sensors = own_table(root, "sensors", false);
+  BelievedModel believed;
+  AttitudeModel& model = believed.model;
+  model.platform = read_platform(platform);
+  model.environment = read_environment(environment);
+  const DisturbanceContext context{model.platform, model.environment};
+  model.disturbances = read_own_disturbances(root, context);
+  believed.sensors = root.has("sensors") ? read_sensors(sensors, context) : perfect_sensors();
+  model.disturbances.insert(model.disturbances.end(), believed.sensors.errors.begin(),
+                            believed.sensors.errors.end());
+  for (const Settings& settings : {platform, environment, sensors}) settings.finish();
+  return believed;
+}
+
+PropagationRun read_propagation(const Settings& root) {
+  BelievedModel believed = read_attitude_model(root);
+  PropagationRun run;
+  run.model = std::move(believed.model);
+  run.sensors = std::move(believed.sensors);
+  const Settings settings = own_table(root, "propagate", false);
+  run.duration_s = settings.number_or("duration_s", 600.0, {0.0, longest_run_s, true, false});
+  run.output_rate_Hz = settings.number_or("output_rate_Hz", 10.0, Range::positive());
+  constexpr double most_rows = 2e7;
+  if (run.duration_s * run.output_rate_Hz > most_rows) {
+    throw settings.error("output_rate_Hz", "more than 20 million rows", "a lower rate");
+  }
+  run.history_rows =
+      static_cast<size_t>(settings.integer_or("history_rows", 20000, 2, int64_t{20'000'000}));
+  run.seed = static_cast<uint64_t>(settings.integer_or("seed", 1, 0, INT64_MAX));
+  run.options.tolerance =
+      settings.number_or("tolerance", run.options.tolerance, {1e-13, 1e-3, false, false});
+  run.options.longest_step_s =
+      settings.number_or("longest_step_s", run.options.longest_step_s, Range::positive());
+  run.model.schedule = read_schedule(settings);
+  run.epoch = settings.text_or("epoch", "2000-01-01T00:00:00");
+  if (!parse_epoch(run.epoch)) {
+    throw settings.error("epoch", "\"" + run.epoch + "\"", "a time as 2000-01-01T12:00:00");
+  }
+  run.initial =
+      Dynamics(run.model).initial_state(settings.vector3_or("initial_rate_rad_s", Vec3::Zero()));
+  run.initial.lab_from_body = read_initial_attitude(settings);
+  const double tilt_rad =
+      std::acos(std::clamp(run.initial.lab_from_body.toRotationMatrix()(2, 2), -1.0, 1.0));
+  const std::optional<double> limit_rad = run.model.platform.tilt_limit_rad;
+  if (limit_rad && tilt_rad > *limit_rad) {
+    throw settings.error(settings.has("initial_attitude") ? "initial_attitude" : "initial_tilt_deg",
+                         "a tilt of " + std::to_string(tilt_rad / degree_rad) + " deg",
+                         "at most platform.tilt_limit_deg");
+  }
+  run.initial.charge_drawn_C = settings.number_or("initial_charge_Ah", 0.0);
+  settings.finish();
+  return run;
+}
+
+PropagationResult propagate(const PropagationRun& run,
+                            const std::function<void(double)>& progress) {
+  const Dynamics dynamics(run.model);
+  const size_t rows = Seen{run}.rows();
+  const double end_s = run.initial.time_s + run.duration_s;
+  const double delay_s = camera_delay_s(dynamics, run.initial);
+  const std::vector<Look> times = looks(run, delay_s);
+
+  PropagationResult result;
+  Recorder recorder(run.sensors, run.seed);
+  TimeHistory history(dynamics);
+  Propagator propagator(dynamics, run.initial, end_s, run.options, {}, events_of(dynamics));
+  std::vector<double> y(static_cast<size_t>(dynamics.size()));
+  std::deque<Quat> on_the_way;  // seen by the camera, not yet reported
+  const size_t thinning = (rows + run.history_rows - 1) / run.history_rows;
+  const auto sink = [&](const Samples& samples) {
+    const Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
+    for (int i = 0; i < samples.count; ++i) {
+      for (size_t c = 0; c < y.size(); ++c) y[c] = samples.y[c][i];
+      const PlatformState state = to_state(samples.time_s[i], y);
+      const Look& look = times[samples.first + static_cast<size_t>(i)];
+      if (!look.is_row) {
+        on_the_way.push_back(attitude_before(state, look.before_s));
+        continue;
+      }
+      Quat seen = state.lab_from_body;
+      if (!on_the_way.empty()) {
+        seen = on_the_way.front();
+        on_the_way.pop_front();
+      }
+      recorder.add({.time_s = state.time_s,
+                    .lab_from_body_seen = seen,
+                    .heading_rad = heading_rad(state),
+                    .gyro_rad_s = in_lane(now.gyro_rad_s, i),
+                    .camera_error_rad = in_lane(now.camera_error_rad, i),
+                    .command_body_N_m = in_lane(now.command_body_N_m, i),
+                    .battery_current_A = now.battery_current_A[i],
+                    .array_power_W = now.array_power_W[i]});
+      if (result.states.size() % thinning == 0) history.add(state, now, i);
+      result.states.push_back(state);
+    }
+    if (progress) {
+      progress(static_cast<double>(result.states.size()) / static_cast<double>(rows));
+    }
+  };
+  sample(
+      propagator, times.size(), [&](size_t i) { return times[i].time_s; }, sink);
+  result.recording = recorder.finish();
+  result.events = propagator.events();
+  result.statistics = propagator.statistics();
+  result.product = history.product(result.events, result.statistics);
+  return result;
+}
+
+}  // namespace photorque

@@ -1,0 +1,67 @@
+// `propagate`: from an experiment file to a flown platform, its recording and its plots.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "attitude/propagation/propagator.h"
+#include "attitude/recordings/recording.h"
+#include "attitude/recordings/sensors.h"
+#include "core/product.h"
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+struct PropagationRun {
+  AttitudeModel model;  // the sensors' errors included, after the file's disturbances
+  Sensors sensors;
+  PlatformState initial;
+  double duration_s = 0.0;
+  double output_rate_Hz = 10.0;  // rows of the recording
+  size_t history_rows = 20000;   // at most so many, evenly from the recording's
+  PropagationOptions options;
+  uint64_t seed = 1;
+  std::string epoch;  // calendar time of t = 0, ISO 8601, for files that need one
+};
+
+// The table `key` of an experiment with its own record of the keys read, so that finish() complains
+// about keys of this table alone, whoever else looked at the file. Empty where there is none and
+// none is required.
+Settings own_table(const Settings& root, const std::string& key, bool required);
+
+// What is believed about the platform and its laboratory: [platform], [environment],
+// [[disturbance]] and [sensors] of an experiment file. InputError for wrong or unknown keys in
+// them.
+struct BelievedModel {
+  AttitudeModel model;
+  Sensors sensors;
+};
+BelievedModel read_attitude_model(const Settings& root);
+
+// The same and [propagate], which may be absent:
+//   duration_s (default 600); output_rate_Hz (of the recording, default 10); history_rows (of the
+//     time history at most, default 20000); tolerance (default 1e-8); longest_step_s; seed (1);
+//   initial_attitude = [w, x, y, z], or initial_tilt_deg and initial_heading_deg (default 0), see
+//     lab_from_body_at(); initial_rate_rad_s[3] (default 0); initial_charge_Ah (drawn, default 0);
+//   commands: a CSV with t_s and command_x_N_m … or battery_current_A (relative to the experiment),
+//     or [[propagate.command]] with time_s, torque_N_m[3], battery_current_A (rising times);
+//   epoch (default "2000-01-01T00:00:00").
+PropagationRun read_propagation(const Settings& root);
+
+struct PropagationResult {
+  Recording recording;  // as the sensors saw it
+  // Time history (table), tilt, heading, rates, charge and torques (plots), headline figures.
+  Product product;
+  std::vector<PlatformState> states;  // the truth at the recording's times
+  std::vector<Event> events;
+  Propagator::Statistics statistics;
+};
+
+// Flies the run. It ends early at the bearing's stop (Platform::tilt_limit_rad). `progress` is
+// called now and then with the share of the duration that is done.
+PropagationResult propagate(const PropagationRun& run,
+                            const std::function<void(double)>& progress = {});
+
+}  // namespace photorque

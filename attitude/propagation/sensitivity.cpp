@@ -1,0 +1,229 @@
+#include "attitude/propagation/sensitivity.h"
+
+#include <algorithm>
+
+#include "attitude/propagation/settling.h"
+
+namespace photorque {
+namespace {
+
+constexpr int most_iterations = 100;
+
+Dynamics::Block empty_block() {
+  Dynamics::Block block;
+  block.state.fill(-1);
+  block.parameter.fill(-1);
+  return block;
+}
+
+bool is_zero(const Lanes& x) {
+  return largest(larger_magnitude(x, 0.0)) == 0.0;
+}
+
+}  // namespace
+
+std::vector<double> tangent(std::span<const double> y, std::span<const double> change) {
+  const Quat q(y[0], y[1], y[2], y[3]);
+  const Quat dq(change[0], change[1], change[2], change[3]);
+  const Vec3 rotation = 2.0 * (q.conjugate() * dq).vec() / q.squaredNorm();
+  std::vector<double> result = {rotation[0], rotation[1], rotation[2]};
+  result.insert(result.end(), change.begin() + component::rate, change.end());
+  return result;
+}
+
+Sensitivity::Sensitivity(const Dynamics& dynamics, std::vector<Variable> variables,
+                         std::span<const double> y)
+    : dynamics_(dynamics), variables_(std::move(variables)) {
+  const size_t n = static_cast<size_t>(dynamics.size()), count = variables_.size();
+  start_.assign(n * count, 0.0);
+  increments_.assign(n * count, Lanes(0.0));
+  accepted_increments_ = increments_;
+  source_ = increments_;
+  const Quat q(y[0], y[1], y[2], y[3]);
+  for (size_t v = 0; v < count; ++v) {
+    const int initial = variables_[v].initial;
+    if (initial < 0) continue;
+    if (initial < 3) {
+      Quat half_turn(0.0, 0.0, 0.0, 0.0);
+      half_turn.vec()[initial] = 0.5;
+      const Quat dq = q * half_turn;
+      const std::array<double, 4> components = {dq.w(), dq.x(), dq.y(), dq.z()};
+      for (size_t c = 0; c < 4; ++c) start_[c * count + v] = components[c];
+    } else {
+      // Behind the attitude the tangent has one component less than the state.
+      start_[static_cast<size_t>(initial + 1) * count + v] = 1.0;
+    }
+    if (initial >= 3 && initial < 6) seed_bound_states(v, initial - 3);
+  }
+  make_blocks();
+}
+
+// States that begin by turning with the body change with its initial rate.
+void Sensitivity::seed_bound_states(size_t v, int axis) {
+  const auto& disturbances = dynamics_.model().disturbances;
+  for (size_t d = 0; d < disturbances.size(); ++d) {
+    size_t component = static_cast<size_t>(dynamics_.first_state(d));
+    for (const ExtraState& state : disturbances[d].states) {
+      start_[component++ * variables_.size() + v] = state.per_body_rate[axis];
+    }
+  }
+}
+
+void Sensitivity::make_blocks() {
+  for (int first = 0; first < dynamics_.size(); first += DualLanes::block) {
+    Dynamics::Block block = empty_block();
+    for (int k = 0; k < DualLanes::block && first + k < dynamics_.size(); ++k) {
+      block.state[static_cast<size_t>(k)] = first + k;
+    }
+    state_blocks_.push_back(block);
+  }
+  // Parameters of early stages make every disturbance depend on them; keep them together.
+  const auto early = [&](const Variable& v) {
+    return dynamics_.model().disturbances[v.disturbance].stage < Stage::torque;
+  };
+  for (const bool want_early : {true, false}) {
+    size_t k = DualLanes::block;
+    for (size_t v = 0; v < variables_.size(); ++v) {
+      const Variable& variable = variables_[v];
+      if (variable.initial >= 0 || early(variable) != want_early) continue;
+      if (k == DualLanes::block) {
+        parameter_blocks_.push_back({empty_block(), {}});
+        parameter_blocks_.back().variable.fill(-1);
+        k = 0;
+      }
+      ParameterBlock& last = parameter_blocks_.back();
+      last.block.parameter[k] =
+          dynamics_.first_parameter(variable.disturbance) + variable.parameter;
+      last.variable[k++] = static_cast<int>(v);
+    }
+  }
+}
+
+void Sensitivity::differentiate_rates(const CollocationStep& step, const Held& held) {
+  const size_t n = static_cast<size_t>(dynamics_.size()), count = variables_.size();
+  std::vector<Lanes> partials(n * DualLanes::block);
+  jacobian_.clear();
+  for (const Dynamics::Block& block : state_blocks_) {
+    dynamics_.derivatives(step.stage_times_s(), held, step.stages().data(), block, partials.data());
+    for (size_t c = 0; c < n; ++c) {
+      for (size_t k = 0; k < DualLanes::block; ++k) {
+        const Lanes& value = partials[c * DualLanes::block + k];
+        if (block.state[k] >= 0 && !is_zero(value)) {
+          jacobian_.push_back({c, static_cast<size_t>(block.state[k]), value});
+        }
+      }
+    }
+  }
+  for (const ParameterBlock& block : parameter_blocks_) {
+    dynamics_.derivatives(step.stage_times_s(), held, step.stages().data(), block.block,
+                          partials.data());
+    for (size_t c = 0; c < n; ++c) {
+      for (size_t k = 0; k < DualLanes::block; ++k) {
+        if (block.variable[k] < 0) continue;
+        source_[c * count + static_cast<size_t>(block.variable[k])] =
+            partials[c * DualLanes::block + k];
+      }
+    }
+  }
+}
+
+bool Sensitivity::solve(const CollocationStep& step, const Held& held, double tolerance) {
+  const size_t count = variables_.size();
+  differentiate_rates(step, held);
+  h_s_ = step.length_s();
+  if (has_polynomial_) {
+    const auto continuation = gauss::continuation_columns(h_s_ / accepted_h_s_);
+    for (size_t i = 0; i < increments_.size(); ++i) {
+      increments_[i] = gauss::times(continuation, accepted_increments_[i]);
+    }
+  } else {
+    std::fill(increments_.begin(), increments_.end(), Lanes(0.0));
+  }
+  const Lanes weighted_h_s = h_s_ * Lanes(gauss::weights);
+  std::vector<Lanes> stages(start_.size()), rates(start_.size());
+  // Linear, and of the same contraction as the stages, which have settled: mostly it will, however
+  // the mixed units of the components swell the first changes. Not where a swing of no amplitude
+  // yet let the stages settle in a step too long for it.
+  constexpr int patience = 25;
+  Settling settling(tolerance, 1e-13, patience);
+  for (int iteration = 1; iteration <= most_iterations; ++iteration) {
+    for (size_t i = 0; i < start_.size(); ++i) {
+      stages[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);
+    }
+    rates = source_;
+    for (const Entry& entry : jacobian_) {
+      const Lanes* from = stages.data() + entry.column * count;
+      Lanes* to = rates.data() + entry.row * count;
+      for (size_t v = 0; v < count; ++v) to[v] += entry.value * from[v];
+    }
+    // The derivatives by different variables have different units: each is its own scale.
+    double change = 0.0;
+    for (size_t v = 0; v < count; ++v) {
+      Lanes size = 0.0, moved = 0.0;
+      for (size_t i = v; i < start_.size(); i += count) {
+        const Lanes increment = weighted_h_s * rates[i];
+        moved = larger_magnitude(moved, increment - increments_[i]);
+        size = larger_magnitude(size, stages[i]);
+        increments_[i] = increment;
+      }
+      const double of_size = largest(size);
+      if (of_size > 0.0) change = std::max(change, largest(moved) / of_size);
+    }
+    const Settling::Verdict verdict = settling.judge(change);
+    if (verdict == Settling::Verdict::settled) return true;
+    if (verdict == Settling::Verdict::failed) break;
+  }
+  return false;
+}
+
+void Sensitivity::accept() {
+  for (size_t i = 0; i < start_.size(); ++i) start_[i] += sum(increments_[i]);
+  std::swap(increments_, accepted_increments_);
+  accepted_h_s_ = h_s_;
+  has_polynomial_ = true;
+}
+
+void Sensitivity::add(size_t v, std::span<const double> change) {
+  for (size_t c = 0; c < change.size(); ++c) start_[c * variables_.size() + v] += change[c];
+}
+
+void Sensitivity::dense(const Lanes& fraction, Lanes* derivatives) const {
+  const gauss::DenseWeights polynomial = gauss::dense_weights(fraction);
+  for (size_t i = 0; i < start_.size(); ++i) {
+    derivatives[i] = start_[i] + gauss::times(polynomial, increments_[i]);
+  }
+}
+
+void Sensitivity::readings(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+                           const Lanes* y, const Lanes* derivatives, Lanes* readings) const {
+  const size_t count = variables_.size();
+  std::fill(readings, readings + Dynamics::reading_count * count, Lanes(0.0));
+  std::array<Lanes, Dynamics::reading_count * DualLanes::block> partials;
+  for (const Dynamics::Block& block : state_blocks_) {
+    dynamics_.reading_derivatives(time_s, held, y, block, partials.data());
+    for (size_t i = 0; i < partials.size(); ++i) {
+      const size_t r = i / DualLanes::block, k = i % DualLanes::block;
+      if (block.state[k] < 0 || is_zero(partials[i])) continue;
+      const Lanes* from = derivatives + static_cast<size_t>(block.state[k]) * count;
+      for (size_t v = 0; v < count; ++v) readings[r * count + v] += partials[i] * from[v];
+    }
+  }
+  // What moves masses or exerts torques reaches the instruments through the state alone.
+  const auto reaches_instruments = [&](int variable) {
+    if (variable < 0) return false;
+    const size_t d = variables_[static_cast<size_t>(variable)].disturbance;
+    const Stage stage = dynamics_.model().disturbances[d].stage;
+    return stage != Stage::mass && stage != Stage::torque;
+  };
+  for (const ParameterBlock& block : parameter_blocks_) {
+    if (std::none_of(block.variable.begin(), block.variable.end(), reaches_instruments)) continue;
+    dynamics_.reading_derivatives(time_s, held, y, block.block, partials.data());
+    for (size_t i = 0; i < partials.size(); ++i) {
+      const size_t r = i / DualLanes::block, k = i % DualLanes::block;
+      if (block.variable[k] < 0) continue;
+      readings[r * count + static_cast<size_t>(block.variable[k])] += partials[i];
+    }
+  }
+}
+
+}  // namespace photorque

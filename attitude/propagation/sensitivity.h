@@ -1,0 +1,88 @@
+// The exact derivatives of a collocation solution with respect to the initial state and the
+// parameters of disturbances.
+//
+// The linear system that the collocation equations become when they are differentiated is solved on
+// the same stages: what comes out is the derivative of the computed trajectory itself, not a second
+// approximation. The partial derivatives of the right-hand side come from DualLanes, once per step.
+#pragma once
+
+#include <vector>
+
+#include "attitude/propagation/collocation.h"
+
+namespace photorque {
+
+// Something to differentiate with respect to.
+struct Variable {
+  // Of the initial state, in the order of Tangent below; −1: a parameter.
+  int initial = -1;
+  // Parameter `parameter` of disturbance `disturbance` of the model.
+  size_t disturbance = 0;
+  int parameter = -1;
+
+  static Variable initial_rotation(int body_axis) { return {body_axis, 0, -1}; }
+  // Of the body and of the extra states that begin by turning with it (ExtraState::per_body_rate).
+  static Variable initial_rate(int body_axis) { return {3 + body_axis, 0, -1}; }
+  static Variable initial_charge() { return {6, 0, -1}; }
+  static Variable initial_extra(int index) { return {7 + index, 0, -1}; }
+  static Variable of(size_t disturbance, int parameter) { return {-1, disturbance, parameter}; }
+};
+
+// Derivatives of a state as seen by people: the rotation vector of the attitude's change in body
+// axes [rad] (3), rate (3), charge (1), extra states. `change` holds the changes of the components.
+std::vector<double> tangent(std::span<const double> y, std::span<const double> change);
+
+class Sensitivity {
+ public:
+  // `y` is the initial state. `dynamics` must outlive this.
+  Sensitivity(const Dynamics& dynamics, std::vector<Variable> variables, std::span<const double> y);
+
+  const Dynamics& dynamics() const { return dynamics_; }
+  const std::vector<Variable>& variables() const { return variables_; }
+
+  // Differentiates an attempted step, to `tolerance` of each derivative's size. False when the
+  // iteration does not settle: the step is too long for the derivatives.
+  bool solve(const CollocationStep& step, const Held& held, double tolerance);
+  void accept();
+  void restart() { has_polynomial_ = false; }
+  // Adds `change` (a derivative of the state) to the derivatives by variable `v`.
+  void add(size_t v, std::span<const double> change);
+
+  // Derivatives at fractions of the step: component c by variable v at [c · variables + v].
+  void dense(const Lanes& fraction, Lanes* derivatives) const;
+  // At the start of the step, laid out likewise.
+  const std::vector<double>& start() const { return start_; }
+
+  // The same for the readings of the instruments (Dynamics::reading_derivatives) at given states,
+  // from the derivatives of those states; reading r by variable v at [r · variables + v].
+  void readings(const Lanes& time_s, const std::array<Held, Lanes::count>& held, const Lanes* y,
+                const Lanes* derivatives, Lanes* readings) const;
+
+ private:
+  // Variables of one evaluation with DualLanes: `variable[k]` is the index in variables_, or −1.
+  struct ParameterBlock {
+    Dynamics::Block block;
+    std::array<int, DualLanes::block> variable;
+  };
+  void seed_bound_states(size_t v, int axis);
+  void make_blocks();
+  void differentiate_rates(const CollocationStep& step, const Held& held);
+
+  const Dynamics& dynamics_;
+  std::vector<Variable> variables_;
+  std::vector<Dynamics::Block> state_blocks_;
+  std::vector<ParameterBlock> parameter_blocks_;
+  std::vector<double> start_;
+  std::vector<Lanes> increments_, accepted_increments_;  // as in CollocationStep
+  double h_s_ = 0.0, accepted_h_s_ = 0.0;
+  bool has_polynomial_ = false;
+  // ∂(dy_c/dt)/∂y_d, those that are not all zero, and ∂(dy_c/dt)/∂(variable).
+  struct Entry {
+    size_t row, column;
+    Lanes value;
+  };
+  std::vector<Entry> jacobian_;
+  std::vector<Lanes> source_;
+};
+
+}  // namespace photorque

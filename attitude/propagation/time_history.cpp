@@ -1,0 +1,246 @@
+#include "attitude/propagation/time_history.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+// Columns before the extra states.
+enum Column : size_t {
+  time,
+  q_w,
+  q_x,
+  q_y,
+  q_z,
+  tilt,
+  heading,
+  rate_x,
+  rate_y,
+  rate_z,
+  charge,
+  current,
+  power,
+  fixed
+};
+constexpr const char* fixed_names[fixed] = {"t_s",
+                                            "q_w",
+                                            "q_x",
+                                            "q_y",
+                                            "q_z",
+                                            "tilt_deg",
+                                            "heading_deg",
+                                            "rate_x_rad_s",
+                                            "rate_y_rad_s",
+                                            "rate_z_rad_s",
+                                            "charge_drawn_Ah",
+                                            "battery_current_A",
+                                            "array_power_W"};
+
+// At most about 1600 points, as many as a picture has columns to tell apart: of every stretch its
+// lowest and its highest, in order of time.
+void thin(const std::vector<double>& x, const std::vector<double>& y, Plot::Curve& curve) {
+  constexpr size_t most = 1600;
+  if (x.size() <= most) {
+    curve.x = x;
+    curve.y = y;
+    return;
+  }
+  const size_t stretches = most / 2;
+  for (size_t s = 0; s < stretches; ++s) {
+    const size_t begin = s * x.size() / stretches, end = (s + 1) * x.size() / stretches;
+    const auto [low, high] = std::minmax_element(y.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                 y.begin() + static_cast<std::ptrdiff_t>(end));
+    for (const auto at : {std::min(low, high), std::max(low, high)}) {
+      const size_t i = static_cast<size_t>(at - y.begin());
+      if (!curve.x.empty() && curve.x.back() == x[i]) continue;
+      curve.x.push_back(x[i]);
+      curve.y.push_back(y[i]);
+    }
+  }
+}
+
+Plot::Curve curve(const std::string& label, const std::vector<double>& x,
+                  const std::vector<double>& y) {
+  Plot::Curve c;
+  c.label = label;
+  thin(x, y, c);
+  return c;
+}
+
+// The largest of every stretch, for a logarithmic axis: what swings through zero shows its swing.
+// Values below `least` are left out.
+Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
+                     const std::vector<double>& size, double least) {
+  constexpr size_t most = 240;
+  const size_t stretches = std::min(most, x.size());
+  Plot::Curve c;
+  c.label = label;
+  for (size_t s = 0; s < stretches; ++s) {
+    const size_t begin = s * x.size() / stretches, end = (s + 1) * x.size() / stretches;
+    const double largest = *std::max_element(size.begin() + static_cast<std::ptrdiff_t>(begin),
+                                             size.begin() + static_cast<std::ptrdiff_t>(end));
+    if (!(largest >= least) || largest == 0.0) continue;
+    c.x.push_back(0.5 * (x[begin] + x[end - 1]));
+    c.y.push_back(largest);
+  }
+  return c;
+}
+
+bool any_nonzero(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return v != 0.0; });
+}
+
+std::vector<double> magnitudes(const std::vector<double>& x, const std::vector<double>& y,
+                               const std::vector<double>& z) {
+  std::vector<double> all(x.size());
+  for (size_t i = 0; i < x.size(); ++i) all[i] = std::hypot(x[i], y[i], z[i]);
+  return all;
+}
+
+// 350°, 10° becomes 350°, 370°: a curve without jumps.
+std::vector<double> unwrapped_deg(std::vector<double> angle_deg) {
+  for (size_t i = 1; i < angle_deg.size(); ++i) {
+    angle_deg[i] += 360.0 * std::round((angle_deg[i - 1] - angle_deg[i]) / 360.0);
+  }
+  return angle_deg;
+}
+
+Quantity exact(const std::string& name, double value) {
+  return {name, {value, 0.0}};
+}
+
+}  // namespace
+
+TimeHistory::TimeHistory(const Dynamics& dynamics) {
+  for (const char* name : fixed_names) columns_.push_back({name, {}, {}});
+  const auto& disturbances = dynamics.model().disturbances;
+  // The second of a kind is told apart by its number.
+  std::vector<std::string> labels;
+  for (const Disturbance& d : disturbances) {
+    const auto same = std::count_if(
+        disturbances.begin(), disturbances.begin() + static_cast<std::ptrdiff_t>(labels.size()),
+        [&](const Disturbance& other) { return other.kind == d.kind; });
+    labels.push_back(same == 0 ? d.kind : d.kind + "_" + std::to_string(same + 1));
+  }
+  first_extra_ = columns_.size();
+  for (size_t d = 0; d < disturbances.size(); ++d) {
+    for (const ExtraState& state : disturbances[d].states) {
+      columns_.push_back({labels[d] + "_" + state.name, {}, {}});
+    }
+  }
+  first_torque_ = columns_.size();
+  for (size_t d = 0; d < disturbances.size(); ++d) {
+    if (disturbances[d].stage == Stage::measurement) continue;
+    acting_.push_back(d);
+    labels_.push_back(labels[d]);
+    for (const char axis : {'x', 'y', 'z'}) {
+      columns_.push_back({"torque_" + labels[d] + "_" + axis + "_N_m", {}, {}});
+    }
+  }
+}
+
+void TimeHistory::add(const PlatformState& state, const Dynamics::Instants& now, int lane) {
+  size_t column = 0;
+  const auto put = [&](double value) { columns_[column++].values.push_back(value); };
+  const Quat& q = state.lab_from_body;
+  put(state.time_s);
+  for (const double x : {q.w(), q.x(), q.y(), q.z()}) put(x);
+  put(tilt_rad(state) / degree_rad);
+  put(heading_rad(state) / degree_rad);
+  for (const double x : state.rate_body_rad_s) put(x);
+  put(state.charge_drawn_C / 3600.0);
+  put(now.battery_current_A[lane]);
+  put(now.array_power_W[lane]);
+  for (const double x : state.extra) put(x);
+  for (const size_t d : acting_) {
+    for (int k = 0; k < 3; ++k) put(now.torque_body_N_m[d][k][lane]);
+  }
+}
+
+Product TimeHistory::product(const std::vector<Event>& events,
+                             const Propagator::Statistics& statistics) const {
+  Product product;
+  const auto values = [&](size_t column) -> const std::vector<double>& {
+    return columns_[column].values;
+  };
+  const std::vector<double>& t = values(time);
+  product.tables.push_back({"time_history", "Attitude, rates, charge and torques", columns_});
+  Table happened{"events", "What happened", {{"event", {}, {}}, {"t_s", {}, {}}}};
+  for (const Event& event : events) {
+    happened.columns[0].texts.push_back(event.name);
+    happened.columns[1].values.push_back(event.time_s);
+  }
+  if (!events.empty()) product.tables.push_back(happened);
+
+  const auto add_plot = [&](const std::string& name, const std::string& title, const std::string& y,
+                            std::vector<Plot::Curve> curves) {
+    Plot plot;
+    plot.name = name;
+    plot.title = title;
+    plot.x_label = "Time [s]";
+    plot.y_label = y;
+    plot.curves = std::move(curves);
+    product.plots.push_back(std::move(plot));
+  };
+  // Of a long flight curves are bands that hide each other: every axis has its own panel.
+  const auto add_vector_plot = [&](const std::string& name, const std::string& title,
+                                   const std::string& unit, size_t x) {
+    add_plot(name, title, "x [" + unit + "]", {curve("", t, values(x))});
+    product.plots.back().below = {{"y [" + unit + "]", {curve("", t, values(x + 1))}, false},
+                                  {"z [" + unit + "]", {curve("", t, values(x + 2))}, false}};
+  };
+  add_plot("tilt", "Tilt", "Tilt [deg]", {curve("", t, values(tilt))});
+  add_plot("heading", "Heading", "Heading [deg]", {curve("", t, unwrapped_deg(values(heading)))});
+  add_vector_plot("rates", "Body rates", "rad/s", rate_x);
+  if (any_nonzero(values(charge))) {
+    add_plot("charge", "Charge drawn from the battery", "Charge [Ah]",
+             {curve("", t, values(charge))});
+  }
+  if (any_nonzero(values(power))) {
+    add_plot("array_power", "Power of the solar array", "Power [W]", {curve("", t, values(power))});
+  }
+  std::vector<size_t> shown;
+  std::vector<std::vector<double>> sizes;
+  double largest_N_m = 0.0;
+  for (size_t i = 0; i < acting_.size(); ++i) {
+    const size_t x = first_torque_ + 3 * i;
+    std::vector<double> size = magnitudes(values(x), values(x + 1), values(x + 2));
+    if (!any_nonzero(size)) continue;
+    largest_N_m = std::max(largest_N_m, *std::max_element(size.begin(), size.end()));
+    shown.push_back(i);
+    sizes.push_back(std::move(size));
+    add_vector_plot("torque_" + labels_[i], "Torque of " + labels_[i] + ", body axes", "N m", x);
+  }
+  if (!shown.empty()) {
+    // Below this share of the largest torque nothing is to be seen of a platform.
+    constexpr double least_share = 1e-9;
+    std::vector<Plot::Curve> all;
+    for (size_t i = 0; i < shown.size(); ++i) {
+      all.push_back(envelope(labels_[shown[i]], t, sizes[i], least_share * largest_N_m));
+    }
+    std::erase_if(all, [](const Plot::Curve& one) { return one.x.empty(); });
+    add_plot("torques", "Size of every torque, largest within each 240th of the flight",
+             "Torque [N m]", std::move(all));
+    product.plots.back().y_log = true;
+  }
+
+  const std::vector<double>& tilts = values(tilt);
+  if (!t.empty()) {
+    product.quantities = {
+        exact("final_time_s", t.back()),
+        exact("final_tilt_deg", tilts.back()),
+        exact("largest_tilt_deg", *std::max_element(tilts.begin(), tilts.end())),
+        exact("final_heading_deg", values(heading).back()),
+        exact("final_rate_rad_s",
+              std::hypot(values(rate_x).back(), values(rate_y).back(), values(rate_z).back())),
+        exact("final_charge_drawn_Ah", values(charge).back()),
+    };
+  }
+  product.quantities.push_back(exact("steps", static_cast<double>(statistics.steps)));
+  return product;
+}
+
+}  // namespace photorque

@@ -1,0 +1,192 @@
+#include "attitude/recordings/cleaning.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace photorque {
+namespace {
+
+// Ratio of standard deviation and median absolute deviation of a Gaussian.
+constexpr double sigma_per_mad = 1.4826;
+
+Channel* find_channel(Recording& recording, std::string_view name) {
+  for (Channel& channel : recording.channels) {
+    if (channel.name == name) return &channel;
+  }
+  return nullptr;
+}
+
+// The median (the upper one of an even number); reorders the values. 0 if there are none.
+template <class Iterator>
+double middle_of(Iterator first, Iterator last) {
+  if (first == last) return 0.0;
+  const Iterator middle = first + (last - first) / 2;
+  std::nth_element(first, middle, last);
+  return *middle;
+}
+
+// Standard deviation of white noise from third differences, whose variance is 20 times its own and
+// which smooth motion hardly enters.
+double noise_level(const std::vector<double>& x) {
+  std::vector<double> size;
+  for (size_t i = 3; i < x.size(); ++i) {
+    const double d = x[i] - 3 * x[i - 1] + 3 * x[i - 2] - x[i - 3];
+    if (std::isfinite(d)) size.push_back(std::abs(d));
+  }
+  return sigma_per_mad * middle_of(size.begin(), size.end()) / std::sqrt(20.0);
+}
+
+// What a value is off from the parabola through the three before it (direction −1) or after it
+// (+1): a spike is off from both by the same, a step from one only. NaN near gaps and ends.
+double off_parabola(const std::vector<double>& x, size_t i, int direction) {
+  const auto at = [&](int steps) {
+    const auto j = static_cast<std::ptrdiff_t>(i) + direction * steps;
+    return j < 0 || j >= static_cast<std::ptrdiff_t>(x.size()) ? empty_cell
+                                                               : x[static_cast<size_t>(j)];
+  };
+  return at(0) - 3 * at(1) + 3 * at(2) - at(3);
+}
+
+// Stands out from smooth motion, however fast.
+bool stands_out_of_motion(const std::vector<double>& x, size_t i, double noise) {
+  constexpr size_t reach = 10;
+  constexpr double threshold = 6.0;
+  const double before = off_parabola(x, i, -1), after = off_parabola(x, i, +1);
+  const double off = before * after > 0.0 ? std::min(std::abs(before), std::abs(after)) : 0.0;
+  if (!(off > threshold * std::sqrt(20.0) * noise)) return false;
+  // Where the motion itself is rough the parabolas miss it.
+  std::array<double, 2 * reach + 1> rough{};
+  size_t count = 0;
+  for (size_t j = i - std::min(i, reach); j < std::min(x.size(), i + reach + 1); ++j) {
+    const double size = std::abs(off_parabola(x, j, -1));
+    if (std::isfinite(size)) rough[count++] = size;
+  }
+  const auto end = rough.begin() + static_cast<std::ptrdiff_t>(count);
+  return off > threshold * sigma_per_mad * middle_of(rough.begin(), end);
+}
+
+// Stands out from its six neighbours, which hardly move; finds pairs, too.
+bool stands_out_of_rest(const std::vector<double>& x, size_t i, double noise) {
+  constexpr size_t reach = 3;
+  constexpr double threshold = 12.0;
+  std::array<double, 2 * reach> neighbours{};
+  size_t count = 0;
+  for (size_t j = i - std::min(i, reach); j < std::min(x.size(), i + reach + 1); ++j) {
+    if (j != i && std::isfinite(x[j])) neighbours[count++] = x[j];
+  }
+  if (count < reach + 1) return false;
+  const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(count);
+  const double middle = middle_of(neighbours.begin(), end);
+  const double off = std::abs(x[i] - middle);
+  if (off <= threshold * noise) return false;
+  std::transform(neighbours.begin(), end, neighbours.begin(),
+                 [middle](double value) { return std::abs(value - middle); });
+  return off > threshold * sigma_per_mad * middle_of(neighbours.begin(), end);
+}
+
+// Rows whose value stands out; `x` may hold NaN.
+std::vector<size_t> outlying_rows(const std::vector<double>& x) {
+  const double noise = noise_level(x);
+  std::vector<size_t> rows;
+  for (size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i])) continue;
+    if (stands_out_of_motion(x, i, noise) || stands_out_of_rest(x, i, noise)) rows.push_back(i);
+  }
+  return rows;
+}
+
+std::array<Channel*, 4> quaternion_channels(Recording& recording) {
+  return {find_channel(recording, "q_w"), find_channel(recording, "q_x"),
+          find_channel(recording, "q_y"), find_channel(recording, "q_z")};
+}
+
+bool complete(const std::array<Channel*, 4>& q) {
+  return std::find(q.begin(), q.end(), nullptr) == q.end();
+}
+
+}  // namespace
+
+void mend_quaternions(Recording& recording) {
+  const std::array<Channel*, 4> q = quaternion_channels(recording);
+  if (!complete(q)) return;
+  std::array<double, 4> before{};
+  for (size_t i = 0; i < recording.rows(); ++i) {
+    std::array<double, 4> now{};
+    double square = 0.0, along = 0.0;
+    for (size_t k = 0; k < 4; ++k) {
+      now[k] = q[k]->values[i];
+      square += now[k] * now[k];
+      along += now[k] * before[k];
+    }
+    if (std::isnan(square)) {
+      // Three components without the fourth say nothing safe about an attitude.
+      for (Channel* channel : q) channel->values[i] = empty_cell;
+      continue;
+    }
+    const double norm = std::sqrt(square);
+    if (!(std::abs(norm - 1.0) < 0.01)) {
+      ++recording.report.bad_quaternions;
+      for (Channel* channel : q) channel->values[i] = empty_cell;
+      continue;
+    }
+    const double sign = along < 0.0 ? -1.0 : 1.0;
+    recording.report.flipped_quaternions += along < 0.0 ? 1 : 0;
+    for (size_t k = 0; k < 4; ++k) {
+      before[k] = sign * now[k] / norm;
+      q[k]->values[i] = before[k];
+    }
+  }
+}
+
+void remove_outliers(Recording& recording) {
+  const auto empty = [&](Channel& channel, size_t row) {
+    if (std::isnan(channel.values[row])) return;
+    channel.values[row] = empty_cell;
+    ++recording.report.outlier_cells;
+    ++recording.report.outliers[channel.name];
+  };
+  for (const char* name : {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"}) {
+    Channel* channel = find_channel(recording, name);
+    if (channel == nullptr) continue;
+    for (const size_t row : outlying_rows(channel->values)) empty(*channel, row);
+  }
+  // A quaternion is right or wrong as a whole.
+  const std::array<Channel*, 4> q = quaternion_channels(recording);
+  if (!complete(q)) return;
+  std::vector<size_t> rows;
+  for (const Channel* channel : q) {
+    const std::vector<size_t> found = outlying_rows(channel->values);
+    rows.insert(rows.end(), found.begin(), found.end());
+  }
+  for (const size_t row : rows) {
+    for (Channel* channel : q) empty(*channel, row);
+  }
+}
+
+void measure_times(Recording& recording) {
+  const std::vector<double>& t = recording.time_s;
+  RecordingReport& report = recording.report;
+  std::vector<double> intervals;
+  for (size_t i = 1; i < t.size(); ++i) intervals.push_back(t[i] - t[i - 1]);
+  report.median_interval_s = middle_of(intervals.begin(), intervals.end());
+  double sum = 0.0, squares = 0.0;
+  int64_t count = 0;
+  for (size_t i = 1; i < t.size(); ++i) {
+    const double interval_s = t[i] - t[i - 1];
+    if (interval_s > 5.0 * report.median_interval_s) {
+      report.gaps.push_back({t[i - 1], t[i]});
+      continue;
+    }
+    const double off = interval_s - report.median_interval_s;
+    sum += off;
+    squares += off * off;
+    ++count;
+  }
+  if (count > 1) {
+    const double n = static_cast<double>(count);
+    report.jitter_s = std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1.0)));
+  }
+}
+
+}  // namespace photorque

@@ -1,0 +1,319 @@
+#include "attitude/recordings/recording.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "attitude/recordings/cleaning.h"
+#include "attitude/recordings/text_lines.h"
+#include "core/files.h"
+
+namespace photorque {
+namespace {
+
+// The contract's channels. A header may name them in another unit of the same kind.
+constexpr std::string_view known_channels[] = {
+    "t_s",           "gyro_x_rad_s",      "gyro_y_rad_s",    "gyro_z_rad_s",
+    "command_x_N_m", "command_y_N_m",     "command_z_N_m",   "battery_current_A",
+    "array_power_W", "array_voltage_V",   "array_current_A", "cell_temperature_K",
+    "led_current_A", "battery_voltage_V", "heading_rad",
+};
+
+std::string_view unquoted(std::string_view text) {
+  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '"'; };
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+void split(std::string_view line, char separator, std::vector<std::string_view>& cells) {
+  cells.clear();
+  for (;;) {
+    const size_t end = line.find(separator);
+    cells.push_back(unquoted(line.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
+  }
+}
+
+// NaN for an empty cell or the word nan; nullopt for what is no number.
+std::optional<double> to_number(std::string_view cell) {
+  if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return empty_cell;
+  if (cell.front() == '+') cell.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+// One column of the file: the channel it fills and the factor to SI.
+struct Column {
+  std::string name;
+  double to_SI = 1.0;
+};
+
+Column column_named(const std::string& in_file, const RecordingOptions& options) {
+  std::string name = in_file;
+  for (const auto& [channel, written] : options.columns) {
+    if (written == in_file) name = channel;
+  }
+  const KeyUnit unit = unit_of_key(name);
+  for (const std::string_view channel : known_channels) {
+    const KeyUnit known = unit_of_key(channel);
+    if (known.stem == unit.stem && known.dimension == unit.dimension) {
+      return {std::string(channel), unit.to_SI};
+    }
+  }
+  return {name, 1.0};
+}
+
+class RecordingReader {
+ public:
+  RecordingReader(const std::filesystem::path& path, const RecordingOptions& options)
+      : path_(path), options_(options), lines_(path) {}
+
+  Recording read() {
+    read_header();
+    std::string_view line;
+    while (lines_.next(line)) {
+      if (unquoted(line).empty() || line.front() == '#') {
+        ++recording_.report.preamble_lines;
+        continue;
+      }
+      take_row(line);
+    }
+    finish();
+    return std::move(recording_);
+  }
+
+ private:
+  InputError error(const std::string& key, const std::string& found,
+                   const std::string& expected) const {
+    return {{path_.string(), static_cast<int>(lines_.number())}, key, found, expected};
+  }
+
+  // The header is the first line that names the time; whatever stands before it is preamble.
+  void read_header() {
+    constexpr int longest_preamble = 10000;
+    std::string_view line;
+    for (int i = 0; i < longest_preamble && lines_.next(line); ++i) {
+      if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+      for (const char separator : {',', ';', '\t'}) {
+        if (take_header(line, separator)) return;
+      }
+      ++recording_.report.preamble_lines;
+    }
+    throw InputError({path_.string(), 1}, "header", "no line that names t_s",
+                     "a header with t_s and the channels");
+  }
+
+  bool take_header(std::string_view line, char separator) {
+    split(line, separator, cells_);
+    columns_.clear();
+    time_column_ = cells_.size();
+    for (size_t i = 0; i < cells_.size(); ++i) {
+      columns_.push_back(column_named(std::string(cells_[i]), options_));
+      if (columns_.back().name == "t_s") time_column_ = i;
+    }
+    if (time_column_ == cells_.size()) return false;
+    separator_ = separator;
+    for (size_t i = 0; i < columns_.size(); ++i) {
+      if (i == time_column_) continue;
+      const std::string& name = columns_[i].name;
+      if (name.empty()) throw error("header", "a column without a name", "names for all columns");
+      if (name == "t_s" || recording_.find(name) != nullptr) {
+        throw error("header", "the column " + name + " twice", "every channel once");
+      }
+      recording_.channels.push_back({name, {}});
+    }
+    return true;
+  }
+
+  void take_row(std::string_view line) {
+    RecordingReport& report = recording_.report;
+    ++report.rows_read;
+    split(line, separator_, cells_);
+    if (cells_.size() != columns_.size()) {
+      ++report.malformed_rows;
+      return;
+    }
+    const std::optional<double> time = to_number(cells_[time_column_]);
+    if (!time || std::isnan(*time)) {
+      ++report.rows_without_time;
+      return;
+    }
+    const double time_s = *time * columns_[time_column_].to_SI;
+    if (!recording_.time_s.empty() && time_s <= recording_.time_s.back()) {
+      if (time_s == recording_.time_s.back()) {
+        if (++report.repeated_times == 1) report.first_repeated_line = lines_.number();
+      } else if (++report.backward_times == 1) {
+        report.first_backward_line = lines_.number();
+      }
+      return;
+    }
+    kept_cells_ += static_cast<int64_t>(columns_.size());
+    if (kept_cells_ > options_.most_cells) {
+      throw error("", "more than " + std::to_string(options_.most_cells) + " numbers",
+                  "a recording that is shorter or has fewer channels");
+    }
+    recording_.time_s.push_back(time_s);
+    size_t channel = 0;
+    for (size_t i = 0; i < cells_.size(); ++i) {
+      if (i == time_column_) continue;
+      std::optional<double> value = to_number(cells_[i]);
+      if (!value) {
+        ++report.unreadable_cells;
+        value = empty_cell;
+      } else if (std::isnan(*value)) {
+        ++report.empty_cells;
+      }
+      recording_.channels[channel++].values.push_back(*value * columns_[i].to_SI);
+    }
+  }
+
+  void finish() {
+    RecordingReport& report = recording_.report;
+    report.rows_kept = static_cast<int64_t>(recording_.rows());
+    if (report.backward_times > report.rows_kept) {
+      throw InputError({path_.string(), static_cast<int>(report.first_backward_line)}, "t_s",
+                       "times that fall in " + std::to_string(report.backward_times) + " rows",
+                       "times that rise");
+    }
+    if (report.rows_kept < 2) {
+      throw error(
+          "",
+          std::to_string(report.rows_kept) + " usable rows of " + std::to_string(report.rows_read),
+          "at least two");
+    }
+    const bool any = std::any_of(recording_.channels.begin(), recording_.channels.end(),
+                                 [](const Channel& channel) {
+                                   return std::any_of(channel.values.begin(), channel.values.end(),
+                                                      [](double x) { return !std::isnan(x); });
+                                 });
+    if (!any) throw error("", "no number in any channel", "at least one channel with values");
+    mend_quaternions(recording_);
+    if (options_.remove_outliers) remove_outliers(recording_);
+    measure_times(recording_);
+  }
+
+  std::filesystem::path path_;
+  const RecordingOptions& options_;
+  TextLines lines_;
+  Recording recording_;
+  std::vector<Column> columns_;
+  std::vector<std::string_view> cells_;
+  size_t time_column_ = 0;
+  char separator_ = ',';
+  int64_t kept_cells_ = 0;
+};
+
+void append_number(std::string& text, double value) {
+  if (std::isnan(value)) return;
+  char digits[32];
+  const auto result = std::to_chars(digits, digits + sizeof digits, value);
+  text.append(digits, result.ptr);
+}
+
+}  // namespace
+
+std::string RecordingReport::text() const {
+  std::ostringstream out;
+  out << rows_read << " rows read, " << rows_kept << " kept, every " << median_interval_s << " s";
+  const auto say = [&](int64_t count, const char* what) {
+    if (count > 0) out << "\n" << count << " " << what;
+  };
+  if (jitter_s > 1e-3 * median_interval_s) out << " with a jitter of " << jitter_s << " s";
+  say(malformed_rows, "rows with a wrong number of cells left out");
+  say(rows_without_time, "rows without a time left out");
+  say(repeated_times, "rows that repeat a time left out");
+  say(backward_times, "rows out of order left out");
+  say(static_cast<int64_t>(gaps.size()), "gaps");
+  say(empty_cells, "empty cells");
+  say(unreadable_cells, "cells that hold no number");
+  say(bad_quaternions, "quaternions that are not of unit norm left out");
+  say(flipped_quaternions, "sign flips of the quaternion undone");
+  for (const auto& [channel, count] : outliers) {
+    out << "\n" << count << " outliers in " << channel << " left out";
+  }
+  return out.str();
+}
+
+const Channel* Recording::find(std::string_view name) const {
+  const auto it = std::find_if(channels.begin(), channels.end(),
+                               [&](const Channel& channel) { return channel.name == name; });
+  return it == channels.end() ? nullptr : &*it;
+}
+
+Schedule Recording::schedule() const {
+  const Channel* command[3] = {find("command_x_N_m"), find("command_y_N_m"), find("command_z_N_m")};
+  const Channel* current = find("battery_current_A");
+  Schedule schedule;
+  schedule.current_is_measured = current != nullptr;
+  Held held;
+  // An empty cell holds what was before.
+  const auto update = [](const Channel* channel, size_t row, double& value) {
+    if (channel != nullptr && !std::isnan(channel->values[row])) value = channel->values[row];
+  };
+  for (size_t i = 0; i < rows(); ++i) {
+    for (int k = 0; k < 3; ++k) update(command[k], i, held.command_body_N_m[k]);
+    update(current, i, held.battery_current_A);
+    schedule.append(time_s[i], held);
+  }
+  return schedule;
+}
+
+RecordingOptions read_recording_options(const Settings& settings) {
+  RecordingOptions options;
+  if (settings.has("columns")) {
+    const Settings columns = settings.table("columns");
+    for (const std::string& channel : columns.keys()) {
+      options.columns[channel] = columns.text(channel);
+    }
+  }
+  options.remove_outliers = settings.flag_or("remove_outliers", true);
+  return options;
+}
+
+Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options) {
+  return RecordingReader(path, options).read();
+}
+
+Schedule read_command_file(const std::filesystem::path& path) {
+  const Recording recording = read_recording(path);
+  const RecordingReport& report = recording.report;
+  if (report.backward_times + report.repeated_times > 0) {
+    const int64_t line = report.backward_times == 0 ? report.first_repeated_line
+                         : report.repeated_times == 0
+                             ? report.first_backward_line
+                             : std::min(report.first_repeated_line, report.first_backward_line);
+    throw InputError({path.string(), static_cast<int>(line)}, "t_s", "times that do not rise",
+                     "commands in order of time");
+  }
+  for (const char* name :
+       {"command_x_N_m", "command_y_N_m", "command_z_N_m", "battery_current_A"}) {
+    if (recording.find(name) != nullptr) return recording.schedule();
+  }
+  throw InputError({path.string(), 0}, "header", "no command", "command_x_N_m or another command");
+}
+
+void write_recording(const std::filesystem::path& path, const Recording& recording,
+                     const std::vector<std::string>& preamble) {
+  std::string text;
+  for (const std::string& line : preamble) text += "# " + line + "\n";
+  text += "t_s";
+  for (const Channel& channel : recording.channels) text += "," + channel.name;
+  text += "\n";
+  for (size_t i = 0; i < recording.rows(); ++i) {
+    append_number(text, recording.time_s[i]);
+    for (const Channel& channel : recording.channels) {
+      text += ',';
+      append_number(text, channel.values[i]);
+    }
+    text += '\n';
+  }
+  write_file_whole(path, path.extension() == ".gz" ? gzip(text) : text);
+}
+
+}  // namespace photorque

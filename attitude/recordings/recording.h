@@ -1,0 +1,93 @@
+// Recordings: what the laboratory measured, or what a simulated one would have.
+//
+// CSV with a header that names channel and unit (also .csv.gz). Real files have a preamble, gaps,
+// repeated and jittered times, outliers and flipped quaternions: the reader repairs what can be
+// repaired, leaves out what cannot, and counts all of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "attitude/model/schedule.h"
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+// A cell without a value.
+inline constexpr double empty_cell = std::numeric_limits<double>::quiet_NaN();
+
+struct Channel {
+  std::string name;            // ends in its SI unit: "gyro_x_rad_s"
+  std::vector<double> values;  // one per row; NaN where the cell is empty
+};
+
+// What the reader met. Counts are of rows unless said otherwise.
+struct RecordingReport {
+  int64_t rows_read = 0;  // data rows in the file
+  int64_t rows_kept = 0;
+  int64_t preamble_lines = 0;
+  int64_t malformed_rows = 0;     // wrong number of cells (a torn last line): left out
+  int64_t rows_without_time = 0;  // left out
+  int64_t repeated_times = 0;     // the same time again: left out
+  int64_t backward_times = 0;     // earlier than a row before: left out
+  int64_t first_backward_line = 0;
+  int64_t first_repeated_line = 0;
+  int64_t empty_cells = 0;          // cells
+  int64_t unreadable_cells = 0;     // cells that hold no number: emptied
+  int64_t outlier_cells = 0;        // cells of measured channels: emptied
+  int64_t bad_quaternions = 0;      // of a norm that is not 1 to 1 %: emptied
+  int64_t flipped_quaternions = 0;  // sign changes undone
+  struct Gap {
+    double from_s = 0.0, to_s = 0.0;
+  };
+  std::vector<Gap> gaps;  // between rows more than five median intervals apart
+  double median_interval_s = 0.0;
+  double jitter_s = 0.0;                    // standard deviation of the intervals, gaps left out
+  std::map<std::string, int64_t> outliers;  // cells by channel
+
+  // A few lines for people; only what occurred.
+  std::string text() const;
+};
+
+struct Recording {
+  std::vector<double> time_s;  // rises strictly
+  std::vector<Channel> channels;
+  RecordingReport report;
+
+  // Null when there is no such channel.
+  const Channel* find(std::string_view name) const;
+  size_t rows() const { return time_s.size(); }
+
+  // Commands and battery current as they were held: the recording's zero-order-hold channels.
+  Schedule schedule() const;
+};
+
+struct RecordingOptions {
+  // Names in the file by the channel they stand for: {"gyro_x_rad_s", "wx"}. A channel may be named
+  // in another unit of its kind ("gyro_x_deg_s"); it is converted and renamed.
+  std::map<std::string, std::string> columns;
+  bool remove_outliers = true;
+  // Largest number of cells that are kept, times included (8 bytes each).
+  int64_t most_cells = 150'000'000;
+};
+// Reads [recording] columns.
+RecordingOptions read_recording_options(const Settings& settings);
+
+// Throws InputError with file and line when the file cannot be read or decompressed, has no header
+// with t_s, no usable row, more cells than allowed, or mostly falling times.
+Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options = {});
+
+// Reads a schedule of commands: like a recording, but times that do not rise are an error.
+Schedule read_command_file(const std::filesystem::path& path);
+
+// Writes the contract's CSV, compressed when the name ends in ".gz"; `preamble` lines are written
+// as comments. Numbers are written so that reading them gives the same bits.
+void write_recording(const std::filesystem::path& path, const Recording& recording,
+                     const std::vector<std::string>& preamble = {});
+
+}  // namespace photorque

@@ -1,0 +1,172 @@
+#include "attitude/recordings/sensors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numerics/random.h"
+
+namespace photorque {
+namespace {
+
+// One stream of random numbers for each purpose.
+enum Stream : uint64_t { camera_noise, gyro_noise, gyro_walk, current_noise, power_noise };
+
+Vec3 gaussian_vector(uint64_t seed, Stream stream, uint64_t index) {
+  return {gaussian(seed, stream, index, 0), gaussian(seed, stream, index, 1),
+          gaussian(seed, stream, index, 2)};
+}
+
+Quat turn(const Vec3& rotation_rad) {
+  const double angle = rotation_rad.norm();
+  return angle == 0.0 ? Quat::Identity() : Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
+}
+
+// The errors of an instrument by the key that switches each on.
+void read_errors(const Settings& settings, const DisturbanceContext& context,
+                 std::initializer_list<std::pair<const char*, const char*>> kind_by_key,
+                 std::vector<Disturbance>& errors) {
+  const std::vector<DisturbanceKind> kinds = all_disturbance_kinds();
+  for (const auto& [key, name] : kind_by_key) {
+    if (!settings.has(key)) continue;
+    const auto kind = std::find_if(kinds.begin(), kinds.end(),
+                                   [name = name](const auto& k) { return k.name == name; });
+    errors.push_back(kind->read(settings, context));
+    errors.back().kind = kind->name;
+  }
+}
+
+}  // namespace
+
+double gaussian(uint64_t seed, uint64_t stream, uint64_t index, uint64_t dimension) {
+  // Box and Muller, Ann. Math. Stat. 29 (1958) 610.
+  const double u = unit_interval(hash_words(seed, stream, index, 2 * dimension));
+  const double v = unit_interval(hash_words(seed, stream, index, 2 * dimension + 1));
+  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * pi * v);
+}
+
+Sensors perfect_sensors() {
+  Sensors sensors;
+  sensors.camera.emplace().noise_rad.setZero();
+  sensors.gyro.emplace();
+  return sensors;
+}
+
+Sensors read_sensors(const Settings& settings, const DisturbanceContext& context) {
+  Sensors sensors;
+  const Range not_negative = Range::not_negative();
+  if (settings.has("camera")) {
+    const Settings s = settings.table("camera");
+    Sensors::Camera& camera = sensors.camera.emplace();
+    camera.noise_rad = s.vector3_or("noise_arcsec", camera.noise_rad);
+    if ((camera.noise_rad.array() < 0.0).any()) {
+      throw s.error("noise_arcsec", "a negative number", "numbers >= 0");
+    }
+    camera.rate_Hz = s.number_or("rate_Hz", 0.0, not_negative);
+    read_errors(s, context,
+                {{"latency_s", "attitude_latency"}, {"misalignment_rad", "camera_misalignment"}},
+                sensors.errors);
+  }
+  if (settings.has("gyro")) {
+    const Settings s = settings.table("gyro");
+    Sensors::Gyro& gyro = sensors.gyro.emplace();
+    gyro.noise_rad_s = s.number_or("noise_rad_s", 0.0, not_negative);
+    gyro.bias_drift_rad_s_1_s = s.number_or("bias_drift", 0.0, not_negative);
+    gyro.rate_Hz = s.number_or("rate_Hz", 0.0, not_negative);
+    read_errors(s, context,
+                {{"bias_rad_s", "gyro_bias"},
+                 {"scale", "gyro_scale"},
+                 {"misalignment_rad", "gyro_misalignment"}},
+                sensors.errors);
+  }
+  if (settings.has("encoder")) {
+    sensors.encoder.emplace().resolution_rad =
+        settings.table("encoder").number("resolution_arcsec", Range::positive());
+  }
+  if (settings.has("power")) {
+    const Settings s = settings.table("power");
+    sensors.power.current_noise_A = s.number_or("current_noise_A", 0.0, not_negative);
+    sensors.power.power_noise_W = s.number_or("power_noise_W", 0.0, not_negative);
+  }
+  return sensors;
+}
+
+Recorder::Recorder(const Sensors& sensors, uint64_t seed) : sensors_(sensors), seed_(seed) {}
+
+void Recorder::put(const std::string& name, double value) {
+  if (column_ == recording_.channels.size()) recording_.channels.push_back({name, {}});
+  recording_.channels[column_++].values.push_back(value);
+}
+
+// A reading is due in the first row, and in every row that a multiple of the period falls in.
+bool Recorder::is_due(double rate_Hz, double time_s) const {
+  if (rate_Hz == 0.0 || recording_.time_s.empty()) return true;
+  // Rows at the instrument's own rate must not miss a reading by rounding.
+  constexpr double slack = 1e-6;
+  const double before = std::floor(recording_.time_s.back() * rate_Hz + slack);
+  return std::floor(time_s * rate_Hz + slack) > before;
+}
+
+void Recorder::add_camera(const Truth& truth) {
+  const uint64_t row = recording_.rows();
+  Quat seen = Quat(empty_cell, empty_cell, empty_cell, empty_cell);
+  if (is_due(sensors_.camera->rate_Hz, truth.time_s)) {
+    const Vec3 noise_rad =
+        sensors_.camera->noise_rad.cwiseProduct(gaussian_vector(seed_, camera_noise, row));
+    seen = turn(noise_rad) * truth.lab_from_body_seen * turn(truth.camera_error_rad);
+    // Trackers report one half of the sphere.
+    if (seen.w() < 0.0) seen.coeffs() = -seen.coeffs();
+  }
+  put("q_w", seen.w());
+  put("q_x", seen.x());
+  put("q_y", seen.y());
+  put("q_z", seen.z());
+}
+
+void Recorder::add_gyro(const Truth& truth) {
+  const Sensors::Gyro& gyro = *sensors_.gyro;
+  const uint64_t row = recording_.rows();
+  if (row > 0) {
+    const double interval_s = truth.time_s - recording_.time_s.back();
+    bias_walk_rad_s_ +=
+        gyro.bias_drift_rad_s_1_s * std::sqrt(interval_s) * gaussian_vector(seed_, gyro_walk, row);
+  }
+  const Vec3 reading = truth.gyro_rad_s + bias_walk_rad_s_ +
+                       gyro.noise_rad_s * gaussian_vector(seed_, gyro_noise, row);
+  const bool due = is_due(gyro.rate_Hz, truth.time_s);
+  put("gyro_x_rad_s", due ? reading.x() : empty_cell);
+  put("gyro_y_rad_s", due ? reading.y() : empty_cell);
+  put("gyro_z_rad_s", due ? reading.z() : empty_cell);
+}
+
+void Recorder::add(const Truth& truth) {
+  const uint64_t row = recording_.rows();
+  column_ = 0;
+  if (sensors_.camera) add_camera(truth);
+  if (sensors_.gyro) add_gyro(truth);
+  if (sensors_.encoder) {
+    const double step_rad = sensors_.encoder->resolution_rad;
+    put("heading_rad", step_rad * std::round(truth.heading_rad / step_rad));
+  }
+  put("command_x_N_m", truth.command_body_N_m.x());
+  put("command_y_N_m", truth.command_body_N_m.y());
+  put("command_z_N_m", truth.command_body_N_m.z());
+  put("battery_current_A", truth.battery_current_A + sensors_.power.current_noise_A *
+                                                         gaussian(seed_, current_noise, row, 0));
+  put("array_power_W",
+      truth.array_power_W + sensors_.power.power_noise_W * gaussian(seed_, power_noise, row, 0));
+  recording_.time_s.push_back(truth.time_s);
+}
+
+Recording Recorder::finish() {
+  recording_.report.rows_read = recording_.report.rows_kept =
+      static_cast<int64_t>(recording_.rows());
+  std::erase_if(recording_.channels, [](const Channel& channel) {
+    const bool optional = channel.name.starts_with("command") ||
+                          channel.name.starts_with("battery") || channel.name.starts_with("array");
+    return optional && std::all_of(channel.values.begin(), channel.values.end(),
+                                   [](double x) { return x == 0.0; });
+  });
+  return std::move(recording_);
+}
+
+}  // namespace photorque

@@ -1,0 +1,97 @@
+// What the laboratory's instruments make of the truth.
+//
+// Errors that a parameter describes (bias, scale, misalignment, latency) are disturbances of
+// Stage::measurement, so that they can be fitted like any other; what is here is noise, drift,
+// resolution and rate. Every random number is a hash of seed, instrument, row and axis: the same
+// seed gives the same recording whatever else changes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "attitude/disturbances/kind.h"
+#include "attitude/model/dynamics.h"
+#include "attitude/recordings/recording.h"
+
+namespace photorque {
+
+struct Sensors {
+  // Star-tracker-like camera that reports attitudes. Defaults: the source paper's, 12 arcsec in the
+  // image plane (about lab z, for a camera above) and 37 arcsec out of it.
+  struct Camera {
+    Vec3 noise_rad = Vec3(37, 37, 12) * arcsecond_rad;  // about lab x, y, z; one standard deviation
+    double rate_Hz = 0.0;                               // 0: in every row
+  };
+  struct Gyro {
+    double noise_rad_s = 0.0;           // per reading and axis
+    double bias_drift_rad_s_1_s = 0.0;  // random walk of the bias: grows with the root of time [s]
+    double rate_Hz = 0.0;
+  };
+  // Reads the heading in whole steps.
+  struct Encoder {
+    double resolution_rad = 0.0;
+  };
+  struct Power {
+    double current_noise_A = 0.0;
+    double power_noise_W = 0.0;
+  };
+  std::optional<Camera> camera;
+  std::optional<Gyro> gyro;
+  std::optional<Encoder> encoder;
+  Power power;
+  // bias, scale, misalignment and latency as the file gives them.
+  std::vector<Disturbance> errors;
+};
+
+// Reads [sensors]:
+//   camera: noise_arcsec[3], rate_Hz, latency_s, misalignment_rad[3];
+//   gyro: noise_rad_s, bias_rad_s[3], bias_drift (rad/s per √s), scale[3], misalignment_rad[3],
+//     rate_Hz;
+//   encoder: resolution_arcsec;
+//   power: current_noise_A, power_noise_W.
+Sensors read_sensors(const Settings& settings, const DisturbanceContext& context);
+// A camera and a gyro without errors: what is recorded when nothing is said.
+Sensors perfect_sensors();
+
+// A standard normal number that belongs to these counters.
+double gaussian(uint64_t seed, uint64_t stream, uint64_t index, uint64_t dimension);
+
+// What there is to be seen in one row.
+struct Truth {
+  double time_s = 0.0;
+  Quat lab_from_body_seen = Quat::Identity();  // at time − camera delay
+  double heading_rad = 0.0;
+  Vec3 gyro_rad_s = Vec3::Zero();  // Dynamics::Instants, for this row
+  Vec3 camera_error_rad = Vec3::Zero();
+  Vec3 command_body_N_m = Vec3::Zero();
+  double battery_current_A = 0.0;
+  double array_power_W = 0.0;
+};
+
+// Fills a recording row by row.
+class Recorder {
+ public:
+  Recorder(const Sensors& sensors, uint64_t seed);
+
+  // Rows in order of time.
+  void add(const Truth& truth);
+  // The recording so far; channels of commands and power that were zero throughout are left out.
+  Recording finish();
+
+ private:
+  // The next column of the row that is being added.
+  void put(const std::string& name, double value);
+  bool is_due(double rate_Hz, double time_s) const;
+  void add_camera(const Truth& truth);
+  void add_gyro(const Truth& truth);
+
+  Sensors sensors_;
+  uint64_t seed_;
+  Recording recording_;
+  size_t column_ = 0;
+  Vec3 bias_walk_rad_s_ = Vec3::Zero();
+};
+
+}  // namespace photorque

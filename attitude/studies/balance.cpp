@@ -1,0 +1,271 @@
+#include "attitude/studies/balance.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/propagation/run.h"
+
+namespace photorque {
+namespace {
+
+// The paper's resolution of the centre of mass, section II.A.1.
+constexpr double published_resolution_m = 1.79e-7;
+
+// Index of the model's static unbalance; adds one of zero offset when there is none.
+size_t unbalance_of(AttitudeModel& model) {
+  for (size_t d = 0; d < model.disturbances.size(); ++d) {
+    if (model.disturbances[d].kind == "static_unbalance") return d;
+  }
+  model.disturbances.push_back(make_disturbance_of(
+      "static_unbalance", {{"offset_m", {0.0, 0.0, 0.0}}}, {model.platform, model.environment}));
+  return model.disturbances.size() - 1;
+}
+
+// The offset freely, and within their stated uncertainty all parameters that have one.
+std::vector<FreeParameter> free_parameters(const AttitudeModel& model, size_t unbalance) {
+  std::vector<FreeParameter> free;
+  for (size_t d = 0; d < model.disturbances.size(); ++d) {
+    const std::vector<Parameter>& parameters = model.disturbances[d].parameters;
+    for (size_t p = 0; p < parameters.size(); ++p) {
+      if (d == unbalance) {
+        free.push_back({d, static_cast<int>(p), std::nullopt});
+      } else if (parameters[p].sigma > 0.0) {
+        free.push_back({d, static_cast<int>(p), parameters[p].sigma});
+      }
+    }
+  }
+  return free;
+}
+
+Mat3 cross_matrix(const Vec3& v) {
+  Mat3 m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+
+// Attitude and rate of the rows that have both; the rate from the gyro or from attitudes half an
+// interval before and after.
+struct Row {
+  double time_s;
+  Quat lab_from_body;
+  Vec3 rate_rad_s;
+  Vec3 command_N_m;
+};
+
+class Rows {
+ public:
+  explicit Rows(const Recording& recording) : recording_(recording) {
+    const char* names[] = {"q_w",          "q_x",          "q_y",         "q_z",
+                           "gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
+    for (size_t k = 0; k < channels_.size(); ++k) channels_[k] = recording.find(names[k]);
+    for (size_t k = 0; k < 4; ++k) {
+      if (channels_[k] == nullptr) {
+        throw InputError({}, "recording", "no channel " + std::string(names[k]), "attitudes");
+      }
+    }
+  }
+
+  std::vector<Row> all(double interval_s) const {
+    const Schedule schedule = recording_.schedule();
+    std::vector<Row> rows;
+    for (size_t i = 0; i < recording_.rows(); ++i) {
+      const double t_s = recording_.time_s[i];
+      const Quat q = attitude(i);
+      const Vec3 rate = rate_at(i, interval_s);
+      if (!std::isfinite(q.norm()) || !rate.allFinite()) continue;
+      rows.push_back({t_s, q.normalized(), rate, schedule.at(t_s).command_body_N_m});
+    }
+    return rows;
+  }
+
+ private:
+  double value(size_t channel, size_t row) const { return channels_[channel]->values[row]; }
+  Quat attitude(size_t row) const {
+    return {value(0, row), value(1, row), value(2, row), value(3, row)};
+  }
+
+  Vec3 rate_at(size_t row, double interval_s) const {
+    if (channels_[4] && channels_[5] && channels_[6]) {
+      return {value(4, row), value(5, row), value(6, row)};
+    }
+    const std::vector<double>& t = recording_.time_s;
+    const auto nearest = [&](double time_s) {
+      return static_cast<size_t>(std::lower_bound(t.begin(), t.end(), time_s) - t.begin());
+    };
+    const size_t before = nearest(t[row] - 0.5 * interval_s);
+    const size_t after = nearest(t[row] + 0.5 * interval_s);
+    if (after >= t.size() || after <= before || t[after] - t[before] > 2.0 * interval_s) {
+      return Vec3::Constant(NAN);
+    }
+    const Quat turn = attitude(before).conjugate() * attitude(after);
+    const double angle = 2.0 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
+    if (angle == 0.0) return Vec3::Zero();
+    return std::copysign(angle, turn.w()) / (t[after] - t[before]) * turn.vec().normalized();
+  }
+
+  const Recording& recording_;
+  std::array<const Channel*, 7> channels_{};
+};
+
+}  // namespace
+
+Vec3 offset_from_momentum_m(const Platform& platform, const Vec3& gravity_lab_m_s2,
+                            const Recording& recording, double interval_s) {
+  const std::vector<Row> rows = Rows(recording).all(interval_s);
+  const Mat3& inertia = platform.inertia_kg_m2;
+  // Unknowns: offset and a drag coefficient, so that drag is not taken for unbalance.
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  int intervals = 0;
+  for (size_t first = 0; first + 1 < rows.size();) {
+    Vec3 gravity = Vec3::Zero(), gyroscopic = Vec3::Zero(), angle = Vec3::Zero();
+    Vec3 command = Vec3::Zero();
+    size_t last = first;
+    for (; last + 1 < rows.size() && rows[last].time_s - rows[first].time_s < interval_s; ++last) {
+      const Row &a = rows[last], &b = rows[last + 1];
+      const double half_s = 0.5 * (b.time_s - a.time_s);
+      const auto in_body = [&](const Row& row) {
+        return Vec3(row.lab_from_body.conjugate() * gravity_lab_m_s2);
+      };
+      gravity += half_s * (in_body(a) + in_body(b));
+      gyroscopic += half_s * (a.rate_rad_s.cross(inertia * a.rate_rad_s) +
+                              b.rate_rad_s.cross(inertia * b.rate_rad_s));
+      angle += half_s * (a.rate_rad_s + b.rate_rad_s);
+      command += 2.0 * half_s * a.command_N_m;
+    }
+    const double length_s = rows[last].time_s - rows[first].time_s;
+    if (length_s < 2.0 * interval_s && last > first) {
+      const Vec3 known =
+          inertia * (rows[last].rate_rad_s - rows[first].rate_rad_s) + gyroscopic - command;
+      Eigen::Matrix<double, 3, 4> slope;
+      slope << -platform.mass_kg * cross_matrix(gravity), -angle;
+      matrix += slope.transpose() * slope;
+      right += slope.transpose() * known;
+      ++intervals;
+    }
+    first = std::max(last, first + 1);
+  }
+  if (intervals < 3) {
+    throw InputError({}, "recording", std::to_string(intervals) + " intervals with attitudes",
+                     "at least three");
+  }
+  // Along gravity the offset has no torque: a platform that stays level leaves it at zero.
+  const double smallest = 1e-12 * matrix.topLeftCorner<3, 3>().trace();
+  matrix.diagonal().array() += smallest;
+  const Eigen::Vector4d solution = matrix.ldlt().solve(right);
+  return solution.head<3>();
+}
+
+BalanceRun read_balance(const Settings& root, const std::filesystem::path& recording) {
+  BelievedModel believed = read_attitude_model(root);
+  const Settings columns = own_table(root, "recording", false);
+  const Settings masses = own_table(root, "balance", true);
+  BalanceRun run{std::move(believed.model), std::move(believed.sensors), read_moving_masses(masses),
+                 read_recording(recording, read_recording_options(columns))};
+  for (const Settings& settings : {columns, masses}) settings.finish();
+  run.model.schedule = run.recording.schedule();
+  return run;
+}
+
+BalanceResult balance(const BalanceRun& run) {
+  AttitudeModel model = run.model;
+  const size_t unbalance = unbalance_of(model);
+  const Vec3 guess_m =
+      offset_from_momentum_m(model.platform, model.environment.gravity_lab_m_s2, run.recording);
+  std::vector<Parameter>& offset = model.disturbances[unbalance].parameters;
+  for (size_t k = 0; k < 3; ++k) offset[k].value = guess_m[static_cast<Eigen::Index>(k)];
+
+  const std::vector<FreeParameter> free = free_parameters(model, unbalance);
+  BalanceResult result;
+  result.fit = fit_trajectory(model, run.sensors, run.recording, free);
+  const double misfit = std::sqrt(std::max(1.0, result.fit.chi2_per_sample));
+  for (size_t v = 0; v < result.fit.variables.size(); ++v) {
+    const Variable& variable = result.fit.variables[v];
+    if (variable.initial >= 0 || variable.disturbance != unbalance) continue;
+    const auto i = static_cast<Eigen::Index>(v);
+    result.offset_body_m[variable.parameter] =
+        result.fit.model.disturbances[unbalance]
+            .parameters[static_cast<size_t>(variable.parameter)]
+            .value;
+    result.sigma_m[variable.parameter] = misfit * std::sqrt(result.fit.covariance(i, i));
+  }
+  const double mass_kg = model.platform.mass_kg;
+  result.command = steps_that_remove(result.offset_body_m, run.masses, mass_kg);
+  for (const MovingMass& mass : run.masses) {
+    result.resolution_m = std::max(result.resolution_m, com_resolution_m(mass, mass_kg));
+  }
+  return result;
+}
+
+Product balance_product(const BalanceRun& run, const BalanceResult& result) {
+  const auto column = [](const std::string& name, const Vec3& v) {
+    return Table::Column{name, {v.x(), v.y(), v.z()}, {}};
+  };
+  Product product;
+  Table axes{"balance", "Centre of mass from the centre of rotation, body axes", {}};
+  axes.columns.push_back({"axis", {}, {"x", "y", "z"}});
+  axes.columns.push_back(column("offset_m", result.offset_body_m));
+  axes.columns.push_back(column("sigma_m", result.sigma_m));
+  axes.columns.push_back(column("left_by_steps_m", result.command.left_over_m));
+  axes.columns.push_back(column("published_resolution_m", Vec3::Constant(published_resolution_m)));
+  product.tables.push_back(axes);
+
+  Table masses{"moving_masses", "Moves of the balancing masses", {}};
+  masses.columns = {{"mass", {}, {}},        {"direction_x", {}, {}}, {"direction_y", {}, {}},
+                    {"direction_z", {}, {}}, {"steps", {}, {}},       {"travel_m", {}, {}}};
+  for (size_t i = 0; i < run.masses.size(); ++i) {
+    const MovingMass& mass = run.masses[i];
+    const double steps = static_cast<double>(result.command.steps[i]);
+    masses.columns[0].texts.push_back(std::to_string(i + 1));
+    for (int k = 0; k < 3; ++k) {
+      masses.columns[static_cast<size_t>(1 + k)].values.push_back(mass.direction_body[k]);
+    }
+    masses.columns[4].values.push_back(steps);
+    masses.columns[5].values.push_back(steps * mass.pitch_m());
+  }
+  product.tables.push_back(masses);
+
+  const double weight_N =
+      run.model.platform.mass_kg * run.model.environment.gravity_lab_m_s2.norm();
+  const double left_m = result.command.left_over_m.norm();
+  const auto exact = [&](const std::string& name, double value) {
+    product.quantities.push_back({name, {value, 0.0}});
+  };
+  for (int k = 0; k < 3; ++k) {
+    product.quantities.push_back(
+        {std::string("offset_") + "xyz"[k] + "_m", {result.offset_body_m[k], result.sigma_m[k]}});
+  }
+  exact("left_by_steps_m", left_m);
+  exact("left_by_steps_N_m", left_m * weight_N);
+  exact("resolution_m", result.resolution_m);
+  exact("published_resolution_m", published_resolution_m);
+  exact("chi2_per_sample", result.fit.chi2_per_sample);
+
+  Plot plot;
+  plot.name = "balance_residuals";
+  plot.title = "Camera minus fitted trajectory, about lab axes";
+  plot.x_label = "Time [s]";
+  // More points than these only blot out each other.
+  constexpr size_t most_points = 2000;
+  const size_t rows = result.fit.residual_time_s.size();
+  const size_t every = rows / most_points + 1;
+  if (every > 1) plot.title += ", one row in " + std::to_string(every);
+  const auto residuals = [&](int axis) {
+    Plot::Curve curve;
+    curve.markers = true;
+    for (size_t i = 0; i < rows; i += every) {
+      curve.x.push_back(result.fit.residual_time_s[i]);
+      curve.y.push_back(result.fit.camera_residual_rad[i][axis] / arcsecond_rad);
+    }
+    return curve;
+  };
+  plot.y_label = "About x [arcsec]";
+  plot.curves = {residuals(0)};
+  plot.below = {{"About y [arcsec]", {residuals(1)}, false},
+                {"About z [arcsec]", {residuals(2)}, false}};
+  product.plots.push_back(std::move(plot));
+  return product;
+}
+
+}  // namespace photorque

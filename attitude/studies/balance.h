@@ -1,0 +1,45 @@
+// `balance`: where the centre of mass is, from a recording, and how the balancing masses bring it
+// to the centre of rotation.
+//
+// First a linear batch estimate from the change of momentum over short intervals,
+//   I Δω + ∫ ω × I ω dt = m r × ∫ g dt + ∫ command dt − c ∫ ω dt
+// (R. Kim, B. Agrawal, J. Guid. Control Dyn. 32 (2009) 1513, in integrated form), which needs no
+// start; then the fit of the whole trajectory, which uses all of the data.
+#pragma once
+
+#include "attitude/disturbances/mass/moving_masses.h"
+#include "attitude/estimation/trajectory_fit.h"
+#include "core/product.h"
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+// The offset of the centre of mass that the changes of momentum over intervals of `interval_s` show
+// best [m], body axes. InputError when the recording has too few complete rows.
+Vec3 offset_from_momentum_m(const Platform& platform, const Vec3& gravity_lab_m_s2,
+                            const Recording& recording, double interval_s = 2.0);
+
+struct BalanceRun {
+  AttitudeModel model;
+  Sensors sensors;
+  std::vector<MovingMass> masses;
+  Recording recording;
+};
+// [platform], [environment], [[disturbance]], [sensors], [recording] and [balance] (the keys of
+// read_moving_masses()) of an experiment, and a recording.
+BalanceRun read_balance(const Settings& root, const std::filesystem::path& recording);
+
+struct BalanceResult {
+  Vec3 offset_body_m = Vec3::Zero();
+  Vec3 sigma_m = Vec3::Zero();  // widened by the fit's misfit where chi² exceeds 1
+  BalanceCommand command;       // of the masses, and what their steps leave
+  double resolution_m = 0.0;    // of the coarsest axis, half a step (eq. 1)
+  TrajectoryFit fit;
+};
+BalanceResult balance(const BalanceRun& run);
+
+// Tables "balance" (by axis, beside the paper's 1.79e-7 m) and "moving_masses", the residuals of
+// the fit as a plot, headline figures.
+Product balance_product(const BalanceRun& run, const BalanceResult& result);
+
+}  // namespace photorque

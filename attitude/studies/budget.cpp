@@ -1,0 +1,320 @@
+#include "attitude/studies/budget.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <map>
+
+#include "attitude/propagation/run.h"
+#include "core/constants.h"
+#include "core/transform.h"
+
+namespace photorque {
+namespace {
+
+constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;
+
+// The paper's figure for a kind of disturbance, by the name of the figure; empty if it has none.
+std::string figure_of_kind(const std::string& kind) {
+  if (kind == "stepper_quantization") return "stepper_torque_N_m";
+  if (kind == "air_friction") return "lumped_drag_at_1_rpm_N_m";
+  if (kind == "air_pressure_drag") return "cfd_drag_at_1_rpm_N_m";
+  if (kind == "radiation_pressure") return "radiation_torque_at_30_deg_N_m";
+  if (kind == "battery_discharge") return "battery_torque_N_m";
+  return "";
+}
+
+std::vector<std::string> names_of(const std::vector<Disturbance>& disturbances) {
+  std::map<std::string, int> total, so_far;
+  for (const Disturbance& d : disturbances) ++total[d.kind];
+  std::vector<std::string> names;
+  for (const Disturbance& d : disturbances) {
+    const int number = ++so_far[d.kind];
+    names.push_back(total[d.kind] > 1 ? d.kind + "_" + std::to_string(number) : d.kind);
+  }
+  return names;
+}
+
+Quat lab_from_body(double tilt_rad, double heading_rad) {
+  return lab_from_body_at(tilt_rad, heading_rad).rotation;
+}
+
+double read_charge_drawn_C(const Settings& settings, const Platform& platform) {
+  if (!settings.has("state_of_charge")) {
+    return settings.number_or("charge_drawn_Ah", 0.0, Range::not_negative());
+  }
+  const double state_of_charge = settings.number("state_of_charge", Range::fraction());
+  if (state_of_charge < 1.0 && !platform.battery_capacity_C) {
+    throw settings.error("state_of_charge", "no platform.battery_capacity_Ah",
+                         "the battery's capacity beside its state of charge");
+  }
+  return (1.0 - state_of_charge) * platform.battery_capacity_C.value_or(0.0);
+}
+
+PlatformState read_state(const Settings& settings, const AttitudeModel& model) {
+  const Quat attitude = lab_from_body(settings.number_or("tilt_deg", 0.0, {0.0, pi, false, false}),
+                                      settings.number_or("heading_deg", 0.0));
+  const Vec3 spin_lab_rad_s(0.0, 0.0, settings.number_or("spin_rpm", 0.0));
+  const Vec3 rate_body_rad_s =
+      attitude.conjugate() * spin_lab_rad_s + settings.vector3_or("rate_rad_s", Vec3::Zero());
+  PlatformState state = Dynamics(model).initial_state(rate_body_rad_s);
+  state.lab_from_body = attitude;
+  state.time_s = settings.number_or("time_s", 0.0);
+  state.charge_drawn_C = read_charge_drawn_C(settings, model.platform);
+  return state;
+}
+
+std::vector<BearingDatasheet> read_catalogue(const Settings& settings) {
+  std::vector<BearingDatasheet> catalogue;
+  for (const Settings& s : settings.tables("bearing")) {
+    BearingDatasheet b;
+    b.name = s.text("name");
+    b.socket = {s.number("radius_m", Range::positive()),
+                s.number("half_angle_deg", {0.0, pi / 2, true, false}),
+                s.number("gap_m", Range::positive())};
+    b.inlet_Pa = s.number("inlet_Pa", Range::positive());
+    b.load_N = s.number("load_N", Range::positive());
+    b.drag_N_m = s.number_or("drag_N_m", 0.0, Range::not_negative());
+    b.drag_rate_rad_s = s.number_or("drag_rate_rpm", b.drag_rate_rad_s, Range::positive());
+    catalogue.push_back(b);
+  }
+  return catalogue;
+}
+
+// What acts within a second.
+struct Acting {
+  Vec3 largest_body_N_m = Vec3::Zero();
+  Vec3 mean_body_N_m = Vec3::Zero();
+};
+
+// The command and all disturbances' torques at an instant, by disturbance, and what they come to.
+struct Snapshot {
+  std::vector<Vec3> torques_body_N_m;
+  Vec3 angular_acceleration_rad_s2;
+};
+Snapshot snapshot(const Dynamics& dynamics, const PlatformState& state) {
+  std::vector<Lanes> y;
+  for (const double x : to_vector(state)) y.emplace_back(x);
+  std::array<Held, Lanes::count> held;
+  held.fill(dynamics.model().schedule.at(state.time_s));
+  const Dynamics::Instants now = dynamics.at(state.time_s, held, y.data());
+  Snapshot result;
+  for (const Vec3Of<Lanes>& torque : now.torque_body_N_m) {
+    result.torques_body_N_m.emplace_back(torque[0][0], torque[1][0], torque[2][0]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    result.angular_acceleration_rad_s2[k] = now.rates[size_t(component::rate + k)][0];
+  }
+  return result;
+}
+
+// What changes the conditions of others (gravity, field, command, inertia) has no torque of its own
+// but one by what it does to theirs: I times the acceleration with it less that without it.
+Vec3 torque_by_conditions_body_N_m(const AttitudeModel& model, size_t d, const Snapshot& with,
+                                   const PlatformState& state) {
+  if (!model.disturbances[d].states.empty()) return Vec3::Zero();
+  AttitudeModel without = model;
+  without.disturbances.erase(without.disturbances.begin() + static_cast<std::ptrdiff_t>(d));
+  const Snapshot rest = snapshot(Dynamics(std::move(without)), state);
+  return model.platform.inertia_kg_m2 *
+         (with.angular_acceleration_rad_s2 - rest.angular_acceleration_rad_s2);
+}
+
+// Every disturbance within the second that begins with `state`, attitude and rate held: what shakes
+// shows its amplitude, and what is steady is as it is.
+std::vector<Acting> acting_within_a_second(const AttitudeModel& model, const PlatformState& state) {
+  // A prime number: no whole frequency but its multiples falls between the instants.
+  constexpr int instants = 101;
+  const Dynamics dynamics(model);
+  std::vector<Acting> all(model.disturbances.size());
+  for (int i = 0; i < instants; ++i) {
+    PlatformState then = state;
+    then.time_s += static_cast<double>(i) / instants;
+    Snapshot now = snapshot(dynamics, then);
+    for (size_t d = 0; d < all.size(); ++d) {
+      Vec3& torque_N_m = now.torques_body_N_m[d];
+      // Conditions that change within a second are none of ours.
+      if (model.disturbances[d].stage == Stage::conditions) {
+        if (i > 0) continue;
+        torque_N_m = torque_by_conditions_body_N_m(model, d, now, then);
+        all[d] = {torque_N_m, torque_N_m};
+        continue;
+      }
+      all[d].mean_body_N_m += torque_N_m / instants;
+      if (torque_N_m.norm() > all[d].largest_body_N_m.norm()) all[d].largest_body_N_m = torque_N_m;
+    }
+  }
+  double largest_N_m = 0.0;
+  for (const Acting& one : all) largest_N_m = std::max(largest_N_m, one.largest_body_N_m.norm());
+  constexpr double rounding = 1e-15;
+  for (Acting& one : all) {
+    if (one.largest_body_N_m.norm() < rounding * largest_N_m) one = {};
+  }
+  return all;
+}
+
+// Read once more, beside the disturbances made of them, which keep a coefficient alone.
+std::vector<AirPart> read_own_air_parts(const Settings& root) {
+  std::vector<AirPart> all;
+  if (!root.has("disturbance")) return all;
+  SettingsNode holder;
+  holder.value = SettingsNode::Table{{"disturbance", root.raw("disturbance")}};
+  const Settings own(std::make_shared<const SettingsNode>(std::move(holder)));
+  for (const Settings& disturbance : own.tables("disturbance")) {
+    if (!disturbance.text("kind").starts_with("air_") || !disturbance.has("part")) continue;
+    const std::vector<AirPart> parts = read_air_parts(disturbance.tables("part"));
+    all.insert(all.end(), parts.begin(), parts.end());
+  }
+  return all;
+}
+
+PaperLight read_light(const Settings& settings) {
+  PaperLight light;
+  if (!settings.has("light")) return light;
+  const Settings s = settings.table("light");
+  light.source_to_cell = s.number_or("source_to_cell", light.source_to_cell, Range::fraction());
+  light.conversion = s.number_or("conversion", light.conversion, Range::fraction());
+  light.power_W = s.number_or("power_W", light.power_W, Range::positive());
+  light.power_at_30_deg_W =
+      s.number_or("power_at_30_deg_W", light.power_at_30_deg_W, Range::positive());
+  light.torque_at_30_deg_N_m = s.vector3_or("torque_at_30_deg_N_m", light.torque_at_30_deg_N_m);
+  return light;
+}
+
+Table budget_table(const Budget& budget) {
+  std::map<std::string, PaperFigure> paper;
+  for (const PaperFigure& figure : paper_figures()) paper[figure.quantity] = figure;
+  Table::Column name{"disturbance", {}, {}}, figure_name{"paper_figure", {}, {}};
+  std::array<Table::Column, 3> torque;
+  for (int k = 0; k < 3; ++k) torque[k].name = std::string("torque_") + "xyz"[k] + "_N_m";
+  Table::Column size{"torque_N_m", {}, {}}, share{"share_of_sum", {}, {}},
+      minute{"angle_1_min_deg", {}, {}}, hour{"angle_1_h_deg", {}, {}},
+      day{"angle_1_day_deg", {}, {}}, published{"paper_N_m", {}, {}}, ratio{"ratio", {}, {}};
+  double sum_N_m = 0.0;
+  for (const BudgetEntry& e : budget.entries) sum_N_m += e.torque_body_N_m.norm();
+  for (const BudgetEntry& e : budget.entries) {
+    const double torque_N_m = e.torque_body_N_m.norm();
+    const std::string figure = figure_of_kind(e.kind);
+    name.texts.push_back(e.name);
+    figure_name.texts.push_back(figure.empty() ? "-" : figure);
+    for (int k = 0; k < 3; ++k) torque[k].values.push_back(e.torque_body_N_m[k]);
+    size.values.push_back(torque_N_m);
+    share.values.push_back(sum_N_m > 0.0 ? torque_N_m / sum_N_m : 0.0);
+    minute.values.push_back(e.angle_after_minute_rad / degree_rad);
+    hour.values.push_back(e.angle_after_hour_rad / degree_rad);
+    day.values.push_back(e.angle_after_day_rad / degree_rad);
+    const double paper_N_m = figure.empty() ? std::nan("") : paper.at(figure).published;
+    published.values.push_back(paper_N_m);
+    ratio.values.push_back(torque_N_m / paper_N_m);
+  }
+  return {"budget",
+          "Disturbance torques at the state, largest first",
+          {name, figure_name, torque[0], torque[1], torque[2], size, share, minute, hour, day,
+           published, ratio}};
+}
+
+Plot tilt_plot(const Budget& budget) {
+  Plot plot;
+  plot.name = "torque_by_tilt";
+  plot.title = "Disturbance torques by tilt";
+  plot.x_label = "tilt [deg]";
+  plot.y_label = "torque [N m]";
+  plot.y_log = true;
+  for (const std::string& name : names_of(budget.model.disturbances)) {
+    plot.curves.push_back({name, {}, {}, {}, false});
+  }
+  const double limit_rad = budget.model.platform.tilt_limit_rad.value_or(30.0 * degree_rad);
+  const double heading_rad = std::atan2((budget.state.lab_from_body * Vec3::UnitZ()).y(),
+                                        (budget.state.lab_from_body * Vec3::UnitZ()).x());
+  const Vec3 rate_lab_rad_s = budget.state.lab_from_body * budget.state.rate_body_rad_s;
+  const Dynamics dynamics(budget.model);
+  constexpr int steps = 60;
+  for (int i = 0; i <= steps; ++i) {
+    const double tilt_rad = limit_rad * i / steps;
+    const Quat attitude = lab_from_body(tilt_rad, heading_rad);
+    // Appendages turn with the body at every tilt.
+    PlatformState state = dynamics.initial_state(attitude.conjugate() * rate_lab_rad_s);
+    state.lab_from_body = attitude;
+    state.time_s = budget.state.time_s;
+    state.charge_drawn_C = budget.state.charge_drawn_C;
+    const std::vector<Acting> acting = acting_within_a_second(budget.model, state);
+    for (size_t d = 0; d < acting.size(); ++d) {
+      const double torque_N_m = acting[d].largest_body_N_m.norm();
+      if (!(torque_N_m > 0.0)) continue;  // nothing to draw on a logarithmic axis
+      plot.curves[d].x.push_back(tilt_rad / degree_rad);
+      plot.curves[d].y.push_back(torque_N_m);
+    }
+  }
+  std::erase_if(plot.curves, [](const Plot::Curve& curve) { return curve.x.empty(); });
+  return plot;
+}
+
+}  // namespace
+
+Budget make_budget(AttitudeModel model, const PlatformState& state) {
+  Budget budget{std::move(model), state, {}, {}, {}, {}};
+  const std::vector<Acting> acting = acting_within_a_second(budget.model, state);
+  const std::vector<std::string> names = names_of(budget.model.disturbances);
+  const Mat3 inverse_inertia = budget.model.platform.inertia_kg_m2.inverse();
+  for (size_t d = 0; d < acting.size(); ++d) {
+    const Disturbance& disturbance = budget.model.disturbances[d];
+    // An orbit is where the others act.
+    if (disturbance.stage == Stage::measurement || disturbance.kind == "orbit") continue;
+    const double acceleration_rad_s2 = (inverse_inertia * acting[d].mean_body_N_m).norm();
+    const auto angle_after = [&](double t_s) { return 0.5 * acceleration_rad_s2 * t_s * t_s; };
+    budget.entries.push_back({budget.model.disturbances[d].kind, names[d],
+                              acting[d].largest_body_N_m, angle_after(minute_s),
+                              angle_after(hour_s), angle_after(day_s)});
+  }
+  std::stable_sort(budget.entries.begin(), budget.entries.end(),
+                   [](const BudgetEntry& a, const BudgetEntry& b) {
+                     return a.torque_body_N_m.norm() > b.torque_body_N_m.norm();
+                   });
+  return budget;
+}
+
+Budget read_budget(const Settings& root) {
+  AttitudeModel model = read_attitude_model(root).model;
+  if (!root.has("budget")) {
+    const PlatformState upright = Dynamics(model).initial_state();
+    Budget budget = make_budget(std::move(model), upright);
+    budget.air_parts = read_own_air_parts(root);
+    return budget;
+  }
+  const Settings settings = root.table("budget");
+  const PlatformState state = read_state(settings, model);
+  Budget budget = make_budget(std::move(model), state);
+  budget.catalogue = read_catalogue(settings);
+  budget.light = read_light(settings);
+  budget.air_parts = read_own_air_parts(root);
+  settings.finish();
+  return budget;
+}
+
+Product budget_product(const Budget& budget) {
+  PaperInputs inputs;
+  inputs.light = budget.light;
+  Product product = paper_product(inputs);
+  product.tables.insert(product.tables.begin(), budget_table(budget));
+  if (!budget.air_parts.empty()) {
+    const Environment& room = budget.model.environment;
+    product.tables.push_back(air_table(budget.air_parts,
+                                       {room.air_density_kg_m3, room.air_viscosity_Pa_s},
+                                       budget.state.rate_body_rad_s.norm()));
+  }
+  product.plots.insert(product.plots.begin(), tilt_plot(budget));
+  Vec3 total_N_m = Vec3::Zero();
+  for (const BudgetEntry& e : budget.entries) total_N_m += e.torque_body_N_m;
+  product.quantities.push_back({"total_torque_N_m", {total_N_m.norm(), 0.0}});
+  if (!budget.catalogue.empty()) {
+    const BearingComparison c =
+        compare_bearings(budget.catalogue, budget.model.environment.air_pressure_Pa,
+                         budget.model.environment.air_viscosity_Pa_s);
+    product.quantities.push_back({"bearing_load_mean_error", {c.load_error, 0.0}});
+    product.quantities.push_back(
+        {"bearing_load_mean_error_as_published", {c.load_error_as_published, 0.0}});
+    product.quantities.push_back({"bearing_drag_mean_ratio", {c.drag_ratio, 0.0}});
+  }
+  return product;
+}
+
+}  // namespace photorque

@@ -1,0 +1,168 @@
+// Numbers that carry their exact first derivatives with respect to a block of eight variables
+// (forward automatic differentiation), and the few functions that torque laws need beyond
+// arithmetic. Every function exists for Lanes and for DualLanes with the same meaning.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/numerics/lanes.h"
+
+namespace photorque {
+
+// Value and derivatives at eight instants. `partial[k]` is the derivative with respect to the k-th
+// variable of the block that is being differentiated; which variables those are is the business of
+// whoever seeds them.
+struct DualLanes {
+  static constexpr int block = 8;
+  Lanes value;
+  std::array<Lanes, block> partial;
+
+  DualLanes() = default;
+  // A constant; implicit, so that constants mix with duals in formulas.
+  DualLanes(double x) : DualLanes(Lanes(x)) {}  // NOLINT(google-explicit-constructor)
+  DualLanes(const Lanes& x) : value(x) {        // NOLINT(google-explicit-constructor)
+    partial.fill(Lanes(0.0));
+  }
+
+  // f(x) given f and df/dx at x.
+  static DualLanes chain(const DualLanes& x, const Lanes& f, const Lanes& slope) {
+    DualLanes r;
+    r.value = f;
+    for (int k = 0; k < block; ++k) r.partial[k] = slope * x.partial[k];
+    return r;
+  }
+  // f(x, y) given f, ∂f/∂x and ∂f/∂y.
+  static DualLanes chain(const DualLanes& x, const DualLanes& y, const Lanes& f,
+                         const Lanes& slope_x, const Lanes& slope_y) {
+    DualLanes r;
+    r.value = f;
+    for (int k = 0; k < block; ++k) r.partial[k] = slope_x * x.partial[k] + slope_y * y.partial[k];
+    return r;
+  }
+
+  DualLanes operator-() const { return chain(*this, -value, -1.0); }
+  DualLanes& operator+=(const DualLanes& b) { return *this = *this + b; }
+  DualLanes& operator-=(const DualLanes& b) { return *this = *this - b; }
+  DualLanes& operator*=(const DualLanes& b) { return *this = *this * b; }
+  DualLanes& operator/=(const DualLanes& b) { return *this = *this / b; }
+
+  friend DualLanes operator+(const DualLanes& a, const DualLanes& b) {
+    DualLanes r;
+    r.value = a.value + b.value;
+    for (int k = 0; k < block; ++k) r.partial[k] = a.partial[k] + b.partial[k];
+    return r;
+  }
+  friend DualLanes operator-(const DualLanes& a, const DualLanes& b) {
+    DualLanes r;
+    r.value = a.value - b.value;
+    for (int k = 0; k < block; ++k) r.partial[k] = a.partial[k] - b.partial[k];
+    return r;
+  }
+  friend DualLanes operator*(const DualLanes& a, const DualLanes& b) {
+    return chain(a, b, a.value * b.value, b.value, a.value);
+  }
+  friend DualLanes operator/(const DualLanes& a, const DualLanes& b) {
+    const Lanes inverse = 1.0 / b.value;
+    const Lanes quotient = a.value * inverse;
+    return chain(a, b, quotient, inverse, -quotient * inverse);
+  }
+  // Factors that are constants need no derivatives of their own.
+  friend DualLanes operator*(double a, const DualLanes& b) { return chain(b, a * b.value, a); }
+  friend DualLanes operator*(const DualLanes& a, double b) { return chain(a, a.value * b, b); }
+  friend DualLanes operator/(const DualLanes& a, double b) { return a * (1.0 / b); }
+  friend bool operator==(const DualLanes& a, const DualLanes& b) { return a.value == b.value; }
+};
+
+inline DualLanes sqrt(const DualLanes& x) {
+  const Lanes root = sqrt(x.value);
+  return DualLanes::chain(x, root, 0.5 / root);
+}
+inline DualLanes sin(const DualLanes& x) {
+  return DualLanes::chain(x, sin(x.value), cos(x.value));
+}
+inline DualLanes cos(const DualLanes& x) {
+  return DualLanes::chain(x, cos(x.value), -sin(x.value));
+}
+inline DualLanes exp(const DualLanes& x) {
+  const Lanes e = exp(x.value);
+  return DualLanes::chain(x, e, e);
+}
+inline DualLanes log(const DualLanes& x) {
+  return DualLanes::chain(x, log(x.value), 1.0 / x.value);
+}
+// For x > 0, or x ≥ 0 with an exponent ≥ 1.
+inline DualLanes pow(const DualLanes& x, double exponent) {
+  return DualLanes::chain(x, pow(x.value, exponent), exponent * pow(x.value, exponent - 1.0));
+}
+inline DualLanes atan2(const DualLanes& y, const DualLanes& x) {
+  const Lanes square = x.value * x.value + y.value * y.value;
+  return DualLanes::chain(y, x, atan2(y.value, x.value), x.value / square, -y.value / square);
+}
+// a where x ≥ bound, b elsewhere; lane by lane, derivatives likewise.
+inline DualLanes where_at_least(const DualLanes& x, double bound, const DualLanes& a,
+                                const DualLanes& b) {
+  DualLanes r;
+  r.value = where_at_least(x.value, bound, a.value, b.value);
+  for (int k = 0; k < DualLanes::block; ++k) {
+    r.partial[k] = where_at_least(x.value, bound, a.partial[k], b.partial[k]);
+  }
+  return r;
+}
+
+// A function of one variable that is known by numbers (a table, an iteration): `f` returns its
+// value and its slope at one point as {value, slope}.
+template <class Function>
+Lanes from_values(const Lanes& x, const Function& f) {
+  return each_lane(x, [&f](double a) { return f(a)[0]; });
+}
+template <class Function>
+DualLanes from_values(const DualLanes& x, const Function& f) {
+  Lanes value, slope;
+  for (int i = 0; i < Lanes::count; ++i) {
+    const std::array<double, 2> at = f(x.value[i]);
+    value.set(i, at[0]);
+    slope.set(i, at[1]);
+  }
+  return DualLanes::chain(x, value, slope);
+}
+
+// The values without derivatives: for looking things up lane by lane.
+inline const Lanes& values(const Lanes& x) {
+  return x;
+}
+inline const Lanes& values(const DualLanes& x) {
+  return x.value;
+}
+
+template <class T>
+using Vec3Of = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Mat3Of = Eigen::Matrix<T, 3, 3>;
+template <class T>
+using QuatOf = Eigen::Quaternion<T>;
+
+// |v|, never exactly zero (at least 1e-150), so that v/|v| and the derivatives of |v| to any power
+// stay finite at rest: they are 0 there.
+template <class T>
+T length(const Vec3Of<T>& v) {
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + T(1e-300));
+}
+
+}  // namespace photorque
+
+// Eigen's vectors, matrices and quaternions of these scalars.
+namespace Eigen {
+template <class Scalar>
+struct PhotorqueNumTraits : GenericNumTraits<double> {
+  using Real = Scalar;
+  using NonInteger = Scalar;
+  using Nested = Scalar;
+  using Literal = double;
+  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0 };
+  enum { ReadCost = 8, AddCost = 8, MulCost = 8 };
+};
+template <>
+struct NumTraits<photorque::Lanes> : PhotorqueNumTraits<photorque::Lanes> {};
+template <>
+struct NumTraits<photorque::DualLanes> : PhotorqueNumTraits<photorque::DualLanes> {};
+}  // namespace Eigen

@@ -1,0 +1,240 @@
+#include "core/settings/settings.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "core/settings/read_log.h"
+
+namespace photorque {
+namespace {
+
+size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t replace = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replace});
+    }
+  }
+  return row[b.size()];
+}
+
+// " (is LIKE in line N meant?)" for the likest key that nobody has asked for yet, if there is one.
+std::string misspelled(std::string_view key, const SettingsNode::Table& table,
+                       const std::set<std::string>& asked) {
+  std::set<std::string> unasked;
+  for (const auto& [other, node] : table) {
+    if (!asked.contains(other)) unasked.insert(other);
+  }
+  const std::string likest = nearest(key, unasked);
+  if (likest.empty()) return "";
+  return " (is \"" + likest + "\" in line " +
+         std::to_string(table.find(likest)->second.where.line) + " meant?)";
+}
+
+}  // namespace
+
+std::string format_setting(double x) {
+  std::ostringstream out;
+  out.precision(12);
+  out << x;
+  return out.str();
+}
+
+std::string describe(const SettingsNode& node) {
+  if (const auto* b = std::get_if<bool>(&node.value)) return *b ? "true" : "false";
+  if (const auto* i = std::get_if<int64_t>(&node.value)) return std::to_string(*i);
+  if (const auto* d = std::get_if<double>(&node.value)) return format_setting(*d);
+  if (const auto* s = std::get_if<std::string>(&node.value)) return "\"" + *s + "\"";
+  if (const auto* a = std::get_if<SettingsNode::Array>(&node.value)) {
+    return "an array of " + std::to_string(a->size());
+  }
+  return "a table";
+}
+
+std::string nearest(std::string_view word, const std::set<std::string>& candidates) {
+  std::string best;
+  size_t best_distance = std::max<size_t>(2, word.size() / 2) + 1;
+  for (const auto& candidate : candidates) {
+    // A name without its unit is as near as one wrong letter.
+    const bool lacks_unit = candidate.starts_with(std::string(word) + "_");
+    const size_t distance = lacks_unit ? 1 : edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+namespace {
+
+// What is expected in the place of an unknown key: the likest of the known ones, else the first of
+// them all.
+std::string known_instead_of(std::string_view key, const std::set<std::string>& known) {
+  constexpr size_t most = 12;
+  if (const std::string hint = nearest(key, known); !hint.empty()) {
+    return "a known key, perhaps \"" + hint + "\"";
+  }
+  std::string list;
+  size_t count = 0;
+  for (const std::string& name : known) {
+    if (++count > most) break;
+    list += (count > 1 ? ", " : "") + name;
+  }
+  return "one of " + list + (count > most ? ", …" : "");
+}
+
+}  // namespace
+
+Settings::Settings(std::shared_ptr<const SettingsNode> root, std::string name)
+    : node_(root.get()),
+      root_(std::move(root)),
+      log_(std::make_shared<Log>()),
+      name_(std::move(name)) {}
+
+Settings::Settings(const SettingsNode* node, std::shared_ptr<const SettingsNode> root,
+                   std::shared_ptr<Log> log, std::string name)
+    : node_(node), root_(std::move(root)), log_(std::move(log)), name_(std::move(name)) {}
+
+std::string Settings::full_name(std::string_view key) const {
+  if (name_.empty()) return std::string(key);
+  return key.empty() ? name_ : name_ + "." + std::string(key);
+}
+
+InputLocation Settings::where() const {
+  return node_->where;
+}
+
+InputError Settings::error(std::string_view key, const std::string& found,
+                           const std::string& expected) const {
+  const auto& table = std::get<SettingsNode::Table>(node_->value);
+  const auto it = table.find(key);
+  return {it == table.end() ? node_->where : it->second.where, full_name(key), found, expected};
+}
+
+const SettingsNode* Settings::find(std::string_view key, double* factor) const {
+  log_->asked[node_].insert(std::string(key));
+  const auto& table = std::get<SettingsNode::Table>(node_->value);
+  const KeyUnit wanted = unit_of_key(key);
+  *factor = wanted.to_SI;
+  const auto exact = table.find(key);
+  const SettingsNode* found = exact == table.end() ? nullptr : &exact->second;
+  if (!wanted.unit.empty()) {
+    for (const auto& [other_key, node] : table) {
+      if (other_key == key) continue;
+      const KeyUnit other = unit_of_key(other_key);
+      if (other.stem != wanted.stem || other.dimension != wanted.dimension) continue;
+      if (found != nullptr) {
+        throw InputError(
+            node.where, full_name(other_key),
+            "the same quantity as " + std::string(exact == table.end() ? "another key" : key),
+            "it once");
+      }
+      found = &node;
+      *factor = other.to_SI;
+    }
+  }
+  if (found != nullptr) log_->read.insert(found);
+  return found;
+}
+
+const SettingsNode& Settings::require(std::string_view key, double* factor,
+                                      const std::string& expected) const {
+  if (const SettingsNode* node = find(key, factor)) return *node;
+  // A key of the same stem with no or a wrong unit is the likeliest mistake.
+  const KeyUnit wanted = unit_of_key(key);
+  if (!wanted.unit.empty()) {
+    for (const auto& [other_key, node] : std::get<SettingsNode::Table>(node_->value)) {
+      if (other_key == wanted.stem || unit_of_key(other_key).stem == wanted.stem) {
+        throw InputError(node.where, full_name(other_key),
+                         "a key without a unit of " + wanted.dimension,
+                         "the key " + std::string(key));
+      }
+    }
+  }
+  throw InputError(
+      node_->where, full_name(key), "nothing",
+      expected + misspelled(key, std::get<SettingsNode::Table>(node_->value), log_->asked[node_]));
+}
+
+bool Settings::has(std::string_view key) const {
+  log_->asked[node_].insert(std::string(key));
+  const auto& table = std::get<SettingsNode::Table>(node_->value);
+  if (table.contains(key)) return true;
+  const KeyUnit wanted = unit_of_key(key);
+  if (wanted.unit.empty()) return false;
+  return std::any_of(table.begin(), table.end(), [&](const auto& item) {
+    const KeyUnit other = unit_of_key(item.first);
+    return other.stem == wanted.stem && other.dimension == wanted.dimension;
+  });
+}
+
+Settings Settings::table(std::string_view key) const {
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, "a table [" + full_name(key) + "]");
+  if (!node.is_table()) throw InputError(node.where, full_name(key), describe(node), "a table");
+  return {&node, root_, log_, full_name(key)};
+}
+
+std::vector<Settings> Settings::tables(std::string_view key) const {
+  double factor = 1.0;
+  const SettingsNode* node = find(key, &factor);
+  std::vector<Settings> all;
+  if (node == nullptr) return all;
+  if (node->is_table()) {
+    all.push_back({node, root_, log_, full_name(key)});
+    return all;
+  }
+  const auto* array = std::get_if<SettingsNode::Array>(&node->value);
+  if (array == nullptr)
+    throw InputError(node->where, full_name(key), describe(*node),
+                     "tables [[" + full_name(key) + "]]");
+  for (size_t i = 0; i < array->size(); ++i) {
+    const SettingsNode& item = (*array)[i];
+    const std::string item_name = full_name(key) + "[" + std::to_string(i) + "]";
+    if (!item.is_table()) throw InputError(item.where, item_name, describe(item), "a table");
+    log_->read.insert(&item);
+    all.push_back({&item, root_, log_, item_name});
+  }
+  return all;
+}
+
+std::vector<std::string> Settings::keys() const {
+  std::vector<std::string> all;
+  for (const auto& [key, node] : std::get<SettingsNode::Table>(node_->value)) all.push_back(key);
+  return all;
+}
+
+const SettingsNode& Settings::raw(std::string_view key) const {
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, "a value");
+  log_->mark_all(node);
+  return node;
+}
+
+void Settings::finish() const {
+  for (const auto& [key, node] : std::get<SettingsNode::Table>(node_->value)) {
+    if (!log_->read.contains(&node)) {
+      const auto asked = log_->asked.find(node_);
+      throw InputError(node.where, full_name(key), "an unknown key",
+                       asked == log_->asked.end() ? "only known keys here"
+                                                  : known_instead_of(key, asked->second));
+    }
+    if (node.is_table()) Settings(&node, root_, log_, full_name(key)).finish();
+    if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
+      for (size_t i = 0; i < array->size(); ++i) {
+        const SettingsNode& item = (*array)[i];
+        if (item.is_table()) {
+          Settings(&item, root_, log_, full_name(key) + "[" + std::to_string(i) + "]").finish();
+        }
+      }
+    }
+  }
+}
+
+}  // namespace photorque

@@ -1,0 +1,254 @@
+// Values of keys: numbers with units and ranges, texts, choices, vectors.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/settings/read_log.h"
+
+namespace photorque {
+namespace {
+
+std::string describe_range(Range range, double factor, const std::string& unit) {
+  const std::string suffix = unit.empty() ? "" : " " + unit;
+  const bool has_low = range.low > -1e307, has_high = range.high < 1e307;
+  const std::string low = format_setting(range.low / factor),
+                    high = format_setting(range.high / factor);
+  if (has_low && has_high) {
+    return "a number in " + std::string(range.low_open ? "(" : "[") + low + ", " + high +
+           (range.high_open ? ")" : "]") + suffix;
+  }
+  if (has_low) return "a number " + std::string(range.low_open ? "> " : ">= ") + low + suffix;
+  if (has_high) return "a number " + std::string(range.high_open ? "< " : "<= ") + high + suffix;
+  return "a finite number" + suffix;
+}
+
+bool inside(double x, Range range) {
+  if (!std::isfinite(x)) return false;
+  if (range.low_open ? x <= range.low : x < range.low) return false;
+  if (range.high_open ? x >= range.high : x > range.high) return false;
+  return true;
+}
+
+std::string join(const std::vector<std::string>& words) {
+  std::string all;
+  for (const auto& word : words) all += (all.empty() ? "\"" : ", \"") + word + "\"";
+  return all;
+}
+
+}  // namespace
+
+double Settings::to_number(const SettingsNode& node, std::string_view key, double factor,
+                           Range range) const {
+  const std::string expected = describe_range(range, factor, unit_of_key(key).unit);
+  log_->read.insert(&node);
+  double written = 0.0;
+  if (const auto* i = std::get_if<int64_t>(&node.value)) {
+    written = static_cast<double>(*i);
+  } else if (const auto* d = std::get_if<double>(&node.value)) {
+    written = *d;
+  } else {
+    throw InputError(node.where, full_name(key), describe(node), expected);
+  }
+  const double x = written * factor;
+  if (!inside(x, range)) throw InputError(node.where, full_name(key), describe(node), expected);
+  // No laboratory needs more of any unit; squares and products stay finite, and places within what
+  // single precision can trace.
+  const KeyUnit unit = unit_of_key(key);
+  const bool length = unit.dimension == "length";
+  if (!unit.unit.empty() && std::abs(x) > (length ? 1e12 : 1e30)) {
+    throw InputError(node.where, full_name(key), describe(node),
+                     length ? "at most 1e12 m" : "at most 1e30 in SI units");
+  }
+  return x;
+}
+
+double Settings::number(std::string_view key, Range range) const {
+  double factor = 1.0;
+  const SettingsNode& node =
+      require(key, &factor, describe_range(range, unit_of_key(key).to_SI, unit_of_key(key).unit));
+  return to_number(node, key, factor, range);
+}
+
+double Settings::number_or(std::string_view key, double otherwise_SI, Range range) const {
+  double factor = 1.0;
+  const SettingsNode* node = find(key, &factor);
+  return node == nullptr ? otherwise_SI : to_number(*node, key, factor, range);
+}
+
+Uncertain Settings::uncertain(std::string_view key, Range range) const {
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, "a number or { value = ..., sigma = ... }");
+  if (!node.is_table()) return {to_number(node, key, factor, range), 0.0};
+  const Settings inner(&node, root_, log_, full_name(key));
+  double unused = 1.0;
+  const SettingsNode& value = inner.require("value", &unused, "a number");
+  const SettingsNode& sigma = inner.require("sigma", &unused, "a number >= 0");
+  return {inner.to_number(value, "value", factor, range),
+          inner.to_number(sigma, "sigma", factor, Range::not_negative())};
+}
+
+Vec3 Settings::to_vector3(const SettingsNode& node, std::string_view key, double factor) const {
+  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  if (array == nullptr || array->size() != 3) {
+    throw InputError(node.where, full_name(key), describe(node), "an array of 3 numbers");
+  }
+  log_->read.insert(&node);
+  Vec3 v;
+  for (int i = 0; i < 3; ++i) v[i] = to_number((*array)[static_cast<size_t>(i)], key, factor, {});
+  return v;
+}
+
+UncertainVec3 Settings::uncertain_vector(std::string_view key) const {
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, "3 numbers or { value = [...], sigma = [...] }");
+  if (!node.is_table()) return {to_vector3(node, key, factor), Vec3::Zero()};
+  const Settings inner(&node, root_, log_, full_name(key));
+  double unused = 1.0;
+  const SettingsNode& value = inner.require("value", &unused, "an array of 3 numbers");
+  const SettingsNode& sigma = inner.require("sigma", &unused, "an array of 3 numbers >= 0");
+  const UncertainVec3 both{inner.to_vector3(value, "value", factor),
+                           inner.to_vector3(sigma, "sigma", factor)};
+  if ((both.sigma.array() < 0.0).any()) {
+    throw InputError(sigma.where, inner.full_name("sigma"), "a negative number", "numbers >= 0");
+  }
+  return both;
+}
+
+int64_t Settings::integer(std::string_view key, int64_t low, int64_t high) const {
+  double factor = 1.0;
+  const std::string expected =
+      "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+  const SettingsNode& node = require(key, &factor, expected);
+  std::optional<int64_t> whole;
+  if (const auto* i = std::get_if<int64_t>(&node.value)) whole = *i;
+  // 1e8 is a real number in TOML, and the natural way to write a count.
+  const auto* d = std::get_if<double>(&node.value);
+  if (d != nullptr && std::abs(*d) < 0x1p53 && *d == std::floor(*d))
+    whole = static_cast<int64_t>(*d);
+  if (!whole || *whole < low || *whole > high) {
+    throw InputError(node.where, full_name(key), describe(node), expected);
+  }
+  return *whole;
+}
+
+int64_t Settings::integer_or(std::string_view key, int64_t otherwise, int64_t low,
+                             int64_t high) const {
+  return has(key) ? integer(key, low, high) : otherwise;
+}
+
+bool Settings::flag_or(std::string_view key, bool otherwise) const {
+  double factor = 1.0;
+  const SettingsNode* node = find(key, &factor);
+  if (node == nullptr) return otherwise;
+  const auto* b = std::get_if<bool>(&node->value);
+  if (b == nullptr) throw InputError(node->where, full_name(key), describe(*node), "true or false");
+  return *b;
+}
+
+std::string Settings::text(std::string_view key) const {
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, "a text in quotes");
+  const auto* s = std::get_if<std::string>(&node.value);
+  if (s == nullptr)
+    throw InputError(node.where, full_name(key), describe(node), "a text in quotes");
+  return *s;
+}
+
+std::string Settings::text_or(std::string_view key, std::string_view otherwise) const {
+  return has(key) ? text(key) : std::string(otherwise);
+}
+
+size_t Settings::choice(std::string_view key, const std::vector<std::string>& choices) const {
+  const std::string expected = "one of " + join(choices);
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, expected);
+  const auto* s = std::get_if<std::string>(&node.value);
+  if (s != nullptr) {
+    const auto it = std::find(choices.begin(), choices.end(), *s);
+    if (it != choices.end()) return static_cast<size_t>(it - choices.begin());
+    const std::string hint = nearest(*s, {choices.begin(), choices.end()});
+    if (!hint.empty()) {
+      // A long list would hide the hint.
+      const std::string known =
+          choices.size() > 10 ? "one of " + std::to_string(choices.size()) + " names" : expected;
+      throw InputError(node.where, full_name(key), describe(node),
+                       known + " (did you mean \"" + hint + "\"?)");
+    }
+  }
+  throw InputError(node.where, full_name(key), describe(node), expected);
+}
+
+size_t Settings::choice_or(std::string_view key, const std::vector<std::string>& choices,
+                           size_t otherwise) const {
+  return has(key) ? choice(key, choices) : otherwise;
+}
+
+Vec3 Settings::vector3(std::string_view key) const {
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, "an array of 3 numbers");
+  return to_vector3(node, key, factor);
+}
+
+Vec3 Settings::vector3_or(std::string_view key, const Vec3& otherwise_SI) const {
+  double factor = 1.0;
+  const SettingsNode* node = find(key, &factor);
+  return node == nullptr ? otherwise_SI : to_vector3(*node, key, factor);
+}
+
+Mat3 Settings::matrix3(std::string_view key) const {
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, "an array of 3 rows of 3 numbers");
+  const auto* rows = std::get_if<SettingsNode::Array>(&node.value);
+  if (rows == nullptr || rows->size() != 3) {
+    throw InputError(node.where, full_name(key), describe(node), "an array of 3 rows of 3 numbers");
+  }
+  Mat3 m;
+  for (int i = 0; i < 3; ++i) {
+    m.row(i) = to_vector3((*rows)[static_cast<size_t>(i)], key, factor).transpose();
+  }
+  return m;
+}
+
+std::vector<Vec3> Settings::vectors3(std::string_view key) const {
+  double factor = 1.0;
+  const std::string expected = "an array of arrays of 3 numbers";
+  const SettingsNode& node = require(key, &factor, expected);
+  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  if (array == nullptr || array->empty()) {
+    throw InputError(node.where, full_name(key), describe(node), expected);
+  }
+  std::vector<Vec3> all;
+  for (const auto& item : *array) all.push_back(to_vector3(item, key, factor));
+  return all;
+}
+
+std::vector<double> Settings::numbers(std::string_view key, Range range) const {
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, "an array of numbers");
+  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  if (array == nullptr) {
+    throw InputError(node.where, full_name(key), describe(node), "an array of numbers");
+  }
+  std::vector<double> all;
+  for (const auto& item : *array) all.push_back(to_number(item, key, factor, range));
+  return all;
+}
+
+std::vector<std::string> Settings::texts(std::string_view key) const {
+  double factor = 1.0;
+  const SettingsNode& node = require(key, &factor, "an array of texts");
+  const auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  if (array == nullptr) {
+    throw InputError(node.where, full_name(key), describe(node), "an array of texts");
+  }
+  std::vector<std::string> all;
+  for (const auto& item : *array) {
+    const auto* s = std::get_if<std::string>(&item.value);
+    if (s == nullptr) throw InputError(item.where, full_name(key), describe(item), "a text");
+    log_->read.insert(&item);
+    all.push_back(*s);
+  }
+  return all;
+}
+
+}  // namespace photorque

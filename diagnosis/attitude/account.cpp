@@ -1,0 +1,185 @@
+#include "diagnosis/attitude/account.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace photorque {
+namespace {
+
+// Difference of log evidence below which two explanations count as equally good.
+constexpr double same_log_evidence = 3.0;
+
+std::vector<std::string> kinds_of(const Trial& t, const std::vector<Candidate>& all) {
+  std::vector<std::string> kinds;
+  for (const size_t c : t.candidates) {
+    if (!all[c].empirical()) kinds.push_back(all[c].effect.kind);
+  }
+  std::sort(kinds.begin(), kinds.end());
+  return kinds;
+}
+
+std::string in_words(std::string kind) {
+  std::replace(kind.begin(), kind.end(), '_', ' ');
+  return kind;
+}
+
+std::string label_of(const Trial& t, const std::vector<Candidate>& all) {
+  std::string label;
+  for (const size_t c : t.candidates) {
+    if (!label.empty()) label += " and ";
+    label += all[c].label;
+  }
+  return label;
+}
+
+// The length of an axis means nothing: a unit vector, and errors across it alone.
+void make_direction(FittedParameter& axis, const Eigen::Matrix3d& covariance) {
+  const Vec3 vector(axis.value[0], axis.value[1], axis.value[2]);
+  const double length = vector.norm();
+  if (!(length > 0.0)) return;
+  const Vec3 unit = vector / length;
+  const Mat3 across = Mat3::Identity() - unit * unit.transpose();
+  const Mat3 error = across * covariance * across / (length * length);
+  for (int k = 0; k < 3; ++k) {
+    axis.value[static_cast<size_t>(k)] = unit[k];
+    axis.sigma[static_cast<size_t>(k)] = std::sqrt(std::max(0.0, error(k, k)));
+  }
+}
+
+// Values and standard errors of one disturbance by key, in the keys' units.
+std::vector<FittedParameter> parameters_of(const Trial& t, size_t disturbance) {
+  const Eigen::MatrixXd covariance = t.fit.shared_covariance();
+  const auto& parameters = t.fit.best.model.disturbances[disturbance].parameters;
+  std::vector<FittedParameter> result;
+  for (size_t p = 0; p < parameters.size(); ++p) {
+    Eigen::Index shared = 0, at = -1;
+    for (const Free& f : t.fit.best.free) {
+      if (f.per_run) continue;
+      if (f.disturbance == disturbance && f.parameter == static_cast<int>(p)) at = shared;
+      ++shared;
+    }
+    if (at < 0) continue;
+    const double unit = unit_of_key(parameters[p].key).to_SI;
+    if (result.empty() || result.back().key != parameters[p].key) {
+      result.push_back({parameters[p].key, {}, {}});
+    }
+    result.back().value.push_back(parameters[p].value / unit);
+    result.back().sigma.push_back(std::sqrt(std::max(0.0, covariance(at, at))) / unit);
+    if (parameters[p].key == "axis" && result.back().value.size() == 3) {
+      make_direction(result.back(), covariance.block<3, 3>(at - 2, at - 2));
+    }
+  }
+  return result;
+}
+
+// Kinds that stand in for `kind` in an equally good trial that is otherwise the same.
+std::vector<std::string> rivals(const std::string& kind, const Trial& chosen,
+                                const std::vector<Trial>& trials,
+                                const std::vector<Candidate>& all) {
+  std::vector<std::string> others = kinds_of(chosen, all);
+  others.erase(std::find(others.begin(), others.end(), kind));
+  std::set<std::string> result;
+  for (const Trial& t : trials) {
+    if (!t.objection.empty() || t.candidates.size() != chosen.candidates.size()) continue;
+    if (t.log_evidence < chosen.log_evidence - same_log_evidence) continue;
+    std::vector<std::string> kinds = kinds_of(t, all);
+    if (kinds.size() != t.candidates.size()) continue;
+    for (const std::string& other : others) {
+      const auto at = std::find(kinds.begin(), kinds.end(), other);
+      if (at != kinds.end()) kinds.erase(at);
+    }
+    if (kinds.size() == 1 && kinds.front() != kind) result.insert(kinds.front());
+  }
+  return {result.begin(), result.end()};
+}
+
+}  // namespace
+
+std::vector<FoundEffect> found_effects(const Decision& decision, const std::vector<Trial>& trials,
+                                       const std::vector<Candidate>& all) {
+  const Trial& chosen = trials[decision.chosen];
+  std::vector<FoundEffect> effects;
+  for (size_t i = 0; i < chosen.candidates.size(); ++i) {
+    const Candidate& c = all[chosen.candidates[i]];
+    if (c.empirical()) continue;
+    FoundEffect effect;
+    effect.kind = c.effect.kind;
+    effect.explanation = c.effect.explanation;
+    effect.parameters = parameters_of(chosen, chosen.disturbances[i]);
+    for (size_t t = 0; t < trials.size(); ++t) {
+      const std::vector<std::string> kinds = kinds_of(trials[t], all);
+      if (std::find(kinds.begin(), kinds.end(), effect.kind) != kinds.end()) {
+        effect.probability += decision.probability[t];
+      }
+    }
+    effect.probability = std::min(1.0, effect.probability);
+    effect.indistinguishable_from = rivals(effect.kind, chosen, trials, all);
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+std::vector<Alternative> alternatives(const Decision& decision, const std::vector<Trial>& trials,
+                                      const std::vector<Candidate>& all) {
+  constexpr size_t most = 25;
+  std::map<std::string, const Trial*> best;
+  for (const Trial& t : trials) {
+    const Trial*& known = best[label_of(t, all)];
+    if (known == nullptr || t.log_evidence > known->log_evidence) known = &t;
+  }
+  std::vector<Alternative> result;
+  for (const auto& [label, t] : best) {
+    Alternative a;
+    a.kinds = kinds_of(*t, all);
+    // Kinds say all of what is physics alone.
+    if (a.kinds.size() != t->candidates.size()) a.label = label;
+    a.holdout_chi2_per_sample = t->holdout_chi2_per_sample;
+    a.log_evidence_relative = t->log_evidence - trials.front().log_evidence;
+    a.remark = t->objection;
+    a.chosen = label == label_of(trials[decision.chosen], all);
+    result.push_back(std::move(a));
+  }
+  std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
+    return a.log_evidence_relative > b.log_evidence_relative;
+  });
+  if (result.size() > most) result.resize(most);
+  return result;
+}
+
+std::vector<FittedParameter> refined_beliefs(const Trial& chosen) {
+  std::vector<FittedParameter> result;
+  const size_t believed =
+      chosen.disturbances.empty()
+          ? chosen.fit.best.model.disturbances.size()
+          : *std::min_element(chosen.disturbances.begin(), chosen.disturbances.end());
+  for (size_t d = 0; d < believed; ++d) {
+    for (FittedParameter& p : parameters_of(chosen, d)) {
+      p.key = "disturbance[" + std::to_string(d) + "]." + p.key;
+      result.push_back(std::move(p));
+    }
+  }
+  return result;
+}
+
+std::string sentence_of(const Diagnosis& d) {
+  if (d.verdict == Verdict::consistent) {
+    return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";
+  }
+  if (d.verdict == Verdict::missing_physics) {
+    std::string text = d.effects.size() == 1 ? "Missing: " : "Missing together: ";
+    for (size_t i = 0; i < d.effects.size(); ++i) {
+      if (i > 0) text += "; ";
+      text += in_words(d.effects[i].kind) + " (" + d.effects[i].explanation + ")";
+    }
+    return text + ".";
+  }
+  std::string text = "Something acts that no effect of the catalogue explains";
+  if (!d.where.depends_on.empty()) {
+    text += "; it depends on " + d.where.depends_on.front().variable;
+  }
+  return text + ".";
+}
+
+}  // namespace photorque

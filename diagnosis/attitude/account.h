@@ -1,0 +1,22 @@
+// Puts what was found into words and numbers for the reader of a diagnosis.
+#pragma once
+
+#include "diagnosis/attitude/decide.h"
+#include "diagnosis/diagnosis.h"
+
+namespace photorque {
+
+// The effects of the chosen trial, each with the probability that its kind acts.
+std::vector<FoundEffect> found_effects(const Decision& decision, const std::vector<Trial>& trials,
+                                       const std::vector<Candidate>& all);
+
+// The best of every set of names, best first, relative to the belief.
+std::vector<Alternative> alternatives(const Decision& decision, const std::vector<Trial>& trials,
+                                      const std::vector<Candidate>& all);
+
+// What was believed with an uncertainty, as the chosen trial has it.
+std::vector<FittedParameter> refined_beliefs(const Trial& chosen);
+
+std::string sentence_of(const Diagnosis& diagnosis);
+
+}  // namespace photorque

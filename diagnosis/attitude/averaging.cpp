@@ -1,0 +1,103 @@
+#include "diagnosis/attitude/averaging.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/attitude/whiteness.h"
+
+namespace photorque {
+namespace {
+
+// Residuals of neighbours on their way to one.
+struct Neighbours {
+  size_t first = 0, last = 0;
+  double time_sum_s = 0.0;
+  Vec3 attitude_sum = Vec3::Zero(), gyro_sum = Vec3::Zero();
+  double attitude_rows = 0.0;
+  Vec3 gyro_rows = Vec3::Zero();
+
+  void add(const Observation& from, const Prediction& flown, size_t i) {
+    if (last == first) first = i;
+    last = i + 1;
+    time_sum_s += from.time_s[i];
+    const WhiteRow& white = flown.residual[i];
+    const double rows = from.attitude_rows[i];
+    if (rows > 0.0) {
+      attitude_sum += std::sqrt(rows) * white.head<3>().cwiseProduct(Vec3(from.noise.camera_rad));
+      attitude_rows += rows;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double read = from.gyro_rows[i][k];
+      if (!(read > 0.0)) continue;
+      gyro_sum[k] += std::sqrt(read) * white[3 + k] * from.noise.gyro_rad_s[k];
+      gyro_rows[k] += read;
+    }
+  }
+
+  size_t middle(const Observation& from) const {
+    const double mean_s = time_sum_s / static_cast<double>(last - first);
+    size_t best = first;
+    for (size_t i = first; i < last; ++i) {
+      if (std::abs(from.time_s[i] - mean_s) < std::abs(from.time_s[best] - mean_s)) best = i;
+    }
+    return best;
+  }
+
+  void append_to(Observation& to, const Observation& from, const Prediction& flown) const {
+    const size_t m = middle(from);
+    to.time_s.push_back(from.time_s[m]);
+    Quat attitude(NAN, NAN, NAN, NAN);
+    if (attitude_rows > 0.0) {
+      const Vec3 turn = flown.camera_offset_lab_rad[m] + attitude_sum / attitude_rows;
+      attitude = flown.states[m].lab_from_body;
+      if (const double angle = turn.norm(); angle > 0.0) {
+        attitude = (Quat(Eigen::AngleAxisd(angle, turn / angle)) * attitude).normalized();
+      }
+    }
+    to.attitude.push_back(attitude);
+    to.attitude_rows.push_back(attitude_rows);
+    Vec3 rate = Vec3::Constant(NAN);
+    for (int k = 0; k < 3; ++k) {
+      if (gyro_rows[k] > 0.0) rate[k] = flown.gyro_rad_s[m][k] + gyro_sum[k] / gyro_rows[k];
+    }
+    to.gyro_rad_s.push_back(rate);
+    to.gyro_rows.push_back(gyro_rows);
+  }
+};
+
+Observation averaged_run(const Prediction& flown, const Observation& seen, size_t blocks) {
+  Observation result = seen;
+  result.time_s.clear();
+  result.attitude.clear();
+  result.attitude_rows.clear();
+  result.gyro_rad_s.clear();
+  result.gyro_rows.clear();
+  const double block_s = seen.duration_s() / static_cast<double>(blocks);
+  // Half a reading of slack, so that rounding of the times does not make uneven blocks.
+  const double slack_s = 0.5 * seen.duration_s() / static_cast<double>(seen.blocks());
+  Neighbours block;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (block.last > block.first && seen.time_s[i] > seen.time_s[block.first] + block_s - slack_s) {
+      block.append_to(result, seen, flown);
+      block = {};
+    }
+    block.add(seen, flown, i);
+  }
+  block.append_to(result, seen, flown);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Observation> averaged_about(const Fit& fit, const std::vector<Observation>& runs,
+                                        size_t blocks) {
+  const std::vector<Prediction> flown = residuals_of(fit, runs);
+  std::vector<Observation> result;
+  for (size_t run = 0; run < runs.size(); ++run) {
+    result.push_back(runs[run].blocks() <= blocks ? runs[run]
+                                                  : averaged_run(flown[run], runs[run], blocks));
+  }
+  return result;
+}
+
+}  // namespace photorque

@@ -1,0 +1,171 @@
+#include "diagnosis/attitude/conventions.h"
+
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+// Disagreement below which nothing is wrong: scale errors, misalignments and biases stay far below.
+constexpr double agrees = 0.2;
+// A bias that an instrument may have.
+constexpr double usual_bias_rad_s = 0.01;
+
+enum class Reading { as_is, conjugated, scalar_last, scalar_last_conjugated };
+
+Quat read(const Quat& q, Reading reading) {
+  const bool last = reading == Reading::scalar_last || reading == Reading::scalar_last_conjugated;
+  // The columns were taken as w, x, y, z; with the scalar last they are x, y, z, w.
+  const Quat in_order = last ? Quat(q.z(), q.w(), q.x(), q.y()) : q;
+  const bool conjugated =
+      reading == Reading::conjugated || reading == Reading::scalar_last_conjugated;
+  return conjugated ? in_order.conjugate() : in_order;
+}
+
+struct Pair {
+  Quat from, to;
+  double interval_s;
+  Vec3 gyro_rad_s;  // mean
+};
+
+// Attitudes about a second apart and the mean rate between.
+std::vector<Pair> pairs_of(const Observation& seen) {
+  constexpr double interval_s = 1.0;
+  constexpr size_t most = 400;
+  std::vector<Pair> all;
+  const size_t stride = std::max<size_t>(1, seen.blocks() / most);
+  for (size_t i = 0; i < seen.blocks(); i += stride) {
+    if (seen.attitude_rows[i] == 0.0) continue;
+    Vec3 sum = Vec3::Zero();
+    double count = 0.0;
+    for (size_t j = i; j < seen.blocks(); ++j) {
+      if (!seen.gyro_rad_s[j].allFinite()) continue;
+      sum += seen.gyro_rad_s[j];
+      count += 1.0;
+      const double passed_s = seen.time_s[j] - seen.time_s[i];
+      if (passed_s > 3.0 * interval_s) break;
+      if (passed_s < interval_s || seen.attitude_rows[j] == 0.0) continue;
+      all.push_back({seen.attitude[i], seen.attitude[j], passed_s, sum / count});
+      break;
+    }
+  }
+  return all;
+}
+
+// Mean over the axes of the mean square difference over the mean square rate.
+double disagreement(const std::vector<Pair>& pairs, Reading reading, const Mat3& gyro_matrix) {
+  Vec3 mean = Vec3::Zero(), square = Vec3::Zero(), energy = Vec3::Zero();
+  for (const Pair& p : pairs) {
+    const Vec3 rate =
+        rotation_vector(read(p.from, reading).conjugate() * read(p.to, reading)) / p.interval_s;
+    const Vec3 off = gyro_matrix * p.gyro_rad_s - rate;
+    mean += off;
+    square += off.cwiseAbs2();
+    energy += rate.cwiseAbs2();
+  }
+  const double n = static_cast<double>(pairs.size());
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const double m = mean[k] / n, variance = square[k] / n - m * m;
+    const double bias = std::max(0.0, std::abs(m) - usual_bias_rad_s);
+    sum += (variance + bias * bias) / (energy[k] / n + 1e-5);
+  }
+  return sum / 3.0;
+}
+
+struct GyroReading {
+  Mat3 matrix;
+  int changes;  // how many axes are not as named
+  std::string text;
+};
+
+std::vector<GyroReading> gyro_readings() {
+  std::vector<GyroReading> all;
+  const std::array<std::array<int, 3>, 6> orders = {
+      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  struct Unit {
+    double to_rad_s;
+    const char* text;
+  };
+  for (const Unit& unit : {Unit{1.0, ""}, Unit{degree_rad, "the gyro reads degrees per second"},
+                           Unit{1.0 / degree_rad,
+                                "the gyro reads radians per second, not the degrees of its "
+                                "header"}}) {
+    const int changed = unit.to_rad_s == 1.0 ? 0 : 1;
+    for (const auto& order : orders) {
+      for (int signs = 0; signs < 8; ++signs) {
+        GyroReading r{Mat3::Zero(), changed, unit.text};
+        std::string axes;
+        for (int k = 0; k < 3; ++k) {
+          const bool reversed = ((signs >> k) & 1) != 0;
+          const int from = order[static_cast<size_t>(k)];
+          r.matrix(k, from) = (reversed ? -1.0 : 1.0) * unit.to_rad_s;
+          r.changes += (reversed ? 1 : 0) + (from != k ? 1 : 0);
+          axes += std::string(k > 0 ? ", " : "") + (reversed ? "-" : "+") + "xyz"[from];
+        }
+        if (r.changes > changed) {
+          r.text += std::string(changed > 0 ? " and " : "") + "the gyro's axes x, y, z are " + axes;
+        }
+        all.push_back(r);
+      }
+    }
+  }
+  return all;
+}
+
+std::string text_of(Reading reading) {
+  switch (reading) {
+    case Reading::as_is:
+      return "";
+    case Reading::conjugated:
+      return "the quaternions rotate lab vectors into the body (they are conjugated)";
+    case Reading::scalar_last:
+      return "the quaternions have their scalar last";
+    case Reading::scalar_last_conjugated:
+      return "the quaternions have their scalar last and are conjugated";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string mend_conventions(Observation& seen) {
+  if (!seen.has_gyro) return "";
+  const std::vector<Pair> pairs = pairs_of(seen);
+  if (pairs.size() < 20) return "";
+  const double as_is = disagreement(pairs, Reading::as_is, Mat3::Identity());
+  if (as_is < agrees) return "";
+
+  double best = as_is, best_cost = as_is;
+  Reading best_reading = Reading::as_is;
+  GyroReading best_gyro{Mat3::Identity(), 0, ""};
+  for (const Reading reading : {Reading::as_is, Reading::conjugated, Reading::scalar_last,
+                                Reading::scalar_last_conjugated}) {
+    for (const GyroReading& gyro : gyro_readings()) {
+      const double d = disagreement(pairs, reading, gyro.matrix);
+      // Of readings that agree as well the one with fewest changes.
+      const double cost = d + 0.01 * (gyro.changes + static_cast<int>(reading != Reading::as_is));
+      if (cost >= best_cost) continue;
+      best = d;
+      best_cost = cost;
+      best_reading = reading;
+      best_gyro = gyro;
+    }
+  }
+  if (best > agrees || best > 0.2 * as_is) return "";
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    seen.attitude[i] = read(seen.attitude[i], best_reading);
+    seen.gyro_rad_s[i] = best_gyro.matrix * seen.gyro_rad_s[i];
+    seen.gyro_rows[i] = best_gyro.matrix.cwiseSign().cwiseAbs() * seen.gyro_rows[i];
+  }
+  const std::string quaternions = text_of(best_reading);
+  const bool both = !quaternions.empty() && !best_gyro.text.empty();
+  return "convention: " + quaternions + (both ? "; " : "") + best_gyro.text +
+         ": the recording was read so, because only then do the rates integrate to the attitude";
+}
+
+}  // namespace photorque

@@ -1,0 +1,108 @@
+#include "diagnosis/attitude/decide.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "diagnosis/attitude/whiteness.h"
+
+namespace photorque {
+namespace {
+
+// Evidence by which something must beat the belief before it is said: odds of 1 in 90, on top of
+// the prior odds against each name.
+constexpr double least_log_odds = 4.5;
+// Of a named effect.
+constexpr double least_significance = 4.0;
+// Of the probability, for a name that only the recordings and what was held back show together.
+constexpr double least_share_of_a_hint = 0.7;
+// Of the structure left, before the best physics is called insufficient.
+constexpr double most_excess_sigma = 6.0;
+
+bool has_empirical(const Trial& t, const std::vector<Candidate>& all) {
+  return std::any_of(t.candidates.begin(), t.candidates.end(),
+                     [&](size_t c) { return all[c].empirical(); });
+}
+
+bool is_significant(const Trial& t, const std::vector<Candidate>& all,
+                    const std::vector<double>& significance) {
+  for (size_t i = 0; i < t.candidates.size(); ++i) {
+    const Candidate& c = all[t.candidates[i]];
+    if (c.start.parameters.empty() || c.effect.kind == "flexible_mode") continue;
+    if (significance[i] < least_significance) return false;
+  }
+  return true;
+}
+
+bool is_significant(const Trial& t, const std::vector<Candidate>& all) {
+  return is_significant(t, all,
+                        t.joint_significance.empty() ? t.significance : t.joint_significance);
+}
+
+std::multiset<std::string> names_of(const Trial& t, const std::vector<Candidate>& all) {
+  std::multiset<std::string> names;
+  for (const size_t c : t.candidates) names.insert(all[c].label);
+  return names;
+}
+
+std::vector<double> posterior(const std::vector<Trial>& trials) {
+  double best = -1e300;
+  for (const Trial& t : trials) {
+    if (t.objection.empty()) best = std::max(best, t.log_evidence);
+  }
+  std::vector<double> p;
+  double sum = 0.0;
+  for (const Trial& t : trials) {
+    p.push_back(t.objection.empty() ? std::exp(t.log_evidence - best) : 0.0);
+    sum += p.back();
+  }
+  for (double& x : p) x /= sum;
+  return p;
+}
+
+}  // namespace
+
+Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& all,
+                const std::vector<Observation>& runs) {
+  Decision d;
+  d.probability = posterior(trials);
+  const double none = trials.front().log_evidence;
+  size_t physics = 0, empirical = 0;
+  for (size_t i = 1; i < trials.size(); ++i) {
+    const Trial& t = trials[i];
+    if (!t.objection.empty() || t.log_evidence < none + least_log_odds) continue;
+    if (!is_significant(t, all)) continue;
+    size_t& best = has_empirical(t, all) ? empirical : physics;
+    if (best == 0 || t.log_evidence > trials[best].log_evidence) best = i;
+  }
+  d.physics = physics;
+  const double physics_evidence = physics == 0 ? none : trials[physics].log_evidence;
+  const bool law_unknown =
+      empirical != 0 && trials[empirical].log_evidence > physics_evidence + least_log_odds;
+  const bool structure_left = excess_sigma(trials[physics].fit, runs) > most_excess_sigma;
+  if (law_unknown || structure_left) {
+    d.verdict = Verdict::unexplained;
+    d.chosen = law_unknown ? empirical : physics;
+    for (size_t i = 0; i < trials.size(); ++i) {
+      if (has_empirical(trials[i], all)) d.confidence += d.probability[i];
+    }
+    if (structure_left) d.confidence = std::max(d.confidence, 0.95);
+  } else if (physics != 0) {
+    // The same names with another parametrisation are the same answer.
+    const auto names = names_of(trials[physics], all);
+    for (size_t i = 0; i < trials.size(); ++i) {
+      if (names_of(trials[i], all) == names) d.confidence += d.probability[i];
+    }
+    d.undecided = d.confidence < least_share_of_a_hint &&
+                  !is_significant(trials[physics], all, trials[physics].significance);
+    d.verdict = d.undecided ? Verdict::consistent : Verdict::missing_physics;
+    d.chosen = d.undecided ? 0 : physics;
+    if (d.undecided) d.confidence = 1.0 - d.confidence;
+  } else {
+    d.verdict = Verdict::consistent;
+    d.confidence = d.probability.front();
+  }
+  return d;
+}
+
+}  // namespace photorque

@@ -1,0 +1,147 @@
+#include "diagnosis/attitude/flexible_mode_scan.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/attitude/ringing.h"
+#include "diagnosis/attitude/scan_parts.h"
+#include "diagnosis/attitude/whiteness.h"
+
+namespace photorque {
+namespace {
+
+// Mostly short pulls set appendages swinging (a command that begins or ends), so that a resonance
+// looks as wide as its damping: enough of it for the grid of frequencies.
+constexpr double scanned_damping = 0.08;
+
+// On noise alone χ² falls by six with six strengths.
+constexpr double least_ringing_gain = 14.0;
+
+// Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.
+ScoreGroup appendages(const Disturbance& start, double frequency_Hz) {
+  ScoreGroup group;
+  group.parameters = {5};
+  for (const Vec3& axis :
+       {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)}) {
+    Disturbance d = with_parameter(with_parameter(start, 3, frequency_Hz), 4, scanned_damping);
+    const Vec3 unit = axis.normalized();
+    for (int k = 0; k < 3; ++k) d.parameters[static_cast<size_t>(k)].value = unit[k];
+    d.states[1].per_body_rate = unit;
+    d.parameters[5].value *= 1e-3;
+    group.disturbances.push_back(std::move(d));
+  }
+  return group;
+}
+
+std::vector<Vec3> axes_of(const ScoreGroup& group) {
+  std::vector<Vec3> axes;
+  for (const Disturbance& d : group.disturbances) axes.push_back(d.states[1].per_body_rate);
+  return axes;
+}
+
+// As the strengths of six appendages(): the one about `axis`.
+Eigen::VectorXd as_six(const Vec3& axis) {
+  const Mat3 M = axis * axis.transpose();
+  Eigen::VectorXd six(6);
+  six << M(0, 0) - M(0, 1) - M(0, 2), M(1, 1) - M(0, 1) - M(1, 2), M(2, 2) - M(0, 2) - M(1, 2),
+      2.0 * M(0, 1), 2.0 * M(0, 2), 2.0 * M(1, 2);
+  return six;
+}
+
+struct Mode {
+  double gain = 0.0;  // expected fall of χ²
+  Disturbance start;
+};
+
+// The one appendage that does most of what the six would together: about an eigenvector of
+// Σ J a aᵀ.
+Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& inertia_kg_m2) {
+  Mode best;
+  if (score.estimate.size() != 6) return best;
+  Mat3 sum = Mat3::Zero();
+  for (size_t i = 0; i < 6; ++i) {
+    const Vec3& axis = group.disturbances[i].states[1].per_body_rate;
+    sum += score.estimate[static_cast<Eigen::Index>(i)] * axis * axis.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(sum);
+  for (int e = 0; e < 3; ++e) {
+    const Vec3 axis = eigen.eigenvectors().col(e);
+    const Eigen::VectorXd six = as_six(axis);
+    const double along = six.dot(score.information * score.estimate);
+    const double curvature = six.dot(score.information * six);
+    if (!(along > 0.0 && curvature > 0.0)) continue;
+    if (along * along < best.gain * curvature) continue;
+    best.gain = along * along / curvature;
+    const double whole_kg_m2 = axis.dot(inertia_kg_m2 * axis);
+    const double share = std::min(along / curvature / whole_kg_m2, 0.5);
+    best.start = group.disturbances.front();
+    auto& parameters = best.start.parameters;
+    for (int k = 0; k < 3; ++k) parameters[static_cast<size_t>(k)].value = axis[k];
+    best.start.states[1].per_body_rate = axis;
+    // The platform's recoil makes a heavy appendage swing faster than with the platform held.
+    parameters[3].value *= std::sqrt(1.0 - share);
+    parameters[4].value = 0.04;
+    parameters[5].value = share * whole_kg_m2;
+  }
+  return best;
+}
+
+// What two scores tell that share no reading's news, about the same parameters.
+Score together(const Score& a, const Score& b) {
+  if (a.estimate.size() != b.estimate.size()) return b;
+  const Eigen::MatrixXd information = a.information + b.information;
+  const Eigen::VectorXd gradient = a.information * a.estimate + b.information * b.estimate;
+  return solve_score(information, gradient, information.diagonal());
+}
+
+}  // namespace
+
+std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
+                                        const std::vector<Observation>& runs,
+                                        const std::vector<Observation>& slow_runs) {
+  constexpr double step = 1.2, most_Hz = 5.0;
+  constexpr size_t most_starts = 3, most_fast_starts = 2;
+  const auto interval_s = [](const Observation& seen) {
+    return seen.duration_s() / static_cast<double>(seen.blocks());
+  };
+  const double highest_Hz = std::min(most_Hz, 0.4 / interval_s(runs.front()));
+  // Below it, a swing passes through enough of the averages, and the platform's own motion takes
+  // part in it; above, it is too slow to.
+  const double slow_Hz = 0.14 / interval_s(slow_runs.front());
+  const Mat3& inertia_kg_m2 = fit.best.model.platform.inertia_kg_m2;
+  const std::vector<Prediction> flown = residuals_of(fit, runs);
+  std::vector<FlownRun> all;
+  for (size_t run = 0; run < runs.size(); ++run) all.push_back({runs[run], flown[run]});
+  std::vector<Start> starts;
+  const auto start_at_peaks = [&](const std::vector<Mode>& modes, size_t most) {
+    std::vector<double> gain;
+    for (const Mode& mode : modes) gain.push_back(mode.gain);
+    for (const size_t i : peaks(gain, most)) {
+      if (gain[i] > least_scan_gain) starts.push_back({modes[i].start, gain[i]});
+    }
+  };
+  std::vector<Mode> modes;
+  double f_Hz = std::max(0.02, 2.0 / span_s(runs));
+  for (; f_Hz < slow_Hz; f_Hz *= step) {
+    const ScoreGroup group = appendages(start, f_Hz);
+    modes.push_back(best_appendage(group, score(fit, slow_runs, {group}).front(), inertia_kg_m2));
+  }
+  start_at_peaks(modes, most_starts);
+  // What swings fast turns along with slow motion, as a part of the inertia: the same for all.
+  constexpr double stiff = 5.0;  // times slow_Hz
+  const Score carried = score(fit, slow_runs, {appendages(start, stiff * slow_Hz)}).front();
+  modes.clear();
+  for (; f_Hz < highest_Hz; f_Hz *= step) {
+    const ScoreGroup group = appendages(start, f_Hz);
+    const Score ringing =
+        score_of_ringing(all, inertia_kg_m2, axes_of(group), f_Hz, scanned_damping);
+    modes.push_back(ringing.gain < least_ringing_gain
+                        ? Mode{}
+                        : best_appendage(group, together(carried, ringing), inertia_kg_m2));
+  }
+  start_at_peaks(modes, most_fast_starts);
+  return starts;
+}
+
+}  // namespace photorque

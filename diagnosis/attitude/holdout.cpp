@@ -1,0 +1,121 @@
+#include "diagnosis/attitude/holdout.h"
+
+#include <cmath>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "diagnosis/attitude/whiteness.h"
+
+namespace photorque {
+namespace {
+
+constexpr const char* names[] = {"attitude_x_arcsec", "attitude_y_arcsec", "attitude_z_arcsec",
+                                 "gyro_x_rad_s",      "gyro_y_rad_s",      "gyro_z_rad_s"};
+constexpr const char* labels[] = {"Attitude about lab x", "Attitude about lab y",
+                                  "Attitude about lab z", "Rate about body x",
+                                  "Rate about body y",    "Rate about body z"};
+
+// What one whitened unit of a channel is in its own unit, at one reading.
+double noise_of(const Observation& seen, Eigen::Index k) {
+  return k < 3 ? seen.noise.camera_rad[k] / arcsecond_rad : seen.noise.gyro_rad_s[k - 3];
+}
+
+double rows_of(const Observation& seen, size_t block, Eigen::Index k) {
+  return k < 3 ? seen.attitude_rows[block] : seen.gyro_rows[block][k - 3];
+}
+
+double in_unit(const WhiteRow& row, const Observation& seen, size_t block, Eigen::Index k) {
+  return row[k] * noise_of(seen, k) / std::sqrt(std::max(1.0, rows_of(seen, block, k)));
+}
+
+std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
+                                  const std::vector<Observation>& runs) {
+  std::map<std::string, double> result;
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    double sum = 0.0;
+    int64_t count = 0;
+    for (size_t run = 0; run < runs.size(); ++run) {
+      for (size_t i = 0; i < residuals[run].residual.size(); ++i) {
+        const double x = in_unit(residuals[run].residual[i], runs[run], i, k);
+        if (!std::isfinite(x)) continue;
+        sum += x * x;
+        ++count;
+      }
+    }
+    if (count > 0) result[names[k]] = std::sqrt(sum / static_cast<double>(count));
+  }
+  return result;
+}
+
+}  // namespace
+
+Fit fly(const Fit& fitted, const std::vector<Observation>& runs) {
+  Hypothesis h = fitted.best;
+  std::erase_if(h.free, [](const Free& f) { return !f.per_run; });
+  std::vector<double> own;
+  for (const Free& f : h.free) own.push_back(f.mean);
+  h.runs.clear();
+  for (const Observation& seen : runs) h.runs.push_back({first_state(h.model, seen), own});
+  FitSettings settings;
+  settings.windows = {0.05, 0.2, 1.0};
+  return fit(h, runs, settings);
+}
+
+Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<Observation>& runs) {
+  Holdout result;
+  result.samples = after.samples;
+  result.chi2_per_sample_before = before.chi2_per_sample();
+  result.chi2_per_sample_after = after.chi2_per_sample();
+  try {
+    result.rms_before = rms(residuals_of(before, runs), runs);
+    result.rms_after = rms(residuals_of(after, runs), runs);
+  } catch (const NumericalError&) {
+    // A model that cannot fly these runs has no residuals to show.
+  }
+  return result;
+}
+
+RecordingSeries series_of(const Fit& before, const Fit& after, const Observation& seen,
+                          size_t run) {
+  PredictionOptions options;
+  options.keep_residuals = true;
+  const auto flown = [&](const Fit& fit) {
+    const Dynamics dynamics(fit.best.model_of(run, seen));
+    return predict(dynamics, fit.best.runs[run].initial, seen, {}, options);
+  };
+  RecordingSeries result;
+  result.recording = seen.name;
+  const double longest_gap_s = 5.0 * seen.duration_s() / static_cast<double>(seen.blocks());
+  try {
+    const Prediction a = flown(before), b = flown(after);
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      ChannelSeries c;
+      c.name = names[k];
+      c.label = labels[k];
+      c.unit = k < 3 ? "arcsec" : "rad/s";
+      c.residual_unit = c.unit;
+      c.noise = noise_of(seen, k);
+      for (size_t i = 0; i < seen.blocks(); ++i) {
+        const bool read = rows_of(seen, i, k) > 0.0;
+        // A camera may see every second row only: what was not read is left out, and a longer gap
+        // stays one.
+        const bool in_gap = !c.time_s.empty() && seen.time_s[i] - c.time_s.back() > longest_gap_s;
+        if (!read && !in_gap) continue;
+        c.time_s.push_back(seen.time_s[i]);
+        c.residual_before.push_back(in_unit(a.residual[i], seen, i, k));
+        c.residual_after.push_back(in_unit(b.residual[i], seen, i, k));
+        if (k < 3) continue;
+        const double rate = seen.gyro_rad_s[i][k - 3];
+        c.measured.push_back(rate);
+        c.before.push_back(rate - c.residual_before.back());
+        c.after.push_back(rate - c.residual_after.back());
+      }
+      result.channels.push_back(std::move(c));
+    }
+  } catch (const NumericalError&) {
+    result.channels.clear();
+  }
+  return result;
+}
+
+}  // namespace photorque

@@ -1,0 +1,24 @@
+// Where recording and belief part: channels, intervals, band, and the variables it depends on.
+#pragma once
+
+#include "diagnosis/attitude/trial.h"
+#include "diagnosis/diagnosis.h"
+
+namespace photorque {
+
+// `residuals` are those of the belief. `depends_on` is left empty.
+Where locate(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs);
+
+// From trials with one candidate: by each variable, the share of the misfit of the first trial (the
+// belief) that an empirical law in it explains, largest first. Variables that explain less than a
+// tenth are left out.
+std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
+                                           const std::vector<Candidate>& all);
+
+// The same where a law is unknown: the variable of the law that was chosen comes first, and there
+// is one at least.
+std::vector<Where::Dependence> of_unknown_law(std::vector<Where::Dependence> depends_on,
+                                              const Trial& chosen,
+                                              const std::vector<Candidate>& all);
+
+}  // namespace photorque

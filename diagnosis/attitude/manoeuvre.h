@@ -1,0 +1,18 @@
+// Experiments that would tell apart what the recordings cannot.
+#pragma once
+
+#include "diagnosis/attitude/decide.h"
+#include "diagnosis/diagnosis.h"
+
+namespace photorque {
+
+// One for every pair of an effect found and a kind that explains the recordings as well. Of four
+// other starts of the first run, each is flown by the chosen trial, and the rival is fitted to its
+// exact readings together with the recordings that there are: half of what χ² gains is the expected
+// lead in log evidence. The start with the largest is proposed.
+std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects, const Decision& decision,
+                                  const std::vector<Trial>& trials,
+                                  const std::vector<Candidate>& all,
+                                  const std::vector<Observation>& runs, int threads);
+
+}  // namespace photorque

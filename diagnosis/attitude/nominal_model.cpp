@@ -1,0 +1,41 @@
+#include "diagnosis/attitude/nominal_model.h"
+
+namespace photorque {
+
+Hypothesis believed_hypothesis(const BelievedModel& believed,
+                               const std::vector<Observation>& runs) {
+  Hypothesis h;
+  h.model = believed.model;
+  std::vector<double> own;
+  for (size_t d = 0; d < h.model.disturbances.size(); ++d) {
+    const Disturbance& disturbance = h.model.disturbances[d];
+    for (size_t p = 0; p < disturbance.parameters.size(); ++p) {
+      const Parameter& parameter = disturbance.parameters[p];
+      if (!(parameter.sigma > 0.0)) continue;
+      const bool per_run = disturbance.kind == "gyro_bias";
+      h.free.push_back({d, static_cast<int>(p), parameter.value, parameter.sigma, per_run});
+      if (per_run) own.push_back(parameter.value);
+    }
+  }
+  for (const Observation& seen : runs) h.runs.push_back({first_state(h.model, seen), own});
+  return h;
+}
+
+size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance) {
+  hypothesis.model.disturbances.push_back(disturbance);
+  for (RunStart& run : hypothesis.runs) {
+    for (const ExtraState& state : disturbance.states) {
+      run.initial.extra.push_back(state.initial +
+                                  state.per_body_rate.dot(run.initial.rate_body_rad_s));
+    }
+  }
+  return hypothesis.model.disturbances.size() - 1;
+}
+
+Fit fit_belief(const BelievedModel& believed, const std::vector<Observation>& runs) {
+  FitSettings settings;
+  settings.windows = {0.05, 0.2, 1.0};
+  return fit(believed_hypothesis(believed, runs), runs, settings);
+}
+
+}  // namespace photorque

@@ -1,0 +1,234 @@
+#include "diagnosis/attitude/observation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+constexpr size_t fewest_attitudes = 20;
+
+struct Columns {
+  std::array<const Channel*, 4> q{};
+  std::array<const Channel*, 3> gyro{};
+  bool has_gyro = false;
+
+  Columns(const Recording& recording, const std::string& name) {
+    const char* q_names[] = {"q_w", "q_x", "q_y", "q_z"};
+    const char* gyro_names[] = {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
+    for (size_t k = 0; k < 4; ++k) {
+      q[k] = recording.find(q_names[k]);
+      if (q[k] == nullptr) {
+        throw InputError({name, 0}, "header", std::string("no channel ") + q_names[k],
+                         "the attitude q_w, q_x, q_y, q_z");
+      }
+    }
+    for (size_t k = 0; k < 3; ++k) {
+      gyro[k] = recording.find(gyro_names[k]);
+      has_gyro = has_gyro || gyro[k] != nullptr;
+    }
+  }
+  Quat attitude(size_t row) const {
+    return {q[0]->values[row], q[1]->values[row], q[2]->values[row], q[3]->values[row]};
+  }
+  double rate(size_t axis, size_t row) const {
+    return gyro[axis] == nullptr ? NAN : gyro[axis]->values[row];
+  }
+};
+
+Quat turned_by(const Vec3& rotation_rad) {
+  const double angle = rotation_rad.norm();
+  if (angle == 0.0) return Quat::Identity();
+  return Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
+}
+
+// Rows [first, last) of an observation, which become one block.
+struct BlockRows {
+  const Observation& from;
+  size_t first, last;
+
+  // The mean time of the attitudes, because they move; of all rows where there is none.
+  double time_s() const {
+    double rows = 0.0, sum_s = 0.0;
+    for (size_t i = first; i < last; ++i) {
+      rows += from.attitude_rows[i];
+      sum_s += from.attitude_rows[i] * from.time_s[i];
+    }
+    if (rows > 0.0) return sum_s / rows;
+    for (size_t i = first; i < last; ++i) sum_s += from.time_s[i];
+    return sum_s / static_cast<double>(last - first);
+  }
+
+  // A rate in body axes at a time, and how it changes.
+  struct Rate {
+    double rad_s = NAN, slope_rad_s2 = 0.0;
+  };
+
+  // The mean of the gyro's readings about one axis, moved to `at_s` with the slope over three
+  // blocks: a camera that sees every second row has another mean time.
+  Rate gyro_rate(int axis, double at_s) const {
+    const size_t length = last - first;
+    const double reach_s = 1.5 * (from.time_s[last - 1] - from.time_s[first]) + 1e-9;
+    double rows = 0.0, rate_sum = 0.0, time_sum_s = 0.0;
+    double all = 0.0, all_rate = 0.0, all_s = 0.0, all_s2 = 0.0, all_product = 0.0;
+    const size_t end = std::min(from.blocks(), last + length);
+    for (size_t i = first - std::min(first, length); i < end; ++i) {
+      const double weight = from.gyro_rows[i][axis], since_s = from.time_s[i] - at_s;
+      if (!(weight > 0.0) || std::abs(since_s) > reach_s) continue;
+      const double rate_rad_s = from.gyro_rad_s[i][axis];
+      all += weight;
+      all_rate += weight * rate_rad_s;
+      all_s += weight * since_s;
+      all_s2 += weight * since_s * since_s;
+      all_product += weight * since_s * rate_rad_s;
+      if (i < first || i >= last) continue;
+      rows += weight;
+      rate_sum += weight * rate_rad_s;
+      time_sum_s += weight * since_s;
+    }
+    if (rows == 0.0) return {};
+    const double spread_s2 = all * all_s2 - all_s * all_s;
+    if (!(spread_s2 > 0.0)) return {rate_sum / rows};
+    const double slope_rad_s2 = (all * all_product - all_s * all_rate) / spread_s2;
+    return {(rate_sum - slope_rad_s2 * time_sum_s) / rows, slope_rad_s2};
+  }
+
+  // From the first attitude to the last.
+  Vec3 rate_between_attitudes_rad_s() const {
+    size_t begin = last, end = last;
+    for (size_t i = first; i < last; ++i) {
+      if (!(from.attitude_rows[i] > 0.0)) continue;
+      if (begin == last) begin = i;
+      end = i;
+    }
+    if (begin == end) return Vec3::Zero();
+    return rotation_vector(from.attitude[begin].conjugate() * from.attitude[end]) /
+           (from.time_s[end] - from.time_s[begin]);
+  }
+
+  // Each attitude moved to the mean time of all, then their mean as rotations from the first of
+  // them. A wrong rate does no harm: times before and after the mean count alike.
+  Quat mean_attitude(double at_s, const std::array<Rate, 3>& gyro) const {
+    Vec3 rate_rad_s = rate_between_attitudes_rad_s(), slope_rad_s2 = Vec3::Zero();
+    const Vec3 by_gyro_rad_s(gyro[0].rad_s, gyro[1].rad_s, gyro[2].rad_s);
+    // What the gyro's numbers mean is only found out later; here they count where they agree, as
+    // far as two attitudes can tell.
+    constexpr double cameras_rad_s = 0.01;
+    if ((by_gyro_rad_s - rate_rad_s).norm() < cameras_rad_s + 0.1 * rate_rad_s.norm()) {
+      rate_rad_s = by_gyro_rad_s;
+      slope_rad_s2 = {gyro[0].slope_rad_s2, gyro[1].slope_rad_s2, gyro[2].slope_rad_s2};
+    }
+    const auto moved = [&](size_t i) {
+      const double by_s = at_s - from.time_s[i];
+      return from.attitude[i] * turned_by(by_s * (rate_rad_s - 0.5 * by_s * slope_rad_s2));
+    };
+    Quat reference(NAN, NAN, NAN, NAN);
+    Vec3 sum = Vec3::Zero();
+    double rows = 0.0;
+    for (size_t i = first; i < last; ++i) {
+      const double weight = from.attitude_rows[i];
+      if (!(weight > 0.0)) continue;
+      if (rows == 0.0) reference = moved(i);
+      sum += weight * rotation_vector(moved(i) * reference.conjugate());
+      rows += weight;
+    }
+    return rows > 0.0 ? (turned_by(sum / rows) * reference).normalized() : reference;
+  }
+
+  void append_to(Observation& seen) const {
+    const double at_s = time_s();
+    seen.time_s.push_back(at_s);
+    const std::array<Rate, 3> gyro = {gyro_rate(0, at_s), gyro_rate(1, at_s), gyro_rate(2, at_s)};
+    seen.attitude.push_back(mean_attitude(at_s, gyro));
+    double attitude_rows = 0.0;
+    Vec3 gyro_rows = Vec3::Zero();
+    for (size_t i = first; i < last; ++i) {
+      attitude_rows += from.attitude_rows[i];
+      gyro_rows += from.gyro_rows[i];
+    }
+    seen.attitude_rows.push_back(attitude_rows);
+    seen.gyro_rad_s.emplace_back(gyro[0].rad_s, gyro[1].rad_s, gyro[2].rad_s);
+    seen.gyro_rows.push_back(gyro_rows);
+  }
+};
+
+}  // namespace
+
+Vec3 rotation_vector(const Quat& rotation) {
+  const double sine = rotation.vec().norm(), side = std::copysign(1.0, rotation.w());
+  if (sine < 1e-12) return 2.0 * side * rotation.vec();
+  return 2.0 * side * std::atan2(sine, std::abs(rotation.w())) / sine * rotation.vec();
+}
+
+Observation observe(const Recording& recording, const std::string& name, size_t most_blocks) {
+  const Columns columns(recording, name);
+  Observation seen;
+  seen.name = name;
+  seen.schedule = recording.schedule();
+  seen.has_gyro = columns.has_gyro;
+  seen.rows = static_cast<int64_t>(recording.rows());
+  seen.row_interval_s = recording.report.median_interval_s;
+  seen.time_s = recording.time_s;
+  size_t attitudes = 0;
+  for (size_t row = 0; row < recording.rows(); ++row) {
+    const Quat q = columns.attitude(row).normalized();
+    const bool complete = q.coeffs().allFinite();
+    attitudes += complete ? 1 : 0;
+    seen.attitude.push_back(q);
+    seen.attitude_rows.push_back(complete ? 1.0 : 0.0);
+    const Vec3 rate(columns.rate(0, row), columns.rate(1, row), columns.rate(2, row));
+    seen.gyro_rad_s.push_back(rate);
+    seen.gyro_rows.push_back(rate.unaryExpr([](double x) { return std::isfinite(x) ? 1.0 : 0.0; }));
+  }
+  if (attitudes < fewest_attitudes) {
+    throw InputError({name, 0}, "q_w", std::to_string(attitudes) + " complete attitudes",
+                     "at least " + std::to_string(fewest_attitudes));
+  }
+  return seen.averaged(most_blocks);
+}
+
+Observation Observation::averaged(size_t most_blocks) const {
+  if (blocks() <= most_blocks) return *this;
+  Observation result = *this;
+  result.time_s.clear();
+  result.attitude.clear();
+  result.attitude_rows.clear();
+  result.gyro_rad_s.clear();
+  result.gyro_rows.clear();
+  const double block_s = duration_s() / static_cast<double>(most_blocks);
+  for (size_t first = 0, last = 0; first < blocks(); first = last) {
+    // Half a row of slack, so that rounding of the times does not make uneven blocks.
+    const double end_s = time_s[first] + block_s - 0.5 * row_interval_s;
+    for (last = first + 1; last < blocks() && time_s[last] <= end_s;) ++last;
+    BlockRows{*this, first, last}.append_to(result);
+  }
+  return result;
+}
+
+Observation Observation::part(size_t first, size_t last) const {
+  const auto cut = [&](auto& to, const auto& from) {
+    to.assign(from.begin() + static_cast<std::ptrdiff_t>(first),
+              from.begin() + static_cast<std::ptrdiff_t>(last));
+  };
+  Observation result = *this;
+  cut(result.time_s, time_s);
+  cut(result.attitude, attitude);
+  cut(result.attitude_rows, attitude_rows);
+  cut(result.gyro_rad_s, gyro_rad_s);
+  cut(result.gyro_rows, gyro_rows);
+  const double start_s = result.time_s.front();
+  double from_s = time_s.front();
+  for (size_t i = 0; i < schedule.time_s.size() && from_s < start_s; ++i) {
+    const double until_s =
+        i + 1 < schedule.time_s.size() ? std::min(start_s, schedule.time_s[i + 1]) : start_s;
+    if (until_s <= from_s) continue;
+    result.initial_charge_C += schedule.held[i].battery_current_A * (until_s - from_s);
+    from_s = until_s;
+  }
+  return result;
+}
+
+}  // namespace photorque

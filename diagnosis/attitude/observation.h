@@ -1,0 +1,51 @@
+// A recording made ready to be compared with a model: complete attitudes, gyro readings, commands,
+// averaged over blocks that are short against the motion.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "attitude/recordings/recording.h"
+#include "attitude/recordings/sensors.h"
+
+namespace photorque {
+
+// One standard deviation of one reading.
+struct NoiseLevels {
+  Vec3 camera_rad = Vec3(37, 37, 12) * arcsecond_rad;  // about lab x, y, z
+  Vec3 gyro_rad_s = Vec3::Constant(2e-4);              // body axes
+};
+
+struct Observation {
+  std::string name;
+  Schedule schedule;
+  double initial_charge_C = 0.0;  // drawn before the first row
+  bool has_gyro = false;
+
+  // Blocks of rows, by the mean of their times. A block without a reading has count 0.
+  std::vector<double> time_s;
+  std::vector<Quat> attitude;         // lab from body, mean of the block
+  std::vector<double> attitude_rows;  // how many rows went into it
+  std::vector<Vec3> gyro_rad_s;
+  std::vector<Vec3> gyro_rows;  // by axis
+  NoiseLevels noise;
+  double row_interval_s = 0.0;  // of the file
+  int64_t rows = 0;             // of the file
+
+  size_t blocks() const { return time_s.size(); }
+  double duration_s() const { return time_s.back() - time_s.front(); }
+  // The blocks [first, last) alone, the charge drawn before them counted.
+  Observation part(size_t first, size_t last) const;
+  // Neighbours averaged until about `most_blocks` are left: as good for what is slow against them.
+  Observation averaged(size_t most_blocks) const;
+};
+
+// About `most_blocks` blocks at most; a recording with fewer rows keeps them all. InputError when
+// the recording has no attitude or fewer than 20 complete ones.
+Observation observe(const Recording& recording, const std::string& name, size_t most_blocks = 6000);
+
+// The rotation vector of a rotation, at most π long [rad].
+Vec3 rotation_vector(const Quat& rotation);
+
+}  // namespace photorque

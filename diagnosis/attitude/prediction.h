@@ -1,0 +1,45 @@
+// What a model predicts for an observation, beside what was seen.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "attitude/propagation/propagator.h"
+#include "diagnosis/attitude/observation.h"
+
+namespace photorque {
+
+// Sums of squares of whitened residuals r and their slopes J by the variables: what a least-squares
+// step needs. Jᵀ J fills both triangles.
+struct NormalSums {
+  Eigen::MatrixXd matrix;    // Jᵀ J
+  Eigen::VectorXd gradient;  // Jᵀ r
+  double chi2 = 0.0;
+  int64_t samples = 0;
+};
+
+// Six whitened residuals of a block: attitude about lab x, y, z, then gyro x, y, z; (measured −
+// predicted)/noise, NaN where nothing was measured.
+using WhiteRow = Eigen::Matrix<double, 6, 1>;
+
+struct Prediction {
+  NormalSums sums;
+  // Filled on request.
+  std::vector<WhiteRow> residual;
+  std::vector<PlatformState> states;
+  std::vector<Vec3> camera_offset_lab_rad;  // from the state's attitude to what the camera reports
+  std::vector<Vec3> gyro_rad_s;             // what the gyro reads
+};
+
+struct PredictionOptions {
+  PropagationOptions propagation{.tolerance = 1e-7, .derivative_tolerance = 1e-9};
+  size_t blocks = SIZE_MAX;  // only the first of them
+  bool keep_residuals = false;
+};
+
+// `variables` may be empty. Residuals are taken at the linearised attitude error; the camera's
+// delay counts to first order. Throws NumericalError when the model cannot be propagated.
+Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const Observation& seen,
+                   const std::vector<Variable>& variables, const PredictionOptions& options = {});
+
+}  // namespace photorque

@@ -1,0 +1,23 @@
+// Screening for appendages that swing fast, without flying the platform again for each frequency.
+#pragma once
+
+#include "diagnosis/attitude/prediction.h"
+#include "diagnosis/attitude/screen.h"
+
+namespace photorque {
+
+// One run flown along a fit.
+struct FlownRun {
+  const Observation& seen;
+  const Prediction& flown;  // with residuals
+};
+
+// The score of light appendages about these axes [body, unit vectors], one strength J [kg m²] each,
+// all of one frequency and damping (share of critical). What the fitted motion makes each of them
+// do is exact; how the platform answers holds where nothing else turns it within a swing: it is
+// free there, δω = −J I⁻¹ a φ'. What is slower than a swing is taken out of the readings and the
+// answers alike, which stands for projecting out what the fit could still take up.
+Score score_of_ringing(const std::vector<FlownRun>& runs, const Mat3& inertia_kg_m2,
+                       const std::vector<Vec3>& axes, double frequency_Hz, double damping);
+
+}  // namespace photorque

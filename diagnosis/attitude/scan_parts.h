@@ -1,0 +1,44 @@
+// What the scans for starts share.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "diagnosis/attitude/fit.h"
+
+namespace photorque {
+
+// Fall of χ² promised by a scan's peak, to be worth a fit: chance alone reaches less in most scans.
+constexpr double least_scan_gain = 14.0;
+
+// From the first reading to the last [s]: of several recordings the longest, of the pieces of one
+// all of it. What acts at one frequency keeps its phase from piece to piece.
+inline double span_s(const std::vector<Observation>& runs) {
+  double start_s = runs.front().time_s.front(), end_s = 0.0;
+  for (const Observation& seen : runs) {
+    start_s = std::min(start_s, seen.time_s.front());
+    end_s = std::max(end_s, seen.time_s.back());
+  }
+  return end_s - start_s;
+}
+
+// Indices of the `most` largest values that are larger than both neighbours.
+inline std::vector<size_t> peaks(const std::vector<double>& value, size_t most) {
+  std::vector<size_t> found;
+  for (size_t i = 0; i < value.size(); ++i) {
+    const bool rises = i == 0 || value[i] >= value[i - 1];
+    const bool falls = i + 1 == value.size() || value[i] > value[i + 1];
+    if (rises && falls) found.push_back(i);
+  }
+  std::sort(found.begin(), found.end(), [&](size_t a, size_t b) { return value[a] > value[b]; });
+  if (found.size() > most) found.resize(most);
+  return found;
+}
+
+inline Disturbance with_parameter(const Disturbance& like, size_t parameter, double value) {
+  Disturbance d = like;
+  d.parameters[parameter].value = value;
+  return d;
+}
+
+}  // namespace photorque

@@ -1,0 +1,17 @@
+// The search for what is missing: every candidate alone, then the best with every other.
+#pragma once
+
+#include "diagnosis/attitude/trial.h"
+
+namespace photorque {
+
+struct SearchOptions {
+  int threads = 0;       // 0: all
+  int most_effects = 3;  // together
+};
+
+// All trials that were fitted, the believed model first.
+std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
+                          const std::vector<Observation>& runs, const SearchOptions& options = {});
+
+}  // namespace photorque

@@ -1,0 +1,389 @@
+#include "diagnosis/attitude/trial.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/propagation/run.h"
+#include "diagnosis/attitude/nominal_model.h"
+
+namespace photorque {
+namespace {
+
+// Far wider than any effect: keeps what the data do not determine from running away, no more.
+constexpr double fit_prior_widths = 30.0;
+// Of one effect of the catalogue among all, and of one empirical law.
+constexpr double log_prior_effect = -3.4;  // 1/30
+constexpr double log_prior_empirical = -5.0;
+
+Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) {
+  Candidate c;
+  c.label = effect.kind;
+  c.effect = effect;
+  c.start = disturbance_of(effect, context);
+  for (const Parameter& parameter : c.start.parameters) {
+    // A fixed detail of the law (where a rubbing contact begins to creep) is not fitted.
+    const auto key = std::find_if(effect.keys.begin(), effect.keys.end(),
+                                  [&](const EffectKey& k) { return k.key == parameter.key; });
+    c.scale.push_back(key == effect.keys.end() ? 0.0 : key->scale);
+    c.lowest.push_back(key == effect.keys.end() ? -1e308 : key->lowest);
+    c.highest.push_back(key == effect.keys.end() ? 1e308 : key->highest);
+    c.searched.push_back(key != effect.keys.end() && key->searched);
+  }
+  return c;
+}
+
+Candidate candidate_of(const EmpiricalLaw& law) {
+  Candidate c;
+  c.label = "unknown in " + law.variable + ": " + law.description;
+  c.variable = law.variable;
+  c.start = law.disturbance;
+  const size_t n = law.disturbance.parameters.size();
+  c.scale.assign(n, law.scale);
+  c.lowest.assign(n, -1e308);
+  c.highest.assign(n, 1e308);
+  c.searched.assign(n, false);
+  return c;
+}
+
+bool is_fitted(const Candidate& c, size_t p) {
+  return c.scale[p] > 0.0;
+}
+
+// ln |A|, of a positive definite matrix whose rows have different units.
+double log_determinant(const Eigen::MatrixXd& A) {
+  const Eigen::VectorXd scale = A.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd scaled =
+      scale.cwiseInverse().asDiagonal() * A * scale.cwiseInverse().asDiagonal();
+  return scaled.ldlt().vectorD().cwiseMax(1e-12).array().log().sum() +
+         2.0 * scale.array().log().sum();
+}
+
+// The strengths of all candidates of a trial: the parameters that are not searched, in units of
+// what is expected of them.
+struct Strengths {
+  std::vector<Eigen::Index> at;  // among the shared parameters
+  std::vector<size_t> owner;     // which of the trial's candidates
+  std::vector<double> value, scale;
+};
+
+// ln ∫ N(θ; 0, S) … over the widths of S: nobody knows beforehand how strong an effect is that was
+// left out, so the width of the prior of each one's strengths, a common factor of the expected
+// ones, is uniform in its logarithm from a millionth to ten times. With θ̂ and C from a fit with
+// a flat prior, a width contributes N(θ̂; 0, C + S) but for a constant.
+double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covariance,
+                             size_t candidates) {
+  const auto n = static_cast<Eigen::Index>(s.at.size());
+  if (n == 0) return 0.0;
+  Eigen::MatrixXd C(n, n);
+  Eigen::VectorXd theta(n);
+  double result = 0.0;
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const auto i = static_cast<size_t>(a);
+    theta[a] = s.value[i] / s.scale[i];
+    result -= std::log(s.scale[i]);
+    for (Eigen::Index b = 0; b < n; ++b) {
+      const auto j = static_cast<size_t>(b);
+      C(a, b) = covariance(s.at[i], s.at[j]) / (s.scale[i] * s.scale[j]);
+    }
+  }
+  constexpr int widths = 15;
+  const auto width = [](int k) { return std::pow(10.0, -6.0 + 0.5 * k); };
+  std::vector<int> chosen(candidates, widths - 3);
+  const auto at = [&]() {
+    Eigen::MatrixXd sum = C;
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const double w = width(chosen[s.owner[static_cast<size_t>(a)]]);
+      sum(a, a) += w * w;
+    }
+    const Eigen::VectorXd unit = sum.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = unit.asDiagonal() * sum * unit.asDiagonal();
+    const Eigen::VectorXd off = unit.cwiseProduct(theta);
+    return -0.5 * (log_determinant(sum) + off.dot(scaled.ldlt().solve(off)));
+  };
+  // Candidate by candidate, the others at their best width.
+  for (const bool last : {false, true}) {
+    for (size_t c = 0; c < candidates; ++c) {
+      std::vector<double> value;
+      for (chosen[c] = 0; chosen[c] < widths; ++chosen[c]) value.push_back(at());
+      const auto best = std::max_element(value.begin(), value.end());
+      chosen[c] = static_cast<int>(best - value.begin());
+      if (!last) continue;
+      double mean = 0.0;
+      for (const double v : value) mean += std::exp(v - *best) / widths;
+      result += std::log(mean);
+    }
+  }
+  return result + at();
+}
+
+// Laplace's approximation of the evidence. The fit's own prior is far wider than what is believed
+// of an effect; here it is replaced.
+double log_evidence(const Trial& trial, const std::vector<Candidate>& all) {
+  const Fit& fit = trial.fit;
+  if (!std::isfinite(fit.chi2)) return -1e300;
+  Eigen::MatrixXd hessian = fit.hessian;
+  double result = -0.5 * fit.chi2;
+  Strengths strengths;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const Candidate& c = all[trial.candidates[i]];
+    result += c.empirical() ? log_prior_empirical : log_prior_effect;
+    const std::vector<Eigen::Index> where = shared_indices(trial, i);
+    size_t k = 0;
+    for (size_t p = 0; p < c.scale.size(); ++p) {
+      if (!is_fitted(c, p)) continue;
+      const Eigen::Index at = where[k++];
+      if (!c.searched[p]) {
+        strengths.at.push_back(at);
+        strengths.owner.push_back(i);
+        strengths.value.push_back(
+            fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value);
+        strengths.scale.push_back(c.scale[p]);
+        if (c.lowest[p] == 0.0) result += std::log(2.0);  // half of a Gaussian
+        continue;
+      }
+      const double sigma = c.scale[p], wide = sigma * fit_prior_widths;
+      hessian(fit.first_shared + at, fit.first_shared + at) +=
+          1.0 / (sigma * sigma) - 1.0 / (wide * wide);
+      result -= std::log(sigma);
+    }
+    for (size_t s = 0; s < c.start.states.size(); ++s) {
+      result -= static_cast<double>(fit.best.runs.size()) * std::log(0.01);  // prior of its start
+    }
+  }
+  result -= 0.5 * log_determinant(hessian);
+  return result +
+         log_strength_evidence(strengths, fit.shared_covariance(), trial.candidates.size());
+}
+
+// The largest change of a principal moment by a fitted error of the inertia, as a share of the
+// believed one. The torque equation is homogeneous: hardly any inertia at all explains nearly
+// everything, but nobody weighs a platform that badly.
+double inertia_change(const Trial& trial, const std::vector<Candidate>& all) {
+  const Mat3& believed_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
+  const Vec3 believed = believed_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
+  double largest = 0.0;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    if (all[trial.candidates[i]].effect.kind != "inertia_error") continue;
+    const auto& delta = trial.fit.best.model.disturbances[trial.disturbances[i]].parameters;
+    Mat3 found = believed_kg_m2;
+    for (Eigen::Index k = 0; k < 3; ++k) found(k, k) += delta[static_cast<size_t>(k)].value;
+    found(1, 0) += delta[3].value;
+    found(2, 0) += delta[4].value;
+    found(2, 1) += delta[5].value;
+    const Vec3 moments = found.selfadjointView<Eigen::Lower>().eigenvalues();
+    largest = std::max(largest, (moments - believed).cwiseQuotient(believed).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) {
+  if (!std::isfinite(trial.fit.chi2)) return "cannot be propagated";
+  const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const Candidate& c = all[trial.candidates[i]];
+    const std::vector<Eigen::Index> where = shared_indices(trial, i);
+    size_t k = 0;
+    for (size_t p = 0; p < c.scale.size(); ++p) {
+      if (!is_fitted(c, p)) continue;
+      const Eigen::Index at = where[k++];
+      const double value =
+          trial.fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value;
+      const double sigma = std::sqrt(std::max(0.0, covariance(at, at)));
+      if (value < c.lowest[p] - 2.0 * sigma || value > c.highest[p] + 2.0 * sigma) {
+        return c.label + " would have the wrong sign";
+      }
+    }
+  }
+  constexpr double most_inertia_change = 0.4;
+  if (const double change = inertia_change(trial, all); change > most_inertia_change) {
+    return "a principal moment of inertia would change by " +
+           std::to_string(static_cast<int>(std::lround(100.0 * change))) + " %";
+  }
+  double drag = 0.0;
+  bool has_drag = false;
+  for (const Disturbance& d : trial.fit.best.model.disturbances) {
+    if (d.kind != "bearing_drag") continue;
+    has_drag = true;
+    for (const Parameter& p : d.parameters) drag += p.value;
+  }
+  if (has_drag && drag < -1e-6) return "the bearing's drag would feed energy";
+  return "";
+}
+
+double significance(const Trial& trial, const std::vector<Candidate>& all, size_t which) {
+  const Candidate& c = all[trial.candidates[which]];
+  const std::vector<Eigen::Index> where = shared_indices(trial, which);
+  const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
+  std::vector<std::pair<Eigen::Index, double>> linear;
+  size_t k = 0;
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (!is_fitted(c, p)) continue;
+    const Eigen::Index at = where[k++];
+    if (c.searched[p]) continue;
+    linear.emplace_back(
+        at, trial.fit.best.model.disturbances[trial.disturbances[which]].parameters[p].value);
+  }
+  const auto n = static_cast<Eigen::Index>(linear.size());
+  if (n == 0) return 0.0;
+  Eigen::MatrixXd C(n, n);
+  Eigen::VectorXd theta(n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    theta[a] = linear[static_cast<size_t>(a)].second;
+    for (Eigen::Index b = 0; b < n; ++b) {
+      C(a, b) =
+          covariance(linear[static_cast<size_t>(a)].first, linear[static_cast<size_t>(b)].first);
+    }
+  }
+  const Eigen::VectorXd scale = C.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * C * scale.asDiagonal();
+  const Eigen::VectorXd scaled = scale.cwiseProduct(theta);
+  return std::sqrt(std::max(0.0, scaled.dot(correlation.ldlt().solve(scaled))));
+}
+
+void judge(Trial& trial, const std::vector<Candidate>& all) {
+  trial.significance.clear();
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    trial.significance.push_back(significance(trial, all, i));
+  }
+  trial.log_evidence = log_evidence(trial, all);
+  trial.objection = objection_to(trial, all);
+}
+
+}  // namespace
+
+std::vector<Candidate> all_candidates(const BelievedModel& believed,
+                                      const std::vector<Observation>& runs) {
+  const DisturbanceContext context{believed.model.platform, believed.model.environment};
+  double duration_s = 0.0, charge_C = 0.0;
+  bool has_commands = false;
+  for (const Observation& seen : runs) {
+    duration_s = std::max(duration_s, seen.time_s.back());
+    const Observation last = seen.part(seen.blocks() - 1, seen.blocks());
+    charge_C = std::max(charge_C, std::abs(last.initial_charge_C));
+    for (const Held& held : seen.schedule.held) {
+      has_commands = has_commands || held.command_body_N_m.norm() > 0.0;
+    }
+  }
+  std::vector<Candidate> all;
+  for (const Effect& effect : catalogue(believed.model.platform)) {
+    if (effect.needs == "command" && !has_commands) continue;
+    if (effect.needs == "charge" && charge_C == 0.0) continue;
+    const bool field = believed.model.environment.magnetic_field_lab_T.norm() > 0.0;
+    if (!field && (effect.kind == "magnetic_dipole" || effect.kind == "eddy_damping")) continue;
+    // A law without parameters acts already or not.
+    const auto& acting = believed.model.disturbances;
+    const bool acts = std::any_of(acting.begin(), acting.end(),
+                                  [&](const Disturbance& d) { return d.kind == effect.kind; });
+    if (effect.keys.empty() && acts) continue;
+    all.push_back(candidate_of(effect, context));
+  }
+  const double torque_N_m = 5e-6;
+  for (const EmpiricalLaw& law : empirical_laws(duration_s, charge_C, has_commands, torque_N_m)) {
+    all.push_back(candidate_of(law));
+  }
+  return all;
+}
+
+std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which) {
+  std::vector<Eigen::Index> result;
+  Eigen::Index shared = 0;
+  for (const Free& f : trial.fit.best.free) {
+    if (f.per_run) continue;
+    if (f.disturbance == trial.disturbances[which]) result.push_back(shared);
+    ++shared;
+  }
+  return result;
+}
+
+namespace {
+
+// Where a fit went astray, its parameters are no start: back to what is believed and to what was
+// seen at the beginning of each run.
+void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observation>& runs) {
+  const auto& found = parent.disturbances;
+  for (const Free& f : h.free) {
+    if (f.per_run) continue;
+    if (std::find(found.begin(), found.end(), f.disturbance) == found.end()) h.value(f) = f.mean;
+  }
+  h.runs = seen_starts(h, runs);
+}
+
+}  // namespace
+
+Trial believed_trial(const Fit& belief) {
+  Trial trial;
+  trial.fit = belief;
+  trial.log_evidence = log_evidence(trial, {});
+  return trial;
+}
+
+Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t candidate,
+             const Disturbance& start, const std::vector<Observation>& runs,
+             const FitSettings& settings) {
+  const Candidate& c = all[candidate];
+  Trial trial;
+  trial.candidates = parent.candidates;
+  trial.disturbances = parent.disturbances;
+  Hypothesis h = parent.fit.best;
+  FitSettings how = settings;
+  constexpr double astray_chi2_per_sample = 20.0;
+  if (parent.fit.chi2_per_sample() > astray_chi2_per_sample) {
+    start_again(h, parent, runs);
+    how.windows = {0.06, 0.25, 1.0};
+  }
+  const size_t index = add_disturbance(h, start);
+  trial.candidates.push_back(candidate);
+  trial.disturbances.push_back(index);
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (!is_fitted(c, p)) continue;
+    Free f{index, static_cast<int>(p)};
+    f.mean = c.searched[p] ? start.parameters[p].value : 0.0;
+    f.sigma = fit_prior_widths * c.scale[p];
+    if (c.searched[p]) {
+      f.lowest = c.lowest[p];
+      f.highest = c.highest[p];
+    }
+    h.free.push_back(f);
+  }
+  trial.fit = fit(h, runs, how);
+  judge(trial, all);
+  return trial;
+}
+
+Trial refit(const Trial& trial, const std::vector<Candidate>& all,
+            const std::vector<Observation>& runs, const std::vector<RunStart>& starts,
+            const FitSettings& settings) {
+  Trial result = trial;
+  Hypothesis h = trial.fit.best;
+  h.runs = starts;
+  result.fit = fit(h, runs, settings);
+  judge(result, all);
+  return result;
+}
+
+Trial refit_near(const Trial& trial, const Trial& other, const std::vector<Candidate>& all,
+                 const std::vector<Observation>& runs, const FitSettings& settings) {
+  Trial from = trial;
+  std::vector<Disturbance>& to = from.fit.best.model.disturbances;
+  const std::vector<Disturbance>& source = other.fit.best.model.disturbances;
+  const size_t believed = to.size() - trial.candidates.size();
+  for (size_t d = 0; d < believed; ++d) to[d].parameters = source[d].parameters;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const auto twin =
+        std::find(other.candidates.begin(), other.candidates.end(), trial.candidates[i]);
+    if (twin == other.candidates.end()) continue;
+    const auto j = static_cast<size_t>(twin - other.candidates.begin());
+    to[trial.disturbances[i]].parameters = source[other.disturbances[j]].parameters;
+  }
+  std::vector<RunStart> starts = other.fit.best.runs;
+  for (size_t run = 0; run < starts.size(); ++run) {
+    std::vector<double>& extra = starts[run].initial.extra;
+    const std::vector<double>& own = from.fit.best.runs[run].initial.extra;
+    if (extra.size() != own.size()) extra = own;
+  }
+  return refit(from, all, runs, starts, settings);
+}
+
+}  // namespace photorque

@@ -1,0 +1,74 @@
+// Candidates that may explain what is left, and models that contain some of them, fitted in full.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnosis/attitude/catalogue.h"
+#include "diagnosis/attitude/empirical.h"
+#include "diagnosis/attitude/fit.h"
+
+namespace photorque {
+
+// An effect of the catalogue, or an empirical law.
+struct BelievedModel;  // attitude/propagation/run.h
+
+struct Candidate {
+  std::string label;     // "magnetic_dipole", "unknown in heading: 3 periods a turn"
+  std::string variable;  // of an empirical law; empty: an effect of the catalogue
+  Effect effect;         // empty kind for an empirical law
+  Disturbance start;
+  std::vector<double> scale;  // of each parameter
+  std::vector<double> lowest, highest;
+  std::vector<bool> searched;
+
+  bool empirical() const { return !variable.empty(); }
+  // Whether a score test can foretell what its fit gains.
+  bool is_linear() const {
+    return !start.parameters.empty() &&
+           std::none_of(searched.begin(), searched.end(), [](bool b) { return b; });
+  }
+};
+std::vector<Candidate> all_candidates(const BelievedModel& believed,
+                                      const std::vector<Observation>& runs);
+
+// The believed model and some candidates.
+struct Trial {
+  std::vector<size_t> candidates;    // in the order in which they were added
+  std::vector<size_t> disturbances;  // where each stands in the model
+  Fit fit;
+  // Natural logarithm of the evidence but for a constant that all trials on the same runs share:
+  // Laplace's approximation (MacKay, Information Theory, Inference, and Learning Algorithms, 2003,
+  // eq. 28.5), with the prior probability of the candidates' names.
+  double log_evidence = 0.0;
+  // Of each candidate: the square root of θᵀ C⁻¹ θ over its parameters that are not searched.
+  std::vector<double> significance;
+  std::vector<double> joint_significance = {};  // with what was held back, where that was weighed
+  std::string objection;                        // why physics forbids it; empty: nothing
+  std::optional<double> holdout_chi2_per_sample = {};  // where it flew what was held back
+};
+
+Trial believed_trial(const Fit& belief);
+
+// Adds a candidate, its parameters starting from `start`, and fits.
+Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t candidate,
+             const Disturbance& start, const std::vector<Observation>& runs,
+             const FitSettings& settings = {});
+
+// The same trial on other or more runs: shared parameters start from the fitted ones.
+Trial refit(const Trial& trial, const std::vector<Candidate>& all,
+            const std::vector<Observation>& runs, const std::vector<RunStart>& starts,
+            const FitSettings& settings = {});
+
+// The same trial from where another on the same runs ended: its starts, and its values of all that
+// the two share. Of a long run that tumbles a fit may end in one of many valleys; what others found
+// is a second chance.
+Trial refit_near(const Trial& trial, const Trial& other, const std::vector<Candidate>& all,
+                 const std::vector<Observation>& runs, const FitSettings& settings = {});
+
+// Indices of a candidate's parameters among the shared ones of the fit.
+std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which);
+
+}  // namespace photorque

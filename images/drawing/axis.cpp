@@ -1,0 +1,119 @@
+#include "images/drawing/axis.h"
+
+#include "images/drawing/page_layout.h"
+#include "images/drawing/text.h"
+
+namespace photorque {
+namespace {
+
+constexpr double gap = 3.0;
+constexpr Rgb ink = {0.13, 0.13, 0.13};
+
+std::string label_with_power(const std::string& label, int exponent) {
+  if (exponent == 0) return label;
+  const std::string power = "×" + power_of_ten(exponent);
+  const size_t bracket = label.rfind('[');
+  if (bracket == std::string::npos) return label + (label.empty() ? "" : " ") + power;
+  std::string result = label;
+  const bool without_unit = label.compare(bracket, 2, "[]") == 0;
+  return result.insert(bracket + 1, power + (without_unit ? "" : " "));
+}
+
+Ticks ticks_for(const AxisRange& range, bool log, int at_most) {
+  return log ? log_ticks(range.low, range.high, at_most)
+             : linear_ticks(range.low, range.high, at_most);
+}
+
+Axis axis_with(const AxisRange& range, bool log, const std::string& label, int at_most) {
+  Axis axis{range, log, ticks_for(range, log, at_most), ""};
+  axis.label = label_with_power(label, axis.ticks.exponent);
+  return axis;
+}
+
+// Whether neighbouring numbers stay apart along a horizontal axis.
+bool numbers_fit(const Axis& axis, double length) {
+  double previous_end = -1e300;
+  for (size_t i = 0; i < axis.ticks.values.size(); ++i) {
+    const double width = text_width(axis.ticks.labels[i], tick_style);
+    const double centre = length * axis.fraction(axis.ticks.values[i]);
+    if (centre - 0.5 * width < previous_end + 8.0) return false;
+    previous_end = centre + 0.5 * width;
+  }
+  return true;
+}
+
+}  // namespace
+
+double Axis::fraction(double value) const {
+  if (!log) return (value - range.low) / (range.high - range.low);
+  return std::log(value / range.low) / std::log(range.high / range.low);
+}
+
+Axis horizontal_axis(AxisRange range, bool log, const std::string& label, double length) {
+  const AxisRange shown = log ? range : drawable(range);
+  for (int at_most = std::clamp(static_cast<int>(length / 40.0), 2, 11);; --at_most) {
+    Axis axis = axis_with(shown, log, label, at_most);
+    if (at_most <= 2 || numbers_fit(axis, length)) return axis;
+  }
+}
+
+Axis vertical_axis(AxisRange range, bool log, const std::string& label, double length) {
+  const int at_most = std::clamp(static_cast<int>(length / 28.0), 3, 9);
+  return axis_with(log ? range : drawable(range), log, label, at_most);
+}
+
+double horizontal_axis_height(const Axis& axis) {
+  return tick_length + gap + tick_style.size +
+         (axis.label.empty() ? 0.0 : 2.0 * gap + label_style.size);
+}
+
+double tick_labels_width(const Axis& axis) {
+  double widest = 0.0;
+  for (const std::string& label : axis.ticks.labels) {
+    widest = std::max(widest, text_width(label, tick_style));
+  }
+  return tick_length + gap + widest;
+}
+
+double vertical_axis_width(const Axis& axis) {
+  return tick_labels_width(axis) + (axis.label.empty() ? 0.0 : 2.0 * gap + label_style.size);
+}
+
+void draw_horizontal_axis(Canvas& canvas, const PageBox& frame, const Axis& axis) {
+  TextStyle style = tick_style;
+  style.align = TextAlign::centre;
+  for (size_t i = 0; i < axis.ticks.values.size(); ++i) {
+    const double x = frame.x + frame.width * axis.fraction(axis.ticks.values[i]);
+    canvas.line({x, frame.bottom()}, {x, frame.bottom() + tick_length}, {ink, 0.8});
+    canvas.text(axis.ticks.labels[i], {x, frame.bottom() + tick_length + gap + 0.8 * style.size},
+                style);
+  }
+  TextStyle label = label_style;
+  label.align = TextAlign::centre;
+  canvas.text(axis.label, {frame.centre().x, frame.bottom() + horizontal_axis_height(axis)}, label);
+}
+
+void draw_vertical_axis(Canvas& canvas, const PageBox& frame, const Axis& axis, double label_room) {
+  TextStyle style = tick_style;
+  style.align = TextAlign::right;
+  style.level = TextLevel::middle;
+  for (size_t i = 0; i < axis.ticks.values.size(); ++i) {
+    const double y = frame.bottom() - frame.height * axis.fraction(axis.ticks.values[i]);
+    canvas.line({frame.x - tick_length, y}, {frame.x, y}, {ink, 0.8});
+    canvas.text(axis.ticks.labels[i], {frame.x - tick_length - gap, y}, style);
+  }
+  if (axis.label.empty()) return;
+  TextStyle label = label_style;
+  label.align = TextAlign::centre;
+  label.turn_rad = quarter_turn_rad;
+  const TextBlock fitted = fitted_text(axis.label, frame.height + 20.0, label, 8.5, 1);
+  canvas.text(fitted.lines.front(), {frame.x - label_room + label_style.size, frame.centre().y},
+              fitted.style);
+}
+
+std::string unit_with_power(const std::string& unit, int exponent) {
+  if (exponent == 0) return unit;
+  return "×" + power_of_ten(exponent) + (unit.empty() ? "" : " " + unit);
+}
+
+}  // namespace photorque

@@ -1,0 +1,45 @@
+// A numbered axis of a chart.
+#pragma once
+
+#include <string>
+
+#include "images/drawing/canvas.h"
+#include "images/drawing/ticks.h"
+
+namespace photorque {
+
+// Length of a tick on every axis, in page units.
+inline constexpr double tick_length = 4.0;
+
+struct Axis {
+  AxisRange range;
+  bool log = false;
+  Ticks ticks;
+  std::string label;  // the unit in brackets holds the ticks' power of ten: "torque [×10⁻⁹ N m]"
+
+  // 0 at range.low, 1 at range.high; NaN for what a logarithmic axis cannot show.
+  double fraction(double value) const;
+};
+
+inline constexpr TextStyle tick_style{.size = 10.5};
+inline constexpr TextStyle label_style{.size = 12.0};
+
+// Axes `length` points long, with as many numbers as fit without touching. A logarithmic axis needs
+// a positive range; any other is made drawable().
+Axis horizontal_axis(AxisRange range, bool log, const std::string& label, double length);
+Axis vertical_axis(AxisRange range, bool log, const std::string& label, double length);
+
+// Room that numbers and label take below a horizontal and left of a vertical axis.
+double horizontal_axis_height(const Axis& axis);
+double tick_labels_width(const Axis& axis);
+double vertical_axis_width(const Axis& axis);
+
+// Draws ticks, numbers and label along the bottom or the left edge of `frame`.
+void draw_horizontal_axis(Canvas& canvas, const PageBox& frame, const Axis& axis);
+// `label_room` is the distance from the frame to the label's far side: equal for stacked panels.
+void draw_vertical_axis(Canvas& canvas, const PageBox& frame, const Axis& axis, double label_room);
+
+// "W/m²" with exponent −9 is "×10⁻⁹ W/m²".
+std::string unit_with_power(const std::string& unit, int exponent);
+
+}  // namespace photorque

@@ -1,0 +1,109 @@
+#include "images/drawing/colour_map.h"
+
+#include <numbers>
+
+namespace photorque {
+namespace {
+
+// Every 17th colour of the published table of 256.
+constexpr std::array<uint32_t, 16> viridis_colours = {
+    0x440154, 0x481A6C, 0x472F7D, 0x414487, 0x39568C, 0x31688E, 0x2A788E, 0x23888E,
+    0x1F988B, 0x22A884, 0x35B779, 0x54C568, 0x7AD151, 0xA5DB36, 0xD2E21B, 0xFDE725};
+
+// Moreland's polar form of CIELAB: M length, s angle from the L* axis, h hue angle.
+struct Msh {
+  double length = 0.0;
+  double angle_rad = 0.0;
+  double hue_rad = 0.0;
+};
+
+Msh msh_from_rgb(const Rgb& colour) {
+  const Lab lab = lab_from_rgb(colour);
+  const double length = std::hypot(lab.lightness, lab.a, lab.b);
+  return {length, std::acos(lab.lightness / length), std::atan2(lab.b, lab.a)};
+}
+
+Rgb rgb_from_msh(const Msh& msh) {
+  const double chroma = msh.length * std::sin(msh.angle_rad);
+  return rgb_from_lab({msh.length * std::cos(msh.angle_rad), chroma * std::cos(msh.hue_rad),
+                       chroma * std::sin(msh.hue_rad)});
+}
+
+// The hue that the neutral middle takes on the side of `end`, so that the lengths of the steps in
+// hue stay even (Moreland's AdjustHue). Hues turn away from green, through which no map should go.
+double hue_at_middle(const Msh& end, double middle_length) {
+  const double turn = end.angle_rad *
+                      std::sqrt(middle_length * middle_length - end.length * end.length) /
+                      (end.length * std::sin(end.angle_rad));
+  return end.hue_rad > -std::numbers::pi / 3.0 ? end.hue_rad + turn : end.hue_rad - turn;
+}
+
+}  // namespace
+
+const Rgb& ColourMap::operator()(double fraction) const {
+  const double scaled = fraction * static_cast<double>(colours.size());
+  if (!(scaled > 0.0)) return colours.front();
+  if (scaled >= static_cast<double>(colours.size())) return colours.back();
+  return colours[static_cast<size_t>(scaled)];
+}
+
+ColourMap viridis() {
+  ColourMap map;
+  constexpr size_t step = (256 - 1) / (viridis_colours.size() - 1);
+  for (size_t i = 0; i < map.colours.size(); ++i) {
+    const size_t k = std::min(i / step, viridis_colours.size() - 2);
+    const double t = static_cast<double>(i - k * step) / step;
+    const Lab from = lab_from_rgb(rgb_from_hex(viridis_colours[k]));
+    const Lab to = lab_from_rgb(rgb_from_hex(viridis_colours[k + 1]));
+    map.colours[i] = rgb_from_lab({std::lerp(from.lightness, to.lightness, t),
+                                   std::lerp(from.a, to.a, t), std::lerp(from.b, to.b, t)});
+  }
+  return map;
+}
+
+ColourMap cool_warm() {
+  const Msh cool = msh_from_rgb({0.230, 0.299, 0.754});
+  const Msh warm = msh_from_rgb({0.706, 0.016, 0.150});
+  const double middle_length = std::max({cool.length, warm.length, 88.0});
+  ColourMap map;
+  for (size_t i = 0; i < map.colours.size(); ++i) {
+    const double fraction = static_cast<double>(i) / static_cast<double>(map.colours.size() - 1);
+    const Msh& end = fraction < 0.5 ? cool : warm;
+    const double t = std::abs(2.0 * fraction - 1.0);  // 0 in the middle, 1 at the end
+    map.colours[i] =
+        rgb_from_msh({std::lerp(middle_length, end.length, t), std::lerp(0.0, end.angle_rad, t),
+                      std::lerp(hue_at_middle(end, middle_length), end.hue_rad, t)});
+  }
+  return map;
+}
+
+ColourScale colour_scale(double smallest, double largest, bool signed_values) {
+  // Of one sign and far from zero, only their differences are to be seen.
+  const bool one_sided = smallest > 0.5 * largest || largest < 0.5 * smallest;
+  if (signed_values && !one_sided) {
+    const double extent = std::max(std::abs(smallest), std::abs(largest));
+    const double reach = extent > 0.0 ? extent : 1.0;
+    return {-reach, reach, cool_warm()};
+  }
+  // Differences of this size are rounding, not structure.
+  const bool constant =
+      largest - smallest <= 1e-9 * std::max(std::abs(smallest), std::abs(largest));
+  if (constant && largest == 0.0) return {0.0, 1.0, viridis()};
+  if (constant) return {std::min(largest, 0.0), std::max(largest, 0.0), viridis()};
+  const bool from_zero = smallest >= 0.0 && smallest < 0.5 * largest;
+  return {from_zero ? 0.0 : smallest, largest, viridis()};
+}
+
+ColourScale colour_scale(const Map& map) {
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = -smallest;
+  for (const double value : map.value) {
+    if (!std::isfinite(value)) continue;
+    smallest = std::min(smallest, value);
+    largest = std::max(largest, value);
+  }
+  if (smallest > largest) return colour_scale(0.0, 0.0, map.signed_values);
+  return colour_scale(smallest, largest, map.signed_values);
+}
+
+}  // namespace photorque

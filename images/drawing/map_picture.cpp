@@ -1,0 +1,136 @@
+#include "images/drawing/map_picture.h"
+
+#include "images/drawing/consistency.h"
+#include "images/drawing/map_grid.h"
+#include "images/drawing/page_layout.h"
+#include "images/drawing/text.h"
+
+namespace photorque {
+namespace {
+
+constexpr double longest_side = 440.0;
+constexpr double tallest = 400.0;
+constexpr double largest_ratio = 8.0;
+constexpr double shortest_colour_bar = 150.0;
+constexpr double narrowest_page = 400.0;
+constexpr Rgb ink = {0.13, 0.13, 0.13};
+
+struct Layout {
+  PageBox grid;  // whole points, so that cells meet pixels exactly
+  Axis x, y;
+  ColourBar bar;
+  double bar_height = 0.0;
+  double bar_x = 0.0;
+  double bar_y = 0.0;
+  PageText text;
+  double body_height = 0.0;
+  double width = 0.0;
+};
+
+PageBox grid_size(const Map& map) {
+  double ratio = 4.0 / 3.0;
+  if (map.equal_scale) {
+    ratio = std::abs((map.x_high - map.x_low) / (map.y_high - map.y_low));
+    ratio = std::isfinite(ratio) ? std::clamp(ratio, 1.0 / largest_ratio, largest_ratio) : 1.0;
+  }
+  const double width = std::min(longest_side, tallest * ratio);
+  return {0.0, 0.0, std::round(width), std::round(width / ratio)};
+}
+
+Layout layout_of(const Map& map, const Provenance& provenance) {
+  Layout layout;
+  layout.grid = grid_size(map);
+  layout.x = horizontal_axis({map.x_low, map.x_high}, false, map.x_label, layout.grid.width);
+  layout.y = vertical_axis({map.y_low, map.y_high}, false, map.y_label, layout.grid.height);
+  layout.bar_height = std::max(layout.grid.height, shortest_colour_bar);
+  layout.bar = colour_bar(colour_scale(map), map.unit, layout.bar_height);
+  layout.grid.x = std::ceil(page_margin + vertical_axis_width(layout.y));
+  layout.bar_x = layout.grid.right() + 20.0;
+  layout.width =
+      std::ceil(std::max(narrowest_page, layout.bar_x + layout.bar.width() + page_margin));
+  layout.text = page_text(map.title, map_caption(map), provenance.one_line(), layout.width);
+  layout.bar_y = std::ceil(layout.text.body_top() + colour_bar_unit_height);
+  layout.grid.y = layout.bar_y + std::floor(0.5 * (layout.bar_height - layout.grid.height));
+  const double grid_bottom = layout.grid.bottom() + horizontal_axis_height(layout.x);
+  layout.body_height =
+      std::max(grid_bottom, layout.bar_y + layout.bar_height + 6.0) - layout.text.body_top();
+  return layout;
+}
+
+// Of the finite values.
+double root_mean_square(const std::vector<double>& values) {
+  double squares = 0.0;
+  size_t count = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    squares += value * value;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+}
+
+// Shows through wherever the map has no value.
+void draw_hatching(Canvas& canvas, const PageBox& box) {
+  canvas.clipped(box, [&] {
+    for (double x = box.x - box.height; x < box.right(); x += 6.0) {
+      canvas.line({x, box.bottom()}, {x + box.height, box.y}, {{0.75, 0.75, 0.75}, 0.8});
+    }
+  });
+}
+
+}  // namespace
+
+MapPicture map_picture(const Map& map, const Provenance& provenance) {
+  require_consistent(map);
+  const Layout layout = layout_of(map, provenance);
+  Canvas canvas = Canvas::of_pixels(
+      layout.width, std::ceil(layout.text.page_height(layout.body_height)), pixels_per_point);
+  const auto pixels = [](double points) {
+    return static_cast<int>(std::lround(points * pixels_per_point));
+  };
+  MapPicture result{{},
+                    pixels(layout.grid.x),
+                    pixels(layout.grid.y),
+                    pixels(layout.grid.width),
+                    pixels(layout.grid.height)};
+  draw_hatching(canvas, layout.grid);
+  canvas.image(layout.grid, result.grid_width, result.grid_height,
+               map_pixels(map, layout.bar.scale, result.grid_width, result.grid_height));
+  // Around the cells, not over them.
+  canvas.outline(
+      {layout.grid.x - 0.4, layout.grid.y - 0.4, layout.grid.width + 0.8, layout.grid.height + 0.8},
+      {ink, 0.8});
+  draw_horizontal_axis(canvas, layout.grid, layout.x);
+  draw_vertical_axis(canvas, layout.grid, layout.y, vertical_axis_width(layout.y));
+  draw_colour_bar(canvas, layout.bar, {layout.bar_x, layout.bar_y}, layout.bar_height);
+  draw_page_text(canvas, layout.text, layout.body_height);
+  result.picture = canvas.finish_pixels();
+  return result;
+}
+
+std::string map_caption(const Map& map) {
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = -smallest;
+  double sum = 0.0;
+  size_t count = 0;
+  for (const double value : map.value) {
+    if (!std::isfinite(value)) continue;
+    smallest = std::min(smallest, value);
+    largest = std::max(largest, value);
+    sum += value;
+    ++count;
+  }
+  const std::string bins = std::to_string(map.width) + " × " + std::to_string(map.height) + " bins";
+  if (count == 0) return "no values · " + bins;
+  std::string caption = "min " + readable_number(smallest) + " · mean " +
+                        readable_number(sum / static_cast<double>(count)) + " · max " +
+                        readable_number(largest) + (map.unit.empty() ? "" : " " + map.unit) +
+                        " · " + bins;
+  if (!map.standard_error.empty()) {
+    caption +=
+        " · standard error " + readable_number(root_mean_square(map.standard_error), 2) + " (rms)";
+  }
+  return count == map.value.size() ? caption : caption + " · hatched: no value";
+}
+
+}  // namespace photorque

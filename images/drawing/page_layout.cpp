@@ -1,0 +1,148 @@
+#include "images/drawing/page_layout.h"
+
+#include "images/drawing/text.h"
+
+namespace photorque {
+namespace {
+
+constexpr double bar_thickness = 16.0;
+constexpr double caption_gap = 10.0;
+constexpr Rgb grey = {0.45, 0.45, 0.45};
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (c == ' ') {
+      words.emplace_back();
+    } else {
+      words.back() += c;
+    }
+  }
+  std::erase(words, "");
+  return words;
+}
+
+// The longest beginning of `text`, at least one character, that is not wider than `width`.
+std::string beginning_that_fits(const std::string& text, double width, const TextStyle& style) {
+  std::string beginning;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::string longer = beginning + std::string(rest.substr(0, first_character_bytes(rest)));
+    if (!beginning.empty() && text_width(longer, style) > width) break;
+    rest.remove_prefix(longer.size() - beginning.size());
+    beginning = longer;
+  }
+  return beginning;
+}
+
+std::vector<std::string> broken_lines(const std::string& text, double width,
+                                      const TextStyle& style) {
+  std::vector<std::string> lines;
+  std::string line;
+  for (std::string word : words_of(text)) {
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (text_width(longer, style) <= width) {
+      line = longer;
+      continue;
+    }
+    if (!line.empty()) lines.push_back(line);
+    while (text_width(word, style) > width) {  // a word wider than a line, such as a path
+      lines.push_back(beginning_that_fits(word, width, style));
+      word.erase(0, lines.back().size());
+    }
+    line = word;
+  }
+  if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+std::string ended_by_ellipsis(std::string line, double width, const TextStyle& style) {
+  const double room = width - text_width("…", style);
+  if (text_width(line, style) > room) line = beginning_that_fits(line, room, style);
+  return line + "…";
+}
+
+}  // namespace
+
+TextBlock fitted_text(const std::string& text, double width, TextStyle style, double smallest_size,
+                      int most_lines) {
+  const std::string clean = clean_text(text);
+  std::vector<std::string> lines = broken_lines(clean, width, style);
+  const auto most = static_cast<size_t>(most_lines);
+  while (lines.size() > most && style.size > smallest_size) {
+    style.size = std::max(smallest_size, style.size - 0.5);
+    lines = broken_lines(clean, width, style);
+  }
+  if (lines.size() > most) {
+    lines.resize(most);
+    lines.back() = ended_by_ellipsis(lines.back(), width, style);
+  }
+  if (lines.empty()) lines.emplace_back();
+  return {lines, style};
+}
+
+void draw_text(Canvas& canvas, const TextBlock& block, const PagePoint& top_left) {
+  double y = top_left.y + block.style.size;
+  for (const std::string& line : block.lines) {
+    canvas.text(line, {top_left.x, y}, block.style);
+    y += block.line_height();
+  }
+}
+
+double PageText::body_top() const {
+  return page_margin + title.height() + 9.0;
+}
+
+double PageText::page_height(double body_height) const {
+  return body_top() + body_height + caption_gap + caption.height() + 4.0 + provenance.height() +
+         0.7 * page_margin;
+}
+
+PageText page_text(const std::string& title, const std::string& caption,
+                   const std::string& provenance, double page_width) {
+  const double width = page_width - 2.0 * page_margin;
+  PageText page{fitted_text(title, width, {.size = 15.0, .bold = true}, 10.0, 2),
+                fitted_text(caption, width, {.size = 10.5}, 8.5, 3),
+                fitted_text(provenance, width, {.size = 7.5, .colour = grey}, 6.5, 2)};
+  if (caption.empty()) page.caption.lines.clear();
+  return page;
+}
+
+void draw_page_text(Canvas& canvas, const PageText& text, double body_height) {
+  draw_text(canvas, text.title, {page_margin, page_margin});
+  const double caption_top = text.body_top() + body_height + caption_gap;
+  draw_text(canvas, text.caption, {page_margin, caption_top});
+  draw_text(canvas, text.provenance, {page_margin, caption_top + text.caption.height() + 4.0});
+}
+
+double ColourBar::width() const {
+  return std::max(bar_thickness + tick_labels_width(axis),
+                  text_width(unit_with_power(unit, axis.ticks.exponent), tick_style));
+}
+
+ColourBar colour_bar(const ColourScale& scale, const std::string& unit, double height) {
+  return {scale, vertical_axis({scale.low, scale.high}, false, "", height), unit};
+}
+
+void draw_colour_bar(Canvas& canvas, const ColourBar& bar, const PagePoint& top_left,
+                     double height) {
+  std::vector<uint32_t> colours;
+  for (size_t i = bar.scale.map.colours.size(); i-- > 0;) {
+    const auto [red, green, blue] = rgb_bytes(bar.scale.map.colours[i]);
+    colours.push_back(0xFF000000u | uint32_t{red} << 16 | uint32_t{green} << 8 | uint32_t{blue});
+  }
+  const PageBox box{top_left.x, top_left.y, bar_thickness, height};
+  canvas.image(box, 1, static_cast<int>(colours.size()), colours);
+  canvas.outline(box, {{0.13, 0.13, 0.13}, 0.8});
+  TextStyle style = tick_style;
+  canvas.text(unit_with_power(bar.unit, bar.axis.ticks.exponent), {box.x, box.y - 0.6 * style.size},
+              style);
+  style.level = TextLevel::middle;
+  for (size_t i = 0; i < bar.axis.ticks.values.size(); ++i) {
+    const double y = box.bottom() - height * bar.axis.fraction(bar.axis.ticks.values[i]);
+    canvas.line({box.right(), y}, {box.right() + tick_length, y}, {{0.13, 0.13, 0.13}, 0.8});
+    canvas.text(bar.axis.ticks.labels[i], {box.right() + tick_length + 3.0, y}, style);
+  }
+}
+
+}  // namespace photorque

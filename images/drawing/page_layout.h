@@ -1,0 +1,56 @@
+// What stands around a picture's body: title, caption, provenance, colour bar.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "images/drawing/axis.h"
+#include "images/drawing/canvas.h"
+#include "images/drawing/colour_map.h"
+
+namespace photorque {
+
+inline constexpr double page_margin = 16.0;
+// Pixels per point of every PNG, so that it stays sharp on dense displays and in print.
+inline constexpr double pixels_per_point = 2.0;
+
+// Lines of one style.
+struct TextBlock {
+  std::vector<std::string> lines;
+  TextStyle style;
+  double line_height() const { return 1.3 * style.size; }
+  double height() const { return line_height() * static_cast<double>(lines.size()); }
+};
+
+// `text` broken at spaces into at most `most_lines` lines of at most `width` points. If it does not
+// fit, the letters shrink down to `smallest_size`; if it still does not, it ends in "…".
+TextBlock fitted_text(const std::string& text, double width, TextStyle style, double smallest_size,
+                      int most_lines);
+void draw_text(Canvas& canvas, const TextBlock& block, const PagePoint& top_left);
+
+// The texts of a page; the body stands between title and caption.
+struct PageText {
+  TextBlock title;
+  TextBlock caption;
+  TextBlock provenance;
+  double body_top() const;
+  double page_height(double body_height) const;
+};
+PageText page_text(const std::string& title, const std::string& caption,
+                   const std::string& provenance, double page_width);
+void draw_page_text(Canvas& canvas, const PageText& text, double body_height);
+
+// An upright colour bar with numbers on its right and the unit above it.
+struct ColourBar {
+  ColourScale scale;
+  Axis axis;
+  std::string unit;
+  double width() const;  // of bar, numbers and unit
+};
+inline constexpr double colour_bar_unit_height = 18.0;  // needed above the bar
+ColourBar colour_bar(const ColourScale& scale, const std::string& unit, double height);
+// `bar` has the height given above; `top_left` is that of the coloured part.
+void draw_colour_bar(Canvas& canvas, const ColourBar& bar, const PagePoint& top_left,
+                     double height);
+
+}  // namespace photorque

@@ -1,0 +1,254 @@
+#include "images/drawing/plot_curves.h"
+
+#include <set>
+
+#include "images/drawing/page_layout.h"
+
+namespace photorque {
+namespace {
+
+constexpr double resolution = 0.5;  // points on the page
+constexpr double marker_radius = 2.4;
+constexpr double legend_row = 16.0;
+constexpr double legend_sample = 24.0;
+constexpr double legend_padding = 7.0;
+
+bool drawable_point(const PagePoint& point) {
+  return std::isfinite(point.x) && std::isfinite(point.y);
+}
+
+// The curve's unbroken pieces on the page; values that cannot be shown break it.
+std::vector<std::vector<PagePoint>> pieces_of(const ChartPanel& panel, const Plot::Curve& curve,
+                                              double errors) {
+  std::vector<std::vector<PagePoint>> pieces(1);
+  for (size_t i = 0; i < curve.x.size(); ++i) {
+    const double shift = errors == 0.0 ? 0.0 : errors * curve.y_error[i];
+    const PagePoint point = panel.at(curve.x[i], curve.y[i] + shift);
+    if (drawable_point(point)) {
+      pieces.back().push_back(point);
+    } else if (!pieces.back().empty()) {
+      pieces.emplace_back();
+    }
+  }
+  std::erase_if(pieces, [](const std::vector<PagePoint>& piece) { return piece.empty(); });
+  return pieces;
+}
+
+void draw_band(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
+               const Rgb& colour) {
+  const auto upper = pieces_of(panel, curve, 1.0);
+  const auto lower = pieces_of(panel, curve, -1.0);
+  if (upper.size() != lower.size()) return;  // one side leaves a logarithmic axis
+  for (size_t i = 0; i < upper.size(); ++i) {
+    std::vector<PagePoint> polygon = thinned(upper[i], resolution);
+    const std::vector<PagePoint> back = thinned(lower[i], resolution);
+    polygon.insert(polygon.end(), back.rbegin(), back.rend());
+    canvas.fill(polygon, colour, 0.22);
+  }
+}
+
+void draw_error_bar(Canvas& canvas, const PagePoint& low, const PagePoint& high,
+                    const Rgb& colour) {
+  const Stroke stroke{colour, 1.0};
+  canvas.line(low, high, stroke);
+  canvas.line({low.x - 2.0, low.y}, {low.x + 2.0, low.y}, stroke);
+  canvas.line({high.x - 2.0, high.y}, {high.x + 2.0, high.y}, stroke);
+}
+
+// One marker per cell of the resolution: those that would cover an earlier one change nothing.
+void draw_markers(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
+                  const Rgb& colour) {
+  std::set<std::pair<int64_t, int64_t>> taken;
+  for (size_t i = 0; i < curve.x.size(); ++i) {
+    const PagePoint point = panel.at(curve.x[i], curve.y[i]);
+    if (!drawable_point(point) || std::abs(point.x) > 1e6 || std::abs(point.y) > 1e6) continue;
+    if (!taken.emplace(std::llround(point.x / resolution), std::llround(point.y / resolution))
+             .second) {
+      continue;
+    }
+    if (!curve.y_error.empty()) {
+      const PagePoint low = panel.at(curve.x[i], curve.y[i] - curve.y_error[i]);
+      const PagePoint high = panel.at(curve.x[i], curve.y[i] + curve.y_error[i]);
+      if (drawable_point(low) && drawable_point(high)) draw_error_bar(canvas, low, high, colour);
+    }
+    canvas.disc(point, marker_radius, colour);
+  }
+}
+
+void draw_lines(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
+                const Stroke& stroke) {
+  for (const std::vector<PagePoint>& piece : pieces_of(panel, curve, 0.0)) {
+    if (piece.size() == 1) {
+      canvas.disc(piece.front(), 0.8 * stroke.width, stroke.colour);
+    } else {
+      canvas.line(thinned(piece, resolution), stroke);
+    }
+  }
+}
+
+// The bar over the i-th point; nothing for values that cannot be shown.
+std::optional<PageBox> bar_of(const ChartPanel& panel, const Plot::Curve& curve, size_t i) {
+  const PagePoint top = panel.at(curve.x[i] - bar_half_width, curve.y[i]);
+  const PagePoint foot = panel.at(curve.x[i] + bar_half_width, panel.y.log ? panel.y.range.low : 0);
+  if (!drawable_point(top) || !drawable_point(foot)) return std::nullopt;
+  return PageBox{top.x, std::min(top.y, foot.y), foot.x - top.x, std::abs(foot.y - top.y)};
+}
+
+void draw_bars(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
+               const Rgb& colour) {
+  for (size_t i = 0; i < curve.x.size(); ++i) {
+    if (const auto bar = bar_of(panel, curve, i)) canvas.fill(*bar, colour);
+  }
+}
+
+bool overlap(const PageBox& a, const PageBox& b) {
+  return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
+}
+
+// Whether the segment from `a` to `b` meets `box` (Liang and Barsky, 1984).
+bool meets(const PageBox& box, const PagePoint& a, const PagePoint& b) {
+  double enter = 0.0;
+  double leave = 1.0;
+  const auto clip = [&](double start, double step, double low, double high) {
+    if (step == 0.0) return start >= low && start <= high;
+    const auto [first, second] = std::minmax({(low - start) / step, (high - start) / step});
+    enter = std::max(enter, first);
+    leave = std::min(leave, second);
+    return enter <= leave;
+  };
+  return clip(a.x, b.x - a.x, box.x, box.right()) && clip(a.y, b.y - a.y, box.y, box.bottom());
+}
+
+bool covers_a_curve(const ChartPanel& panel, const PageBox& box) {
+  for (const Plot::Curve& curve : panel.curves) {
+    for (size_t i = 0; curve.bars && i < curve.x.size(); ++i) {
+      if (const auto bar = bar_of(panel, curve, i); bar && overlap(*bar, box)) return true;
+    }
+    for (const double errors : {0.0, 1.0, -1.0}) {
+      if (errors != 0.0 && curve.y_error.empty()) continue;
+      for (const std::vector<PagePoint>& piece : pieces_of(panel, curve, errors)) {
+        const std::vector<PagePoint> line = curve.markers ? piece : thinned(piece, resolution);
+        for (size_t i = 0; i < line.size(); ++i) {
+          const PagePoint& from = curve.markers || i == 0 ? line[i] : line[i - 1];
+          if (meets(box, from, line[i])) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Stroke curve_stroke(size_t index) {
+  constexpr std::array<uint32_t, 7> colours = {0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7,
+                                               0xE69F00, 0x56B4E9, 0x000000};
+  const std::array<std::vector<double>, 3> dashes = {{{}, {6.0, 3.0}, {1.5, 2.5}}};
+  return {rgb_from_hex(colours[index % colours.size()]), 1.6, 1.0,
+          dashes[(index / colours.size()) % dashes.size()]};
+}
+
+PagePoint ChartPanel::at(double x_value, double y_value) const {
+  return {frame.x + frame.width * x.fraction(x_value),
+          frame.bottom() - frame.height * y.fraction(y_value)};
+}
+
+std::vector<PagePoint> thinned(std::span<const PagePoint> line, double resolution_points) {
+  std::vector<PagePoint> result;
+  const auto left_of = [](const PagePoint& a, const PagePoint& b) { return a.x < b.x; };
+  const auto above = [](const PagePoint& a, const PagePoint& b) { return a.y < b.y; };
+  const bool ordered = std::ranges::is_sorted(line, left_of);
+  const double columns =
+      line.empty() ? 0.0 : (line.back().x - line.front().x) / resolution_points + 1.0;
+  if (!ordered || static_cast<double>(line.size()) <= 4.0 * columns) {
+    return {line.begin(), line.end()};
+  }
+  const auto column = [&](const PagePoint& p) { return std::floor(p.x / resolution_points); };
+  for (auto begin = line.begin(); begin != line.end();) {
+    const auto end = std::find_if(begin, line.end(),
+                                  [&](const PagePoint& p) { return column(p) != column(*begin); });
+    const auto [low, high] = std::minmax_element(begin, end, above);
+    std::array kept = {begin, std::min(low, high), std::max(low, high), end - 1};
+    const auto last = std::unique(kept.begin(), kept.end());
+    for (auto i = kept.begin(); i != last; ++i) result.push_back(**i);
+    begin = end;
+  }
+  return result;
+}
+
+void draw_curves(Canvas& canvas, const ChartPanel& panel) {
+  canvas.clipped(panel.frame, [&] {
+    for (size_t i = 0; i < panel.curves.size(); ++i) {
+      const Plot::Curve& curve = panel.curves[i];
+      if (!curve.bars && !curve.markers && !curve.y_error.empty()) {
+        draw_band(canvas, panel, curve, curve_stroke(i).colour);
+      }
+    }
+    for (size_t i = 0; i < panel.curves.size(); ++i) {
+      const Plot::Curve& curve = panel.curves[i];
+      if (curve.bars) {
+        draw_bars(canvas, panel, curve, curve_stroke(i).colour);
+      } else if (curve.markers) {
+        draw_markers(canvas, panel, curve, curve_stroke(i).colour);
+      } else {
+        draw_lines(canvas, panel, curve, curve_stroke(i));
+      }
+    }
+  });
+}
+
+Legend legend_of(const std::vector<Plot::Curve>& curves, double widest) {
+  Legend legend;
+  for (size_t i = 0; i < curves.size(); ++i) {
+    if (curves[i].label.empty()) continue;
+    legend.curves.push_back(i);
+    legend.width = std::max(legend.width, text_width(curves[i].label, tick_style));
+  }
+  if (legend.curves.empty()) return {};
+  legend.width = std::min(widest, legend.width + legend_sample + 3.0 * legend_padding);
+  legend.height = legend_row * static_cast<double>(legend.curves.size()) + 1.2 * legend_padding;
+  return legend;
+}
+
+std::optional<PagePoint> free_corner(const ChartPanel& panel, const Legend& legend) {
+  constexpr double inset = 6.0;
+  const PageBox& frame = panel.frame;
+  if (legend.width > 0.6 * frame.width || legend.height > 0.7 * frame.height) return std::nullopt;
+  const double right = frame.right() - inset - legend.width;
+  const double bottom = frame.bottom() - inset - legend.height;
+  for (const PagePoint corner :
+       {PagePoint{right, frame.y + inset}, PagePoint{frame.x + inset, frame.y + inset},
+        PagePoint{right, bottom}, PagePoint{frame.x + inset, bottom}}) {
+    if (!covers_a_curve(panel, {corner.x, corner.y, legend.width, legend.height})) return corner;
+  }
+  return std::nullopt;
+}
+
+void draw_legend(Canvas& canvas, const ChartPanel& panel, const Legend& legend,
+                 const PagePoint& top_left) {
+  canvas.fill(PageBox{top_left.x, top_left.y, legend.width, legend.height}, {1.0, 1.0, 1.0}, 0.85);
+  const double text_x = top_left.x + legend_sample + 2.0 * legend_padding;
+  double y = top_left.y + 0.6 * legend_padding + 0.5 * legend_row;
+  for (const size_t index : legend.curves) {
+    const Plot::Curve& curve = panel.curves[index];
+    const Stroke stroke = curve_stroke(index);
+    const double x = top_left.x + legend_padding;
+    if (curve.bars) {
+      constexpr double side = 10.0;
+      canvas.fill(PageBox{x + 0.5 * (legend_sample - side), y - 0.5 * side, side, side},
+                  stroke.colour);
+    } else if (curve.markers) {
+      canvas.disc({x + 0.5 * legend_sample, y}, marker_radius, stroke.colour);
+    } else {
+      canvas.line({x, y}, {x + legend_sample, y}, stroke);
+    }
+    TextStyle style = tick_style;
+    style.level = TextLevel::middle;
+    const double room = top_left.x + legend.width - 0.5 * legend_padding - text_x;
+    const TextBlock label = fitted_text(curve.label, room, style, 8.0, 1);
+    canvas.text(label.lines.front(), {text_x, y}, label.style);
+    y += legend_row;
+  }
+}
+
+}  // namespace photorque

@@ -1,0 +1,104 @@
+// Maps and tables as comma-separated values (RFC 4180) behind lines of provenance that start
+// with "# ".
+//
+// A map is one row per bin, x fastest, both rising, with the columns x and y (of the bin's centre),
+// value and standard error, each named with its unit: "x_m,y_m,value_W_m2,standard_error_W_m2".
+// Numbers read back as the same doubles; NaN is an empty cell, infinities are "inf" and "-inf".
+#include "core/files.h"
+#include "images/drawing/consistency.h"
+#include "images/drawing/text.h"
+#include "images/writers/kind.h"
+
+namespace photorque {
+namespace {
+
+std::string preamble(const std::string& title, const Provenance& provenance) {
+  std::string text = "# " + clean_text(provenance.program + " " + provenance.version) +
+                     "\n# git_hash: " + clean_text(provenance.git_hash) +
+                     "\n# seed: " + std::to_string(provenance.seed) + "\n";
+  for (const auto& [file, hash] : provenance.inputs) {
+    text += "# input: " + clean_text(file) + " " + clean_text(hash) + "\n";
+  }
+  if (!title.empty()) text += "# title: " + clean_text(title) + "\n";
+  return text;
+}
+
+std::string quoted_where_needed(const std::string& cell) {
+  const std::string clean = clean_text(cell);
+  // A leading '#' would read as a comment.
+  if (clean.find_first_of(",\"") == std::string::npos && !clean.starts_with('#')) return clean;
+  std::string quoted = "\"";
+  for (const char c : clean) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+  const std::string suffix = column_name(unit);
+  return suffix.empty() ? name : name + "_" + suffix;
+}
+
+std::string map_csv(const Map& map, const Provenance& provenance) {
+  require_consistent(map);
+  std::string text = preamble(map.title, provenance) + column_name(map.x_label) + "," +
+                     column_name(map.y_label) + "," + with_unit("value", map.unit) + "," +
+                     with_unit("standard_error", map.unit) + "\n";
+  const auto centre = [](double low, double high, int index, int count) {
+    return round_trip_number(low + (high - low) * (index + 0.5) / count);
+  };
+  for (int iy = 0; iy < map.height; ++iy) {
+    const std::string y = centre(map.y_low, map.y_high, iy, map.height);
+    for (int ix = 0; ix < map.width; ++ix) {
+      const size_t i = static_cast<size_t>(iy) * map.width + ix;
+      const double error = map.standard_error.empty() ? 0.0 : map.standard_error[i];
+      text += centre(map.x_low, map.x_high, ix, map.width) + "," + y + "," +
+              round_trip_number(map.value[i]) + "," + round_trip_number(error) + "\n";
+    }
+  }
+  return text;
+}
+
+std::string table_csv(const Table& table, const Provenance& provenance) {
+  require_consistent(table);
+  std::string text = preamble(table.title, provenance);
+  size_t rows = 0;
+  for (const Table::Column& column : table.columns) {
+    text += (&column == &table.columns.front() ? "" : ",") + quoted_where_needed(column.name);
+    rows = std::max(column.values.size(), column.texts.size());
+  }
+  text += "\n";
+  for (size_t row = 0; row < rows; ++row) {
+    for (const Table::Column& column : table.columns) {
+      if (&column != &table.columns.front()) text += ",";
+      text += column.texts.empty() ? round_trip_number(column.values[row])
+                                   : quoted_where_needed(column.texts[row]);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+class CsvWriter final : public Writer {
+ public:
+  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
+                                           const std::filesystem::path& folder) const override {
+    std::vector<std::filesystem::path> paths;
+    for (const Map& map : product.maps) {
+      paths.push_back(file_in(folder, map.name, "csv"));
+      write_file_whole(paths.back(), map_csv(map, provenance));
+    }
+    for (const Table& table : product.tables) {
+      paths.push_back(file_in(folder, table.name, "csv"));
+      write_file_whole(paths.back(), table_csv(table, provenance));
+    }
+    return paths;
+  }
+};
+
+}  // namespace
+
+WriterKind csv_kind() {
+  return {"csv", "Maps and tables as comma-separated values behind lines of provenance",
+          [] { return std::make_unique<CsvWriter>(); }};
+}
+
+}  // namespace photorque

@@ -1,0 +1,40 @@
+// Maps and plots as PNG pictures for people.
+//
+// "Description" is JSON with unit, extents and provenance.
+#include "images/drawing/map_picture.h"
+#include "images/drawing/plot_picture.h"
+#include "images/drawing/text.h"
+#include "images/writers/image_file.h"
+#include "images/writers/kind.h"
+#include "images/writers/map_channels.h"
+#include "images/writers/metadata.h"
+
+namespace photorque {
+namespace {
+
+class PngWriter final : public Writer {
+ public:
+  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
+                                           const std::filesystem::path& folder) const override {
+    std::vector<std::filesystem::path> paths;
+    for (const Map& map : product.maps) {
+      paths.push_back(file_in(folder, map.name, "png"));
+      write_png(paths.back(), map_picture(map, provenance).picture, map_metadata(map, provenance));
+    }
+    for (const Plot& plot : product.plots) {
+      paths.push_back(file_in(folder, plot.name, "png"));
+      write_png(paths.back(), plot_picture(plot, provenance),
+                picture_metadata(plot.title, provenance));
+    }
+    return paths;
+  }
+};
+
+}  // namespace
+
+WriterKind png_kind() {
+  return {"png", "Maps with colour bar and plots, as pictures for people",
+          [] { return std::make_unique<PngWriter>(); }};
+}
+
+}  // namespace photorque

@@ -1,0 +1,27 @@
+#include "images/writers/summary.h"
+
+#include "core/errors.h"
+#include "images/drawing/text.h"
+#include "images/writers/metadata.h"
+
+namespace photorque {
+
+std::string summary_json(const Product& product, const Provenance& provenance,
+                         const RunCost& cost) {
+  nlohmann::ordered_json summary = {{"schema", "photorque.summary/1"}};
+  for (const auto& [name, estimate] : product.quantities) {
+    const std::string key = clean_text(name);
+    if (summary.contains(key) || key == "provenance") {
+      throw InputError({}, name, "two results with this name", "different names");
+    }
+    summary[key] = {{"value", json_number(estimate.value)},
+                    {"standard_error", json_number(estimate.standard_error)}};
+  }
+  nlohmann::ordered_json& made_by = summary["provenance"];
+  made_by = provenance_json(provenance);
+  if (cost.rays) made_by["rays"] = *cost.rays;
+  if (cost.wall_time_s) made_by["wall_time_s"] = json_number(*cost.wall_time_s);
+  return summary.dump(2) + "\n";
+}
+
+}  // namespace photorque

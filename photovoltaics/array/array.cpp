@@ -1,0 +1,245 @@
+#include "photovoltaics/array/array.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "core/errors.h"
+#include "receivers/jackknife.h"
+
+namespace photorque {
+namespace {
+
+constexpr int curve_intervals = 200;
+
+// What the cells get.
+struct CellLight {
+  std::vector<double> incident_W;  // per cell
+  std::vector<double> entering_W;  // counted as perpendicular light
+  std::vector<double> current_A;
+};
+
+// The mean bins of an ArrayLight.
+struct LightBins {
+  std::vector<double> power_W;
+  std::vector<double> entry_W;  // may be empty
+};
+
+// Everything that does not depend on the light.
+struct PreparedArray {
+  const ArrayDesign& design;
+  CellCover cover;
+  std::vector<double> area_m2;
+  std::vector<double> factor_A_W;  // per band, temperature included
+  CellTables tables;
+
+  ArrayCurve curve(const std::vector<double>& photocurrents_A) const {
+    return {design.wiring, tables, photocurrents_A};
+  }
+  CellLight light(const LightBins& bins) const;
+};
+
+// Per cell and band, the share of the light that enters; of the whole array where the rays that
+// tell it missed a cell.
+std::vector<double> entering_share(const CellCover& cover, size_t bands,
+                                   std::span<const double> entry_W) {
+  std::vector<double> share(cover.cells() * bands, 1.0);
+  if (entry_W.empty()) return share;
+  const std::vector<double> all = cover.gather(entry_W.first(entry_W.size() / 2));
+  const std::vector<double> entering = cover.gather(entry_W.subspan(entry_W.size() / 2));
+  for (size_t band = 0; band < bands; ++band) {
+    double all_W = 0.0, entering_W = 0.0;
+    for (size_t i = band; i < all.size(); i += bands) {
+      all_W += all[i];
+      entering_W += entering[i];
+    }
+    const double mean = all_W > 0.0 ? entering_W / all_W : 1.0;
+    for (size_t i = band; i < all.size(); i += bands) {
+      share[i] = all[i] > 0.0 ? entering[i] / all[i] : mean;
+    }
+  }
+  return share;
+}
+
+CellLight PreparedArray::light(const LightBins& bins) const {
+  const size_t cells = cover.cells(), bands = factor_A_W.size();
+  const std::vector<double> power_W = cover.gather(bins.power_W);
+  const std::vector<double> share = entering_share(cover, bands, bins.entry_W);
+  CellLight light{std::vector<double>(cells, 0.0), std::vector<double>(cells, 0.0),
+                  std::vector<double>(cells, 0.0)};
+  for (size_t i = 0; i < power_W.size(); ++i) {
+    const size_t cell = i / bands;
+    const double entering_W = power_W[i] * share[i];
+    light.incident_W[cell] += power_W[i];
+    light.entering_W[cell] += entering_W;
+    light.current_A[cell] += entering_W * factor_A_W[i % bands];
+  }
+  return light;
+}
+
+CellCover cover_of(const ArrayDesign& design, const ArrayLight& light) {
+  if (design.places) return {light, design.places->parts};
+  return {light,
+          cell_rectangles(light, design.columns, design.rows, design.gap_m, design.margin_m)};
+}
+
+PreparedArray prepare(const ArrayDesign& design, const ArrayLight& light,
+                      std::span<const double> responsivity_A_W, const LightBins& bins) {
+  if (responsivity_A_W.size() < static_cast<size_t>(light.bands)) {
+    throw InputError({}, "array", std::to_string(responsivity_A_W.size()) + " responsivities",
+                     "one per band");
+  }
+  PreparedArray array{design, cover_of(design, light), {}, {}, {}};
+  for (size_t i = 0; i < array.cover.cells(); ++i) {
+    array.area_m2.push_back(array.cover.area_m2(i));
+    if (!(array.area_m2.back() > 0)) {
+      throw InputError({}, "array", "cell " + std::to_string(i) + " beside the surface",
+                       "cells on the receiver");
+    }
+  }
+  const double warmth = photocurrent_factor(design.cell, design.temperature_K);
+  for (const double r : responsivity_A_W.first(static_cast<size_t>(light.bands))) {
+    array.factor_A_W.push_back(r * warmth);
+  }
+  const std::vector<double> current_A = array.light(bins).current_A;
+  for (size_t i = 0; i < current_A.size(); ++i) {
+    if (!std::isfinite(current_A[i])) {
+      throw NumericalError("the light on cell " + std::to_string(i) + " is no finite number");
+    }
+  }
+  array.tables = cell_tables(design, array.area_m2, std::ranges::max(current_A));
+  return array;
+}
+
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// What gets a standard error.
+struct Headline {
+  enum Item { power, voltage, current, light, entering, alone, efficiency, mismatch, count };
+  std::array<double, count> value{};
+};
+using Estimates = std::array<Estimate, Headline::count>;
+
+Headline headline(const PreparedArray& array, const LightBins& bins) {
+  const CellLight light = array.light(bins);
+  const ArrayPoint best = array.curve(light.current_A).maximum_power();
+  const double light_W = sum_of(light.incident_W);
+  double alone_W = 0.0;
+  for (size_t i = 0; i < light.current_A.size(); ++i) {
+    alone_W += array.tables[i]->curve().maximum_power(light.current_A[i]).power_W();
+  }
+  const double power_W = best.power_W();
+  return {{power_W, best.voltage_V, best.current_A, light_W, sum_of(light.entering_W), alone_W,
+           light_W > 0 ? power_W / light_W : 0.0, alone_W > 0 ? 1.0 - power_W / alone_W : 0.0}};
+}
+
+// The mean of all replicates but one; noise may have made it negative.
+std::vector<double> mean_without(int replicate, const BinSums& sums, std::span<const double> mean) {
+  const std::span<const double> one = sums.of(replicate);
+  const double count = sums.replicates;
+  std::vector<double> others(mean.size());
+  for (size_t b = 0; b < mean.size(); ++b) {
+    others[b] = std::max(0.0, (count * mean[b] - one[b]) / (count - 1.0));
+  }
+  return others;
+}
+
+// The values at the mean of all replicates, with Tukey's errors. The bias is left in, so that the
+// headline is the maximum of the curve that is printed; it is of second order in the error.
+Estimates estimate(const PreparedArray& array, const ArrayLight& light, const LightBins& mean) {
+  const Headline value = headline(array, mean);
+  Estimates estimates{};
+  for (size_t k = 0; k < Headline::count; ++k) estimates[k].value = value.value[k];
+  const int replicates = light.power_W.replicates;
+  if (replicates < 2) return estimates;
+  const double count = replicates;
+  std::vector<Headline> without;
+  for (int r = 0; r < replicates; ++r) {
+    LightBins others{mean_without(r, light.power_W, mean.power_W), {}};
+    if (light.entry.bins > 0) others.entry_W = mean_without(r, light.entry, mean.entry_W);
+    without.push_back(headline(array, others));
+  }
+  for (size_t k = 0; k < Headline::count; ++k) {
+    double average = 0.0, squares = 0.0;
+    for (const Headline& h : without) average += h.value[k] / count;
+    for (const Headline& h : without) {
+      squares += (h.value[k] - average) * (h.value[k] - average);
+    }
+    estimates[k].standard_error = std::sqrt((count - 1.0) / count * squares);
+    estimates[k] = with_common_error(estimates[k], light.power_W.common_error);
+  }
+  return estimates;
+}
+
+LightBins mean_light(const ArrayLight& light) {
+  LightBins bins{mean_bins(light.power_W), {}};
+  if (light.entry.bins == 0) return bins;
+  if (light.entry.bins != 2 * light.power_W.bins ||
+      light.entry.replicates != light.power_W.replicates) {
+    throw InputError({}, "array", "light and its way into the cells on different grids",
+                     "one grid and as many replicates");
+  }
+  bins.entry_W = mean_bins(light.entry);
+  return bins;
+}
+
+}  // namespace
+
+CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_area_m2,
+                       double largest_photocurrent_A) {
+  std::vector<std::pair<double, std::shared_ptr<const DiodeVoltageTable>>> known;
+  CellTables tables;
+  for (const double area_m2 : cell_area_m2) {
+    // Areas that differ by the rounding of a model's single numbers alone are one.
+    constexpr double rounding = 1e-6;
+    auto same = std::ranges::find_if(known, [&](const auto& pair) {
+      return std::abs(pair.first - area_m2) <= rounding * area_m2;
+    });
+    if (same == known.end()) {
+      const CellCurve curve(parameters_at(design.cell, area_m2, design.temperature_K));
+      known.emplace_back(area_m2, std::make_shared<const DiodeVoltageTable>(
+                                      curve, std::max(2.0 * largest_photocurrent_A, 1e-9)));
+      same = known.end() - 1;
+    }
+    tables.push_back(same->second);
+  }
+  return tables;
+}
+
+ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
+                           std::span<const double> responsivity_A_W) {
+  const LightBins mean = mean_light(light);
+  const PreparedArray array = prepare(design, light, responsivity_A_W, mean);
+  const Estimates estimates = estimate(array, light, mean);
+  ArrayResult result;
+  result.power_W = estimates[Headline::power];
+  result.voltage_V = estimates[Headline::voltage];
+  result.current_A = estimates[Headline::current];
+  result.power_on_cells_W = estimates[Headline::light];
+  result.power_entering_W = estimates[Headline::entering];
+  result.entry_known = light.entry.bins > 0;
+  result.sum_of_cells_W = estimates[Headline::alone];
+  result.efficiency = estimates[Headline::efficiency];
+  result.mismatch_loss = estimates[Headline::mismatch];
+  result.cell_area_m2 = array.area_m2;
+  if (design.places) result.cell_centre_m = design.places->centres;
+  for (const double area_m2 : array.area_m2) result.area_of_cells_m2 += area_m2;
+  CellLight cells = array.light(mean);
+  result.cell_light_W = std::move(cells.incident_W);
+  result.cell_photocurrent_A = std::move(cells.current_A);
+  const ArrayCurve curve = array.curve(result.cell_photocurrent_A);
+  const ArrayCurve::Scan scan = curve.scan(curve_intervals);
+  result.maxima = scan.maxima;
+  result.curve = scan.points;
+  result.cells = curve.cells_at(result.voltage_V.value);
+  result.columns = design.columns;
+  result.rows = design.rows;
+  return result;
+}
+
+}  // namespace photorque

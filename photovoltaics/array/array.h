@@ -1,0 +1,54 @@
+// From light on a receiver to the power of the solar array on it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/product.h"
+#include "photovoltaics/array/design.h"
+#include "photovoltaics/array/light.h"
+#include "photovoltaics/network/curve.h"
+
+namespace photorque {
+
+// Standard errors come from leaving out one replicate of the light after the other (Quenouille,
+// Tukey), not from the powers of single replicates: a single replicate's map is √R times noisier
+// than their mean, and noise between cells in series lowers the power, so single replicates are
+// biased.
+struct ArrayResult {
+  Estimate power_W;  // at the maximum power point
+  Estimate voltage_V;
+  Estimate current_A;
+  Estimate power_on_cells_W;  // light
+  // Of it what counts like perpendicular light: less by what the cells' front reflects at a slant.
+  Estimate power_entering_W;
+  bool entry_known = false;  // false: taken as perpendicular, power_entering_W is all
+  Estimate sum_of_cells_W;   // every cell at its own maximum
+  Estimate efficiency;       // power_W / power_on_cells_W
+  Estimate mismatch_loss;    // 1 − power_W / sum_of_cells_W: uneven light, and diodes
+  double area_of_cells_m2 = 0.0;
+
+  std::vector<double> cell_light_W;  // per cell, cell = row · columns + column
+  std::vector<double> cell_area_m2;
+  std::vector<Vec2> cell_centre_m;  // of CellPlaces, or empty
+  std::vector<double> cell_photocurrent_A;
+  CellStates cells;                // at the maximum power point
+  std::vector<ArrayPoint> maxima;  // all local ones, by rising voltage
+  std::vector<ArrayPoint> curve;   // short to open circuit
+  int columns = 0, rows = 0;
+};
+
+// `responsivity_A_W` of each band of the light: see band_responsivity_A_W().
+// Throws InputError when the cells do not fit on the grid or cover none of the surface.
+ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
+                           std::span<const double> responsivity_A_W);
+
+// Quantities; tables "iv" (voltage_V, current_A, power_W), "maxima" and "cells"; plots "iv" and
+// "pv"; maps of irradiance, photocurrent, operating voltage and operating power per cell.
+Product array_product(const ArrayResult& result);
+
+// Photocurrents to curve: what evaluate_array() does in between. Cells of equal area share a table.
+CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_area_m2,
+                       double largest_photocurrent_A);
+
+}  // namespace photorque

@@ -1,0 +1,72 @@
+// A day of the array and its battery: the cells warm up, the lamps fade, the battery empties.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/settings/settings.h"
+#include "photovoltaics/array/losses.h"
+
+namespace photorque {
+
+// One temperature for all cells: C dT/dt = α E − P/A − h (T − T_air), per area of the cells.
+struct CellHeat {
+  double air_K = 295.0;
+  double convection_W_m2_K = 10.0;  // h, both faces and radiation together
+  double absorptance = 0.93;        // α of the light that falls on the cells
+  double capacity_J_m2_K = 2000.0;  // C: a cell with 1 mm of glass has about 2 kJ/m²K
+};
+
+// Light of the lamps over that when switched on: (1 − depth (1 − e^{−t/τ})) (1 − k ΔT(t)), the
+// first factor as measured on a lamp, the second from its junctions' rise of temperature
+// ΔT(t) = rise (1 − e^{−t/τ_h}) and the roll-off k of its data sheet. Both are 1 by default.
+struct LampDroop {
+  double depth = 0.0;  // in [0, 1)
+  double time_constant_s = 600.0;
+  double roll_off_1_K = 0.0;  // k ≥ 0, k · rise < 1; red LEDs lose about 0.5 % per kelvin
+  double rise_K = 0.0;        // at the end, ≥ 0
+  double rise_time_constant_s = 300.0;
+
+  double light_at(double time_s) const;
+  double least_light() const { return (1.0 - depth) * (1.0 - roll_off_1_K * rise_K); }
+};
+
+struct Battery {
+  double capacity_J = 360.0 * 3600.0;
+  double charge = 1.0;  // at the start, of the capacity
+  double charge_efficiency = 0.97;
+  double discharge_efficiency = 0.97;
+};
+
+struct DaySettings {
+  std::optional<CellHeat> heat;
+  LampDroop droop;
+  Battery battery;
+  double converter_efficiency = 0.95;
+  double tracker_efficiency = 1.0;
+  double load_W = 25.0;
+  double duration_s = 86400.0;
+  double step_s = 30.0;  // at most; a whole number of steps make the duration
+  bool lamps_on = true;
+};
+
+struct DayResult {
+  std::vector<double> time_s, temperature_K, array_W, charge_J;
+  double final_temperature_K = 0.0;
+  double array_energy_J = 0.0, load_energy_J = 0.0;
+  std::optional<double> empty_after_s;  // when the load is first not served
+  double mean_array_W = 0.0;
+};
+
+// The power between a few temperatures and light levels is interpolated bilinearly: good to 1e-3.
+DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const DaySettings& settings);
+
+// The table `[array.day]`, all keys optional: load_W, duration_s, converter_efficiency,
+// battery_Wh, battery_charge, charge_efficiency, discharge_efficiency; droop_depth, droop_time_s,
+// roll_off_per_K, lamp_rise_K, lamp_rise_time_s; and, for the cells' temperature, `heat = true`
+// with air_K, convection_W_m2_K, absorptance, capacity_J_m2_K.
+DaySettings read_day(const Settings& day);
+
+Product day_product(const DayResult& day);
+
+}  // namespace photorque

@@ -1,0 +1,239 @@
+#include "photovoltaics/array/design.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photorque {
+namespace {
+
+constexpr int most_cells = 100000;
+
+// Cells in the order in which they are joined.
+std::vector<int> serpentine(int columns, int rows, bool along_columns) {
+  std::vector<int> order;
+  const int lines = along_columns ? columns : rows, length = along_columns ? rows : columns;
+  for (int line = 0; line < lines; ++line) {
+    for (int i = 0; i < length; ++i) {
+      const int place = line % 2 == 0 ? i : length - 1 - i;
+      order.push_back(along_columns ? place * columns + line : line * columns + place);
+    }
+  }
+  return order;
+}
+
+using Rows = std::vector<std::vector<int>>;
+
+ArrayWiring::String bypassed_string(const Rows& rows, const RegularWiring& options) {
+  ArrayWiring::String string{{}, options.blocking};
+  const auto every = static_cast<size_t>(options.bypass_every);
+  for (size_t first = 0; first < rows.size(); first += every) {
+    const size_t last = std::min(rows.size(), first + every);
+    string.substrings.push_back({{rows.begin() + static_cast<std::ptrdiff_t>(first),
+                                  rows.begin() + static_cast<std::ptrdiff_t>(last)},
+                                 options.bypass});
+  }
+  return string;
+}
+
+Diode read_diode(const Settings& array, const std::string& name, Diode::Kind usual, double drop_V,
+                 double temperature_K) {
+  const std::vector<std::string> kinds = {"none", "ideal", "junction"};
+  Diode diode;
+  diode.kind = static_cast<Diode::Kind>(array.choice_or(name, kinds, static_cast<size_t>(usual)));
+  diode.drop_V = drop_V;
+  diode.temperature_K = temperature_K;
+  if (!array.has(name + "_diode")) return diode;
+  const Settings numbers = array.table(name + "_diode");
+  diode.drop_V = numbers.number_or("drop_V", drop_V, Range::not_negative());
+  diode.saturation_A = numbers.number_or("saturation_A", diode.saturation_A, Range::positive());
+  diode.ideality = numbers.number_or("ideality", diode.ideality, Range::positive());
+  diode.series_ohm = numbers.number_or("series_ohm", diode.series_ohm, Range::not_negative());
+  return diode;
+}
+
+// Cells by index, each a whole number in range and used once; whatever else was written is an
+// error.
+class WiringReader {
+ public:
+  WiringReader(const Settings& array, int cells)
+      : array_(array), used_(static_cast<size_t>(cells), false) {}
+
+  ArrayWiring read(const Diode& bypass, const Diode& blocking) {
+    ArrayWiring wiring;
+    for (const SettingsNode& string : list(array_.raw("wiring"), "strings")) {
+      ArrayWiring::String joined{{}, blocking};
+      for (const SettingsNode& substring : list(string, "substrings")) {
+        Rows rows;
+        for (const SettingsNode& row : list(substring, "cells")) rows.push_back(read_row(row));
+        joined.substrings.push_back({std::move(rows), bypass});
+      }
+      wiring.strings.push_back(std::move(joined));
+    }
+    return wiring;
+  }
+
+ private:
+  const SettingsNode::Array& list(const SettingsNode& node, const char* what) const {
+    const auto* array = std::get_if<SettingsNode::Array>(&node.value);
+    if (array == nullptr || array->empty()) fail(node, std::string("an array of ") + what);
+    return *array;
+  }
+
+  std::vector<int> read_row(const SettingsNode& node) {
+    if (!node.is_array()) return {read_cell(node)};
+    std::vector<int> row;
+    for (const SettingsNode& cell : list(node, "cells")) row.push_back(read_cell(cell));
+    return row;
+  }
+
+  int read_cell(const SettingsNode& node) {
+    const auto* index = std::get_if<int64_t>(&node.value);
+    const auto count = static_cast<int64_t>(used_.size());
+    if (index == nullptr || *index < 0 || *index >= count) {
+      fail(node, "the number of a cell, 0 to " + std::to_string(count - 1));
+    }
+    if (used_[static_cast<size_t>(*index)]) fail(node, "each cell at most once");
+    used_[static_cast<size_t>(*index)] = true;
+    return static_cast<int>(*index);
+  }
+
+  [[noreturn]] void fail(const SettingsNode& node, const std::string& expected) const {
+    throw InputError(node.where, array_.name() + ".wiring", describe(node), expected);
+  }
+
+  const Settings& array_;
+  std::vector<bool> used_;
+};
+
+void read_size(const Settings& array, ArrayDesign& design) {
+  const std::vector<double> size = array.numbers("cells", {1.0, most_cells});
+  if (size.size() != 2 || size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]) ||
+      size[0] * size[1] > most_cells) {
+    throw array.error("cells", "an array of " + std::to_string(size.size()) + " numbers",
+                      "two whole numbers, at most 100000 cells");
+  }
+  design.columns = static_cast<int>(size[0]);
+  design.rows = static_cast<int>(size[1]);
+  design.gap_m = array.number_or("gap_m", 0.0, Range::not_negative());
+  design.margin_m = array.number_or("margin_m", 0.0, Range::not_negative());
+}
+
+ArrayWiring read_wiring(const Settings& array, const ArrayDesign& design) {
+  RegularWiring options;
+  options.bypass = read_diode(array, "bypass", Diode::Kind::clamp, 0.5, design.temperature_K);
+  options.blocking = read_diode(array, "blocking", Diode::Kind::none, 0.0, design.temperature_K);
+  if (options.bypass.kind == Diode::Kind::clamp && options.bypass.drop_V == 0.0) {
+    throw array.error("bypass_diode", "drop_V = 0", "a drop_V > 0 for an ideal bypass diode");
+  }
+  if (array.has("wiring")) {
+    return WiringReader(array, design.cells()).read(options.bypass, options.blocking);
+  }
+  options.along_columns = array.choice_or("series", {"columns", "rows"}, 0) == 0;
+  options.strings = static_cast<int>(array.integer_or("strings", 1, 1, design.cells()));
+  if (design.cells() % options.strings != 0) {
+    throw array.error("strings", std::to_string(options.strings),
+                      "a divisor of the " + std::to_string(design.cells()) + " cells");
+  }
+  const int length = design.cells() / options.strings;
+  options.bypass_every = static_cast<int>(array.integer_or("bypass_every", length, 1, length));
+  options.cross_tied = array.flag_or("cross_tied", false);
+  return regular_wiring(design.columns, design.rows, options);
+}
+
+CellModel read_cell(const Settings& array) {
+  const std::vector<NamedCell> known = known_cells();
+  std::vector<std::string> names;
+  for (const NamedCell& cell : known) names.push_back(cell.name);
+  CellModel model = known[array.choice_or("cell", names, 1)].model;
+  if (!array.has("cell_parameters")) return model;
+  const Settings s = array.table("cell_parameters");
+  CellParameters& p = model.reference;
+  p.saturation_1_A = s.number_or("saturation_1_A", p.saturation_1_A, Range::not_negative());
+  p.ideality_1 = s.number_or("ideality_1", p.ideality_1, Range::positive());
+  p.saturation_2_A = s.number_or("saturation_2_A", p.saturation_2_A, Range::not_negative());
+  p.ideality_2 = s.number_or("ideality_2", p.ideality_2, Range::positive());
+  p.series_ohm = s.number_or("series_ohm", p.series_ohm, Range::not_negative());
+  p.shunt_ohm = s.number_or("shunt_ohm", p.shunt_ohm, Range::positive());
+  p.breakdown_fraction = s.number_or("breakdown_fraction", p.breakdown_fraction, {0.0, 7.0});
+  p.breakdown_V = s.number_or("breakdown_V", p.breakdown_V, {-1e308, 0.0, false, true});
+  p.breakdown_exponent = s.number_or("breakdown_exponent", p.breakdown_exponent, {1.0, 1e3});
+  p.temperature_K = s.number_or("reference_temperature_K", p.temperature_K, Range::positive());
+  model.gap_eV = s.number_or("gap_eV", model.gap_eV, Range::positive());
+  model.gap_slope_1_K = s.number_or("gap_slope_per_K", model.gap_slope_1_K);
+  model.photocurrent_slope_1_K =
+      s.number_or("photocurrent_slope_per_K", model.photocurrent_slope_1_K);
+  model.reference_area_m2 =
+      s.number_or("reference_area_m2", model.reference_area_m2, Range::positive());
+  for (const char* key : {"saturation_1_A", "saturation_2_A", "series_ohm", "shunt_ohm"}) {
+    if (!s.has(key) || s.has("reference_area_m2")) continue;
+    throw s.error("reference_area_m2", "nothing beside " + std::string(key),
+                  "the area of the cell that it was found on");
+  }
+  if (p.saturation_1_A + p.saturation_2_A == 0.0) {
+    throw s.error("saturation_1_A", "0 in both diodes", "a saturation current > 0 in one of them");
+  }
+  return model;
+}
+
+QuantumEfficiency read_efficiency(const Settings& array) {
+  if (!array.has("quantum_efficiency")) {
+    return silicon_quantum_efficiency(
+        array.number_or("quantum_efficiency_peak", 0.95, Range::fraction()));
+  }
+  const Settings table = array.table("quantum_efficiency");
+  QuantumEfficiency read{table.numbers("wavelength_m", Range::positive()),
+                         table.numbers("efficiency", Range::fraction())};
+  const bool ascending = std::ranges::adjacent_find(read.wavelength_m, std::greater_equal<>()) ==
+                         read.wavelength_m.end();
+  if (read.wavelength_m.size() < 2 || !ascending) {
+    throw table.error("wavelength_m", std::to_string(read.wavelength_m.size()) + " wavelengths",
+                      "at least two, ascending");
+  }
+  if (read.efficiency.size() != read.wavelength_m.size()) {
+    throw table.error("efficiency", std::to_string(read.efficiency.size()) + " numbers",
+                      std::to_string(read.wavelength_m.size()) + ", one per wavelength");
+  }
+  return read;
+}
+
+}  // namespace
+
+ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options) {
+  const std::vector<int> order = serpentine(columns, rows, options.along_columns);
+  const size_t length = order.size() / static_cast<size_t>(options.strings);
+  std::vector<Rows> strings(static_cast<size_t>(options.strings));
+  for (size_t i = 0; i < order.size(); ++i) strings[i / length].push_back({order[i]});
+  if (options.cross_tied) {
+    for (size_t s = 1; s < strings.size(); ++s) {
+      for (size_t i = 0; i < length; ++i) strings[0][i].push_back(strings[s][i][0]);
+    }
+    strings.resize(1);
+  }
+  ArrayWiring wiring;
+  for (const Rows& string : strings) wiring.strings.push_back(bypassed_string(string, options));
+  return wiring;
+}
+
+ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> places) {
+  ArrayDesign design;
+  if (places) {
+    const size_t count = places->parts.size();
+    if (count == 0 || count > most_cells) {
+      throw array.error(array.has("rectangle") ? "rectangle" : "cells",
+                        std::to_string(count) + " separate cells", "1 to 100000");
+    }
+    design.columns = places->columns;
+    design.rows = places->rows;
+    design.places = std::move(places);
+  } else {
+    read_size(array, design);
+  }
+  design.temperature_K = array.number_or("temperature_K", design.temperature_K, {1.0, 1000.0});
+  design.wiring = read_wiring(array, design);
+  design.cell = read_cell(array);
+  design.efficiency = read_efficiency(array);
+  if (array.has("cover")) design.front = read_cell_front(array.table("cover"));
+  return design;
+}
+
+}  // namespace photorque

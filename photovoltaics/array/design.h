@@ -1,0 +1,74 @@
+// What an experiment says about its solar array.
+#pragma once
+
+#include <optional>
+
+#include "core/settings/settings.h"
+#include "photovoltaics/array/places.h"
+#include "photovoltaics/cell/front.h"
+#include "photovoltaics/cell/model.h"
+#include "photovoltaics/cell/response.h"
+#include "photovoltaics/network/wiring.h"
+
+namespace photorque {
+
+struct ArrayDesign {
+  int columns = 0;                   // cells along u of the receiver's grid
+  int rows = 0;                      // and along v; cell = row · columns + column
+  std::optional<CellPlaces> places;  // instead of equal rectangles over the whole grid
+  double gap_m = 0.0;                // between neighbouring cells
+  double margin_m = 0.0;
+  ArrayWiring wiring;
+  CellModel cell;
+  double temperature_K = 298.15;
+  QuantumEfficiency efficiency;
+  std::optional<CellFront> front;  // over the surface's own optics
+
+  int cells() const { return columns * rows; }
+};
+
+// Regular wiring: the cells, taken serpentine-wise along columns (v) or rows (u) of the grid, are
+// cut into `strings` equal strings and these into substrings of `bypass_every` cells, the last one
+// shorter if need be. With `cross_tied` cells of equal place in all strings are tied in parallel
+// and there is one string of such rows.
+struct RegularWiring {
+  bool along_columns = true;
+  int strings = 1;
+  int bypass_every = 20;
+  bool cross_tied = false;
+  Diode bypass;
+  Diode blocking;
+};
+ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
+
+// Reads the table `[array]`:
+//
+//   cells = [10, 10]         columns along u and rows along v of the receiver; required where
+//                            `places` does not say where the cells are, see read_cell_places()
+//   gap_m, margin_m          between cells and around them; default 0. On a grid over texture
+//                            coordinates they are fractions of it.
+//   series = "columns"       "columns" or "rows": the serpentine in which cells follow each other
+//   strings = 1              parallel strings; must divide the number of cells
+//   bypass_every = 20        cells per bypass diode; default: all cells of a string
+//   cross_tied = false       tie cells of equal place in all strings
+//   wiring = [[[0, 1], [2, 3]]]   instead of the four keys above: strings of substrings of cells;
+//   an
+//                            array in place of a cell is a row of cells tied in parallel
+//   bypass = "ideal"         "none", "ideal" (clamps at drop_V) or "junction"; default "ideal"
+//   blocking = "none"        the same choices
+//   [array.bypass_diode]     drop_V = 0.5, saturation_A = 1e-6, ideality = 1.05,
+//                            series_ohm = 5e-3 (a small Schottky diode)
+//   [array.blocking_diode]   the same, drop_V = 0
+//   temperature_K = 298.15   of the cells and diodes
+//   cell = "silicon_interdigitated"   one of known_cells()
+//   [array.cell_parameters]  replaces single numbers of it: saturation_1_A, ideality_1,
+//                            saturation_2_A, ideality_2, series_ohm, shunt_ohm, breakdown_fraction,
+//                            breakdown_V, breakdown_exponent, reference_temperature_K, gap_eV,
+//                            gap_slope_per_K, photocurrent_slope_per_K; and reference_area_m2, the
+//                            area all of them belong to
+//   quantum_efficiency_peak = 0.95    of the default table for monocrystalline silicon, or
+//   [array.quantum_efficiency]        wavelength_m = […] (or _nm), efficiency = […]
+//   [array.cover]                     see read_cell_front()
+ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> places = {});
+
+}  // namespace photorque

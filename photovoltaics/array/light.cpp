@@ -1,0 +1,138 @@
+#include "photovoltaics/array/light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+// Overlap of [low, high] with the cells of a regular division of [start, end] into `count`.
+struct Overlap {
+  int index;
+  double fraction;  // of the division's cell
+};
+
+std::vector<Overlap> overlaps(double low, double high, double start, double end, int count) {
+  const double width = (end - start) / count;
+  const double from = (low - start) / width, to = (high - start) / width;
+  std::vector<Overlap> parts;
+  const int first = std::clamp(static_cast<int>(std::floor(from)), 0, count - 1);
+  for (int i = first; i < count && i < to; ++i) {
+    const double fraction = std::min(to, i + 1.0) - std::max(from, static_cast<double>(i));
+    if (fraction > 0) parts.push_back({i, fraction});
+  }
+  return parts;
+}
+
+}  // namespace
+
+ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums, const BinSums& entry) {
+  const SurfaceGrid& grid = receiver.grid();
+  ArrayLight light{grid.width,
+                   grid.height,
+                   grid.u_low,
+                   grid.u_high,
+                   grid.v_low,
+                   grid.v_high,
+                   receiver.bands().count(),
+                   grid.area_m2,
+                   {},
+                   entry};
+  light.power_W = {
+      grid.bins() * static_cast<size_t>(light.bands), sums.replicates, {}, sums.common_error};
+  const size_t bounced = receiver.direct_entries();
+  for (int r = 0; r < sums.replicates; ++r) {
+    const auto all = sums.of(r);
+    for (size_t bin = 0; bin < grid.bins(); ++bin) {
+      for (size_t band = 0; band < static_cast<size_t>(light.bands); ++band) {
+        const size_t incident = receiver.entry(bin, band);
+        light.power_W.sums.push_back(all[incident] + all[bounced + incident]);
+      }
+    }
+  }
+  return light;
+}
+
+ArrayLight array_light(int width, int height, double u_length_m, double v_length_m,
+                       std::span<const double> irradiance_W_m2) {
+  const double area_m2 = u_length_m * v_length_m / (width * height);
+  ArrayLight light{width, height,     0.0, u_length_m,
+                   0.0,   v_length_m, 1,   std::vector<double>(irradiance_W_m2.size(), area_m2),
+                   {},    {}};
+  light.power_W = {irradiance_W_m2.size(), 1, {}};
+  for (const double e : irradiance_W_m2) light.power_W.sums.push_back(e * area_m2);
+  return light;
+}
+
+std::vector<CellRectangle> cell_rectangles(const ArrayLight& light, int columns, int rows,
+                                           double gap, double margin) {
+  const auto side = [&](double length, int count, const char* name) {
+    const double cell = (length - 2 * margin - (count - 1) * gap) / count;
+    if (!(cell > 0)) {
+      throw InputError({}, "array",
+                       "gaps and margins wider than the receiver's " + std::string(name) + " of " +
+                           std::to_string(length),
+                       "room for " + std::to_string(count) + " cells");
+    }
+    return cell;
+  };
+  const double du = side(light.u_high - light.u_low, columns, "length along u");
+  const double dv = side(light.v_high - light.v_low, rows, "length along v");
+  std::vector<CellRectangle> cells;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const double u = light.u_low + margin + column * (du + gap);
+      const double v = light.v_low + margin + row * (dv + gap);
+      cells.push_back({u, u + du, v, v + dv});
+    }
+  }
+  return cells;
+}
+
+std::vector<BinPart> parts_of_rectangle(const CellRectangle& cell, const ArrayLight& light) {
+  std::vector<BinPart> parts;
+  for (const Overlap& v :
+       overlaps(cell.v_low, cell.v_high, light.v_low, light.v_high, light.height)) {
+    for (const Overlap& u :
+         overlaps(cell.u_low, cell.u_high, light.u_low, light.u_high, light.width)) {
+      parts.push_back(
+          {static_cast<uint32_t>(v.index * light.width + u.index), u.fraction * v.fraction});
+    }
+  }
+  return parts;
+}
+
+CellCover::CellCover(const ArrayLight& light, std::span<const CellRectangle> cells)
+    : bands_(static_cast<size_t>(light.bands)), first_{0} {
+  for (const CellRectangle& cell : cells) add(light, parts_of_rectangle(cell, light));
+}
+
+CellCover::CellCover(const ArrayLight& light, std::span<const std::vector<BinPart>> cells)
+    : bands_(static_cast<size_t>(light.bands)), first_{0} {
+  for (const std::vector<BinPart>& parts : cells) add(light, parts);
+}
+
+void CellCover::add(const ArrayLight& light, std::span<const BinPart> parts) {
+  double area_m2 = 0.0;
+  for (const BinPart& part : parts) area_m2 += part.fraction * light.area_m2[part.bin];
+  parts_.insert(parts_.end(), parts.begin(), parts.end());
+  first_.push_back(parts_.size());
+  area_m2_.push_back(area_m2);
+}
+
+std::vector<double> CellCover::gather(std::span<const double> power_W) const {
+  std::vector<double> sums(cells() * bands_, 0.0);
+  for (size_t cell = 0; cell < cells(); ++cell) {
+    for (size_t p = first_[cell]; p < first_[cell + 1]; ++p) {
+      for (size_t band = 0; band < bands_; ++band) {
+        sums[cell * bands_ + band] += parts_[p].fraction * power_W[parts_[p].bin * bands_ + band];
+      }
+    }
+  }
+  return sums;
+}
+
+}  // namespace photorque

@@ -1,0 +1,178 @@
+#include "photovoltaics/array/losses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+namespace photorque {
+
+std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs& in) {
+  std::vector<LossStage> stages;
+  const double lamps_W = in.emitted_W / in.collimator_efficiency.value_or(1.0);
+  if (in.wall_plug_efficiency) {
+    stages.push_back({"electric power of the lamps", lamps_W / *in.wall_plug_efficiency, ""});
+  }
+  if (in.collimator_efficiency) {
+    stages.push_back({"light of the lamps", lamps_W, "heat in the lamps"});
+  }
+  stages.push_back({"light emitted", in.emitted_W,
+                    in.collimator_efficiency ? "collimators" : "heat in the lamps"});
+  stages.push_back({"light on the receiver", in.on_receiver_W, "spill and obstacles"});
+  const double on_cells_W = array.power_on_cells_W.value;
+  stages.push_back({"light on the cells", on_cells_W, "gaps between the cells"});
+  const double entering_W = array.power_entering_W.value;
+  if (array.entry_known) stages.push_back({"light that enters", entering_W, "angle of incidence"});
+  stages.push_back({"photons converted", entering_W * in.quantum_efficiency,
+                    "quantum efficiency, reflection included"});
+  stages.push_back({"every cell by itself", array.sum_of_cells_W.value,
+                    "voltage below the photon's, fill factor"});
+  double cells_W = 0.0;
+  for (size_t i = 0; i < array.cells.voltages_V.size(); ++i) {
+    cells_W += array.cells.voltages_V[i] * array.cells.currents_A[i];
+  }
+  stages.push_back({"cells in the network", cells_W, "uneven light"});
+  double left_W = array.power_W.value;
+  stages.push_back({"array", left_W, "bypass and blocking diodes"});
+  if (in.tracker_efficiency) {
+    left_W *= *in.tracker_efficiency;
+    stages.push_back({"array with tracker", left_W, "tracker"});
+  }
+  if (in.converter_efficiency) {
+    left_W *= *in.converter_efficiency;
+    stages.push_back({"load and battery", left_W, "DC/DC converter"});
+  }
+  return stages;
+}
+
+Product loss_product(const std::vector<LossStage>& stages) {
+  Product product;
+  Table table{"losses",
+              "From the light to the load",
+              {{"stage", {}, {}},
+               {"lost_to", {}, {}},
+               {"power_W", {}, {}},
+               {"lost_W", {}, {}},
+               {"kept", {}, {}}}};
+  Plot plot{
+      "loss_waterfall", "Power left after each loss", "stage", "power [W]", {}, false, false, {}};
+  for (size_t i = 0; i < stages.size(); ++i) {
+    const LossStage& stage = stages[i];
+    const double before_W = i == 0 ? stage.power_W : stages[i - 1].power_W;
+    table.columns[0].texts.push_back(stage.name);
+    table.columns[1].texts.push_back(i == 0 ? "-" : stage.loss);
+    table.columns[2].values.push_back(stage.power_W);
+    table.columns[3].values.push_back(before_W - stage.power_W);
+    table.columns[4].values.push_back(before_W > 0 ? stage.power_W / before_W : 0.0);
+    const std::string number = std::to_string(i + 1);
+    plot.curves.push_back({number + " " + stage.name,
+                           {static_cast<double>(i + 1)},
+                           {stage.power_W},
+                           {},
+                           false,
+                           true});
+  }
+  product.tables.push_back(table);
+  product.plots.push_back(plot);
+  return product;
+}
+
+Uniformity uniformity(const ArrayResult& array, std::span<const int> cells) {
+  Uniformity u;
+  double least = 1e300, squares = 0.0;
+  const auto count = static_cast<double>(cells.size());
+  const auto irradiance = [&](int cell) {
+    const auto i = static_cast<size_t>(cell);
+    return array.cell_light_W[i] / array.cell_area_m2[i];
+  };
+  for (const int cell : cells) {
+    u.mean_W_m2 += irradiance(cell) / count;
+    least = std::min(least, irradiance(cell));
+  }
+  if (!(u.mean_W_m2 > 0)) return u;
+  for (const int cell : cells) {
+    const double apart = irradiance(cell) / u.mean_W_m2 - 1.0;
+    squares += apart * apart / count;
+  }
+  u.minimum_over_mean = least / u.mean_W_m2;
+  u.variation = std::sqrt(squares);
+  return u;
+}
+
+Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring) {
+  Table table{"uniformity",
+              "How even the light is",
+              {{"cells", {}, {}},
+               {"mean_W_m2", {}, {}},
+               {"minimum_over_mean", {}, {}},
+               {"variation", {}, {}}}};
+  const auto add = [&](const std::string& name, const std::vector<int>& cells) {
+    const Uniformity u = uniformity(array, cells);
+    table.columns[0].texts.push_back(name);
+    table.columns[1].values.push_back(u.mean_W_m2);
+    table.columns[2].values.push_back(u.minimum_over_mean);
+    table.columns[3].values.push_back(u.variation);
+  };
+  std::vector<int> all(array.cell_light_W.size());
+  std::iota(all.begin(), all.end(), 0);
+  add("array", all);
+  for (size_t s = 0; s < wiring.strings.size(); ++s) {
+    std::vector<int> cells;
+    for (const auto& substring : wiring.strings[s].substrings) {
+      for (const auto& row : substring.rows) cells.insert(cells.end(), row.begin(), row.end());
+    }
+    add("string " + std::to_string(s + 1), cells);
+  }
+  return table;
+}
+
+double array_power_W(const ArrayDesign& design, const ArrayResult& array, double light_factor) {
+  std::vector<double> light_A = array.cell_photocurrent_A;
+  for (double& i : light_A) i *= light_factor;
+  const double most_A = *std::ranges::max_element(light_A);
+  const CellTables tables = cell_tables(design, array.cell_area_m2, most_A);
+  return ArrayCurve(design.wiring, tables, light_A).maximum_power().power_W();
+}
+
+std::vector<ArraySensitivity> sensitivities(const ArrayDesign& design, const ArrayResult& array) {
+  const double now_W = array_power_W(design, array, 1.0);
+  std::vector<ArraySensitivity> all;
+  const auto add = [&](const std::string& change, double light_factor,
+                       const std::function<void(ArrayDesign&)>& apply) {
+    ArrayDesign changed = design;
+    apply(changed);
+    const double warmth = photocurrent_factor(changed.cell, changed.temperature_K) /
+                          photocurrent_factor(design.cell, design.temperature_K);
+    const double power_W = array_power_W(changed, array, light_factor * warmth);
+    all.push_back({change, power_W, now_W > 0 ? power_W / now_W - 1.0 : 0.0});
+  };
+  add("light or quantum efficiency +1 %", 1.01, [](ArrayDesign&) {});
+  add("light -10 %", 0.9, [](ArrayDesign&) {});
+  add("temperature +10 K", 1.0, [](ArrayDesign& d) { d.temperature_K += 10.0; });
+  add("series resistance x 2", 1.0, [](ArrayDesign& d) { d.cell.reference.series_ohm *= 2.0; });
+  add("shunt resistance / 2", 1.0, [](ArrayDesign& d) { d.cell.reference.shunt_ohm /= 2.0; });
+  add("saturation currents x 2", 1.0, [](ArrayDesign& d) {
+    d.cell.reference.saturation_1_A *= 2.0;
+    d.cell.reference.saturation_2_A *= 2.0;
+  });
+  return all;
+}
+
+std::vector<CellFigures> known_cell_figures(double irradiance_W_m2, double photon_V,
+                                            double quantum_efficiency, double temperature_K) {
+  std::vector<CellFigures> figures;
+  for (const NamedCell& known : known_cells()) {
+    const double area_m2 = known.model.reference_area_m2;
+    const CellCurve cell(parameters_at(known.model, area_m2, temperature_K));
+    const double light_W = irradiance_W_m2 * area_m2;
+    const double light_A = light_W * quantum_efficiency / photon_V;
+    const double open_V = cell.open_circuit_V(light_A);
+    const double power_W = cell.maximum_power(light_A).power_W();
+    const double fill = power_W / (open_V * light_A);
+    figures.push_back(
+        {known.name, open_V, fill, quantum_efficiency * open_V * fill, power_W / light_W});
+  }
+  return figures;
+}
+
+}  // namespace photorque

@@ -1,0 +1,70 @@
+// Where the power went between the lamps' plug and the load, and how even the light was.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "photovoltaics/array/array.h"
+
+namespace photorque {
+
+// What the trace and the devices around the array say.
+struct LossInputs {
+  double emitted_W = 0.0;                      // light that leaves the lamps' optics
+  double on_receiver_W = 0.0;                  // of it on the whole receiver
+  double photon_V = 1.7;                       // mean energy of a photon over the elementary charge
+  double quantum_efficiency = 1.0;             // mean external
+  std::optional<double> wall_plug_efficiency;  // of the lamps, light over electric power
+  std::optional<double> collimator_efficiency;
+  std::optional<double> tracker_efficiency;
+  std::optional<double> converter_efficiency;
+};
+
+struct LossStage {
+  std::string name;      // what the power is
+  double power_W = 0.0;  // that is left
+  std::string loss;      // what took the difference to the stage before
+};
+
+// From the plug, or from the light where the lamps' efficiency is not known, to the load. Powers
+// fall from stage to stage; the ratios multiply to the whole.
+std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs& inputs);
+
+// Table "losses", the plot "loss_waterfall" and one quantity per stage.
+Product loss_product(const std::vector<LossStage>& stages);
+
+// Of the irradiance on some cells.
+struct Uniformity {
+  double mean_W_m2 = 0.0;
+  double minimum_over_mean = 0.0;
+  double variation = 0.0;  // standard deviation over mean
+};
+Uniformity uniformity(const ArrayResult& array, std::span<const int> cells);
+
+// Table "uniformity": the whole array, then each string.
+Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring);
+
+// The power of an array with given photocurrents, and what it would be were something else.
+double array_power_W(const ArrayDesign& design, const ArrayResult& array, double light_factor);
+
+// Relative change of the power per change of one thing.
+struct ArraySensitivity {
+  std::string change;     // "temperature + 1 K"
+  double power_W = 0.0;   // with the change
+  double relative = 0.0;  // to the power without
+};
+std::vector<ArraySensitivity> sensitivities(const ArrayDesign& design, const ArrayResult& array);
+
+// What a known cell makes of monochromatic light of an irradiance: EQE V_oc FF over photon_V.
+struct CellFigures {
+  std::string name;
+  double open_circuit_V = 0.0, fill_factor = 0.0;
+  double product_V = 0.0;  // EQE V_oc FF
+  double efficiency = 0.0;
+};
+std::vector<CellFigures> known_cell_figures(double irradiance_W_m2, double photon_V,
+                                            double quantum_efficiency, double temperature_K);
+
+}  // namespace photorque

@@ -1,0 +1,259 @@
+#include "photovoltaics/array/tracker.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+constexpr const char* names[] = {"perturb_and_observe", "incremental_conductance", "global_scan",
+                                 "periodic_sweep"};
+
+struct Sample {
+  double voltage_V = 0.0, current_A = 0.0;
+  double power_W() const { return voltage_V * current_A; }
+};
+
+// The state of one tracker between decisions.
+class Controller {
+ public:
+  Controller(const Tracker& tracker, double range_V)
+      : tracker_(tracker),
+        range_V_(range_V),
+        step_V_(tracker.step_fraction * range_V),
+        voltage_V_(tracker.start_fraction * range_V) {
+    const bool scans =
+        tracker.kind == Tracker::Kind::global_scan || tracker.kind == Tracker::Kind::periodic_sweep;
+    if (scans) begin_sweep();
+  }
+
+  double voltage_V() const { return voltage_V_; }
+
+  // What was measured at voltage_V(); decides the next one.
+  void observe(const Sample& now) {
+    since_sweep_s_ += tracker_.period_s;
+    if (sweep_point_ > 0) {
+      sweep(now);
+    } else if (tracker_.kind == Tracker::Kind::periodic_sweep) {
+      if (since_sweep_s_ >= tracker_.sweep_every_s) begin_sweep();
+    } else if (tracker_.kind == Tracker::Kind::incremental_conductance) {
+      incremental_conductance(now);
+    } else {
+      perturb(now);
+    }
+    last_ = now;
+  }
+
+ private:
+  void begin_sweep() {
+    sweep_point_ = 1;
+    best_ = {};
+    voltage_V_ = range_V_ / (tracker_.sweep_points + 1);
+  }
+
+  void sweep(const Sample& now) {
+    if (now.power_W() > best_.power_W()) best_ = now;
+    if (++sweep_point_ > tracker_.sweep_points) {
+      sweep_point_ = 0;
+      since_sweep_s_ = 0.0;
+      settled_ = 0;
+      recent_W_ = {};
+      voltage_V_ = best_.voltage_V > 0 ? best_.voltage_V : voltage_V_;
+      return;
+    }
+    voltage_V_ = range_V_ * sweep_point_ / (tracker_.sweep_points + 1);
+  }
+
+  void perturb(const Sample& now) {
+    const double change_W = now.power_W() - last_.power_W();
+    if (tracker_.kind == Tracker::Kind::global_scan && light_changed(now.power_W())) {
+      begin_sweep();
+      return;
+    }
+    if (change_W < 0.0) direction_ = -direction_;
+    move(direction_);
+  }
+
+  // The largest of three powers in a row is that at the maximum, wherever the steps around it fall.
+  // It is compared with what it was just after the last sweep.
+  bool light_changed(double power_W) {
+    recent_W_[settled_ % 3] = power_W;
+    const double most_W = *std::ranges::max_element(recent_W_);
+    if (++settled_ <= 3) {
+      reference_W_ = most_W;
+      return false;
+    }
+    return std::abs(most_W - reference_W_) > tracker_.rescan_fraction * reference_W_;
+  }
+
+  void incremental_conductance(const Sample& now) {
+    const double dv = now.voltage_V - last_.voltage_V, di = now.current_A - last_.current_A;
+    if (dv == 0.0) {
+      if (di != 0.0) move(di > 0.0 ? 1.0 : -1.0);
+      return;
+    }
+    const double slope = now.current_A + now.voltage_V * di / dv;  // dP/dV
+    // Within half a step of the maximum dP/dV is below about I · step/V.
+    if (std::abs(slope) < 0.5 * now.current_A * step_V_ / now.voltage_V) return;
+    move(slope > 0.0 ? 1.0 : -1.0);
+  }
+
+  void move(double direction) {
+    voltage_V_ = std::clamp(voltage_V_ + direction * step_V_, step_V_, range_V_);
+  }
+
+  Tracker tracker_;
+  double range_V_, step_V_, voltage_V_;
+  double direction_ = -1.0;
+  Sample last_, best_;
+  int sweep_point_ = 0;  // 0: not sweeping
+  size_t settled_ = 0;   // decisions since the last sweep
+  std::array<double, 3> recent_W_{};
+  double reference_W_ = 0.0;
+  double since_sweep_s_ = 0.0;
+};
+
+// Which of the maxima lies uphill.
+const ArrayPoint* uphill(const ArrayCurve& curve, const std::vector<ArrayPoint>& maxima,
+                         double voltage_V) {
+  const double open_V = curve.open_circuit_V(), h = 1e-6 * open_V;
+  const double low = std::max(0.0, voltage_V - h), high = std::min(open_V, voltage_V + h);
+  const bool rises =
+      voltage_V < open_V && high * curve.current_A(high) > low * curve.current_A(low);
+  const auto right = std::ranges::upper_bound(maxima, voltage_V, {}, &ArrayPoint::voltage_V);
+  if (rises) return right == maxima.end() ? &maxima.back() : &*right;
+  return right == maxima.begin() ? &maxima.front() : &*(right - 1);
+}
+
+const ArrayPoint& best_of(const std::vector<ArrayPoint>& maxima) {
+  return *std::ranges::max_element(maxima, {}, &ArrayPoint::power_W);
+}
+
+// The voltages a tracker may set: those of the array in the brightest light of the history.
+double range_V(const ArrayWiring& wiring, const CellTables& tables, const LightHistory& light) {
+  double most = 0.0;
+  for (const auto& currents : light.photocurrents_A) {
+    most = std::max(most, ArrayCurve(wiring, tables, currents).open_circuit_V());
+  }
+  return most;
+}
+
+void record(TrackerRun& run, double time_s, double voltage_V, const ArrayCurve& curve,
+            const std::vector<ArrayPoint>& maxima, double power_W) {
+  const double dt_s = run.tracker.period_s;
+  const ArrayPoint best = maxima.empty() ? ArrayPoint{} : best_of(maxima);
+  run.energy_J += power_W * dt_s;
+  run.best_energy_J += best.power_W() * dt_s;
+  run.duration_s += dt_s;
+  const bool several = maxima.size() > 1;
+  if (several && uphill(curve, maxima, voltage_V)->voltage_V != best.voltage_V) {
+    run.false_maximum_s += dt_s;
+  }
+  run.time_s.push_back(time_s);
+  run.voltage_V.push_back(voltage_V);
+  run.power_W.push_back(power_W);
+  run.best_W.push_back(best.power_W());
+  run.best_V.push_back(best.voltage_V);
+}
+
+}  // namespace
+
+std::string name_of(Tracker::Kind kind) {
+  return names[static_cast<size_t>(kind)];
+}
+
+std::vector<Tracker::Kind> all_tracker_kinds() {
+  return {Tracker::Kind::perturb_and_observe, Tracker::Kind::incremental_conductance,
+          Tracker::Kind::global_scan, Tracker::Kind::periodic_sweep};
+}
+
+std::vector<double> LightHistory::at(double t) const {
+  const auto after = std::ranges::upper_bound(time_s, t);
+  if (after == time_s.begin()) return photocurrents_A.front();
+  if (after == time_s.end()) return photocurrents_A.back();
+  const auto i = static_cast<size_t>(after - time_s.begin());
+  const double share = (t - time_s[i - 1]) / (time_s[i] - time_s[i - 1]);
+  std::vector<double> between(photocurrents_A[i].size());
+  for (size_t c = 0; c < between.size(); ++c) {
+    between[c] = std::lerp(photocurrents_A[i - 1][c], photocurrents_A[i][c], share);
+  }
+  return between;
+}
+
+std::vector<TrackerRun> run_trackers(const std::vector<Tracker>& trackers,
+                                     const ArrayWiring& wiring, const CellTables& tables,
+                                     const LightHistory& light) {
+  std::vector<TrackerRun> runs;
+  std::vector<Controller> controllers;
+  const double range = range_V(wiring, tables, light);
+  for (const Tracker& tracker : trackers) {
+    if (tracker.period_s != trackers.front().period_s) {
+      throw InputError({}, "tracker", "different periods", "one period for all trackers");
+    }
+    runs.push_back({tracker, 1.0, 0, 0, 0, 0, {}, {}, {}, {}, {}});
+    controllers.emplace_back(tracker, range);
+  }
+  if (trackers.empty() || range == 0.0) return runs;
+  const double period_s = trackers.front().period_s;
+  const double duration_s = light.time_s.back() - light.time_s.front();
+  constexpr double most_steps = 1e7;
+  if (duration_s / period_s > most_steps) {
+    throw InputError({}, "array.tracker.period_s", std::to_string(period_s) + " s",
+                     "at most ten million periods in the motion");
+  }
+  const auto steps = static_cast<int64_t>(std::floor(duration_s / period_s)) + 1;
+  for (int64_t k = 0; k < steps; ++k) {
+    const double time_s = light.time_s.front() + static_cast<double>(k) * period_s;
+    const ArrayCurve curve(wiring, tables, light.at(time_s));
+    const std::vector<ArrayPoint> maxima = curve.maxima();
+    const double open_V = curve.open_circuit_V();
+    for (size_t i = 0; i < runs.size(); ++i) {
+      const double v = controllers[i].voltage_V();
+      // Beyond the open circuit the converter's diode lets nothing back.
+      const double current_A = v < open_V ? curve.current_A(v) : 0.0;
+      record(runs[i], time_s, v, curve, maxima, v * current_A);
+      controllers[i].observe({v, current_A});
+    }
+  }
+  for (TrackerRun& run : runs) {
+    if (run.best_energy_J > 0) run.efficiency = run.energy_J / run.best_energy_J;
+  }
+  return runs;
+}
+
+std::vector<Tracker> read_trackers(const Settings& s) {
+  Tracker common;
+  common.period_s = s.number_or("period_s", common.period_s, Range::positive());
+  common.step_fraction =
+      s.number_or("step_fraction", common.step_fraction, {0.0, 0.5, true, false});
+  common.start_fraction =
+      s.number_or("start_fraction", common.start_fraction, {0.0, 1.0, true, false});
+  common.sweep_points =
+      static_cast<int>(s.integer_or("sweep_points", common.sweep_points, 2, 10000));
+  common.sweep_every_s = s.number_or("sweep_every_s", common.sweep_every_s, Range::positive());
+  common.rescan_fraction =
+      s.number_or("rescan_fraction", common.rescan_fraction, Range::positive());
+  std::vector<std::string> wanted;
+  if (s.has("kinds")) {
+    wanted = s.texts("kinds");
+  } else {
+    for (const auto kind : all_tracker_kinds()) wanted.push_back(name_of(kind));
+  }
+  std::vector<Tracker> trackers;
+  for (const std::string& name : wanted) {
+    const auto at = std::ranges::find(names, name);
+    if (at == std::end(names)) {
+      throw s.error("kinds", '"' + name + '"',
+                    "perturb_and_observe, incremental_conductance, global_scan or periodic_sweep");
+    }
+    common.kind = static_cast<Tracker::Kind>(at - std::begin(names));
+    trackers.push_back(common);
+  }
+  return trackers;
+}
+
+}  // namespace photorque

@@ -1,0 +1,203 @@
+#include "photovoltaics/cell/cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "core/constants.h"
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+
+void require(bool good, const char* key, double found, const char* expected) {
+  if (!good) throw InputError({}, key, std::to_string(found), expected);
+}
+
+void check(const CellParameters& p) {
+  const auto finite = [](double x) { return std::isfinite(x); };
+  require(finite(p.saturation_1_A) && p.saturation_1_A >= 0, "saturation_1_A", p.saturation_1_A,
+          "a number >= 0");
+  require(finite(p.saturation_2_A) && p.saturation_2_A >= 0, "saturation_2_A", p.saturation_2_A,
+          "a number >= 0");
+  require(p.saturation_1_A + p.saturation_2_A > 0, "saturation_1_A", p.saturation_1_A,
+          "a saturation current > 0 in one of the diodes");
+  require(finite(p.ideality_1) && p.ideality_1 > 0, "ideality_1", p.ideality_1, "a number > 0");
+  require(finite(p.ideality_2) && p.ideality_2 > 0, "ideality_2", p.ideality_2, "a number > 0");
+  require(finite(p.series_ohm) && p.series_ohm >= 0, "series_ohm", p.series_ohm, "a number >= 0");
+  require(finite(p.shunt_ohm) && p.shunt_ohm > 0, "shunt_ohm", p.shunt_ohm, "a number > 0");
+  require(p.breakdown_fraction >= 0 && p.breakdown_fraction <= 7, "breakdown_fraction",
+          p.breakdown_fraction, "a number in [0, 7]");
+  require(finite(p.breakdown_V) && p.breakdown_V < 0, "breakdown_V", p.breakdown_V, "a number < 0");
+  require(finite(p.breakdown_exponent) && p.breakdown_exponent >= 1, "breakdown_exponent",
+          p.breakdown_exponent, "a number >= 1");
+  require(finite(p.temperature_K) && p.temperature_K > 0, "temperature_K", p.temperature_K,
+          "a number > 0");
+}
+
+// The voltage at which one diode alone carries `current` (> 0 forward); ∞ without that diode.
+double forward_inverse(double current_A, double saturation_A, double scale_V) {
+  return saturation_A > 0 ? scale_V * std::log1p(current_A / saturation_A) : infinity;
+}
+
+// The size of the reverse voltage at which it carries `current` (> 0); ∞ if it never does.
+double reverse_inverse(double current_A, double saturation_A, double scale_V) {
+  return current_A < saturation_A ? -scale_V * std::log1p(-current_A / saturation_A) : infinity;
+}
+
+}  // namespace
+
+CellCurve::CellCurve(const CellParameters& parameters)
+    : parameters_(parameters),
+      thermal_V_(boltzmann_J_K * parameters.temperature_K / elementary_charge_C),
+      scale_1_V_(parameters.ideality_1 * thermal_V_),
+      scale_2_V_(parameters.ideality_2 * thermal_V_),
+      shunt_S_(1.0 / parameters.shunt_ohm),
+      breakdown_S_(parameters.breakdown_fraction / parameters.shunt_ohm),
+      breakdown_size_V_(-parameters.breakdown_V) {
+  check(parameters);
+}
+
+DarkCurrent CellCurve::dark(double diode_V) const {
+  const double i1 = parameters_.saturation_1_A, i2 = parameters_.saturation_2_A;
+  const double e1 = std::expm1(diode_V / scale_1_V_);
+  const double g1 = i1 * (e1 + 1.0) / scale_1_V_;
+  DarkCurrent d{i1 * e1 + shunt_S_ * diode_V, g1 + shunt_S_, g1 / scale_1_V_,
+                g1 / (scale_1_V_ * scale_1_V_)};
+  if (i2 > 0) {
+    const double e2 = std::expm1(diode_V / scale_2_V_);
+    const double g2 = i2 * (e2 + 1.0) / scale_2_V_;
+    d.value_A += i2 * e2;
+    d.slope_S += g2;
+    d.curvature_A_V2 += g2 / scale_2_V_;
+    d.third_A_V3 += g2 / (scale_2_V_ * scale_2_V_);
+  }
+  if (breakdown_S_ > 0) {
+    const double m = parameters_.breakdown_exponent;
+    const double y = 1.0 + diode_V / breakdown_size_V_;
+    const double multiplied_S = breakdown_S_ * std::pow(y, -m);
+    d.value_A += multiplied_S * diode_V;
+    d.slope_S += multiplied_S * (1.0 - m + m / y);
+    d.curvature_A_V2 +=
+        multiplied_S * m * ((m - 1.0) * y - (m + 1.0)) / (y * y * breakdown_size_V_);
+    d.third_A_V3 += multiplied_S * m * (m + 1.0) * ((m + 2.0) - (m - 1.0) * y) /
+                    (y * y * y * breakdown_size_V_ * breakdown_size_V_);
+  }
+  return d;
+}
+
+// Each term alone would need at least the voltage at which the sum reaches the current; and one of
+// the terms must carry its equal share.
+CellCurve::Bracket CellCurve::forward_bracket(double dark_A, double conductance_S) const {
+  const auto smallest = [&](double share_A, double linear_S) {
+    return std::min({forward_inverse(share_A, parameters_.saturation_1_A, scale_1_V_),
+                     forward_inverse(share_A, parameters_.saturation_2_A, scale_2_V_),
+                     share_A / linear_S});
+  };
+  // Forward, the breakdown factor is below 1.
+  return {smallest(dark_A / 3.0, conductance_S + breakdown_S_), smallest(dark_A, conductance_S)};
+}
+
+CellCurve::Bracket CellCurve::reverse_bracket(double dark_A, double conductance_S) const {
+  const double size_A = -dark_A, share_A = size_A / 4.0, half_V = 0.5 * breakdown_size_V_;
+  const double m = parameters_.breakdown_exponent;
+  double farthest = size_A / conductance_S;
+  double nearest = std::min({reverse_inverse(share_A, parameters_.saturation_1_A, scale_1_V_),
+                             reverse_inverse(share_A, parameters_.saturation_2_A, scale_2_V_),
+                             share_A / conductance_S});
+  if (breakdown_S_ > 0) {
+    // Beyond half the breakdown voltage the factor V_d is between V_br/2 and V_br; before it, the
+    // power is between 1 and 2^m.
+    const double far_y = std::pow(half_V * breakdown_S_ / size_A, 1.0 / m);
+    farthest = std::min(farthest, std::max(half_V, breakdown_size_V_ * (1.0 - far_y)));
+    const double near_y = std::pow(breakdown_size_V_ * breakdown_S_ / share_A, 1.0 / m);
+    const double near = near_y < 0.5 ? breakdown_size_V_ * (1.0 - near_y)
+                                     : std::min(half_V, share_A / (breakdown_S_ * std::exp2(m)));
+    nearest = std::min(nearest, near);
+  }
+  return {-farthest, -nearest};
+}
+
+double CellCurve::diode_voltage_V(double dark_A, double extra_S) const {
+  if (dark_A == 0.0) return 0.0;
+  const double linear_S = shunt_S_ + extra_S;
+  auto [low, high] =
+      dark_A > 0 ? forward_bracket(dark_A, linear_S) : reverse_bracket(dark_A, linear_S);
+  // Rounding may put the root a few units outside.
+  low -= 4 * rounding * std::abs(low);
+  high += 4 * rounding * std::abs(high);
+  double v = dark_A > 0 ? high : low;
+  if (breakdown_S_ > 0) v = std::max(v, -breakdown_size_V_ * (1.0 - rounding));
+  // Newton's method on log(D/j), which is straight both for exponentials and for powers; bisection
+  // whenever it leaves the bracket or fails to halve the step.
+  double last_step = high - low;
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    DarkCurrent d = dark(v);
+    d.value_A += extra_S * v;
+    d.slope_S += extra_S;
+    const double excess = (d.value_A - dark_A) / dark_A;
+    if (excess == 0.0) return v;
+    ((d.value_A > dark_A) ? high : low) = v;
+    double next = v - std::log1p(excess) * d.value_A / d.slope_S;
+    if (!(next > low && next < high) || std::abs(next - v) > 0.5 * last_step) {
+      next = std::midpoint(low, high);
+    }
+    last_step = std::abs(next - v);
+    if (last_step <= 4 * rounding * std::abs(v)) return next;
+    v = next;
+  }
+  return v;
+}
+
+double CellCurve::voltage_V(double photocurrent_A, double current_A) const {
+  return diode_voltage_V(photocurrent_A - current_A) - current_A * parameters_.series_ohm;
+}
+
+double CellCurve::current_A(double photocurrent_A, double voltage_V) const {
+  // V_d + D R_s = V + I_L R_s: eq. 2 with a shunt 1/R_s beside it.
+  const double rs = parameters_.series_ohm;
+  if (rs == 0.0) return photocurrent_A - dark(voltage_V).value_A;
+  const double diode_V = diode_voltage_V(photocurrent_A + voltage_V / rs, 1.0 / rs);
+  const DarkCurrent d = dark(diode_V);
+  // Of the two explicit forms of eq. 1 the one that magnifies the rounding of V_d less.
+  return d.slope_S * rs > 1.0 ? (diode_V - voltage_V) / rs : photocurrent_A - d.value_A;
+}
+
+double CellCurve::photocurrent_A(double short_circuit_A) const {
+  return short_circuit_A + dark(short_circuit_A * parameters_.series_ohm).value_A;
+}
+
+CellOperatingPoint CellCurve::maximum_power(double photocurrent_A) const {
+  if (photocurrent_A <= 0.0) return {};
+  const double rs = parameters_.series_ohm;
+  // dP/dV_d = I − D′ (V_d − 2 I R_s) falls through zero between short and open circuit.
+  double low = short_circuit_A(photocurrent_A) * rs;
+  double high = open_circuit_V(photocurrent_A);
+  double v = std::max(low, high - 3.0 * std::max(scale_1_V_, scale_2_V_));
+  if (!(v > low)) v = std::midpoint(low, high);
+  double last_step = high - low;
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    const DarkCurrent d = dark(v);
+    const double current = photocurrent_A - d.value_A;
+    const double arm_V = v - 2.0 * current * rs;
+    const double slope = current - d.slope_S * arm_V;
+    (slope > 0 ? low : high) = v;
+    const double curvature = -d.slope_S * (2.0 + 2.0 * d.slope_S * rs) - d.curvature_A_V2 * arm_V;
+    double next = v - slope / curvature;
+    if (!(next > low && next < high) || std::abs(next - v) > 0.5 * last_step) {
+      next = std::midpoint(low, high);
+    }
+    last_step = std::abs(next - v);
+    v = next;
+    if (last_step <= 4 * rounding * std::abs(v)) break;
+  }
+  const double current = photocurrent_A - dark(v).value_A;
+  return {v - current * rs, current, v};
+}
+
+}  // namespace photorque

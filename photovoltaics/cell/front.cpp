@@ -1,0 +1,96 @@
+#include "photovoltaics/cell/front.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+#include "raytrace/surfaces/fresnel.h"
+
+namespace photorque {
+namespace {
+
+// Amplitudes reflected on the way from a medium of index n and cosine c into another.
+struct BoundaryAmplitudes {
+  double across, within;  // electric field across and within the plane of incidence
+
+  BoundaryAmplitudes(double n, double c, double n_beyond, double c_beyond)
+      : across((n * c - n_beyond * c_beyond) / (n * c + n_beyond * c_beyond)),
+        within((n_beyond * c - n * c_beyond) / (n_beyond * c + n * c_beyond)) {}
+};
+
+double film_power(double above, double below, double cos_phase) {
+  const double both = 2.0 * above * below * cos_phase;
+  return (above * above + below * below + both) / (1.0 + above * above * below * below + both);
+}
+
+double table_at(const std::vector<double>& angle_rad, const std::vector<double>& transmittance,
+                double angle) {
+  const auto above = std::ranges::upper_bound(angle_rad, angle);
+  const auto i = static_cast<size_t>(above - angle_rad.begin());
+  const bool last = above == angle_rad.end();
+  const double high_rad = last ? 0.5 * pi : *above, high = last ? 0.0 : transmittance[i];
+  if (!(high_rad > angle_rad[i - 1])) return transmittance[i - 1];
+  const double t = std::min(1.0, (angle - angle_rad[i - 1]) / (high_rad - angle_rad[i - 1]));
+  return std::lerp(transmittance[i - 1], high, t);
+}
+
+void read_front_table(const Settings& cover, CellFront& front) {
+  for (const char* key : {"refractive_index", "coating_index", "coating_thickness_m"}) {
+    if (cover.has(key)) throw cover.error(key, "a table by angle too", "one of the two");
+  }
+  front.angle_rad = cover.numbers("angle_rad", {0.0, 0.5 * pi});
+  front.transmittance = cover.numbers("transmittance", Range::fraction());
+  const bool rising =
+      std::ranges::adjacent_find(front.angle_rad, std::greater_equal<>()) == front.angle_rad.end();
+  if (front.angle_rad.empty() || front.angle_rad[0] != 0.0 || !rising) {
+    throw cover.error("angle_rad", std::to_string(front.angle_rad.size()) + " angles",
+                      "ascending angles from 0");
+  }
+  if (front.transmittance.size() != front.angle_rad.size()) {
+    throw cover.error("transmittance", std::to_string(front.transmittance.size()) + " numbers",
+                      std::to_string(front.angle_rad.size()) + ", one per angle");
+  }
+  // Everything is measured by what goes straight in.
+  constexpr double least = 1e-3;
+  if (front.transmittance[0] < least) {
+    throw cover.error("transmittance", "a first of " + std::to_string(front.transmittance[0]),
+                      "at least 0.001 at 0 deg");
+  }
+}
+
+}  // namespace
+
+double film_reflectance(double cosine, const FilmCoating& film, double index, double wavelength_m) {
+  const double in_film = refracted_cosine(cosine, film.index);
+  const double in_glass = refracted_cosine(cosine, index);
+  const BoundaryAmplitudes front(1.0, cosine, film.index, in_film);
+  const BoundaryAmplitudes back(film.index, in_film, index, in_glass);
+  const double phase = 4.0 * pi * film.index * film.thickness_m * in_film / wavelength_m;
+  const double cos_phase = std::cos(phase);
+  return 0.5 * (film_power(front.across, back.across, cos_phase) +
+                film_power(front.within, back.within, cos_phase));
+}
+
+double CellFront::transmitted(double cosine, double wavelength_m) const {
+  if (!angle_rad.empty()) {
+    return table_at(angle_rad, transmittance, std::acos(std::clamp(cosine, 0.0, 1.0)));
+  }
+  if (coating && cosine > 0.0) return 1.0 - film_reflectance(cosine, *coating, index, wavelength_m);
+  return cosine > 0.0 ? 1.0 - fresnel_reflectance(cosine, index) : 0.0;
+}
+
+CellFront read_cell_front(const Settings& cover) {
+  CellFront front;
+  if (cover.has("angle_rad")) {
+    read_front_table(cover, front);
+    return front;
+  }
+  front.index = cover.number_or("refractive_index", front.index, {1.0, 10.0});
+  if (cover.has("coating_index") || cover.has("coating_thickness_m")) {
+    front.coating = FilmCoating{cover.number("coating_index", {1.0, 10.0}),
+                                cover.number("coating_thickness_m", Range::positive())};
+  }
+  return front;
+}
+
+}  // namespace photorque

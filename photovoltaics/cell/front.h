@@ -1,0 +1,51 @@
+// What the front of a cell lets in, by the angle of incidence.
+//
+// A cell's external quantum efficiency is measured in perpendicular light and holds the reflection
+// of that. What depends on the angle is a factor beside it, the incidence angle modifier
+//   K(θ) = T(θ)/T(0),  T the fraction of the light that enters.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+// A thin clear film on the glass: interference in it, none in the glass.
+struct FilmCoating {
+  double index = 1.38;          // ≥ 1
+  double thickness_m = 132e-9;  // > 0
+};
+
+// Either clear glass, unpolarised light, the cell right behind it without further reflection, or a
+// table.
+struct CellFront {
+  double index = 1.5;  // ≥ 1
+  std::optional<FilmCoating> coating;
+  // In place of both: T by angle, straight in between and down to zero at 90 deg.
+  std::vector<double> angle_rad;      // ascending from 0
+  std::vector<double> transmittance;  // as many, in [0, 1], first > 0
+
+  // T at a cosine in [0, 1] of the angle of incidence; the wavelength counts for a coating alone.
+  double transmitted(double cosine, double wavelength_m) const;
+  // K; 1 in perpendicular light.
+  double modifier(double cosine, double wavelength_m) const {
+    return transmitted(cosine, wavelength_m) / transmitted(1.0, wavelength_m);
+  }
+};
+
+// Reflectance of a film on a thick medium in air, for unpolarised light.
+// Source: M. Born and E. Wolf, Principles of Optics, 7th ed., section 1.6.4.
+double film_reflectance(double cosine, const FilmCoating& film, double index, double wavelength_m);
+
+// Reads the table `[array.cover]`:
+//
+//   refractive_index = 1.5             of the glass
+//   coating_index = 1.38               with both, a film on it
+//   coating_thickness_m = 132e-9       (or _nm)
+//   angle_deg = [0, …]                 instead of all these, a table
+//   transmittance = [1, …]             in any scale: only ratios count
+CellFront read_cell_front(const Settings& cover);
+
+}  // namespace photorque

@@ -1,0 +1,105 @@
+#include "photovoltaics/cell/response.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+constexpr double step_m = 0.5e-9;
+
+// Power fraction and photocurrent of one spectrum in one band.
+struct BandShare {
+  double power = 0.0;
+  double current_A_W = 0.0;
+};
+
+// Of a line so narrow that all of its light counts as of one wavelength.
+BandShare line_share(const QuantumEfficiency& efficiency, const Spectrum& spectrum, double low_m,
+                     double high_m) {
+  const double power = band_fractions(spectrum, Bands{{low_m, high_m}})[0];
+  return {power, power * responsivity_A_W(efficiency, spectrum.centre_m)};
+}
+
+BandShare smooth_share(const QuantumEfficiency& efficiency, const Spectrum& spectrum, double low_m,
+                       double high_m) {
+  BandShare share;
+  share.power = band_fractions(spectrum, Bands{{low_m, high_m}})[0];
+  // Outside the table nothing is converted.
+  const double from_m = std::max(low_m, efficiency.wavelength_m.front());
+  const double to_m = std::min(high_m, efficiency.wavelength_m.back());
+  if (!(to_m > from_m)) return share;
+  const int steps = static_cast<int>(std::ceil((to_m - from_m) / step_m));
+  const double width_m = (to_m - from_m) / steps;
+  for (int i = 0; i < steps; i += max_bands) {
+    const int count = std::min(max_bands, steps - i);
+    Bands fine{{}};
+    for (int k = 0; k <= count; ++k) fine.edges_m.push_back(from_m + (i + k) * width_m);
+    const BandValues parts = band_fractions(spectrum, fine);
+    for (int k = 0; k < count; ++k) {
+      share.current_A_W += parts[static_cast<size_t>(k)] *
+                           responsivity_A_W(efficiency, from_m + (i + k + 0.5) * width_m);
+    }
+  }
+  return share;
+}
+
+BandShare share_of(const QuantumEfficiency& efficiency, const Spectrum& spectrum, double low_m,
+                   double high_m) {
+  const bool line = spectrum.shape == Spectrum::Shape::gaussian && spectrum.fwhm_m < 2 * step_m;
+  return line ? line_share(efficiency, spectrum, low_m, high_m)
+              : smooth_share(efficiency, spectrum, low_m, high_m);
+}
+
+}  // namespace
+
+double QuantumEfficiency::at(double wavelength) const {
+  if (wavelength < wavelength_m.front() || wavelength > wavelength_m.back()) return 0.0;
+  const auto above = std::ranges::upper_bound(wavelength_m, wavelength);
+  if (above == wavelength_m.end()) return efficiency.back();
+  const auto i = static_cast<size_t>(above - wavelength_m.begin());
+  const double t = (wavelength - wavelength_m[i - 1]) / (wavelength_m[i] - wavelength_m[i - 1]);
+  return std::lerp(efficiency[i - 1], efficiency[i], t);
+}
+
+QuantumEfficiency silicon_quantum_efficiency(double peak) {
+  struct Response {
+    double wavelength_nm, relative;
+  };
+  constexpr Response measured[] = {
+      {290, 0.00}, {350, 0.27},  {400, 0.37},  {500, 0.52},  {650, 0.71},  {800, 0.88}, {900, 0.97},
+      {950, 1.00}, {1000, 0.93}, {1050, 0.58}, {1100, 0.21}, {1150, 0.05}, {1190, 0.00}};
+  double largest = 0.0;
+  for (const Response& r : measured) largest = std::max(largest, r.relative / r.wavelength_nm);
+  QuantumEfficiency table;
+  for (const Response& r : measured) {
+    table.wavelength_m.push_back(1e-9 * r.wavelength_nm);
+    table.efficiency.push_back(peak * r.relative / r.wavelength_nm / largest);
+  }
+  return table;
+}
+
+double responsivity_A_W(const QuantumEfficiency& efficiency, double wavelength_m) {
+  return efficiency.at(wavelength_m) * wavelength_m * elementary_charge_C /
+         (planck_J_s * speed_of_light_m_s);
+}
+
+BandValues band_responsivity_A_W(const QuantumEfficiency& efficiency, const Bands& bands,
+                                 std::span<const WeighedSpectrum> spectra) {
+  BandValues responsivity{};
+  for (size_t b = 0; b < static_cast<size_t>(bands.count()); ++b) {
+    double power = 0.0, current = 0.0;
+    for (const WeighedSpectrum& weighed : spectra) {
+      const BandShare share =
+          share_of(efficiency, weighed.spectrum, bands.edges_m[b], bands.edges_m[b + 1]);
+      power += weighed.power * share.power;
+      current += weighed.power * share.current_A_W;
+    }
+    responsivity[b] = power > 0 ? current / power : 0.0;
+  }
+  return responsivity;
+}
+
+}  // namespace photorque

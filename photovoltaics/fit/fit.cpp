@@ -1,0 +1,166 @@
+// Fits of whole sweeps under even light.
+#include "photovoltaics/fit/fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "photovoltaics/fit/parts.h"
+
+namespace photorque {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// Fitted are I_L and the logarithms of I₀, n V_t, R_s and 1/R_sh.
+enum Parameter { light, saturation, scale, series, shunt, count };
+
+CellCurve circuit(const VectorXd& x) {
+  return CellCurve(single_diode(std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]),
+                                std::exp(-x[shunt])));
+}
+
+struct PointOfCurve {
+  double current_A;
+  double slope_S;  // −dI/dV
+  Eigen::Matrix<double, 1, count> derivatives_A;
+};
+
+// I(V) and its derivatives, from 0 = I_L − I₀ (e^{V_d/a} − 1) − G V_d − I with V_d = V + I R_s.
+PointOfCurve point_of_curve(const CellCurve& cell, const VectorXd& x, double voltage_V) {
+  const double a = std::exp(x[scale]), i0 = std::exp(x[saturation]);
+  const double rs = std::exp(x[series]), g = std::exp(x[shunt]);
+  const double current = cell.current_A(x[light], voltage_V);
+  const double diode_V = voltage_V + current * rs;
+  const double growth = std::expm1(diode_V / a), junction_S = i0 * (growth + 1.0) / a;
+  const double conductance = junction_S + g, divisor = 1.0 + conductance * rs;
+  PointOfCurve p{current, conductance / divisor, {}};
+  p.derivatives_A << 1.0, -i0 * growth, junction_S * diode_V, -conductance * current * rs,
+      -g * diode_V;
+  p.derivatives_A /= divisor;
+  return p;
+}
+
+// The covariance of the currents of one sweep, at a fitted curve, as its Cholesky factor.
+MatrixXd covariance_root(const IvSweep& sweep, const SweepNoise& noise, const VectorXd& x) {
+  const CellCurve cell = circuit(x);
+  const auto points = static_cast<Index>(sweep.voltage_V.size());
+  VectorXd from_light(points);
+  MatrixXd covariance = MatrixXd::Zero(points, points);
+  for (Index i = 0; i < points; ++i) {
+    const double v = sweep.voltage_V[static_cast<size_t>(i)];
+    const PointOfCurve p = point_of_curve(cell, x, v);
+    from_light[i] = noise.current_fraction * p.current_A;
+    const double from_voltage_A = noise.voltage_fraction * v * p.slope_S;
+    const double rounding_A = 1e-6 * noise.current_fraction * x[light];
+    covariance(i, i) = from_voltage_A * from_voltage_A + rounding_A * rounding_A;
+  }
+  for (Index i = 0; i < points; ++i) {
+    for (Index j = 0; j < points; ++j) {
+      const double apart = static_cast<double>(std::abs(i - j));
+      const double correlation = i == j ? 1.0
+                                 : noise.correlation_points > 0
+                                     ? std::exp(-apart / noise.correlation_points)
+                                     : 0.0;
+      covariance(i, j) += correlation * from_light[i] * from_light[j];
+    }
+  }
+  return covariance.llt().matrixL();
+}
+
+LeastSquaresFit fit_round(std::span<const IvSweep> sweeps, const std::vector<MatrixXd>& roots,
+                          const VectorXd& start) {
+  Index points = 0;
+  for (const IvSweep& sweep : sweeps) points += static_cast<Index>(sweep.voltage_V.size());
+  const auto whitened = [&, points](const VectorXd& x, VectorXd& residuals, MatrixXd& jacobian) {
+    residuals = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
+    jacobian.resize(points, count);
+    if (!reasonable(x)) return;
+    const CellCurve cell = circuit(x);
+    Index row = 0;
+    for (size_t s = 0; s < sweeps.size(); ++s) {
+      const Index first = row;
+      for (size_t i = 0; i < sweeps[s].voltage_V.size(); ++i, ++row) {
+        const PointOfCurve p = point_of_curve(cell, x, sweeps[s].voltage_V[i]);
+        residuals[row] = p.current_A - sweeps[s].current_A[i];
+        jacobian.row(row) = p.derivatives_A;
+      }
+      const auto root = roots[s].triangularView<Eigen::Lower>();
+      root.solveInPlace(residuals.segment(first, row - first));
+      root.solveInPlace(jacobian.middleRows(first, row - first));
+    }
+  };
+  return least_squares(start, whitened);
+}
+
+// The weights of each round are those of the curve of the round before.
+LeastSquaresFit fit_rounds(std::span<const IvSweep> sweeps, const SweepNoise& noise, VectorXd x,
+                           int rounds) {
+  LeastSquaresFit fit;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<MatrixXd> roots;
+    for (const IvSweep& sweep : sweeps) roots.push_back(covariance_root(sweep, noise, x));
+    fit = fit_round(sweeps, roots, x);
+    x = fit.parameters;
+  }
+  return fit;
+}
+
+// The sum of squares may have several minima: the best fit of one sweep from sharp and blunt knees.
+VectorXd start_from(const IvSweep& sweep, const SweepNoise& noise) {
+  const SweepEnds ends = sweep_ends(sweep);
+  LeastSquaresFit best;
+  best.squares = std::numeric_limits<double>::infinity();
+  for (const double knee : {16.0, 22.0, 30.0}) {
+    VectorXd start(Index{count});
+    start << ends.short_circuit_A, std::log(ends.short_circuit_A) - knee,
+        std::log(ends.open_circuit_V / knee),
+        std::log(0.02 * ends.open_circuit_V / ends.short_circuit_A),
+        std::log(0.01 * ends.short_circuit_A / ends.open_circuit_V);
+    const LeastSquaresFit fit = fit_rounds(std::span(&sweep, 1), noise, start, 2);
+    if (fit.squares < best.squares) best = fit;
+  }
+  if (best.parameters.size() == 0) {
+    throw InputError({}, "curves", "a sweep and noise that no diode fits",
+                     "a current-voltage curve of a lit cell and its noise");
+  }
+  return best.parameters;
+}
+
+double rms_A(std::span<const IvSweep> sweeps, const VectorXd& x) {
+  const CellCurve cell = circuit(x);
+  double squares = 0.0, points = 0.0;
+  for (const IvSweep& sweep : sweeps) {
+    for (size_t i = 0; i < sweep.voltage_V.size(); ++i, ++points) {
+      const double apart = cell.current_A(x[light], sweep.voltage_V[i]) - sweep.current_A[i];
+      squares += apart * apart;
+    }
+  }
+  return std::sqrt(squares / points);
+}
+
+}  // namespace
+
+SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
+  if (sweeps.empty()) throw InputError({}, "curves", "none", "at least one sweep");
+  for (const IvSweep& sweep : sweeps) check_sweep(sweep);
+  const LeastSquaresFit best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
+  SweepFit result;
+  const VectorXd& x = best.parameters;
+  result.variance = best.variance();
+  const VectorXd error = (best.covariance.diagonal() * result.variance).cwiseSqrt();
+  result.diode = {{x[light], error[light]},
+                  exponential(x[saturation], error[saturation]),
+                  exponential(x[scale], error[scale]),
+                  exponential(x[series], error[series]),
+                  exponential(-x[shunt], error[shunt])};
+  result.rms_A = rms_A(sweeps, x);
+  result.points = static_cast<size_t>(best.residuals);
+  return result;
+}
+
+}  // namespace photorque

@@ -1,0 +1,130 @@
+// The parameters of a cell, module or shaded string from what was measured on it.
+//
+// All fits are of one diode with the whole device as one cell: n V_t stands for n N_s kT/q of N_s
+// cells in series, resistances and voltages are the device's. Standard errors are those of least
+// squares, from the covariance (JᵀJ)⁻¹ times the variance per degree of freedom, so that they rest
+// on the scatter of the data and not on what was believed about it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/estimate.h"
+#include "photovoltaics/cell/model.h"
+#include "photovoltaics/network/curve.h"
+
+namespace photorque {
+
+// One current–voltage sweep in the order in which it was measured.
+struct IvSweep {
+  std::vector<double> voltage_V, current_A;  // of equal length, at least 6 points
+};
+
+// What is believed about its errors. Both are proportional: to the current with a correlation
+// exp(−k/length) over k points (slow drift of the light), and independent to the voltage.
+struct SweepNoise {
+  double current_fraction = 1e-3;  // > 0
+  double voltage_fraction = 5e-4;  // > 0
+  double correlation_points = 0.0;
+};
+
+struct SingleDiode {
+  Estimate photocurrent_A;
+  Estimate saturation_A;
+  Estimate scale_V;  // n V_t
+  Estimate series_ohm;
+  Estimate shunt_ohm;
+
+  CellParameters parameters(double temperature_K) const;
+};
+
+struct SweepFit {
+  SingleDiode diode;
+  double rms_A = 0.0;     // of current at the measured voltages
+  double variance = 0.0;  // per degree of freedom, in units of the noise given
+  size_t points = 0;
+};
+
+// One set of parameters for all sweeps (repeats under the same light).
+//
+// Generalised least squares in the current: the covariance of a sweep is that of its noise, with
+// the voltage's error carried over by the curve's slope, taken from the fit of the round before.
+// Exact data give their parameters back to about 1e-12. Throws InputError for a sweep of less than
+// six points or without a short or open circuit in reach.
+SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise);
+
+// Sweeps whose voltages were set in equal steps from zero (repeats of one ramp): the step is the
+// mean over all points, so that the noise of single voltages, which blurs the steep end of the
+// curve, falls out. The noise left is that of the mean. Throws InputError unless all sweeps have
+// the same number of points, at least six, and steps equal within 20 times the noise.
+struct EvenSweeps {
+  std::vector<IvSweep> sweeps;
+  SweepNoise noise;
+};
+EvenSweeps with_even_steps(std::span<const IvSweep> sweeps, const SweepNoise& noise);
+
+// The figures of a datasheet, or of one measured curve.
+struct RatedPoint {
+  double irradiance_W_m2 = 1000.0;
+  double temperature_K = 298.15;
+  double short_circuit_A = 0.0;
+  double open_circuit_V = 0.0;
+  double maximum_A = 0.0;
+  double maximum_V = 0.0;
+};
+
+// How short-circuit current and open-circuit voltage change with temperature, as datasheets say.
+struct TemperatureSlopes {
+  double short_circuit_1_K = 0.0;  // fraction per kelvin
+  double open_circuit_1_K = -3e-3;
+};
+
+// How well the figures of a datasheet are known, one independently of the other: rounded to a step,
+// which is a standard deviation of step/√12, and off by a share of themselves (one sigma).
+struct RatedTolerance {
+  double step_A = 0.0, step_V = 0.0;
+  double fraction = 0.0;
+};
+
+// The steps in which figures are written: the last decimal that any current, or any voltage, has,
+// since figures of one kind are printed alike (22.0 is not to be told from 22).
+RatedTolerance written_steps(std::span<const RatedPoint> points);
+
+struct RatedFit {
+  SingleDiode diode;                  // photocurrent at the first point
+  CellModel model;                    // of the whole device, reference_area_m2 = 1
+  double gap_error_eV = 0.0;          // standard error of the model's gap
+  double short_circuit_A_m2_W = 0.0;  // short-circuit current over irradiance at the first point
+  double rms = 0.0;                   // relative, over V_oc, I_mp and V_mp of the points given
+
+  // What the device gives under other conditions.
+  RatedPoint predict(double irradiance_W_m2, double temperature_K) const;
+};
+
+// Four parameters (I₀, n V_t, R_s, R_sh) by least squares in the relative errors of V_oc, I_mp and
+// V_mp at the points, all at one temperature; at each, the photocurrent is that of its short
+// circuit. One point leaves one parameter open: `ideality_guess_V` (n V_t of the whole device) is
+// then kept. The gap follows from the slope of the open-circuit voltage. Throws InputError for
+// figures that no curve can have.
+//
+// Standard errors: the fit is repeated with every figure moved by its standard deviation both ways,
+// and half the differences add up in quadrature; or, if larger, the scatter of the residuals where
+// there are more figures than parameters. What one diode cannot describe at all is in neither, nor
+// is, for one point alone, that the ideality was assumed.
+RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
+                          double ideality_guess_V, const RatedTolerance& tolerance = {});
+
+// A string of like substrings, each with a bypass diode, under light that differs between them.
+struct ShadedFit {
+  SingleDiode substring;                  // photocurrent of the brightest
+  std::vector<Estimate> photocurrents_A;  // by falling light
+  Estimate bypass_drop_V;
+  double rms_A = 0.0;
+
+  ArrayCurve curve(double temperature_K) const;
+};
+
+// Photocurrents of `substrings` ≥ 1 like substrings, and what they share, from one sweep.
+ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoise& noise);
+
+}  // namespace photorque

@@ -1,0 +1,262 @@
+// Fits of datasheet figures.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "photovoltaics/fit/parts.h"
+
+namespace photorque {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+enum Parameter { saturation, scale, series, shunt, count };
+
+CellCurve circuit(const VectorXd& x) {
+  return CellCurve(single_diode(std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]),
+                                std::exp(-x[shunt])));
+}
+
+void check(std::span<const RatedPoint> points) {
+  if (points.empty()) throw InputError({}, "datasheet", "no points", "at least one");
+  for (const RatedPoint& p : points) {
+    const bool good = p.irradiance_W_m2 > 0 && p.temperature_K > 0 &&
+                      p.short_circuit_A > p.maximum_A && p.maximum_A > 0 &&
+                      p.open_circuit_V > p.maximum_V && p.maximum_V > 0;
+    const double fill = p.maximum_A * p.maximum_V / (p.short_circuit_A * p.open_circuit_V);
+    if (!good || fill < 0.25) {
+      throw InputError({}, "datasheet", "figures that no cell can have",
+                       "0.25 I_sc V_oc < I_mp V_mp with I_mp < I_sc and V_mp < V_oc");
+    }
+    if (std::abs(p.temperature_K - points[0].temperature_K) > 0.5) {
+      throw InputError({}, "datasheet", "points at different temperatures",
+                       "one temperature; slopes say how it changes");
+    }
+  }
+}
+
+VectorXd relative_errors(std::span<const RatedPoint> points, const VectorXd& x) {
+  VectorXd errors = VectorXd::Constant(3 * static_cast<Index>(points.size()),
+                                       std::numeric_limits<double>::infinity());
+  if (!reasonable(x)) return errors;
+  const CellCurve cell = circuit(x);
+  Index row = 0;
+  for (const RatedPoint& p : points) {
+    const double light_A = cell.photocurrent_A(p.short_circuit_A);
+    const CellOperatingPoint best = cell.maximum_power(light_A);
+    errors[row++] = cell.open_circuit_V(light_A) / p.open_circuit_V - 1.0;
+    errors[row++] = best.current_A / p.maximum_A - 1.0;
+    errors[row++] = best.voltage_V / p.maximum_V - 1.0;
+  }
+  return errors;
+}
+
+LeastSquaresFit fit_from(const VectorXd& start, std::span<const RatedPoint> points,
+                         double guess_V) {
+  // Without a second point a weak pull keeps n V_t where it was guessed.
+  const bool fixed_scale = points.size() == 1;
+  const auto residuals = [&](const VectorXd& x) {
+    VectorXd all = relative_errors(points, x);
+    if (!fixed_scale) return all;
+    all.conservativeResize(all.size() + 1);
+    all[all.size() - 1] = x[scale] - std::log(guess_V);
+    return all;
+  };
+  return least_squares(start, with_differences(residuals));
+}
+
+LeastSquaresFit fit(std::span<const RatedPoint> points, double guess_V) {
+  const RatedPoint& first = points[0];
+  LeastSquaresFit best;
+  best.squares = std::numeric_limits<double>::infinity();
+  for (const double blunter : {1.0, 1.5}) {
+    for (const double resistive : {0.3, 3.0}) {
+      const double a = guess_V * (points.size() == 1 ? 1.0 : blunter);
+      VectorXd start(Index{count});
+      start << std::log(first.short_circuit_A) - first.open_circuit_V / a, std::log(a),
+          std::log(0.02 * resistive * first.open_circuit_V / first.short_circuit_A),
+          std::log(0.01 * first.short_circuit_A / first.open_circuit_V);
+      const LeastSquaresFit trial = fit_from(start, points, guess_V);
+      if (trial.squares < best.squares) best = trial;
+    }
+  }
+  return best;
+}
+
+// E₀ with which V_oc changes as the datasheet says, over the next 10 kelvin, while the light's
+// current grows by `growth_1_K`.
+double gap_eV(const CellModel& model, double light_A, double growth_1_K, double slope_V_K) {
+  constexpr double step_K = 10.0;
+  const double temperature_K = model.reference.temperature_K;
+  const double wanted_V = CellCurve(model.reference).open_circuit_V(light_A) + step_K * slope_V_K;
+  double low = 0.01, high = 20.0;
+  for (int i = 0; i < 60; ++i) {
+    CellModel trial = model;
+    trial.gap_eV = std::midpoint(low, high);
+    const double v = CellCurve(parameters_at(trial, 1.0, temperature_K + step_K))
+                         .open_circuit_V(light_A * (1.0 + step_K * growth_1_K));
+    (v > wanted_V ? low : high) = trial.gap_eV;
+  }
+  return std::midpoint(low, high);
+}
+
+// Without errors.
+RatedFit described(const VectorXd& x, std::span<const RatedPoint> points,
+                   const TemperatureSlopes& slopes) {
+  const RatedPoint& first = points[0];
+  RatedFit result;
+  result.diode = {{0.0, 0.0},
+                  exponential(x[saturation], 0.0),
+                  exponential(x[scale], 0.0),
+                  exponential(x[series], 0.0),
+                  exponential(-x[shunt], 0.0)};
+  result.model.reference = result.diode.parameters(first.temperature_K);
+  const double light_A = CellCurve(result.model.reference).photocurrent_A(first.short_circuit_A);
+  result.diode.photocurrent_A = {light_A, 0.0};
+  result.model.gap_eV = gap_eV(result.model, light_A, slopes.short_circuit_1_K,
+                               slopes.open_circuit_1_K * first.open_circuit_V);
+  result.model.photocurrent_slope_1_K = slopes.short_circuit_1_K;
+  result.short_circuit_A_m2_W = first.short_circuit_A / first.irradiance_W_m2;
+  result.rms = std::sqrt(relative_errors(points, x).squaredNorm() /
+                         (3.0 * static_cast<double>(points.size())));
+  return result;
+}
+
+// Everything that has a standard error, in one row.
+constexpr Index with_errors = 6;
+using FigureErrors = Eigen::Vector<double, with_errors>;
+FigureErrors figures_of(const RatedFit& fit) {
+  const SingleDiode& d = fit.diode;
+  return {d.photocurrent_A.value, d.saturation_A.value, d.scale_V.value,
+          d.series_ohm.value,     d.shunt_ohm.value,    fit.model.gap_eV};
+}
+
+// From the covariance of the parameters, by central differences.
+FigureErrors scatter_errors(const LeastSquaresFit& fitted, std::span<const RatedPoint> points,
+                            const TemperatureSlopes& slopes) {
+  constexpr double step = 1e-4;  // of logarithms
+  Eigen::Matrix<double, with_errors, Eigen::Dynamic> jacobian(with_errors, Index{count});
+  for (Index k = 0; k < Index{count}; ++k) {
+    const auto moved = [&](double by) {
+      VectorXd x = fitted.parameters;
+      x[k] += by;
+      return figures_of(described(x, points, slopes));
+    };
+    jacobian.col(k) = (moved(step) - moved(-step)) / (2.0 * step);
+  }
+  return (jacobian * fitted.covariance * jacobian.transpose() * fitted.variance())
+      .diagonal()
+      .cwiseMax(0.0)
+      .cwiseSqrt();
+}
+
+double rounded_sigma(double figure, double step, double fraction) {
+  return std::hypot(step / std::sqrt(12.0), fraction * figure);
+}
+
+// Half the difference of the fits with one figure moved up and down by its standard deviation, in
+// quadrature over all figures.
+FigureErrors rounding_errors(const VectorXd& start, std::span<const RatedPoint> points,
+                             const TemperatureSlopes& slopes, double guess_V,
+                             const RatedTolerance& tolerance) {
+  struct Figure {
+    double RatedPoint::*member;
+    double step;
+  };
+  const std::array<Figure, 4> all = {{{&RatedPoint::short_circuit_A, tolerance.step_A},
+                                      {&RatedPoint::open_circuit_V, tolerance.step_V},
+                                      {&RatedPoint::maximum_A, tolerance.step_A},
+                                      {&RatedPoint::maximum_V, tolerance.step_V}}};
+  FigureErrors squares = FigureErrors::Zero();
+  for (size_t p = 0; p < points.size(); ++p) {
+    for (const Figure& figure : all) {
+      const double sigma = rounded_sigma(points[p].*figure.member, figure.step, tolerance.fraction);
+      if (sigma == 0.0) continue;
+      const auto moved = [&](double by) {
+        std::vector<RatedPoint> trial(points.begin(), points.end());
+        trial[p].*figure.member += by;
+        return figures_of(described(fit_from(start, trial, guess_V).parameters, trial, slopes));
+      };
+      squares += (0.5 * (moved(sigma) - moved(-sigma))).cwiseAbs2();
+    }
+  }
+  return squares.cwiseSqrt();
+}
+
+// The unit of the last decimal of a number, as its first nine digits show it.
+double last_decimal(double number) {
+  std::array<char, 32> text;
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, 9);
+  const std::string shown(text.data(), end.ptr);
+  const size_t exponent_at = std::min(shown.find('e'), shown.size());
+  const size_t point = std::min(shown.find('.'), exponent_at);
+  const size_t decimals = exponent_at - std::min(point + 1, exponent_at);
+  int exponent = 0;
+  if (exponent_at < shown.size()) exponent = std::stoi(shown.substr(exponent_at + 1));
+  return std::pow(10.0, exponent - static_cast<int>(decimals));
+}
+
+}  // namespace
+
+RatedTolerance written_steps(std::span<const RatedPoint> points) {
+  RatedTolerance steps{1.0, 1.0, 0.0};
+  for (const RatedPoint& p : points) {
+    for (const double i : {p.short_circuit_A, p.maximum_A}) {
+      steps.step_A = std::min(steps.step_A, last_decimal(i));
+    }
+    for (const double v : {p.open_circuit_V, p.maximum_V}) {
+      steps.step_V = std::min(steps.step_V, last_decimal(v));
+    }
+  }
+  return steps;
+}
+
+RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
+                          double ideality_guess_V, const RatedTolerance& tolerance) {
+  check(points);
+  if (!(ideality_guess_V > 0)) {
+    throw InputError({}, "datasheet", "n V_t = " + std::to_string(ideality_guess_V),
+                     "a number > 0");
+  }
+  const LeastSquaresFit best = fit(points, ideality_guess_V);
+  if (best.parameters.size() == 0) {
+    throw InputError({}, "datasheet",
+                     std::to_string(points[0].open_circuit_V) +
+                         " V at open circuit, that no diode of n V_t = " +
+                         std::to_string(ideality_guess_V) + " V gives",
+                     "the figures of one cell, or of a module with its cells_in_series");
+  }
+  RatedFit result = described(best.parameters, points, slopes);
+  const FigureErrors errors =
+      scatter_errors(best, points, slopes)
+          .cwiseMax(rounding_errors(best.parameters, points, slopes, ideality_guess_V, tolerance));
+  SingleDiode& d = result.diode;
+  Index row = 0;
+  for (Estimate* of :
+       {&d.photocurrent_A, &d.saturation_A, &d.scale_V, &d.series_ohm, &d.shunt_ohm}) {
+    of->standard_error = errors[row++];
+  }
+  result.gap_error_eV = errors[row];
+  return result;
+}
+
+RatedPoint RatedFit::predict(double irradiance_W_m2, double temperature_K) const {
+  const CellCurve cell(parameters_at(model, 1.0, temperature_K));
+  const double short_circuit_A =
+      short_circuit_A_m2_W * irradiance_W_m2 * photocurrent_factor(model, temperature_K);
+  const double light_A = cell.photocurrent_A(short_circuit_A);
+  const CellOperatingPoint best = cell.maximum_power(light_A);
+  return {irradiance_W_m2, temperature_K, short_circuit_A, cell.open_circuit_V(light_A),
+          best.current_A,  best.voltage_V};
+}
+
+}  // namespace photorque

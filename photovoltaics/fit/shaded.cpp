@@ -1,0 +1,149 @@
+// Fits of a string in uneven light.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/errors.h"
+#include "core/numerics/root.h"
+#include "photovoltaics/fit/parts.h"
+
+namespace photorque {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd;
+
+// Logarithms of I₀, n V_t, R_s, 1/R_sh and the bypass diodes' drop; then of each photocurrent.
+enum Parameter { saturation, scale, series, shunt, drop, first_light };
+
+// V(I) of the string is explicit; I(V) is a search along it.
+class ShadedString {
+ public:
+  explicit ShadedString(const VectorXd& x)
+      : cell_(single_diode(std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]),
+                           std::exp(-x[shunt]))),
+        drop_V_(std::exp(x[drop])) {
+    for (Index k = first_light; k < x.size(); ++k) light_A_.push_back(std::exp(x[k]));
+  }
+
+  FunctionAt voltage(double current_A) const {
+    FunctionAt sum;
+    for (const double light : light_A_) {
+      const double diode_V = cell_.diode_voltage_V(light - current_A);
+      const double v = diode_V - current_A * cell_.parameters().series_ohm;
+      sum.value += std::max(v, -drop_V_);
+      if (v > -drop_V_) {
+        sum.slope -= 1.0 / cell_.dark(diode_V).slope_S + cell_.parameters().series_ohm;
+      }
+    }
+    return sum;
+  }
+  double current_A(double voltage_V, double guess_A) const {
+    const double most_A = 1.5 * *std::ranges::max_element(light_A_);
+    return falling_root(-most_A, most_A, guess_A, 1e-12, [&](double i) {
+      FunctionAt f = voltage(i);
+      f.value -= voltage_V;
+      if (f.slope == 0.0) f.slope = -1e-9;  // every substring bypassed
+      return f;
+    });
+  }
+
+ private:
+  CellCurve cell_;
+  double drop_V_;
+  std::vector<double> light_A_;
+};
+
+// The current in the middle of each substring's share of the voltage is about that substring's.
+VectorXd first_guess(const IvSweep& sweep, int substrings, double knee) {
+  const SweepEnds ends = sweep_ends(sweep);
+  const double share_V = ends.open_circuit_V / substrings, a = share_V / knee;
+  VectorXd x(Index{first_light} + substrings);
+  x << std::log(ends.short_circuit_A) - knee, std::log(a),
+      std::log(0.02 * share_V / ends.short_circuit_A),
+      std::log(0.002 * ends.short_circuit_A / share_V), std::log(0.5), VectorXd::Zero(substrings);
+  for (int k = 0; k < substrings; ++k) {
+    const double middle_V = (k + 0.5) * share_V;
+    size_t nearest = 0;
+    for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+      if (std::abs(sweep.voltage_V[i] - middle_V) < std::abs(sweep.voltage_V[nearest] - middle_V))
+        nearest = i;
+    }
+    x[first_light + k] = std::log(std::max(sweep.current_A[nearest], 1e-3 * ends.short_circuit_A));
+  }
+  return x;
+}
+
+// Errors of the current over their standard deviations, the voltage's carried over by the slope.
+VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double most_A,
+                         const VectorXd& x) {
+  const auto points = static_cast<Index>(sweep.voltage_V.size());
+  VectorXd errors = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
+  if (!reasonable(x)) return errors;
+  const ShadedString string(x);
+  for (Index i = 0; i < points; ++i) {
+    const double v = sweep.voltage_V[static_cast<size_t>(i)],
+                 measured_A = sweep.current_A[static_cast<size_t>(i)];
+    const double current_A = string.current_A(v, measured_A);
+    const double slope = string.voltage(current_A).slope;
+    const double from_voltage_A = slope < 0 ? noise.voltage_fraction * std::abs(v) / -slope : 0.0;
+    const double from_light_A = noise.current_fraction * most_A;
+    errors[i] = (current_A - measured_A) / std::hypot(from_voltage_A, from_light_A);
+  }
+  return errors;
+}
+
+}  // namespace
+
+ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoise& noise) {
+  check_sweep(sweep);
+  const auto parameters = static_cast<size_t>(first_light + substrings);
+  if (substrings < 1 || sweep.voltage_V.size() <= parameters) {
+    throw InputError({}, "substrings", std::to_string(substrings),
+                     "at least 1, and fewer parameters than points");
+  }
+  const double most_A = sweep_ends(sweep).short_circuit_A;
+  constexpr double knee = 20.0;  // open-circuit voltage over n V_t of silicon: 18 to 27
+  const LeastSquaresFit best =
+      least_squares(first_guess(sweep, substrings, knee), with_differences([&](const VectorXd& x) {
+                      return weighted_errors(sweep, noise, most_A, x);
+                    }));
+  const VectorXd& x = best.parameters;
+  const VectorXd error = (best.covariance.diagonal() * best.variance()).cwiseSqrt();
+  ShadedFit fit;
+  for (int k = 0; k < substrings; ++k) {
+    fit.photocurrents_A.push_back(exponential(x[first_light + k], error[first_light + k]));
+  }
+  std::ranges::sort(fit.photocurrents_A, std::greater<>(), &Estimate::value);
+  fit.substring = {fit.photocurrents_A[0], exponential(x[saturation], error[saturation]),
+                   exponential(x[scale], error[scale]), exponential(x[series], error[series]),
+                   exponential(-x[shunt], error[shunt])};
+  fit.bypass_drop_V = exponential(x[drop], error[drop]);
+  const ShadedString string(x);
+  double squares = 0.0;
+  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+    const double apart =
+        string.current_A(sweep.voltage_V[i], sweep.current_A[i]) - sweep.current_A[i];
+    squares += apart * apart;
+  }
+  fit.rms_A = std::sqrt(squares / static_cast<double>(sweep.voltage_V.size()));
+  return fit;
+}
+
+ArrayCurve ShadedFit::curve(double temperature_K) const {
+  Diode bypass;
+  bypass.kind = Diode::Kind::clamp;
+  bypass.drop_V = bypass_drop_V.value;
+  const auto table = std::make_shared<const DiodeVoltageTable>(
+      CellCurve(substring.parameters(temperature_K)), 2.0 * photocurrents_A[0].value);
+  ArrayWiring wiring{{{}}};
+  std::vector<double> light_A;
+  for (size_t k = 0; k < photocurrents_A.size(); ++k) {
+    wiring.strings[0].substrings.push_back({{{static_cast<int>(k)}}, bypass});
+    light_A.push_back(photocurrents_A[k].value);
+  }
+  return {wiring, CellTables(light_A.size(), table), light_A};
+}
+
+}  // namespace photorque

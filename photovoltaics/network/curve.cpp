@@ -1,0 +1,278 @@
+#include "photovoltaics/network/curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "core/errors.h"
+#include "core/numerics/root.h"
+
+namespace photorque {
+namespace {
+
+// Where a diode switches that does not.
+constexpr double never = std::numeric_limits<double>::infinity();
+// Relative step of a string's current at which its solution ends: the error is of second order.
+constexpr double fine = 1e-9;
+
+void check(const ArrayWiring& wiring, size_t cells) {
+  std::vector<char> used(cells, 0);
+  for (const auto& string : wiring.strings) {
+    if (string.substrings.empty()) throw InputError({}, "array", "an empty string", "substrings");
+    for (const auto& substring : string.substrings) {
+      if (substring.rows.empty()) throw InputError({}, "array", "an empty substring", "cells");
+      for (const auto& row : substring.rows) {
+        if (row.empty()) throw InputError({}, "array", "an empty row", "cells");
+        for (const int cell : row) {
+          if (cell < 0 || static_cast<size_t>(cell) >= cells || used[static_cast<size_t>(cell)]) {
+            throw InputError({}, "array", "cell " + std::to_string(cell),
+                             "each of the " + std::to_string(cells) + " cells at most once");
+          }
+          used[static_cast<size_t>(cell)] = 1;
+        }
+      }
+    }
+  }
+  if (wiring.strings.empty()) throw InputError({}, "array", "no strings", "at least one");
+}
+
+// I(V) beyond a point of a string from its derivatives there: a straight line and an exponential,
+// as a shunt and a diode have it; to third order any curve.
+double extrapolated_A(const StringState& a, double voltage_V) {
+  const Slopes current = inverted(a.slopes());
+  const double h = voltage_V - a.voltage_V;
+  const double growth = current.curvature != 0.0 ? h * current.third / current.curvature : 0.0;
+  const double bend = std::abs(growth) > 1e-3 && std::abs(growth) < 30.0
+                          ? (std::expm1(growth) - growth) / (growth * growth)
+                          : 0.5 + growth / 6.0;
+  return a.current_A - h * (current.slope - h * current.curvature * bend);
+}
+
+// Between two points, from values and slopes.
+double hermite_A(const StringState& a, const StringState& b, double voltage_V) {
+  const double width = b.voltage_V - a.voltage_V, t = (voltage_V - a.voltage_V) / width;
+  const double rise = b.current_A - a.current_A;
+  const double slope_a = -width / a.slope_ohm, slope_b = -width / b.slope_ohm;
+  return a.current_A + t * (slope_a + t * (3 * rise - 2 * slope_a - slope_b +
+                                           t * (slope_a + slope_b - 2 * rise)));
+}
+
+}  // namespace
+
+ArrayCurve::ArrayCurve(const ArrayWiring& wiring, const CellTables& tables,
+                       const std::vector<double>& photocurrents_A)
+    : tables_(tables), cells_(photocurrents_A.size()) {
+  if (tables.size() != cells_) {
+    throw InputError({}, "array", std::to_string(tables.size()) + " cell tables",
+                     "one per photocurrent");
+  }
+  check(wiring, cells_);
+  strings_.reserve(wiring.strings.size());
+  for (const auto& string : wiring.strings) strings_.emplace_back(string, tables, photocurrents_A);
+  if (!by_current()) group_strings();
+  for (const StringCurve& string : strings_) switches_.push_back(switches_of(string));
+  end_x_ = find_end_x();
+}
+
+void ArrayCurve::group_strings() {
+  fours_ = FourStrings::groups(strings_);
+  std::vector<char> grouped(strings_.size(), 0);
+  for (const FourStrings& four : fours_) {
+    for (const size_t s : four.members()) grouped[s] = 1;
+  }
+  for (size_t s = 0; s < grouped.size(); ++s) {
+    if (grouped[s] == 0) singles_.push_back(s);
+  }
+}
+
+ArrayPoint ArrayCurve::point(double x, double y) const {
+  return by_current() ? ArrayPoint{y, x} : ArrayPoint{x, y};
+}
+
+ArrayCurve::Node ArrayCurve::make_node() const {
+  Node node;
+  node.strings.reserve(strings_.size());
+  for (const StringCurve& string : strings_) node.strings.push_back(string.make_state());
+  return node;
+}
+
+void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, Node& node,
+                          double tolerance, const Node* low, const Node* high) const {
+  node.x = x;
+  if (by_current()) {
+    StringState& state = node.strings[0];
+    strings_[0].at_current(x, regimes[0], tolerance, state);
+    node.y = state.voltage_V;
+    node.slope = state.slope_ohm;
+    node.curvature = state.curvature_V_A2;
+    node.third = state.third_V_A3;
+    return;
+  }
+  // Four at a time where that is possible.
+  const bool cells_too = std::isfinite(tolerance);
+  const auto alone = [&](size_t s, const CurrentGuess& guess) {
+    strings_[s].at_voltage(x, regimes[s], guess.low_A, guess.high_A, tolerance, node.strings[s]);
+  };
+  for (const FourStrings& four : fours_) {
+    FourStrings::Lanes low_A, high_A;
+    for (Eigen::Index lane = 0; lane < 4; ++lane) {
+      const size_t s = four.member(static_cast<size_t>(lane));
+      const CurrentGuess guess = guess_current(s, x, node, low, high);
+      low_A[lane] = guess.low_A;
+      high_A[lane] = guess.high_A;
+    }
+    bool solved = false;
+    if (x >= 0.0) {
+      FourStrings::State state = four.read(node.strings);
+      solved = four.solve(x, low_A.max(0.0), high_A, tolerance, state,
+                          cells_too ? std::span(node.strings) : std::span<StringState>());
+      if (solved) four.write(state, node.strings);
+    }
+    for (size_t i = 0; i < four.members().size(); ++i) {
+      if (solved && four.solves(i, x)) continue;
+      const auto lane = static_cast<Eigen::Index>(i);
+      alone(four.member(i), {low_A[lane], high_A[lane]});
+    }
+  }
+  for (const size_t s : singles_) alone(s, guess_current(s, x, node, low, high));
+  node.sum_strings();
+}
+
+ArrayCurve::CurrentGuess ArrayCurve::guess_current(size_t s, double x, Node& node, const Node* low,
+                                                   const Node* high) const {
+  StringState& state = node.strings[s];
+  if (low != nullptr && high != nullptr) {
+    state.current_A = hermite_A(low->strings[s], high->strings[s], x);
+    return {high->strings[s].current_A, low->strings[s].current_A};
+  }
+  state.current_A = state.slope_ohm > 0.0 ? extrapolated_A(state, x) : strings_[s].first_guess_A();
+  return {0.0, strings_[s].largest_photocurrent_A()};
+}
+
+void ArrayCurve::Node::sum_strings() {
+  y = 0.0;
+  Slopes sum;
+  for (const StringState& state : strings) {
+    y += state.current_A;
+    sum += inverted(state.slopes());
+  }
+  slope = sum.slope;
+  curvature = sum.curvature;
+  third = sum.third;
+}
+
+void ArrayCurve::enter(const Piece& piece, const Piece& last, double tolerance, Node& node) const {
+  if (by_current()) {
+    evaluate(piece.low_x, piece.regimes, node, tolerance);
+    return;
+  }
+  for (size_t s = 0; s < strings_.size(); ++s) {
+    if (piece.regimes[s] == last.regimes[s]) continue;
+    strings_[s].at_voltage(piece.low_x, piece.regimes[s], 0.0, strings_[s].largest_photocurrent_A(),
+                           tolerance, node.strings[s]);
+  }
+  node.sum_strings();
+}
+
+ArrayCurve::Switches ArrayCurve::switches_of(const StringCurve& string) const {
+  Switches switches{string.clamp_currents_A(), never};
+  if (by_current()) return switches;
+  StringState state = string.make_state();
+  for (double& clamp : switches.clamp_x) {
+    if (clamp == never) continue;
+    string.at_current(clamp, string.regime_at(clamp), fine, state);
+    clamp = state.voltage_V;
+  }
+  if (string.has_blocking_clamp()) switches.blocked_x = string.open_circuit_V();
+  return switches;
+}
+
+std::vector<StringRegime> ArrayCurve::regimes_at(double x) const {
+  std::vector<StringRegime> regimes(strings_.size());
+  for (size_t s = 0; s < strings_.size(); ++s) {
+    for (const double clamp_x : switches_[s].clamp_x) {
+      const bool clamped = clamp_x != never && (by_current() ? x >= clamp_x : x < clamp_x);
+      regimes[s].clamped.push_back(clamped);
+    }
+    regimes[s].blocked = x >= switches_[s].blocked_x;
+  }
+  return regimes;
+}
+
+double ArrayCurve::y_at(double x) const {
+  Node node = make_node();
+  evaluate(x, regimes_at(x), node, fine);
+  return node.y;
+}
+
+double ArrayCurve::find_end_x() const {
+  double low = 0.0, high = 0.0;
+  if (by_current()) {
+    high = strings_[0].largest_photocurrent_A();
+  } else {
+    low = std::numeric_limits<double>::infinity();
+    for (const StringCurve& string : strings_) {
+      low = std::min(low, string.open_circuit_V());
+      high = std::max(high, string.open_circuit_V());
+    }
+  }
+  low = std::max(low, 0.0);
+  if (!(high > low)) return std::max(high, 0.0);
+  Node node = make_node();
+  evaluate(high, regimes_at(high), node, fine);
+  if (node.y >= 0.0) return high;
+  const double guess = by_current() ? std::midpoint(low, high) : high + node.y / node.slope;
+  return falling_root(low, high, guess, 1e-9, [&](double x) {
+    evaluate(x, regimes_at(x), node, fine);
+    return FunctionAt{node.y, -node.slope, node.curvature, node.third};
+  });
+}
+
+double ArrayCurve::x_at(double y) const {
+  if (end_x_ == 0.0) return 0.0;
+  Node node = make_node();
+  return falling_root(0.0, end_x_, 0.5 * end_x_, 1e-9, [&](double x) {
+    evaluate(x, regimes_at(x), node, fine);
+    return FunctionAt{node.y - y, -node.slope, node.curvature, node.third};
+  });
+}
+
+double ArrayCurve::current_A(double voltage_V) const {
+  return by_current() ? x_at(voltage_V) : y_at(voltage_V);
+}
+
+double ArrayCurve::voltage_V(double current_A) const {
+  return by_current() ? y_at(current_A) : x_at(current_A);
+}
+
+std::vector<ArrayCurve::Piece> ArrayCurve::pieces() const {
+  std::vector<double> edges = {0.0, end_x_};
+  for (const Switches& switches : switches_) {
+    edges.insert(edges.end(), switches.clamp_x.begin(), switches.clamp_x.end());
+    edges.push_back(switches.blocked_x);
+  }
+  std::erase_if(edges, [&](double x) { return !(x >= 0.0 && x <= end_x_); });
+  std::ranges::sort(edges);
+  std::vector<Piece> pieces;
+  for (size_t i = 0; i + 1 < edges.size(); ++i) {
+    if (edges[i + 1] > edges[i]) {
+      pieces.push_back({edges[i], edges[i + 1], regimes_at(std::midpoint(edges[i], edges[i + 1]))});
+    }
+  }
+  return pieces;
+}
+
+CellStates ArrayCurve::cells_at(double voltage_V) const {
+  CellStates states{std::vector<double>(cells_, 0.0), std::vector<double>(cells_, 0.0)};
+  const double x = by_current() ? x_at(voltage_V) : voltage_V;
+  Node node = make_node();
+  evaluate(x, regimes_at(x), node, fine);
+  for (size_t s = 0; s < strings_.size(); ++s) {
+    strings_[s].cells_at(node.strings[s].current_A, states.voltages_V, states.currents_A);
+  }
+  return states;
+}
+
+}  // namespace photorque

@@ -1,0 +1,116 @@
+// The current–voltage curve of an array under given light, exactly.
+//
+// Between breakpoints (where an ideal bypass or blocking diode begins to conduct) the curve is a
+// smooth function: one string is V(I), explicit through the cells' tables; several strings are
+// I(V), each string solved for its current. `x` is that independent variable, `y` the other one.
+//
+// Maxima of the power x·y are zeros of P′ = y − x·slope. At a breakpoint the slope falls, so P′
+// jumps upwards and no maximum lies there. Inside a piece, bounds on slope and curvature over an
+// interval follow from the diode voltages at its ends: with D‴ > 0 (true while n V_t ≪ |V_br|) D″
+// is monotone and D′ has its one minimum where D″ = 0; sums and reciprocals of such bounds cover
+// the network (photovoltaic_slope.h). An interval is halved until the bounds show that P′ has no
+// zero in it, or is monotone in it and so has at most one. All local maxima are found thereby and
+// none is missed.
+#pragma once
+
+#include <vector>
+
+#include "photovoltaics/network/lanes.h"
+#include "photovoltaics/network/string.h"
+
+namespace photorque {
+
+struct ArrayPoint {
+  double voltage_V = 0.0;
+  double current_A = 0.0;
+  double power_W() const { return voltage_V * current_A; }
+};
+
+// The state of every cell, indexed as in the wiring.
+struct CellStates {
+  std::vector<double> voltages_V;  // < 0: reverse-biased
+  std::vector<double> currents_A;
+};
+
+class ArrayCurve {
+ public:
+  // `tables[i]` and `photocurrents_A[i]` (≥ 0) belong to cell i of the wiring; like cells share a
+  // table. Throws InputError for a wiring without cells or with a cell that is not there.
+  ArrayCurve(const ArrayWiring& wiring, const CellTables& tables,
+             const std::vector<double>& photocurrents_A);
+
+  double short_circuit_A() const { return by_current() ? end_x_ : current_A(0.0); }
+  double open_circuit_V() const { return by_current() ? voltage_V(0.0) : end_x_; }
+  // For voltages from 0 to the open circuit's and currents from 0 to the short circuit's.
+  double current_A(double voltage_V) const;
+  double voltage_V(double current_A) const;
+
+  // All local maxima of the power between short and open circuit, by rising voltage. Empty in the
+  // dark. Powers are exact to 1e-12 relative.
+  std::vector<ArrayPoint> maxima() const { return scan(1).maxima; }
+  // The largest of maxima(); zero in the dark.
+  ArrayPoint maximum_power() const;
+  // Points of the curve by rising voltage, both ends and all breakpoints among them, x in at least
+  // `intervals` (≥ 1) steps; with all local maxima, found between them.
+  struct Scan {
+    std::vector<ArrayPoint> points;
+    std::vector<ArrayPoint> maxima;
+  };
+  Scan scan(int intervals) const;
+  CellStates cells_at(double voltage_V) const;
+
+ private:
+  struct Node {
+    double x = 0.0, y = 0.0, slope = 0.0, curvature = 0.0, third = 0.0;
+    std::vector<StringState> strings;
+    void sum_strings();
+    double power_slope() const { return y - x * slope; }
+    double power_curvature() const { return -2.0 * slope + x * curvature; }
+    double power_third() const { return 3.0 * curvature + x * third; }
+  };
+  struct Piece {
+    double low_x = 0.0, high_x = 0.0;
+    std::vector<StringRegime> regimes;
+  };
+  class Search;
+
+  // Where a string's ideal diodes begin to conduct or block, in terms of x.
+  struct Switches {
+    std::vector<double> clamp_x;  // per substring; ∞ without a clamp
+    double blocked_x = 0.0;       // ∞ without one
+  };
+
+  bool by_current() const { return strings_.size() == 1; }
+  Node make_node() const;
+  // `tolerance` is that of StringCurve::at_voltage(); `low` and `high`, if given, are nodes of the
+  // piece at either side of x.
+  void evaluate(double x, const std::vector<StringRegime>& regimes, Node& node, double tolerance,
+                const Node* low = nullptr, const Node* high = nullptr) const;
+  // Between which currents a string's lies; where the search begins goes to the node's state.
+  struct CurrentGuess {
+    double low_A, high_A;
+  };
+  CurrentGuess guess_current(size_t s, double x, Node& node, const Node* low,
+                             const Node* high) const;
+  void group_strings();
+  // From the end of `last` to the beginning of `piece` after it: only strings whose diodes switch
+  // there are evaluated again.
+  void enter(const Piece& piece, const Piece& last, double tolerance, Node& node) const;
+  std::vector<StringRegime> regimes_at(double x) const;
+  Switches switches_of(const StringCurve& string) const;
+  double find_end_x() const;
+  double y_at(double x) const;
+  double x_at(double y) const;
+  std::vector<Piece> pieces() const;
+  ArrayPoint point(double x, double y) const;
+
+  CellTables tables_;  // keeps alive what the strings point to
+  std::vector<StringCurve> strings_;
+  std::vector<FourStrings> fours_;  // of several strings, those that are alike
+  std::vector<size_t> singles_;     // the others
+  std::vector<Switches> switches_;
+  size_t cells_ = 0;
+  double end_x_ = 0.0;  // where y = 0
+};
+
+}  // namespace photorque

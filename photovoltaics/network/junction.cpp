@@ -1,0 +1,69 @@
+#include "photovoltaics/network/junction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+
+namespace photorque {
+
+DiodeJunction::DiodeJunction(const Diode& diode)
+    : kind(diode.kind),
+      drop_V(diode.drop_V),
+      saturation_A(diode.saturation_A),
+      series_ohm(diode.series_ohm),
+      scale_V(diode.ideality * boltzmann_J_K * diode.temperature_K / elementary_charge_C),
+      per_scale_1_V(1.0 / scale_V) {}
+
+double DiodeJunction::current_A(double junction_voltage_V) const {
+  return saturation_A * std::expm1(junction_voltage_V * per_scale_1_V);
+}
+
+// Newton's method for u + i(u) R_s = V, which is convex: from a start at or above the root it falls
+// to it, from below it jumps above first.
+double DiodeJunction::junction_V(double forward_V) const {
+  if (forward_V <= saturated_V()) return forward_V + saturation_A * series_ohm;
+  double u = forward_V;
+  if (forward_V > 0.0 && series_ohm > 0.0) {
+    u = std::min(u, scale_V * std::log1p(forward_V / (saturation_A * series_ohm)));
+  }
+  constexpr int most_rounds = 60;
+  for (int round = 0; round < most_rounds; ++round) {
+    const double through_A = current_A(u);
+    const double step =
+        (u + through_A * series_ohm - forward_V) / (1.0 + conductance_S(through_A) * series_ohm);
+    u -= step;
+    // What is left is of second order in the step over n V_t.
+    if (std::abs(step) <= 1e-9 * scale_V) break;
+  }
+  return u;
+}
+
+double DiodeJunction::slope_S(double g) const {
+  return g / (1.0 + g * series_ohm);
+}
+
+double DiodeJunction::curvature_A_V2(double g) const {
+  const double divisor = 1.0 + g * series_ohm;
+  return g / (scale_V * divisor * divisor * divisor);
+}
+
+// With w the voltage forwards, w(i) = n V_t ln(1 + i/I_s) + i R_s; the substring's V is −w.
+Slopes DiodeJunction::slopes(double g) const {
+  const double divisor = 1.0 + g * series_ohm, per_divisor = 1.0 / divisor;
+  const double per_divisor3 = per_divisor * per_divisor * per_divisor;
+  const double bend = g * per_scale_1_V * per_divisor3;
+  return {g * per_divisor, bend,
+          -bend * per_scale_1_V * (1.0 - 2.0 * g * series_ohm) * per_divisor * per_divisor};
+}
+
+// The slope rises with g; the curvature has one maximum, at g R_s = 1/2.
+SlopeRange DiodeJunction::range(double low_S, double high_S) const {
+  const double a = curvature_A_V2(low_S), b = curvature_A_V2(high_S);
+  const double peak_S = 0.5 / std::max(series_ohm, 1e-30);
+  const bool inside = low_S < peak_S && peak_S < high_S;
+  return {slope_S(low_S), slope_S(high_S), std::min(a, b),
+          inside ? curvature_A_V2(peak_S) : std::max(a, b)};
+}
+
+}  // namespace photorque

@@ -1,0 +1,185 @@
+// The maxima of ArrayCurve: isolation of the zeros of P′ by bounds, as photovoltaic_curve.h tells.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/numerics/root.h"
+#include "photovoltaics/network/curve.h"
+
+namespace photorque {
+
+class ArrayCurve::Search {
+ public:
+  Search(const ArrayCurve& curve, int intervals) : curve_(curve), intervals_(intervals) {}
+
+  Scan run() {
+    if (curve_.end_x_ == 0.0) return {{ArrayPoint{}}, {}};
+    Node low = curve_.make_node(), high;
+    const std::vector<Piece> pieces = curve_.pieces();
+    for (size_t k = 0; k < pieces.size(); ++k) {
+      const Piece& piece = pieces[k];
+      if (k == 0) {
+        curve_.evaluate(piece.low_x, piece.regimes, low, near);
+        add_point(low);
+      } else {
+        std::swap(low, high);
+        curve_.enter(piece, pieces[k - 1], near, low);
+      }
+      // Every point is the start of the next one's solution.
+      high = low;
+      add_points_between(piece, high);
+      curve_.evaluate(piece.high_x, piece.regimes, high, near);
+      add_point(high);
+      search(low, high, piece, 0);
+    }
+    std::ranges::sort(scan_.points, {}, &ArrayPoint::voltage_V);
+    std::ranges::sort(scan_.maxima, {}, &ArrayPoint::voltage_V);
+    return std::move(scan_);
+  }
+
+ private:
+  // How close to the strings' currents their cells are evaluated, as a fraction: for bounds, and
+  // for points, whose currents are exact whatever it is.
+  static constexpr double near = 1e-6, any = std::numeric_limits<double>::infinity();
+
+  struct Bounds {
+    double low, high;
+    bool hold_zero() const { return low <= 0.0 && high >= 0.0; }
+  };
+
+  void search(const Node& low, const Node& high, const Piece& piece, size_t depth) {
+    const bool falls = low.power_slope() > 0.0 && high.power_slope() < 0.0;
+    const SlopeRange range = range_between(low, high, piece);
+    const Bounds second = power_curvature(low, high, range);
+    if (!second.hold_zero()) {
+      if (falls) refine(low, high, piece, depth);
+      return;
+    }
+    if (!power_slope(low, high, range, second).hold_zero()) return;
+    // Two zeros closer than this cannot be told apart in double precision.
+    if (high.x - low.x <= 1e-12 * curve_.end_x_) {
+      if (falls) refine(low, high, piece, depth);
+      return;
+    }
+    Node& middle = node(depth);
+    curve_.evaluate(std::midpoint(low.x, high.x), piece.regimes, middle, near, &low, &high);
+    search(low, middle, piece, depth + 1);
+    search(node(depth), high, piece, depth + 1);
+  }
+
+  SlopeRange range_between(const Node& low, const Node& high, const Piece& piece) const {
+    if (curve_.by_current()) {
+      return curve_.strings_[0].resistance_range(low.strings[0], high.strings[0], piece.regimes[0]);
+    }
+    SlopeRange sum;
+    for (size_t s = 0; s < curve_.strings_.size(); ++s) {
+      sum +=
+          curve_.strings_[s].conductance_range(high.strings[s], low.strings[s], piece.regimes[s]);
+    }
+    return sum;
+  }
+
+  // P″ = −2 slope + x curvature.
+  static Bounds power_curvature(const Node& low, const Node& high, const SlopeRange& r) {
+    return {-2.0 * r.slope_high + (r.curvature_low < 0 ? high.x : low.x) * r.curvature_low,
+            -2.0 * r.slope_low + (r.curvature_high > 0 ? high.x : low.x) * r.curvature_high};
+  }
+
+  // P′ = y − x slope, directly and by the mean value theorem from either end.
+  static Bounds power_slope(const Node& low, const Node& high, const SlopeRange& r,
+                            const Bounds& second) {
+    const double width = high.x - low.x;
+    const double from_low = low.power_slope(), from_high = high.power_slope();
+    return {std::max({high.y - high.x * r.slope_high, from_low + std::min(0.0, width * second.low),
+                      from_high - std::max(0.0, width * second.high)}),
+            std::min({low.y - low.x * r.slope_low, from_low + std::max(0.0, width * second.high),
+                      from_high - std::min(0.0, width * second.low)})};
+  }
+
+  void refine(const Node& low, const Node& high, const Piece& piece, size_t depth) {
+    Node& at = node(depth);
+    const double guess =
+        low.x + (high.x - low.x) * low.power_slope() / (low.power_slope() - high.power_slope());
+    const double x = falling_root(low.x, high.x, guess, 1e-6, [&](double trial_x) {
+      curve_.evaluate(trial_x, piece.regimes, at, any, &low, &high);
+      return FunctionAt{at.power_slope(), at.power_curvature(), at.power_third()};
+    });
+    const double h = x - at.x;  // from the last trial
+    const double y = at.y - h * (at.slope - h * (at.curvature / 2 + h * at.third / 6));
+    scan_.maxima.push_back(curve_.point(x, y));
+  }
+
+  void add_points_between(const Piece& piece, Node& at) {
+    const double width = piece.high_x - piece.low_x;
+    const int steps = std::max(1, static_cast<int>(std::ceil(intervals_ * width / curve_.end_x_)));
+    states_.clear();
+    for (const FourStrings& four : curve_.fours_) states_.push_back(four.read(at.strings));
+    for (int i = 1; i < steps; ++i) {
+      const double x = piece.low_x + width * i / steps;
+      if (states_.empty()) {
+        curve_.evaluate(x, piece.regimes, at, any);
+      } else {
+        at.x = x;
+        at.y = currents_at(x, piece, at);
+      }
+      add_point(at);
+    }
+    for (size_t k = 0; k < states_.size(); ++k) curve_.fours_[k].write(states_[k], at.strings);
+  }
+
+  // Of all strings; in `at` the states of fours are old ones.
+  double currents_at(double x, const Piece& piece, Node& at) {
+    double sum_A = 0.0;
+    const auto add_alone = [&](size_t s) {
+      const CurrentGuess guess = curve_.guess_current(s, x, at, nullptr, nullptr);
+      curve_.strings_[s].at_voltage(x, piece.regimes[s], guess.low_A, guess.high_A, any,
+                                    at.strings[s]);
+      sum_A += at.strings[s].current_A;
+    };
+    for (size_t k = 0; k < states_.size(); ++k) {
+      const FourStrings& four = curve_.fours_[k];
+      const bool solved = four.advance(x, states_[k]);
+      if (solved) {
+        sum_A += four.sum_A(states_[k]);
+      } else {
+        four.write(states_[k], at.strings);
+      }
+      for (size_t i = 0; i < four.members().size(); ++i) {
+        if (!solved || !four.solves(i, x)) add_alone(four.member(i));
+      }
+      if (!solved) states_[k] = four.read(at.strings);
+    }
+    for (const size_t s : curve_.singles_) add_alone(s);
+    return sum_A;
+  }
+
+  void add_point(const Node& node) {
+    scan_.points.push_back(curve_.point(node.x, node.x == curve_.end_x_ ? 0.0 : node.y));
+  }
+
+  Node& node(size_t depth) {
+    while (nodes_.size() <= depth) nodes_.push_back(std::make_unique<Node>(curve_.make_node()));
+    return *nodes_[depth];
+  }
+
+  const ArrayCurve& curve_;
+  std::vector<FourStrings::State> states_;    // at the last point
+  std::vector<std::unique_ptr<Node>> nodes_;  // one per depth: references stay valid
+  int intervals_;
+  Scan scan_;
+};
+
+ArrayCurve::Scan ArrayCurve::scan(int intervals) const {
+  return Search(*this, intervals).run();
+}
+
+ArrayPoint ArrayCurve::maximum_power() const {
+  ArrayPoint best;
+  for (const ArrayPoint& point : maxima()) {
+    if (point.power_W() > best.power_W()) best = point;
+  }
+  return best;
+}
+
+}  // namespace photorque

@@ -1,0 +1,321 @@
+#include "photovoltaics/network/string.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/numerics/root.h"
+
+namespace photorque {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// Beyond this a junction carries nothing that double precision can see; keeps its cube finite.
+constexpr double most_ohm = 1e90;
+
+}  // namespace
+
+std::optional<PlainString> StringCurve::plain() const {
+  if (substrings_.size() != 1 || runs_.size() != 1 || !rows_.empty()) return std::nullopt;
+  const Run& run = runs_[0];
+  return PlainString{run.table,
+                     std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
+                     std::span(copies_).subspan(run.first_cell, run.filled_cells),
+                     run.series_ohm,
+                     &substrings_[0].bypass,
+                     &blocking_};
+}
+
+StringState StringCurve::make_state() const {
+  StringState state;
+  state.cells.resize(cells_.size());
+  state.bypasses.resize(substrings_.size());
+  return state;
+}
+
+StringRegime StringCurve::regime_at(double current_A) const {
+  StringRegime regime;
+  regime.clamped.reserve(substrings_.size());
+  for (const Substring& s : substrings_) regime.clamped.push_back(current_A >= s.clamp_A);
+  return regime;
+}
+
+std::vector<double> StringCurve::clamp_currents_A() const {
+  std::vector<double> currents;
+  currents.reserve(substrings_.size());
+  for (const Substring& s : substrings_) currents.push_back(s.clamp_A);
+  return currents;
+}
+
+double StringCurve::first_guess_A() const {
+  double guess_A = largest_photocurrent_A_;
+  for (const Substring& s : substrings_) guess_A = std::min(guess_A, s.clamp_A);
+  return guess_A;
+}
+
+ElementPoint StringCurve::rows_at(const Substring& substring, double current_A,
+                                  StringState& state) const {
+  ElementPoint sum;
+  for (const Run& run : runs_of(substring)) {
+    const DiodeVoltage v = run.table->series_at(
+        std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
+        std::span(copies_).subspan(run.first_cell, run.filled_cells), current_A,
+        std::span(state.cells).subspan(run.first_cell, run.filled_cells));
+    sum += {v.value_V - current_A * run.series_ohm, v.slope_ohm + run.series_ohm, v.curvature_V_A2,
+            -v.third_V_A3};
+  }
+  for (const Row& row : rows_of(substring)) {
+    sum += tied_cells_at(lit(row), current_A,
+                         std::span(state.cells).subspan(row.first_cell, row.cells));
+  }
+  return sum;
+}
+
+// From the last solution along the substring's derivatives there; where that is too far, as if the
+// rows kept the current at which they turn the diode on.
+double StringCurve::bypass_guess_V(const Substring& substring, const StringState::Bypass& last,
+                                   double current_A) {
+  const DiodeJunction& d = substring.bypass;
+  const double h = current_A - last.current_A;
+  const double last_through_A = last.junction_S * d.scale_V;
+  if (std::abs(h) > 0.3 * last_through_A && current_A > substring.turn_on_A) {
+    return d.scale_V * std::log1p((current_A - substring.turn_on_A) / d.saturation_A);
+  }
+  const ElementPoint& p = last.substring;
+  const double fall_V = h * (p.slope_ohm - h * (p.curvature_V_A2 / 2.0 + h * p.third_V_A3 / 6.0));
+  return last.junction_V + fall_V / (1.0 + last.junction_S * d.series_ohm);
+}
+
+// With u the junction voltage of the bypass diode, its current is i(u) = I_s (e^{u/nV_t} − 1) and
+// the substring's voltage is −(u + i R_s): one equation, V_rows(I − i(u)) + u + i(u) R_s = 0,
+// rising in u. A diode that carries all of I leaves the rows at V ≥ 0, and one that carries nothing
+// leaves them at most at their open circuit: between the two lies u.
+ElementPoint StringCurve::bypassed_at(uint32_t index, double current_A, double tolerance,
+                                      StringState& state) const {
+  const Substring& substring = substrings_[index];
+  const DiodeJunction& d = substring.bypass;
+  StringState::Bypass& last = state.bypasses[index];
+  if (last.junction_V <= d.saturated_V() && current_A <= substring.turn_on_A) {
+    // Far in reverse the diode leaks I_s and no more: nothing to solve.
+    const ElementPoint rows = rows_at(substring, current_A + d.saturation_A, state);
+    const double u = d.saturation_A * d.series_ohm - rows.voltage_V;
+    last = {u, 0.0, current_A, rows};
+    if (u <= d.saturated_V()) return rows;
+  }
+  ElementPoint rows;
+  double through_A = 0.0, g = 0.0;
+  const auto shortfall_V = [&](double u) {
+    through_A = d.saturation_A * std::expm1(u * d.per_scale_1_V);
+    g = (through_A + d.saturation_A) * d.per_scale_1_V;
+    rows = rows_at(substring, current_A - through_A, state);
+    const double bend = (rows.slope_ohm + d.series_ohm) * g * d.per_scale_1_V;
+    const double curved = rows.curvature_V_A2 * g * g;
+    const double shortfall = -(rows.voltage_V + u + through_A * d.series_ohm);
+    return FunctionAt{shortfall, -((rows.slope_ohm + d.series_ohm) * g + 1.0), -(curved + bend),
+                      rows.third_V_A3 * g * g * g - (3.0 * curved + bend) * d.per_scale_1_V,
+                      close(shortfall)};
+  };
+  const double lowest_V = current_A >= 0.0 ? -substring.open_circuit_V
+                                           : -rows_at(substring, current_A, state).voltage_V;
+  const double highest_V = d.scale_V * std::log1p(std::max(current_A, 0.0) / d.saturation_A);
+  const double u = falling_root(lowest_V, highest_V, bypass_guess_V(substring, last, current_A),
+                                std::min(tolerance, 1e-2), shortfall_V);
+  // What was evaluated last lies a small step away.
+  const double step_A = through_A - d.saturation_A * std::expm1(u * d.per_scale_1_V);
+  through_A -= step_A;
+  g = (through_A + d.saturation_A) * d.per_scale_1_V;
+  Slopes current = inverted(
+      Slopes{rows.slope_ohm - step_A * (rows.curvature_V_A2 + 0.5 * step_A * rows.third_V_A3),
+             rows.curvature_V_A2 + step_A * rows.third_V_A3, rows.third_V_A3});
+  current += d.slopes(g);
+  const Slopes voltage = inverted(current);
+  last = {u,
+          g,
+          current_A,
+          {-(u + through_A * d.series_ohm), voltage.slope, voltage.curvature, voltage.third}};
+  return last.substring;
+}
+
+ElementPoint StringCurve::substrings_at(double current_A, const StringRegime& regime,
+                                        double tolerance, StringState& state) const {
+  ElementPoint sum;
+  for (uint32_t s = 0; s < substrings_.size(); ++s) {
+    const Substring& substring = substrings_[s];
+    if (regime.clamped[s]) {
+      sum.voltage_V -= substring.bypass.drop_V;
+      continue;
+    }
+    const ElementPoint p = substring.bypass.kind == Diode::Kind::junction
+                               ? bypassed_at(s, current_A, tolerance, state)
+                               : rows_at(substring, current_A, state);
+    sum += p;
+  }
+  return sum;
+}
+
+double StringCurve::blocking_drop_V(double current_A) const {
+  switch (blocking_.kind) {
+    case Diode::Kind::clamp:
+      return blocking_.drop_V;
+    case Diode::Kind::junction:
+      return blocking_.scale_V * std::log1p(current_A / blocking_.saturation_A) +
+             current_A * blocking_.series_ohm;
+    case Diode::Kind::none:
+      break;
+  }
+  return 0.0;
+}
+
+void StringCurve::at_current(double current_A, const StringRegime& regime, double tolerance,
+                             StringState& state) const {
+  ElementPoint sum = substrings_at(current_A, regime, tolerance, state);
+  sum.voltage_V -= blocking_drop_V(current_A);
+  state.current_A = current_A;
+  state.voltage_V = sum.voltage_V;
+  state.slope_ohm = sum.slope_ohm;
+  state.curvature_V_A2 = sum.curvature_V_A2;
+  state.third_V_A3 = sum.third_V_A3;
+  if (blocking_.kind == Diode::Kind::junction) add_blocking(state);
+}
+
+// The derivatives of a blocking junction, in series with what the state has.
+void StringCurve::add_blocking(StringState& state) const {
+  const double junction_ohm =
+      std::min(blocking_.scale_V / (state.current_A + blocking_.saturation_A), most_ohm);
+  state.blocking_ohm = junction_ohm;
+  state.slope_ohm += junction_ohm + blocking_.series_ohm;
+  const double bend = junction_ohm * junction_ohm * blocking_.per_scale_1_V;
+  state.curvature_V_A2 += bend;
+  state.third_V_A3 -= 2.0 * bend * junction_ohm * blocking_.per_scale_1_V;
+}
+
+// Backwards through a blocking junction the current is below I_s; its voltage z is what is left
+// over.
+void StringCurve::reverse_at_voltage(double voltage_V, const StringRegime& regime,
+                                     StringState& state) const {
+  ElementPoint sum;
+  double junction_S = 0.0, current_A = 0.0;
+  const auto surplus_V = [&](double z) {
+    current_A = blocking_.saturation_A * std::expm1(z * blocking_.per_scale_1_V);
+    junction_S = (current_A + blocking_.saturation_A) * blocking_.per_scale_1_V;
+    sum = substrings_at(current_A, regime, 1e-9, state);
+    const double ohm = sum.slope_ohm + blocking_.series_ohm;
+    return FunctionAt{
+        sum.voltage_V - current_A * blocking_.series_ohm - z - voltage_V, -ohm * junction_S - 1.0,
+        (sum.curvature_V_A2 * junction_S - ohm * blocking_.per_scale_1_V) * junction_S};
+  };
+  const double left_over_V = open_circuit_V_ - voltage_V;
+  const double z = falling_root(left_over_V, 0.0, left_over_V, 1e-9, surplus_V);
+  const double junction_ohm = std::min(1.0 / junction_S, most_ohm);
+  state.blocking_ohm = junction_ohm;
+  state.current_A = blocking_.saturation_A * std::expm1(z * blocking_.per_scale_1_V);
+  state.voltage_V = voltage_V;
+  state.slope_ohm = sum.slope_ohm + blocking_.series_ohm + junction_ohm;
+  const double bend = junction_ohm * junction_ohm * blocking_.per_scale_1_V;
+  state.curvature_V_A2 = sum.curvature_V_A2 + bend;
+  state.third_V_A3 = sum.third_V_A3 - 2.0 * bend * junction_ohm * blocking_.per_scale_1_V;
+}
+
+// With the current r through the cells as the unknown, all is explicit: their voltage, hence the
+// current i ≤ 0 of the diode beside them, the string's I = r + i and its voltage.
+FunctionAt StringCurve::beside_junction(double rows_A, double voltage_V, ElementPoint& rows,
+                                        StringState& state) const {
+  const DiodeJunction& bypass = substrings_[0].bypass;
+  rows = rows_at(substrings_[0], rows_A, state);
+  const double i_A = bypass.current_A(bypass.junction_V(-rows.voltage_V));
+  const double current_A = std::max(rows_A + i_A, 0.0);
+  FunctionAt f{rows.voltage_V - voltage_V, -rows.slope_ohm, rows.curvature_V_A2, rows.third_V_A3,
+               true};
+  f.value -= blocking_drop_V(current_A);
+  if (blocking_.kind == Diode::Kind::junction) {
+    // Derivatives of I by r, then of the blocking diode's voltage.
+    const Slopes d = bypass.slopes(bypass.conductance_S(i_A));
+    const double a = rows.slope_ohm, b = rows.curvature_V_A2, c = rows.third_V_A3;
+    const double i1 = 1.0 + d.slope * a, i2 = d.curvature * a * a - d.slope * b;
+    const double i3 = -d.third * a * a * a - 3.0 * d.curvature * a * b - d.slope * c;
+    const double ohm = 1.0 / blocking_.conductance_S(current_A);
+    const double w1 = ohm + blocking_.series_ohm, w2 = -ohm * ohm * blocking_.per_scale_1_V;
+    const double w3 = -2.0 * w2 * ohm * blocking_.per_scale_1_V;
+    f.slope -= w1 * i1;
+    f.curvature -= w2 * i1 * i1 + w1 * i2;
+    f.third -= w3 * i1 * i1 * i1 + 3.0 * w2 * i1 * i2 + w1 * i3;
+  }
+  f.close = close(f.value);
+  return f;
+}
+
+void StringCurve::beside_junction_at_voltage(double voltage_V, double low_A, double high_A,
+                                             double tolerance, StringState& state) const {
+  const DiodeJunction& bypass = substrings_[0].bypass;
+  StringState::Bypass& last = state.bypasses[0];
+  ElementPoint rows;
+  double at_A = 0.0;
+  const double rows_V = voltage_V + blocking_drop_V(std::max(state.current_A, 0.0));
+  const double guess_A = state.current_A - bypass.current_A(bypass.junction_V(-rows_V));
+  const double root_A =
+      falling_root(low_A, high_A + bypass.saturation_A, guess_A, tolerance, [&](double rows_A) {
+        at_A = rows_A;
+        return beside_junction(rows_A, voltage_V, rows, state);
+      });
+  // To third order in the last step.
+  const double step_A = root_A - at_A;
+  rows.voltage_V -=
+      step_A *
+      (rows.slope_ohm - step_A * (rows.curvature_V_A2 / 2.0 + step_A * rows.third_V_A3 / 6.0));
+  rows.slope_ohm -= step_A * (rows.curvature_V_A2 + 0.5 * step_A * rows.third_V_A3);
+  rows.curvature_V_A2 += step_A * rows.third_V_A3;
+  const double u = bypass.junction_V(-rows.voltage_V), i_A = bypass.current_A(u);
+  const double g = bypass.conductance_S(i_A);
+  Slopes current = inverted(rows.slopes());
+  current += bypass.slopes(g);
+  const Slopes voltage = inverted(current);
+  state.current_A = root_A + i_A;
+  state.voltage_V = voltage_V;
+  state.slope_ohm = voltage.slope;
+  state.curvature_V_A2 = voltage.curvature;
+  state.third_V_A3 = voltage.third;
+  last = {u, g, state.current_A, {rows.voltage_V, voltage.slope, voltage.curvature, voltage.third}};
+  if (blocking_.kind == Diode::Kind::junction) add_blocking(state);
+}
+
+void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, double low_A,
+                             double high_A, double tolerance, StringState& state) const {
+  if (regime.blocked) {
+    state.current_A = 0.0;
+    state.voltage_V = voltage_V;
+    state.slope_ohm = infinity;
+    state.curvature_V_A2 = state.third_V_A3 = 0.0;
+    return;
+  }
+  if (blocking_.kind == Diode::Kind::junction && voltage_V >= open_circuit_V_) {
+    reverse_at_voltage(voltage_V, regime, state);
+    return;
+  }
+  const bool one = substrings_.size() == 1 && substrings_[0].bypass.kind == Diode::Kind::junction;
+  if (one && voltage_V >= 0.0 && voltage_V < open_circuit_V_) {
+    beside_junction_at_voltage(voltage_V, std::max(low_A, 0.0), high_A, tolerance, state);
+    return;
+  }
+  const auto excess_V = [&](double current_A) {
+    at_current(current_A, regime, tolerance, state);
+    const double excess = state.voltage_V - voltage_V;
+    return FunctionAt{excess, -state.slope_ohm, state.curvature_V_A2, state.third_V_A3,
+                      close(excess)};
+  };
+  if (voltage_V > open_circuit_V_ && low_A >= 0.0) {
+    // Fed backwards by the other strings.
+    double step = 1e-3 * largest_photocurrent_A_ + 1e-9;
+    high_A = 0.0;
+    for (low_A = -step; excess_V(low_A).value < 0.0; step *= 4.0) {
+      high_A = low_A;
+      low_A -= step;
+    }
+  }
+  const double root_A = falling_root(low_A, high_A, state.current_A, tolerance, excess_V);
+  const double step_A = root_A - state.current_A;
+  state.slope_ohm -= step_A * (state.curvature_V_A2 + 0.5 * step_A * state.third_V_A3);
+  state.curvature_V_A2 += step_A * state.third_V_A3;
+  state.current_A = root_A;
+  state.voltage_V = voltage_V;
+}
+
+}  // namespace photorque

@@ -1,0 +1,154 @@
+#include "raytrace/surfaces/glass.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "core/constants.h"
+#include "raytrace/surfaces/cosine_table.h"
+#include "raytrace/surfaces/fresnel.h"
+#include "raytrace/surfaces/rough_glass.h"
+
+namespace photorque {
+namespace {
+
+using Reflectance = std::function<double(double cosine)>;
+
+class OverMatt final : public ShareLaw {
+ public:
+  OverMatt(const BandValues& diffuse, Reflectance front)
+      : diffuse_(diffuse), front_(std::move(front)) {}
+  Shares shares(double cosine, size_t band) const override {
+    const double reflected = front_(cosine), enters = 1.0 - reflected;
+    return {.absorbed = enters * (1.0 - diffuse_[band]),
+            .specular = reflected,
+            .diffuse = enters * diffuse_[band]};
+  }
+
+ private:
+  BandValues diffuse_;
+  Reflectance front_;
+};
+
+class OverCell final : public ShareLaw {
+ public:
+  OverCell(const BandValues& specular, Reflectance front)
+      : specular_(specular), front_(std::move(front)) {}
+  Shares shares(double cosine, size_t band) const override {
+    const double reflected = front_(cosine), enters = 1.0 - reflected;
+    const double base = specular_[band];
+    // Of what enters, this much gets to the base in the end; at grazing incidence nothing enters.
+    const double meets = enters > 0.0 ? enters / (1.0 - reflected * base) : 0.0;
+    return {.absorbed = meets * (1.0 - base), .specular = 1.0 - meets * (1.0 - base)};
+  }
+
+ private:
+  BandValues specular_;
+  Reflectance front_;
+};
+
+class Pane final : public ShareLaw {
+ public:
+  Pane(const BandValues& transmitted, double index) : transmitted_(transmitted), index_(index) {}
+  Shares shares(double cosine, size_t band) const override {
+    const double face = fresnel_reflectance(cosine, index_), enters = 1.0 - face;
+    const double once = std::pow(transmitted_[band], 1.0 / refracted_cosine(cosine, index_));
+    const double there_and_back = face * once;
+    const double leaves =
+        enters > 0.0 ? enters * enters * once / (1.0 - there_and_back * there_and_back) : 0.0;
+    Shares shares{.specular = face + there_and_back * leaves, .transmitted = leaves};
+    shares.absorbed = std::max(0.0, 1.0 - shares.specular - shares.transmitted);
+    return shares;
+  }
+
+ private:
+  BandValues transmitted_;
+  double index_;
+};
+
+// What comes out of matt ground through the glass.
+class ThroughFront final : public Lobe {
+ public:
+  explicit ThroughFront(Reflectance front)
+      : front_(std::move(front)),
+        passed_(even_mean([this](double cosine) { return 1.0 - front_(cosine); })),
+        mean_z_(even_mean([this](double cosine) { return cosine * (1.0 - front_(cosine)); }) /
+                passed_) {}
+
+  Vec3 direction(double, const Draw& draw) const override {
+    Vec3 out = lambertian_direction(draw.u, draw.v);
+    constexpr uint64_t most = 256;
+    for (uint64_t attempt = 1; attempt < most; ++attempt) {
+      if (draw.extra(3 * attempt + 2) >= front_(out.z())) break;
+      const Draw now = draw.attempt(attempt);
+      out = lambertian_direction(now.u, now.v);
+    }
+    return out;
+  }
+
+  Vec3 mean_direction(double) const override { return {0.0, 0.0, mean_z_}; }
+
+  double density(double, const Vec3& out) const override {
+    return (1.0 - front_(out.z())) * out.z() / (pi * passed_);
+  }
+
+ private:
+  Reflectance front_;
+  double passed_;  // 1 − R̄
+  double mean_z_;
+};
+
+std::string describe(double index, double alpha) {
+  std::ostringstream text;
+  text.precision(3);
+  text << (alpha > 0.0 ? "rough " : "") << "glass of index " << index << " in front";
+  if (alpha > 0.0) text << ", roughness " << std::sqrt(alpha);
+  return text.str();
+}
+
+}  // namespace
+
+GlassBase glass_base(const OpticalSurface& base) {
+  const auto some = [](const BandValues& values) {
+    return std::any_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
+  };
+  if (some(base.transmitted)) return GlassBase::pane;
+  return some(base.specular) ? GlassBase::cell : GlassBase::matt;
+}
+
+OpticalSurface behind_glass(const OpticalSurface& base, double index, double alpha) {
+  Finish finish = base.finish ? *base.finish : Finish{};
+  Reflectance front = [index](double cosine) { return fresnel_reflectance(cosine, index); };
+  if (alpha > 0.0) {
+    const std::shared_ptr<const RoughGlass> rough = rough_glass(alpha, index);
+    front = [rough](double cosine) { return rough->reflectance(cosine); };
+    finish.specular = rough;
+  }
+  switch (glass_base(base)) {
+    case GlassBase::matt:
+      finish.law = std::make_shared<OverMatt>(base.diffuse, front);
+      finish.diffuse = std::make_shared<ThroughFront>(front);
+      break;
+    case GlassBase::cell:
+      finish.law = std::make_shared<OverCell>(base.specular, front);
+      break;
+    case GlassBase::pane:
+      finish.law = std::make_shared<Pane>(base.transmitted, index);
+      break;
+  }
+  finish.description = describe(index, alpha);
+  OpticalSurface surface = base;
+  for (size_t band = 0; band < max_bands; ++band) {
+    const double sum =
+        base.absorbed[band] + base.specular[band] + base.diffuse[band] + base.transmitted[band];
+    if (sum == 0.0) continue;  // beyond the bands in use
+    const Shares shares = finish.law->shares(1.0, band);
+    surface.absorbed[band] = shares.absorbed;
+    surface.specular[band] = shares.specular;
+    surface.diffuse[band] = shares.diffuse;
+    surface.transmitted[band] = shares.transmitted;
+  }
+  surface.finish = std::make_shared<const Finish>(std::move(finish));
+  return surface;
+}
+
+}  // namespace photorque

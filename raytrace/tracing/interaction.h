@@ -1,0 +1,68 @@
+// What happens where rays meet surfaces: absorption, the choice of the lobe that goes on, momentum.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "raytrace/receiver.h"
+#include "raytrace/tracing/find_hits.h"
+#include "raytrace/tracing/traceable_scene_data.h"
+
+namespace photorque {
+
+// Rays that go on after a hit, with their power per band (ray-major: power_W[ray · bands + band]).
+struct Continuation {
+  std::vector<Ray> rays;
+  std::vector<double> power_W;
+  void clear() {
+    rays.clear();
+    power_W.clear();
+  }
+};
+
+// Power [W] and momentum flow [N, N m about the body origin] of one part of the work; added up in a
+// fixed order.
+struct LedgerSums {
+  double escaped_W = 0.0;
+  double truncated_W = 0.0;
+  std::array<double, 6> momentum_in{};   // of rays at their first hit
+  std::array<double, 6> momentum_out{};  // of rays that escaped after a hit, or were truncated
+  // Per instance, in four lanes that take turns: one running sum would wait for itself at every
+  // hit.
+  std::vector<std::array<double, 4>> absorbed_lanes_W;
+
+  double absorbed_W(size_t instance) const;
+  void add(const LedgerSums& other);
+  // A ray with this power leaves for good through `at_m`.
+  void release(const Vec3& at_m, const Vec3& direction, double power_W);
+  void release_momentum(const Vec3& at_m, const Vec3& force_N);
+};
+
+struct InteractionContext {
+  const TraceableScene::Data* scene = nullptr;
+  SobolStream stream;     // of the beam and replicate; group is set per depth
+  int depth = 0;          // of all hits in the buffer
+  double cutoff_W = 0.0;  // rays with less than this are truncated
+};
+
+// A ray on its way from a hit.
+struct Departure {
+  Vec3 hit_m;     // where it was reflected
+  Vec3 origin_m;  // a little off the surface
+  Vec3 direction;
+  uint32_t sample;
+};
+
+// Appends the ray to `next`, or ends it if it carries less than the cutoff.
+void go_on(const InteractionContext& context, int bands, const Departure& departure,
+           const BandValues& power_W, LedgerSums& ledger, Continuation& next);
+
+// Settles all hits of the buffer: fills absorbed_W and force_N, adds to the ledger and appends the
+// rays that go on to `next`. The lobe and direction of a ray come from its own Sobol point of group
+// depth + 1.
+void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger,
+              Continuation& next);
+
+}  // namespace photorque

@@ -1,0 +1,197 @@
+#include "raytrace/tracing/launch.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "raytrace/tracing/transpose.h"
+
+namespace photorque {
+namespace {
+
+// Rays of a batch: many enough that sorting brings packets of close neighbours together, few enough
+// that they stay in the cache and 16 bits number them.
+constexpr int log2_batch = 13;
+
+// Bits of a landing cell per side: some eight rays of a batch in each cell, a packet.
+uint32_t cell_bits(uint32_t batch) {
+  return (static_cast<uint32_t>(std::bit_width(batch)) - 3u) / 2u;
+}
+
+// Interleaves the bits of an 8-bit number with zeros (Morton order).
+constexpr uint32_t spread_bits(uint32_t x) {
+  x = (x | (x << 4)) & 0x0f0fu;
+  x = (x | (x << 2)) & 0x3333u;
+  return (x | (x << 1)) & 0x5555u;
+}
+
+// Cells of the part of the plane on which a batch lands.
+struct LandingGrid {
+  uint32_t bits;  // per side
+  float x_low, y_low, x_scale, y_scale;
+
+  // From some rays of the batch.
+  LandingGrid(const LaunchPlan& plan, uint32_t batch, const Landing& some)
+      : bits(cell_bits(batch)) {
+    const auto [x_least, x_most] = std::minmax_element(some.x.begin(), some.x.end());
+    const auto [y_least, y_most] = std::minmax_element(some.y.begin(), some.y.end());
+    x_low = std::max(*x_least, plan.x_low);
+    y_low = std::max(*y_least, plan.y_low);
+    const float side = static_cast<float>(1u << bits);
+    x_scale = side / std::max(std::min(*x_most, plan.x_high) - x_low, 1e-30f);
+    y_scale = side / std::max(std::min(*y_most, plan.y_high) - y_low, 1e-30f);
+  }
+};
+
+void make_keys(const LaunchPlan& plan, const LandingGrid& grid, const Landing& at,
+               const RayColumns& placed, uint16_t* key) {
+  const float last = static_cast<float>(1u << grid.bits) - 1.0f;
+  const std::array<uint32_t, 3> step = plan.octant_step;
+  for (int i = 0; i < ray_block; ++i) {
+    const float fx = std::min(std::max((at.x[i] - grid.x_low) * grid.x_scale, 0.0f), last);
+    const float fy = std::min(std::max((at.y[i] - grid.y_low) * grid.y_scale, 0.0f), last);
+    const uint32_t cell = spread_bits(static_cast<uint32_t>(static_cast<int32_t>(fx))) |
+                          (spread_bits(static_cast<uint32_t>(static_cast<int32_t>(fy))) << 1);
+    const uint32_t octant = (std::bit_cast<uint32_t>(placed[3][i]) >> 31) * step[0] +
+                            (std::bit_cast<uint32_t>(placed[4][i]) >> 31) * step[1] +
+                            (std::bit_cast<uint32_t>(placed[5][i]) >> 31) * step[2];
+    key[i] = static_cast<uint16_t>((octant << (2 * grid.bits)) | cell);
+  }
+}
+
+// Columns → records.
+void store(const RayColumns& placed, Ray* out) {
+  for (int begin = 0; begin < ray_block; begin += 8) {
+    std::array<const float*, 8> rows;
+    for (size_t c = 0; c < 8; ++c) rows[c] = &placed[c][begin];
+    transpose_8x8(rows, &out[begin].origin_m[0], 8);
+  }
+}
+
+void counting_sort(uint32_t key_count, LaunchBuffer& buffer) {
+  const auto count = static_cast<uint32_t>(buffer.key.size());
+  buffer.start.assign(key_count + 1, 0);
+  for (uint32_t i = 0; i < count; ++i) ++buffer.start[buffer.key[i] + 1u];
+  for (uint32_t k = 0; k < key_count; ++k) {
+    buffer.start[k + 1] = static_cast<uint16_t>(buffer.start[k + 1] + buffer.start[k]);
+  }
+  for (uint32_t i = 0; i < count; ++i) {
+    buffer.order[buffer.start[buffer.key[i]]++] = static_cast<uint16_t>(i);
+  }
+}
+
+std::array<uint32_t*, sobol_dimensions> pointers(SampleBlock& samples) {
+  return {samples.bits[0].data(), samples.bits[1].data(), samples.bits[2].data(),
+          samples.bits[3].data()};
+}
+
+// What a sample of a beam's rays tells.
+struct BeamSample {
+  float x_low = std::numeric_limits<float>::max(), y_low = x_low;
+  float x_high = -x_low, y_high = -x_low;
+  std::array<uint32_t, 3> negative{};     // components of directions in the body frame
+  double aperture2 = 0.0, spread2 = 0.0;  // Σ x² + y² of origins, and of directions
+  static constexpr uint32_t rays = 4 * sobol_block;
+};
+
+BeamSample sample_beam(const Emitter& emitter, const RayPlacement& placement) {
+  BeamSample sample;
+  SampleBlock samples;
+  RayBlock rays;
+  Landing landing;
+  RayColumns placed;
+  for (uint32_t first = 0; first < BeamSample::rays; first += sobol_block) {
+    sobol_points({}, first, pointers(samples));
+    emitter.emit(samples, rays);
+    placement.place(rays, placed, landing);
+    for (size_t i = 0; i < ray_block; ++i) {
+      const float x = landing.x[i], y = landing.y[i];
+      sample.x_low = std::min(sample.x_low, x), sample.x_high = std::max(sample.x_high, x);
+      sample.y_low = std::min(sample.y_low, y), sample.y_high = std::max(sample.y_high, y);
+      for (size_t k = 0; k < 2; ++k) {
+        sample.aperture2 += rays.origin_m[k][i] * rays.origin_m[k][i];
+        sample.spread2 += rays.direction[k][i] * rays.direction[k][i];
+      }
+      for (size_t k = 0; k < 3; ++k) sample.negative[k] += std::signbit(placed[3 + k][i]) ? 1 : 0;
+    }
+  }
+  return sample;
+}
+
+// Which leading bits the rays of a batch share: those that bring them closest together where they
+// land. Halving the aperture and the directions in turn, whichever spreads the landing points more;
+// of each, the azimuth first.
+std::array<int, sobol_dimensions> shared_bits(int bits, double aperture_m, double spread_m) {
+  int of_aperture = 0, of_direction = 0;
+  while (of_aperture + of_direction < bits) {
+    const bool aperture =
+        aperture_m * std::exp2(-0.5 * of_aperture) >= spread_m * std::exp2(-0.5 * of_direction);
+    ++(aperture ? of_aperture : of_direction);
+  }
+  const auto radial = [](int both) { return std::max(both - 1, 0) / 2; };
+  return {radial(of_aperture), of_aperture - radial(of_aperture), radial(of_direction),
+          of_direction - radial(of_direction)};
+}
+
+}  // namespace
+
+LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
+                       const TraceableScene::Data& scene, int log2_rays) {
+  const Vec3 centre = body_from_emitter.inverse().point(scene.centre_m);
+  const RayPlacement placement(body_from_emitter, scene);
+  const BeamSample sample = sample_beam(emitter, placement);
+  const auto bits = shared_bits(std::max(log2_rays - log2_batch, 0), std::sqrt(sample.aperture2),
+                                std::sqrt(sample.spread2) * std::max(centre.z(), 0.0));
+  LaunchPlan plan{SobolCells(log2_rays, bits),
+                  placement,
+                  sample.x_low,
+                  sample.x_high,
+                  sample.y_low,
+                  sample.y_high,
+                  {},
+                  1};
+  if (centre.z() > 0.0) {  // what misses the scene need not be told apart
+    const auto radius = static_cast<float>(scene.radius_m);
+    const auto cx = static_cast<float>(centre.x()), cy = static_cast<float>(centre.y());
+    plan.x_low = std::max(plan.x_low, cx - radius),
+    plan.x_high = std::min(plan.x_high, cx + radius);
+    plan.y_low = std::max(plan.y_low, cy - radius),
+    plan.y_high = std::min(plan.y_high, cy + radius);
+  }
+  for (size_t k = 0; k < 3; ++k) {
+    if (sample.negative[k] == 0 || sample.negative[k] == BeamSample::rays) continue;
+    plan.octant_step[k] = plan.octants;
+    plan.octants *= 2;
+  }
+  return plan;
+}
+
+void launch(const Emitter& emitter, const LaunchPlan& plan, const SobolStream& stream,
+            uint32_t cell, LaunchBuffer& buffer) {
+  const uint32_t count = plan.cells.points_per_cell();
+  buffer.rays.resize(count);
+  buffer.order.resize(count);
+  buffer.key.resize(count);
+  SampleBlock samples;
+  std::array<uint32_t, ray_block> index;
+  RayBlock rays;
+  Landing landing;
+  RayColumns placed;
+  placed[7].fill(0.0f);
+  std::optional<LandingGrid> grid;
+  for (uint32_t i = 0; i < count; i += ray_block) {
+    plan.cells.points(stream, cell, i, pointers(samples), index.data());
+    emitter.emit(samples, rays);
+    plan.placement.place(rays, placed, landing);
+    if (!grid) grid.emplace(plan, count, landing);
+    make_keys(plan, *grid, landing, placed, &buffer.key[i]);
+    for (int k = 0; k < ray_block; ++k) placed[6][k] = std::bit_cast<float>(index[k]);
+    store(placed, &buffer.rays[i]);
+  }
+  counting_sort(plan.octants << (2 * grid->bits), buffer);
+}
+
+}  // namespace photorque

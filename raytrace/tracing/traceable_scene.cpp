@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.h"
+#include "raytrace/tracing/traceable_scene_data.h"
+
+namespace photorque {
+namespace {
+
+void check(const Scene& scene) {
+  const auto index_error = [](const std::string& what, size_t found, size_t count) {
+    return InputError({"scene"}, what, std::to_string(found), "less than " + std::to_string(count));
+  };
+  for (const Instance& instance : scene.instances) {
+    if (instance.mesh >= scene.meshes.size()) {
+      throw index_error(instance.path + " mesh", instance.mesh, scene.meshes.size());
+    }
+    for (const uint32_t surface : {instance.front_surface, instance.back_surface}) {
+      if (surface >= scene.surfaces.size()) {
+        throw index_error(instance.path + " surface", surface, scene.surfaces.size());
+      }
+    }
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.triangles.empty()) {
+      throw InputError({"scene"}, instance.path, "a mesh without triangles", "triangles");
+    }
+    for (const auto& triangle : mesh.triangles) {
+      for (const uint32_t vertex : triangle) {
+        if (vertex >= mesh.vertices_m.size()) {
+          throw index_error(instance.path + " vertex", vertex, mesh.vertices_m.size());
+        }
+      }
+    }
+    for (const Vec3& vertex : mesh.vertices_m) {
+      if (!(instance.body_from_mesh * vertex).allFinite()) {
+        throw InputError({"scene"}, instance.path, "a vertex that is not finite", "finite numbers");
+      }
+    }
+  }
+}
+
+bool is_black(const OpticalSurface& surface, int bands) {
+  return surface.finish == nullptr &&
+         std::all_of(surface.absorbed.begin(), surface.absorbed.begin() + bands,
+                     [](double fraction) { return fraction == 1.0; });
+}
+
+// Adds one instance to Embree in single precision and its planes in double precision.
+void add_instance(TraceableScene::Data& data, const Instance& instance) {
+  const Mesh& mesh = data.scene.meshes[instance.mesh];
+  const bool mirrored = instance.body_from_mesh.linear().determinant() < 0.0;
+
+  RTCGeometry geometry = rtcNewGeometry(data.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               mesh.vertices_m.size()));
+  auto* indices = static_cast<uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(uint32_t), mesh.triangles.size()));
+  if (vertices == nullptr || indices == nullptr) {
+    rtcReleaseGeometry(geometry);
+    throw NumericalError("Embree has no memory for " + std::to_string(mesh.triangles.size()) +
+                         " triangles");
+  }
+  std::vector<Vec3> placed(mesh.vertices_m.size());
+  for (size_t i = 0; i < placed.size(); ++i) {
+    placed[i] = instance.body_from_mesh * mesh.vertices_m[i];
+    for (int k = 0; k < 3; ++k)
+      vertices[3 * i + static_cast<size_t>(k)] = static_cast<float>(placed[i][k]);
+  }
+  data.first_triangle.push_back(static_cast<uint32_t>(data.planes.size()));
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    // Barycentric weights refer to vertices 1 and 2 as the mesh has them, so the order stays and a
+    // mirrored instance only turns its normal.
+    indices[3 * i] = a;
+    indices[3 * i + 1] = b;
+    indices[3 * i + 2] = c;
+    const Vec3 cross = (placed[b] - placed[a]).cross(placed[c] - placed[a]);
+    const double length = cross.norm();
+    const Vec3 normal = length > 0.0 ? Vec3(cross / (mirrored ? -length : length)) : Vec3::UnitZ();
+    data.planes.push_back({{normal.x(), normal.y(), normal.z()}, normal.dot(placed[a])});
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(data.embree, geometry);  // its id is the instance's index: both count from 0
+  rtcReleaseGeometry(geometry);
+  const int bands = data.scene.bands.count();
+  data.black.push_back(is_black(data.scene.surfaces[instance.back_surface], bands) ? 1 : 0);
+  data.black.push_back(is_black(data.scene.surfaces[instance.front_surface], bands) ? 1 : 0);
+  for (size_t b = 0; b < max_bands; ++b) {
+    data.absorbed_fraction[b].push_back(data.scene.surfaces[instance.back_surface].absorbed[b]);
+    data.absorbed_fraction[b].push_back(data.scene.surfaces[instance.front_surface].absorbed[b]);
+  }
+}
+
+void gather_finishes(TraceableScene::Data& data) {
+  const Scene& scene = data.scene;
+  if (std::none_of(scene.surfaces.begin(), scene.surfaces.end(),
+                   [](const OpticalSurface& surface) { return surface.finish != nullptr; })) {
+    return;
+  }
+  for (const Instance& instance : scene.instances) {
+    data.finish.push_back(scene.surfaces[instance.back_surface].finish.get());
+    data.finish.push_back(scene.surfaces[instance.front_surface].finish.get());
+  }
+}
+
+void bound(TraceableScene::Data& data) {
+  Eigen::AlignedBox3d box;
+  for (const Instance& instance : data.scene.instances) {
+    for (const Vec3& vertex : data.scene.meshes[instance.mesh].vertices_m) {
+      box.extend(instance.body_from_mesh * vertex);
+    }
+  }
+  if (box.isEmpty()) return;
+  data.centre_m = box.center();
+  data.radius_m = 0.5 * box.diagonal().norm();
+  // Single precision rounds a coordinate x by up to 6e-8 |x|.
+  data.lift_m = 5e-7 * (data.centre_m.cwiseAbs().maxCoeff() + data.radius_m);
+}
+
+}  // namespace
+
+TraceableScene::Data::~Data() {
+  if (embree != nullptr) rtcReleaseScene(embree);
+  if (device != nullptr) rtcReleaseDevice(device);
+}
+
+TraceableScene::TraceableScene(Scene scene, bool leak_safe) : data_(std::make_unique<Data>()) {
+  check(scene);
+  data_->scene = std::move(scene);
+  data_->device = rtcNewDevice(nullptr);
+  if (data_->device == nullptr) throw NumericalError("Embree did not start");
+  data_->packet_width =
+      rtcGetDeviceProperty(data_->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0 ? 16 : 8;
+  data_->embree = rtcNewScene(data_->device);
+  rtcSetSceneFlags(data_->embree, leak_safe ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+  rtcSetSceneBuildQuality(data_->embree, RTC_BUILD_QUALITY_MEDIUM);
+  for (const Instance& instance : data_->scene.instances) add_instance(*data_, instance);
+  gather_finishes(*data_);
+  bound(*data_);
+  rtcCommitScene(data_->embree);
+  if (rtcGetDeviceError(data_->device) != RTC_ERROR_NONE) {
+    throw NumericalError("Embree could not build its hierarchy");
+  }
+}
+
+TraceableScene::~TraceableScene() = default;
+TraceableScene::TraceableScene(TraceableScene&&) noexcept = default;
+
+const Scene& TraceableScene::scene() const {
+  return data_->scene;
+}
+
+}  // namespace photorque

@@ -1,0 +1,360 @@
+#include "raytrace/tracing/tracer.h"
+
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/numerics/random.h"
+#include "core/parallel.h"
+#include "raytrace/tracing/find_hits.h"
+#include "raytrace/tracing/interaction.h"
+#include "raytrace/tracing/launch.h"
+
+namespace photorque {
+namespace {
+
+// The share of the work that belongs to one beam.
+struct BeamPlan {
+  const Beam* beam;
+  LaunchPlan launch;           // of the rays of one replicate: a power of two, at least ray_block
+  uint64_t first_batch;        // its number among the batches of a replicate
+  BandValues power_per_ray_W;  // so that each replicate carries the full power of the beam
+  double watt_per_ray;
+};
+
+struct Plan {
+  std::vector<BeamPlan> beams;
+  uint64_t batches = 0;  // per replicate
+  uint64_t rays = 0;     // over all replicates
+  double emitted_W = 0.0;
+};
+
+// Rays in proportion to power, rounded up to powers of two: Sobol sequences are best whole.
+Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from_body,
+               std::span<const Beam> beams, const TraceOptions& options) {
+  Plan plan;
+  for (const Beam& beam : beams) plan.emitted_W += beam.emitter->power_W();
+  const RigidTransform body_from_lab = lab_from_body.inverse();
+  for (const Beam& beam : beams) {
+    const double power = beam.emitter->power_W();
+    const double wanted =
+        static_cast<double>(options.rays) / options.replicates * power / plan.emitted_W;
+    const uint64_t capped = static_cast<uint64_t>(std::min(wanted, 0x1p31));
+    const uint32_t rays =
+        std::bit_ceil(std::max<uint32_t>(static_cast<uint32_t>(capped), ray_block));
+    BeamPlan share{&beam,
+                   plan_launch(*beam.emitter, body_from_lab * beam.lab_from_emitter, scene,
+                               std::countr_zero(rays)),
+                   plan.batches, band_fractions(beam.spectrum, scene.scene.bands), power / rays};
+    double fraction = 0.0;
+    for (double& band : share.power_per_ray_W) fraction += band;
+    for (double& band : share.power_per_ray_W) band *= share.watt_per_ray / fraction;
+    plan.batches += share.launch.cells.cells();
+    plan.rays += static_cast<uint64_t>(rays) * static_cast<uint64_t>(options.replicates);
+    plan.beams.push_back(std::move(share));
+  }
+  return plan;
+}
+
+// Everything that one part of the work adds up.
+struct Sums {
+  LedgerSums ledger;
+  std::vector<std::vector<double>> receivers;
+  uint64_t segments = 0;
+
+  Sums(size_t instances, std::span<const Receiver* const> all) {
+    ledger.absorbed_lanes_W.assign(instances, {});
+    for (const Receiver* receiver : all) receivers.emplace_back(receiver->bins(), 0.0);
+  }
+  void add(const Sums& other) {
+    ledger.add(other.ledger);
+    for (size_t r = 0; r < receivers.size(); ++r) {
+      for (size_t i = 0; i < receivers[r].size(); ++i) receivers[r][i] += other.receivers[r][i];
+    }
+    segments += other.segments;
+  }
+};
+
+// Follows batches of rays to their end. One per thread at a time; owns the scratch memory.
+class BatchTracer {
+ public:
+  BatchTracer(const TraceableScene::Data& scene, std::span<const Receiver* const> receivers,
+              const TraceOptions& options)
+      : scene_(scene),
+        receivers_(receivers),
+        options_(options),
+        hits_(std::make_unique<HitBuffer>()) {
+    hits_->hits.bands = scene.scene.bands.count();
+    for (size_t k = 0; k < 3; ++k) hits_->hits.direction[k] = hits_->ray[3 + k].data();
+  }
+
+  void run(const BeamPlan& plan, const SobolStream& stream, uint32_t batch, const HitOrigin& origin,
+           Sums& sums) {
+    sums_ = &sums;
+    origin_ = origin;
+    context_ = {&scene_, stream, 0, options_.cutoff * plan.watt_per_ray};
+    launch(*plan.beam->emitter, plan.launch, stream, batch, launched_);
+    next_.clear();
+    trace_wave({launched_.rays, launched_.order}, plan.power_per_ray_W.data(), 0,
+               Coherence::coherent);
+    for (context_.depth = 1; !next_.rays.empty() && context_.depth < options_.max_depth;
+         ++context_.depth) {
+      std::swap(current_, next_);
+      next_.clear();
+      trace_wave({current_.rays, {}}, current_.power_W.data(), bands(), Coherence::incoherent);
+    }
+    truncate();
+  }
+
+ private:
+  int bands() const { return hits_->hits.bands; }
+
+  // Ray i has the powers power_W[i · stride …].
+  void trace_wave(const RayList& rays, const double* power_W, int stride, Coherence coherence) {
+    sums_->segments += rays.size();
+    for (size_t begin = 0; begin < rays.size(); begin += Hits::capacity) {
+      const RayList some = rays.part(begin, Hits::capacity);
+      const double* power = power_W + begin * static_cast<size_t>(stride);
+      find_hits(scene_, some, coherence, *hits_);
+      drop_misses(some, power, stride);
+      if (hits_->hits.count == 0) continue;
+      locate_hits(scene_, context_.depth, *hits_);
+      interact(context_, *hits_, sums_->ledger, next_);
+      for (size_t r = 0; r < receivers_.size(); ++r) {
+        receivers_[r]->score(hits_->hits, sums_->receivers[r]);
+      }
+      if (options_.observe) options_.observe(origin_, hits_->hits);
+    }
+  }
+
+  // Lets the rays that hit nothing escape, closes the gaps that they leave, and gives the others
+  // their powers.
+  void drop_misses(const RayList& rays, const double* power_W, int stride) {
+    Hits& hits = hits_->hits;
+    const bool all = compact(*hits_, kept_) == static_cast<int>(rays.size());
+    if (!all) {
+      int at = 0;
+      for (int i = 0; i < static_cast<int>(rays.size()); ++i) {
+        if (at < hits.count && kept_[at] == i) {
+          ++at;
+        } else {
+          escape(rays[static_cast<size_t>(i)], power_W + i * stride);
+        }
+      }
+    }
+    for (int b = 0; b < hits.bands; ++b) {
+      double* incident = hits.incident_W[b].data();
+      if (stride == 0) {
+        std::fill_n(incident, hits.count, power_W[b]);
+      } else {
+        for (int i = 0; i < hits.count; ++i) {
+          incident[i] = power_W[(all ? i : kept_[i]) * stride + b];
+        }
+      }
+    }
+  }
+
+  double total(const double* power_W) const {
+    double sum = 0.0;
+    for (int b = 0; b < bands(); ++b) sum += power_W[b];
+    return sum;
+  }
+
+  void escape(const Ray& ray, const double* power_W) {
+    const double power = total(power_W);
+    sums_->ledger.escaped_W += power;
+    if (context_.depth > 0) leave(ray, power);
+  }
+
+  void leave(const Ray& ray, double power) {
+    const Vec3 direction(ray.direction[0], ray.direction[1], ray.direction[2]);
+    const Vec3 origin(ray.origin_m[0], ray.origin_m[1], ray.origin_m[2]);
+    sums_->ledger.release(origin, direction, power);
+  }
+
+  // What is still under way at the depth limit.
+  void truncate() {
+    for (size_t i = 0; i < next_.rays.size(); ++i) {
+      const double power = total(&next_.power_W[i * static_cast<size_t>(bands())]);
+      sums_->ledger.truncated_W += power;
+      leave(next_.rays[i], power);
+    }
+  }
+
+  const TraceableScene::Data& scene_;
+  std::span<const Receiver* const> receivers_;
+  const TraceOptions& options_;
+  std::unique_ptr<HitBuffer> hits_;
+  LaunchBuffer launched_;
+  Continuation current_, next_;
+  InteractionContext context_{};
+  HitOrigin origin_;
+  Hits::Column<int> kept_{};
+  Sums* sums_ = nullptr;
+};
+
+// Parts that the batches of one replicate are cut into; fixed, so that sums do not depend on
+// threads.
+constexpr uint64_t most_parts = 4;
+
+// Batch tracers between two parts of the work: their memory is made once per thread.
+class TracerPool {
+ public:
+  TracerPool(const TraceableScene::Data& scene, std::span<const Receiver* const> receivers,
+             const TraceOptions& options)
+      : scene_(scene), receivers_(receivers), options_(options) {}
+
+  std::unique_ptr<BatchTracer> take() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<BatchTracer>(scene_, receivers_, options_);
+    auto tracer = std::move(idle_.back());
+    idle_.pop_back();
+    return tracer;
+  }
+  void give_back(std::unique_ptr<BatchTracer> tracer) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(tracer));
+  }
+
+ private:
+  const TraceableScene::Data& scene_;
+  std::span<const Receiver* const> receivers_;
+  const TraceOptions& options_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<BatchTracer>> idle_;
+};
+
+Sums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
+                std::span<const Receiver* const> receivers, uint64_t seed, size_t item,
+                uint64_t parts) {
+  const uint64_t replicate = item / parts, part = item % parts;
+  const uint64_t first_batch = plan.batches * part / parts;
+  const uint64_t end_batch = plan.batches * (part + 1) / parts;
+  Sums sums(instances, receivers);
+  for (size_t b = 0; b < plan.beams.size(); ++b) {
+    const BeamPlan& beam = plan.beams[b];
+    const SobolStream stream{seed, hash_words(b, replicate), 0};
+    const uint64_t begin = std::max(first_batch, beam.first_batch);
+    const uint64_t end = std::min(end_batch, beam.first_batch + beam.launch.cells.cells());
+    for (uint64_t batch = begin; batch < end; ++batch) {
+      tracer.run(beam, stream, static_cast<uint32_t>(batch - beam.first_batch), {item, b}, sums);
+    }
+  }
+  return sums;
+}
+
+Ledger make_ledger(const std::vector<Sums>& replicates, const Plan& plan) {
+  std::vector<double> values(replicates.size());
+  const auto estimate = [&](const std::function<double(const LedgerSums&)>& pick) {
+    for (size_t r = 0; r < values.size(); ++r) values[r] = pick(replicates[r].ledger);
+    return estimate_from_replicates(values);
+  };
+  const auto absorbed = [](const LedgerSums& s) {
+    double sum = 0.0;
+    for (size_t i = 0; i < s.absorbed_lanes_W.size(); ++i) sum += s.absorbed_W(i);
+    return sum;
+  };
+  Ledger ledger;
+  ledger.emitted_W = plan.emitted_W;
+  ledger.absorbed_W = estimate(absorbed);
+  ledger.escaped_W = estimate([](const LedgerSums& s) { return s.escaped_W; });
+  ledger.truncated_W = estimate([](const LedgerSums& s) { return s.truncated_W; });
+  for (size_t i = 0; i < replicates[0].ledger.absorbed_lanes_W.size(); ++i) {
+    ledger.absorbed_by_instance_W.push_back(
+        estimate([i](const LedgerSums& s) { return s.absorbed_W(i); }));
+  }
+  for (size_t k = 0; k < 3; ++k) {
+    ledger.force_N[k] =
+        estimate([k](const LedgerSums& s) { return s.momentum_in[k] - s.momentum_out[k]; });
+    ledger.torque_N_m[k] =
+        estimate([k](const LedgerSums& s) { return s.momentum_in[3 + k] - s.momentum_out[3 + k]; });
+  }
+  for (const Sums& replicate : replicates) {
+    const LedgerSums& s = replicate.ledger;
+    const double gap = std::abs(plan.emitted_W - absorbed(s) - s.escaped_W - s.truncated_W);
+    ledger.closure = std::max(ledger.closure, gap / plan.emitted_W);
+  }
+  return ledger;
+}
+
+void check(const TraceOptions& options, std::span<const Beam> beams) {
+  const auto refuse = [](const std::string& key, double found, const std::string& expected) {
+    throw InputError({"trace"}, key, std::to_string(found), expected);
+  };
+  if (beams.empty()) throw InputError({"trace"}, "source", "none", "at least one source");
+  if (options.replicates < 8 || options.replicates > 1024) {
+    refuse("replicates", options.replicates, "8 to 1024");
+  }
+  // A sequence has at most 2^31 points.
+  const uint64_t most_rays = static_cast<uint64_t>(options.replicates) << 31;
+  if (options.rays < 1 || options.rays > most_rays) {
+    refuse("rays", static_cast<double>(options.rays),
+           "1 to 2^31 for each of the replicates, " + std::to_string(most_rays));
+  }
+  if (options.max_depth < 1 || options.max_depth > 65535) {
+    refuse("max_depth", options.max_depth, "1 to 65535");
+  }
+  if (!(options.cutoff >= 0.0 && options.cutoff < 1.0)) refuse("cutoff", options.cutoff, "0 to 1");
+  for (const Beam& beam : beams) {
+    if (!(beam.emitter->power_W() > 0.0)) {
+      refuse(beam.name + " power_W", beam.emitter->power_W(), "a positive power");
+    }
+  }
+}
+
+}  // namespace
+
+size_t trace_parts(const TraceOptions& options) {
+  return most_parts * static_cast<size_t>(options.replicates);
+}
+
+TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_body,
+                  std::span<const Beam> beams, std::span<const Receiver* const> receivers,
+                  const TraceOptions& options) {
+  check(options, beams);
+  const auto start = std::chrono::steady_clock::now();
+  const TraceableScene::Data& data = scene.data();
+  const Plan plan = make_plan(data, lab_from_body, beams, options);
+
+  const uint64_t parts = std::min(most_parts, plan.batches);
+  const size_t replicates = static_cast<size_t>(options.replicates);
+  std::vector<Sums> done(replicates * parts, Sums(0, {}));
+  TracerPool pool(data, receivers, options);
+  std::atomic<size_t> finished = 0;
+  parallel_for(done.size(), options.threads, [&](size_t item) {
+    auto tracer = pool.take();
+    done[item] = trace_part(*tracer, data.scene.instances.size(), plan, receivers, options.seed,
+                            item, parts);
+    pool.give_back(std::move(tracer));
+    const size_t now = ++finished;
+    if (options.progress)
+      options.progress(static_cast<double>(now) / static_cast<double>(done.size()));
+  });
+
+  std::vector<Sums> by_replicate;
+  TraceResult result;
+  for (size_t r = 0; r < replicates; ++r) {
+    by_replicate.push_back(std::move(done[r * parts]));
+    for (uint64_t part = 1; part < parts; ++part) by_replicate.back().add(done[r * parts + part]);
+    result.segments += by_replicate.back().segments;
+  }
+  for (size_t i = 0; i < receivers.size(); ++i) {
+    BinSums sums{receivers[i]->bins(), options.replicates, {}};
+    for (const Sums& replicate : by_replicate) {
+      sums.sums.insert(sums.sums.end(), replicate.receivers[i].begin(),
+                       replicate.receivers[i].end());
+    }
+    result.sums.push_back(std::move(sums));
+  }
+  result.ledger = make_ledger(by_replicate, plan);
+  result.rays = plan.rays;
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace photorque

@@ -1,0 +1,35 @@
+// What is seen from a point: the first surfaces along given rays, without light.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "raytrace/tracing/tracer.h"
+
+namespace photorque {
+
+// A line of sight in the body frame; the direction is of unit length.
+struct Sight {
+  Vec3 origin_m = Vec3::Zero();
+  Vec3 direction = Vec3::UnitZ();
+};
+
+// The first surface along a sight. Body frame.
+struct VisiblePoint {
+  bool hit = false;
+  bool front = true;  // the front of the surface is seen
+  uint32_t instance = 0;
+  uint32_t triangle = 0;
+  Vec2 barycentric = Vec2::Zero();  // weights of the triangle's vertices 1 and 2
+  Vec3 position_m = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();  // unit, towards the viewer
+  double distance_m = std::numeric_limits<double>::infinity();
+};
+
+// The points seen along sights 0 … count − 1. `sight` is called from many threads.
+std::vector<VisiblePoint> look(const TraceableScene& scene, size_t count,
+                               const std::function<Sight(size_t)>& sight, int threads = 0);
+
+}  // namespace photorque

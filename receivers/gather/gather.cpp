@@ -1,0 +1,347 @@
+#include "receivers/gather/gather.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "core/errors.h"
+#include "core/numerics/chebyshev.h"
+#include "core/numerics/random.h"
+#include "core/parallel.h"
+#include "raytrace/surfaces/bsdf.h"
+#include "receivers/gather/plane.h"
+
+namespace photorque {
+namespace {
+
+class Gather {
+ public:
+  Gather(const TraceableScene& scene, const RigidTransform& lab_from_body,
+         std::span<const Beam> beams, const FluxMapReceiver& map, const GatherOptions& options)
+      : plane_(scene, map),
+        options_(options),
+        triangles_(triangles_above(scene.scene(), plane_.patches().point_m, plane_.normal())),
+        open_W_(map.direct_entries(), 0.0) {
+    const RigidTransform body_from_lab = lab_from_body.inverse();
+    // The LEDs of an array share one emitter and its tables.
+    std::map<const Emitter*, std::shared_ptr<const DiscLight>> lights;
+    for (const Beam& beam : beams) {
+      auto& light = lights[beam.emitter.get()];
+      if (!light) light = std::make_shared<DiscLight>(*beam.emitter, *beam.aperture);
+      lamps_.emplace_back(beam, light, body_from_lab, plane_);
+    }
+    for (const auto& [emitter, light] : lights) make_table(*light);
+    cut_into_tiles();
+    prepare_cell_means();
+  }
+
+  Gathered run() {
+    find_occluders();
+    shaded_.resize(tiles_.size());
+    std::vector<size_t> open(tiles_.size(), 0);
+    parallel_for(tiles_.size(), options_.threads, [&](size_t t) {
+      for (uint32_t lamp = 0; lamp < lamps_.size(); ++lamp) {
+        open[t] += descend(tiles_[t], lamp, occluders_[lamp], shaded_[t]);
+      }
+    });
+    Gathered result;
+    result.open_pairs = std::accumulate(open.begin(), open.end(), size_t{0});
+    for (const auto& pairs : shaded_) result.shaded_pairs += pairs.size();
+    for (int points = options_.points;; points *= 2) {
+      result.direct = sample(points, result.shadow_rays);
+      result.worst_error = worst_error(result.direct);
+      const bool enough = result.worst_error <= options_.target_error;
+      if (options_.target_error <= 0.0 || enough || 2 * points > most_points) break;
+    }
+    return result;
+  }
+
+ private:
+  static constexpr int most_points = 1 << 14;
+  static constexpr size_t tile_side = 16;  // bins
+  // Chebyshev points a side, where they replace Gauss points in every bin.
+  static constexpr size_t least_nodes = 4, most_nodes = 20;
+
+  // A table of a light for all its lamps above the plane, where it pays.
+  void make_table(const DiscLight& light) {
+    constexpr size_t least_pairs = 5000;  // of a bin and a lamp
+    double low_m = INFINITY, high_m = 0.0;
+    std::vector<GatherLamp*> served;
+    for (GatherLamp& lamp : lamps_) {
+      const auto [least_m, most_m] = lamp.heights_m(plane_);
+      if (&lamp.light() != &light || !(least_m > 0.0)) continue;
+      low_m = std::min(low_m, least_m);
+      high_m = std::max(high_m, most_m);
+      served.push_back(&lamp);
+    }
+    if (served.size() * plane_.map().grid().bins() < least_pairs) return;
+    auto table = IrradianceTable::make(light, low_m, high_m, options_.threads);
+    if (!table) return;
+    const auto shared = std::make_shared<const IrradianceTable>(*std::move(table));
+    for (GatherLamp* lamp : served) lamp->use(shared);
+  }
+
+  // Square tiles: the items of parallel work.
+  void cut_into_tiles() {
+    constexpr int side = tile_side;
+    const SurfaceGrid& grid = plane_.map().grid();
+    for (int row = 0; row < grid.height; row += side) {
+      for (int column = 0; column < grid.width; column += side) {
+        tiles_.push_back(
+            {column, row, std::min(side, grid.width - column), std::min(side, grid.height - row)});
+      }
+    }
+  }
+
+  // Of every lamp, what may shade any bin.
+  void find_occluders() {
+    const SurfaceGrid& grid = plane_.map().grid();
+    std::vector<uint32_t> all(triangles_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    occluders_.resize(lamps_.size());
+    parallel_for(lamps_.size(), options_.threads, [&](size_t lamp) {
+      occluders_[lamp] =
+          in_shaft(plane_.ball_of({0, 0, grid.width, grid.height}), lamps_[lamp], all);
+    });
+  }
+
+  std::vector<uint32_t> in_shaft(const Ball& ball, const GatherLamp& lamp,
+                                 std::span<const uint32_t> candidates) const {
+    std::vector<uint32_t> kept;
+    if (candidates.empty()) return kept;
+    const Shaft shaft(ball, lamp.aperture_ball(ball));
+    for (const uint32_t t : candidates) {
+      if (shaft.may_meet(triangles_[t])) kept.push_back(t);
+    }
+    return kept;
+  }
+
+  // Splits a tile until nothing can shade it, or it is one bin. Returns the number of open bins.
+  size_t descend(const BinTile& tile, uint32_t index, std::span<const uint32_t> candidates,
+                 std::vector<ShadedPair>& shaded) {
+    const GatherLamp& lamp = lamps_[index];
+    const Ball ball = plane_.ball_of(tile);
+    if (lamp.misses(ball)) return 0;
+    const std::vector<uint32_t> occluders = in_shaft(ball, lamp, candidates);
+    if (lamp.lights_front() && occluders.empty()) return add_open(tile, ball, lamp);
+    if (tile.count() == 1) {
+      const size_t bin = bin_at(tile.column, tile.row);
+      if (!plane_.patches().of(bin).empty()) shaded.push_back({static_cast<uint32_t>(bin), index});
+      return 0;
+    }
+    BinTile low = tile, high = tile;
+    if (tile.columns >= tile.rows) {
+      low.columns = tile.columns / 2;
+      high.column += low.columns;
+      high.columns -= low.columns;
+    } else {
+      low.rows = tile.rows / 2;
+      high.row += low.rows;
+      high.rows -= low.rows;
+    }
+    const size_t open = descend(low, index, occluders, shaded);
+    return open + descend(high, index, occluders, shaded);
+  }
+
+  size_t bin_at(int column, int row) const {
+    return static_cast<size_t>(row) * static_cast<size_t>(plane_.map().grid().width) +
+           static_cast<size_t>(column);
+  }
+
+  // Light without shadow on all bins of a tile.
+  size_t add_open(const BinTile& tile, const Ball& ball, const GatherLamp& lamp) {
+    // Fewer points than two Gauss points a side of every bin, where the irradiance is smooth.
+    const double turns = 2.0 * ball.radius_m / lamp.scale_m(ball);
+    const auto nodes = least_nodes + static_cast<size_t>(std::min(4.0 * turns, 100.0));
+    const auto count = static_cast<size_t>(tile.count());
+    const bool smooth = nodes <= most_nodes && nodes * nodes < 4 * count && lamp.smooth_over(ball);
+    std::vector<double> mean_W_m2;
+    if (smooth) mean_W_m2 = interpolate(tile, nodes, lamp);
+    size_t open = 0, at = 0;
+    for (int row = tile.row; row < tile.row + tile.rows; ++row) {
+      for (int column = tile.column; column < tile.column + tile.columns; ++column, ++at) {
+        const size_t bin = bin_at(column, row);
+        for (const SurfacePatch& patch : plane_.patches().of(bin)) {
+          const double mean =
+              smooth && plane_.whole(bin) ? mean_W_m2[at] : mean_irradiance_W_m2(patch, lamp);
+          plane_.add_power(patch.area_m2 * mean, lamp.share(), bin, patch.instance, open_W_);
+        }
+        open += plane_.patches().of(bin).empty() ? 0 : 1;
+      }
+    }
+    return open;
+  }
+
+  // All sizes of tiles that halving leads to.
+  void prepare_cell_means() {
+    std::set<int> sizes;
+    const std::function<void(int)> halve = [&](int side) {
+      if (!sizes.insert(side).second || side < 2) return;
+      halve(side / 2);
+      halve(side - side / 2);
+    };
+    for (const BinTile& tile : tiles_) {
+      halve(tile.columns);
+      halve(tile.rows);
+    }
+    for (const int cells : sizes) {
+      for (size_t nodes = least_nodes; nodes <= most_nodes; ++nodes) {
+        if (nodes * nodes >= 4 * tile_side * tile_side) break;
+        cell_means_[{nodes, static_cast<size_t>(cells)}] =
+            chebyshev_cell_means(nodes, static_cast<size_t>(cells));
+      }
+    }
+  }
+
+  // Mean irradiance of the whole bins of a tile, row by row, from its values at nodes × nodes
+  // Chebyshev points.
+  std::vector<double> interpolate(const BinTile& tile, size_t nodes, const GatherLamp& lamp) const {
+    const auto columns = static_cast<size_t>(tile.columns), rows = static_cast<size_t>(tile.rows);
+    const Eigen::MatrixXd& across = cell_means_.at({nodes, columns});
+    const Eigen::MatrixXd& along = cell_means_.at({nodes, rows});
+    std::vector<double> fraction;
+    for (size_t i = 0; i < nodes; ++i) fraction.push_back(chebyshev_fraction(nodes, i));
+    Eigen::MatrixXd values(nodes, nodes);
+    for (size_t j = 0; j < nodes; ++j) {
+      for (size_t i = 0; i < nodes; ++i) {
+        const Vec3 at = plane_.point_m(tile.column + tile.columns * fraction[i],
+                                       tile.row + tile.rows * fraction[j]);
+        values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            lamp.irradiance_W_m2(at);
+      }
+    }
+    const Eigen::MatrixXd means = across * values * along.transpose();
+    return {means.data(), means.data() + means.size()};  // columns of the tile fastest
+  }
+
+  // 2 × 2 Gauss points, or the three-point rule of degree 2.
+  double mean_irradiance_W_m2(const SurfacePatch& patch, const GatherLamp& lamp) const {
+    const auto irradiance = [&](double a, double b) {
+      return lamp.irradiance_W_m2(patch.origin_m + a * patch.edge1_m + b * patch.edge2_m);
+    };
+    constexpr double third = 1.0 / 3.0, sixth = 1.0 / 6.0;
+    if (patch.triangle) {
+      return third * (irradiance(sixth, sixth) + irradiance(4 * sixth, sixth) +
+                      irradiance(sixth, 4 * sixth));
+    }
+    constexpr double low = 0.21132486540518712, high = 1.0 - low;
+    return 0.25 * (irradiance(low, low) + irradiance(high, low) + irradiance(low, high) +
+                   irradiance(high, high));
+  }
+
+  BinSums sample(int points, uint64_t& rays) const {
+    BinSums sums{plane_.map().direct_entries(), options_.replicates, {}, quadrature_error};
+    for (int r = 0; r < options_.replicates; ++r) {
+      sums.sums.insert(sums.sums.end(), open_W_.begin(), open_W_.end());
+    }
+    std::vector<uint64_t> counted(tiles_.size(), 0);
+    parallel_for(tiles_.size(), options_.threads, [&](size_t tile) {
+      const std::vector<ShadedPair>& pairs = shaded_[tile];
+      for (size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
+        const uint32_t lamp = pairs[begin].lamp;
+        while (end < pairs.size() && pairs[end].lamp == lamp) ++end;
+        for (int r = 0; r < options_.replicates; ++r) {
+          const uint64_t which = hash_words(hash_words(lamp, tile), static_cast<uint64_t>(r));
+          const auto entries =
+              std::span(sums.sums).subspan(static_cast<size_t>(r) * sums.bins, sums.bins);
+          counted[tile] +=
+              sample_shaded(plane_, lamps_[lamp], std::span(pairs).subspan(begin, end - begin),
+                            points, {options_.seed, which, 0}, entries);
+        }
+      }
+    });
+    rays += std::accumulate(counted.begin(), counted.end(), uint64_t{0});
+    return sums;
+  }
+
+  // Largest relative standard error of the irradiance above the floor.
+  double worst_error(const BinSums& sums) const {
+    const FluxMapReceiver& map = plane_.map();
+    const auto bands = static_cast<size_t>(map.bands().count());
+    std::vector<Estimate> bins;
+    std::vector<double> density(static_cast<size_t>(sums.replicates));
+    double peak = 0.0;
+    for (size_t bin = 0; bin < map.grid().bins(); ++bin) {
+      const double area_m2 = map.grid().area_m2[bin];
+      if (!(area_m2 > 0.0)) continue;
+      for (size_t r = 0; r < density.size(); ++r) {
+        const auto all = sums.of(static_cast<int>(r));
+        density[r] = 0.0;
+        for (size_t band = 0; band < bands; ++band) density[r] += all[map.entry(bin, band)];
+        density[r] /= area_m2;
+      }
+      bins.push_back(with_common_error(estimate_from_replicates(density), sums.common_error));
+      peak = std::max(peak, bins.back().value);
+    }
+    double worst = 0.0;
+    for (const Estimate& bin : bins) {
+      if (bin.value > options_.floor * peak) {
+        worst = std::max(worst, bin.standard_error / bin.value);
+      }
+    }
+    return worst;
+  }
+
+  GatherPlane plane_;
+  const GatherOptions& options_;
+  std::vector<TriangleCorners> triangles_;
+  std::vector<GatherLamp> lamps_;
+  std::vector<std::vector<uint32_t>> occluders_;  // per lamp
+  std::vector<BinTile> tiles_;
+  // By nodes and cells.
+  std::map<std::pair<size_t, size_t>, Eigen::MatrixXd> cell_means_;
+  std::vector<double> open_W_;
+  std::vector<std::vector<ShadedPair>> shaded_;  // per tile, lamp by lamp
+};
+
+// What the surface absorbs depends on the angle of incidence (glass), which bins do not keep.
+bool absorbs_by_angle(const Scene& scene, const SurfaceGrid& grid) {
+  return std::any_of(grid.instances.begin(), grid.instances.end(), [&](uint32_t instance) {
+    const Instance& of = scene.instances[instance];
+    const uint32_t surface = grid.side == Side::back ? of.back_surface : of.front_surface;
+    const Finish* finish = scene.surfaces[surface].finish.get();
+    return finish != nullptr && finish->law != nullptr;
+  });
+}
+
+}  // namespace
+
+bool can_gather(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams) {
+  const bool apertures =
+      std::all_of(beams.begin(), beams.end(), [](const Beam& b) { return b.aperture.has_value(); });
+  return apertures && grid.side != Side::both && is_flat(scene, grid) &&
+         !absorbs_by_angle(scene, grid);
+}
+
+double gathering_cost_s(size_t pairs) {
+  return 1e-7 * static_cast<double>(pairs);
+}
+
+double tracing_cost_s(uint64_t rays) {
+  return 9e-8 * static_cast<double>(rays);
+}
+
+bool gathering_pays(size_t pairs, uint64_t rays) {
+  constexpr double bearable_s = 2.0;
+  constexpr double worth = 4.0;  // times the rays, whose errors are far larger
+  return gathering_cost_s(pairs) <= std::max(bearable_s, worth * tracing_cost_s(rays));
+}
+
+Gathered gather_direct(const TraceableScene& scene, const RigidTransform& lab_from_body,
+                       std::span<const Beam> beams, const FluxMapReceiver& map,
+                       const GatherOptions& options) {
+  if (!can_gather(scene.scene(), map.grid(), beams)) {
+    throw InputError({"gather"}, map.name(), "a surface or a source that needs rays",
+                     "one side of a flat surface, and sources with uniform apertures");
+  }
+  const auto start = std::chrono::steady_clock::now();
+  Gathered result = Gather(scene, lab_from_body, beams, map, options).run();
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace photorque

@@ -1,0 +1,111 @@
+#include "receivers/gather/plane.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+
+namespace photorque {
+
+GatherPlane::GatherPlane(const TraceableScene& scene, const FluxMapReceiver& map)
+    : scene_(scene), map_(map), patches_(bin_patches(scene.scene(), map.grid())) {
+  const SurfaceGrid& grid = map.grid();
+  if (grid.side == Side::back) patches_.normal = -patches_.normal;
+  const double lean = patches_.normal.dot(grid.normal_body);
+  const auto on_plane = [&](double u, double v) {
+    const Vec3 flat = u * grid.u_axis_body + v * grid.v_axis_body;
+    return Vec3(flat + patches_.normal.dot(patches_.point_m - flat) / lean * grid.normal_body);
+  };
+  corner_m_ = on_plane(grid.u_low, grid.v_low);
+  column_m_ = (on_plane(grid.u_high, grid.v_low) - corner_m_) / grid.width;
+  row_m_ = (on_plane(grid.u_low, grid.v_high) - corner_m_) / grid.height;
+}
+
+Ball GatherPlane::ball_of(const BinTile& tile) const {
+  const Vec3 across = tile.columns * column_m_, along = tile.rows * row_m_;
+  const double radius = 0.5 * std::max((across + along).norm(), (across - along).norm());
+  return {point_m(tile.column + 0.5 * tile.columns, tile.row + 0.5 * tile.rows), radius};
+}
+
+void GatherPlane::add_power(double power_W, const BandValues& share, size_t bin, uint32_t instance,
+                            std::span<double> entries) const {
+  const Instance& of = scene_.scene().instances[instance];
+  const bool back = map_.grid().side == Side::back;
+  const OpticalSurface& surface =
+      scene_.scene().surfaces[back ? of.back_surface : of.front_surface];
+  for (size_t band = 0; band < static_cast<size_t>(map_.bands().count()); ++band) {
+    const size_t at = map_.entry(bin, band);
+    entries[at] += power_W * share[band];
+    entries[at + 1] += power_W * share[band] * surface.absorbed[band];
+  }
+}
+
+GatherLamp::GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
+                       const RigidTransform& body_from_lab, const GatherPlane& plane)
+    : light_(std::move(light)),
+      body_from_emitter_(body_from_lab * beam.lab_from_emitter),
+      emitter_from_body_(body_from_emitter_.inverse()),
+      normal_emitter_(emitter_from_body_.direction(plane.normal())),
+      share_(band_fractions(beam.spectrum, plane.map().bands())),
+      lights_front_(light_->lights_front(normal_emitter_)),
+      scene_diameter_m_(scene_diameter_m(plane.scene())),
+      lean_rad_(std::acos(std::clamp(-normal_emitter_.z(), -1.0, 1.0))),
+      reach_slope_(std::tan(std::min(light_->reach_rad(), 1.5))),
+      wide_(light_->reach_rad() > 1.5) {
+  double total = 0.0;
+  for (const double share : share_) total += share;
+  for (double& share : share_) share /= total;
+}
+
+std::pair<double, double> GatherLamp::heights_m(const GatherPlane& plane) const {
+  const SurfaceGrid& grid = plane.map().grid();
+  std::pair<double, double> heights = {INFINITY, -INFINITY};
+  for (const int column : {0, grid.width}) {
+    for (const int row : {0, grid.height}) {
+      const double height_m = emitter_from_body_.point(plane.point_m(column, row)).z();
+      heights = {std::min(heights.first, height_m), std::max(heights.second, height_m)};
+    }
+  }
+  return heights;
+}
+
+bool GatherLamp::misses(const Ball& ball) const {
+  if (lean_rad_ - light_->reach_rad() >= 0.5 * pi) return true;
+  if (light_->parallel()) return false;
+  const Vec3 at = emitter_from_body_.point(ball.centre_m);
+  if (at.z() + ball.radius_m <= 0.0) return true;
+  if (wide_) return false;
+  const double reach = light_->radius_m() + (at.z() + ball.radius_m) * reach_slope_;
+  return std::hypot(at.x(), at.y()) - ball.radius_m > reach;
+}
+
+Ball GatherLamp::aperture_ball(const Ball& ball) const {
+  const Vec3 at = emitter_from_body_.point(ball.centre_m);
+  if (light_->parallel()) {
+    const double far = scene_diameter_m_;
+    return {body_from_emitter_.point(at - far * Vec3::UnitZ()), far * reach_slope_ + ball.radius_m};
+  }
+  const double seen = (std::max(at.z(), 0.0) + ball.radius_m) * reach_slope_ + ball.radius_m;
+  if (!wide_ && seen < light_->radius_m()) {
+    return {body_from_emitter_.point({at.x(), at.y(), 0.0}), seen};
+  }
+  return {body_from_emitter_.translation_m, light_->radius_m()};
+}
+
+bool GatherLamp::smooth_over(const Ball& ball) const {
+  if (light_->parallel()) return true;
+  const Vec3 at = emitter_from_body_.point(ball.centre_m);
+  if (at.z() < 2.0 * ball.radius_m) return false;
+  if (light_->fades_out()) return true;
+  // The whole beam comes from within the disc.
+  const double foot = (at.z() + ball.radius_m) * reach_slope_;
+  return std::hypot(at.x(), at.y()) + ball.radius_m + foot < light_->radius_m();
+}
+
+double GatherLamp::scale_m(const Ball& ball) const {
+  if (light_->parallel()) return INFINITY;
+  const double h = emitter_from_body_.point(ball.centre_m).z();
+  return std::min(h, h * std::tan(std::min(light_->half_flux_rad(), 0.8)));
+}
+
+}  // namespace photorque

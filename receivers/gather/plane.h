@@ -1,0 +1,116 @@
+// What gather.cpp knows about the surface and the lamps. For the files of the gather only.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "raytrace/direct/disc_light.h"
+#include "raytrace/direct/irradiance_table.h"
+#include "raytrace/tracing/shadow.h"
+#include "receivers/gather/bin_patches.h"
+#include "receivers/maps/flux_map.h"
+
+namespace photorque {
+
+// A rectangle of bins.
+struct BinTile {
+  int column, row, columns, rows;
+
+  int count() const { return columns * rows; }
+};
+
+// The lit side of a flat flux map. Body frame.
+class GatherPlane {
+ public:
+  GatherPlane(const TraceableScene& scene, const FluxMapReceiver& map);
+
+  const TraceableScene& scene() const { return scene_; }
+  const FluxMapReceiver& map() const { return map_; }
+  const BinPatches& patches() const { return patches_; }
+  const Vec3& normal() const { return patches_.normal; }  // of the lit side
+
+  // The point at column + u, row + v of the grid of bins, (0, 0) being the corner of the first.
+  Vec3 point_m(double column, double row) const {
+    return corner_m_ + column * column_m_ + row * row_m_;
+  }
+  // Holds all bins of a tile.
+  Ball ball_of(const BinTile& tile) const;
+  // True when the bin is one whole parallelogram of the grid.
+  bool whole(size_t bin) const {
+    const auto patches = patches_.of(bin);
+    return patches.size() == 1 && !patches[0].triangle;
+  }
+
+  // Adds a power with its shares per band, and what an instance's surface absorbs of it, to the
+  // direct entries of a bin.
+  void add_power(double power_W, const BandValues& share, size_t bin, uint32_t instance,
+                 std::span<double> entries) const;
+
+ private:
+  const TraceableScene& scene_;
+  const FluxMapReceiver& map_;
+  BinPatches patches_;
+  Vec3 corner_m_, column_m_, row_m_;
+};
+
+// One beam as the plane sees it.
+class GatherLamp {
+ public:
+  // `light` is of the beam's emitter.
+  GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
+             const RigidTransform& body_from_lab, const GatherPlane& plane);
+
+  const DiscLight& light() const { return *light_; }
+  const RigidTransform& body_from_emitter() const { return body_from_emitter_; }
+  const RigidTransform& emitter_from_body() const { return emitter_from_body_; }
+  const Vec3& normal_emitter() const { return normal_emitter_; }  // of the lit side
+  const BandValues& share() const { return share_; }              // of its power per band
+  // Irradiance without shadow at a point of the plane.
+  double irradiance_W_m2(const Vec3& at_body_m) const {
+    const Vec3 at = emitter_from_body_.point(at_body_m);
+    return table_ ? table_->irradiance_W_m2(at, normal_emitter_)
+                  : light_->irradiance_W_m2(at, normal_emitter_);
+  }
+  // Gives the lamp a table of its light, for all heights of heights_m().
+  void use(std::shared_ptr<const IrradianceTable> table) { table_ = std::move(table); }
+  // The least and the largest height of the whole grid above the aperture.
+  std::pair<double, double> heights_m(const GatherPlane& plane) const;
+  // Every ray of the beam meets the plane from the lit side.
+  bool lights_front() const { return lights_front_; }
+
+  // No ray of the beam comes to the ball from the lit side.
+  bool misses(const Ball& ball) const;
+  // Holds every point of the aperture from which light can come to the ball.
+  Ball aperture_ball(const Ball& ball) const;
+  // The unshaded irradiance has no kink or jump on the ball.
+  bool smooth_over(const Ball& ball) const;
+  // Length over which the unshaded irradiance falls by half, at the distance of the ball [m].
+  double scale_m(const Ball& ball) const;
+
+ private:
+  std::shared_ptr<const DiscLight> light_;
+  std::shared_ptr<const IrradianceTable> table_;  // may be null
+  RigidTransform body_from_emitter_, emitter_from_body_;
+  Vec3 normal_emitter_;
+  BandValues share_{};
+  bool lights_front_ = false;
+  double scene_diameter_m_ = 0.0;
+  double lean_rad_ = 0.0;     // between the axis and the way into the plane
+  double reach_slope_ = 0.0;  // tangent of the light's reach
+  bool wide_ = false;         // the light reaches almost to the side: no slope serves
+};
+
+// A bin that may be in the shadow of something, for one lamp.
+struct ShadedPair {
+  uint32_t bin, lamp;
+};
+
+// Adds the light of the lamp on the bins of `pairs` to `entries`, by `points` shadow rays each (a
+// power of two), from the given stream of points. Returns the number of rays.
+uint64_t sample_shaded(const GatherPlane& plane, const GatherLamp& lamp,
+                       std::span<const ShadedPair> pairs, int points, const SobolStream& stream,
+                       std::span<double> entries);
+
+}  // namespace photorque

@@ -1,0 +1,190 @@
+// Shadow rays between bins and apertures.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "receivers/gather/plane.h"
+
+namespace photorque {
+namespace {
+
+// A patch in the emitter's frame.
+struct PlacedPatch {
+  const SurfacePatch* patch;
+  Vec3 origin_m, edge1_m, edge2_m;
+  double share;  // of the bin's area
+};
+
+class ShadedSampler {
+ public:
+  ShadedSampler(const GatherPlane& plane, const GatherLamp& lamp, size_t points,
+                std::span<double> entries)
+      : plane_(plane),
+        lamp_(lamp),
+        points_(points),
+        entries_(entries),
+        lift_m_(shadow_lift_m(plane.scene())),
+        far_m_(scene_diameter_m(plane.scene())),
+        body_from_emitter_(lamp.body_from_emitter().rotation.toRotationMatrix()) {}
+
+  uint64_t run(std::span<const ShadedPair> pairs, const SobolStream& stream) {
+    std::array<uint32_t*, sobol_dimensions> out;
+    for (size_t k = 0; k < sobol_dimensions; ++k) out[k] = samples_.bits[k].data();
+    // Several bins share a block of points, or one bin takes several blocks.
+    const size_t in_block = std::min<size_t>(points_, ray_block);
+    const size_t per_block = ray_block / in_block, blocks = points_ / in_block;
+    uint64_t rays = 0;
+    uint32_t block = 0;
+    for (size_t begin = 0; begin < pairs.size(); begin += per_block) {
+      const auto some = pairs.subspan(begin, std::min(per_block, pairs.size() - begin));
+      for (size_t pass = 0; pass < blocks; ++pass, ++block) {
+        sobol_points(stream, block * ray_block, out);
+        lamp_.light().emitter().emit(samples_, emitted_);
+        count_ = 0;
+        for (size_t p = 0; p < some.size(); ++p) add_lines(some[p].bin, p * in_block, in_block);
+        rays += count_;
+        finish();
+      }
+    }
+    return rays;
+  }
+
+ private:
+  // By direction where the aperture is wide against the beam, by the aperture's point elsewhere.
+  bool by_direction(double height_m) const {
+    const double half = std::min(lamp_.light().half_flux_rad(), 1.5);
+    return lamp_.light().parallel() || height_m * std::tan(half) < 0.7 * lamp_.light().radius_m();
+  }
+
+  void place(size_t bin) {
+    placed_.clear();
+    const double area_m2 = plane_.map().grid().area_m2[bin];
+    const Mat3 rotation = lamp_.emitter_from_body().rotation.toRotationMatrix();
+    for (const SurfacePatch& patch : plane_.patches().of(bin)) {
+      placed_.push_back(
+          {&patch, rotation * patch.origin_m + lamp_.emitter_from_body().translation_m,
+           rotation * patch.edge1_m, rotation * patch.edge2_m, patch.area_m2 / area_m2});
+    }
+  }
+
+  const PlacedPatch& pick(double& s) const {
+    for (const PlacedPatch& placed : placed_) {
+      if (s < placed.share || &placed == &placed_.back()) {
+        s = std::min(s / placed.share, 1.0);
+        return placed;
+      }
+      s -= placed.share;
+    }
+    return placed_.back();
+  }
+
+  // Lines of one bin, from `count` points of the block.
+  void add_lines(size_t bin, size_t first, size_t count) {
+    place(bin);
+    const double area_m2 = plane_.map().grid().area_m2[bin] / static_cast<double>(points_);
+    const bool directed = by_direction(placed_[0].origin_m.z());
+    const size_t dimension = directed ? 0 : 2;
+    for (size_t i = first; i < first + count; ++i) {
+      double s = sobol_fraction(samples_.bits[dimension][i]);
+      double t = sobol_fraction(samples_.bits[dimension + 1][i]);
+      const PlacedPatch& placed = placed_.size() == 1 ? placed_[0] : pick(s);
+      if (placed.patch->triangle) {
+        const double root = std::sqrt(s);
+        s = root * (1.0 - t);
+        t = root * t;
+      }
+      const Vec3 at = placed.origin_m + s * placed.edge1_m + t * placed.edge2_m;
+      Vec3 from;
+      const double density = directed ? weigh_direction(i, at, from) : weigh_point(i, at, from);
+      if (!(density > 0.0)) continue;
+      bin_[count_] = static_cast<uint32_t>(bin);
+      instance_[count_] = placed.patch->instance;
+      power_W_[count_] = density * area_m2;
+      add_ray(at, from);
+    }
+  }
+
+  // Irradiance for the direction of ray i of the block, and where the line to `at` begins.
+  double weigh_direction(size_t i, const Vec3& at, Vec3& from) const {
+    const Vec3 direction(emitted_.direction[0][i], emitted_.direction[1][i],
+                         emitted_.direction[2][i]);
+    const double facing = -lamp_.normal_emitter().dot(direction);
+    if (facing <= 0.0) return 0.0;
+    if (lamp_.light().parallel()) {
+      from = at - far_m_ * direction;
+      return lamp_.light().exitance_W_m2() * facing;
+    }
+    if (!(direction.z() > 0.0) || !(at.z() > 0.0)) return 0.0;
+    from = at - at.z() / direction.z() * direction;
+    const double radius = lamp_.light().radius_m();
+    if (from.head<2>().squaredNorm() > radius * radius) return 0.0;
+    return lamp_.light().exitance_W_m2() * facing / direction.z();
+  }
+
+  // Irradiance for the point of the aperture of ray i.
+  double weigh_point(size_t i, const Vec3& at, Vec3& from) const {
+    from = {emitted_.origin_m[0][i], emitted_.origin_m[1][i], emitted_.origin_m[2][i]};
+    const Vec3 between = at - from;
+    const double distance2 = between.squaredNorm();
+    const double facing = -lamp_.normal_emitter().dot(between);
+    if (!(between.z() > 0.0) || facing <= 0.0) return 0.0;
+    const double distance = std::sqrt(distance2);
+    const double rise = between.head<2>().squaredNorm() / (distance * (distance + between.z()));
+    return lamp_.light().emitter().power_W() * lamp_.light().intensity_per_flux(rise) * facing /
+           (distance2 * distance);
+  }
+
+  void add_ray(const Vec3& at, const Vec3& from) {
+    const Vec3 start = at + lift_m_ * lamp_.normal_emitter();
+    const Vec3 between = from - start;
+    const double length = between.norm();
+    const Vec3 origin = body_from_emitter_ * start + lamp_.body_from_emitter().translation_m;
+    const Vec3 direction = body_from_emitter_ * (between / length);
+    ShadowRay& ray = shadow_[count_++];
+    for (int k = 0; k < 3; ++k) {
+      ray.origin_m[k] = static_cast<float>(origin[k]);
+      ray.direction[k] = static_cast<float>(direction[k]);
+    }
+    ray.length_m = static_cast<float>(length - lift_m_);
+  }
+
+  // Traces the lines; the power of neighbours on the same bin is added at once.
+  void finish() {
+    find_shadows(plane_.scene(), std::span(shadow_).first(count_), lit_);
+    for (size_t i = 0; i < count_;) {
+      double power_W = 0.0;
+      const size_t begin = i;
+      for (; i < count_ && bin_[i] == bin_[begin] && instance_[i] == instance_[begin]; ++i) {
+        power_W += lit_[i] ? power_W_[i] : 0.0;
+      }
+      if (power_W > 0.0) {
+        plane_.add_power(power_W, lamp_.share(), bin_[begin], instance_[begin], entries_);
+      }
+    }
+  }
+
+  const GatherPlane& plane_;
+  const GatherLamp& lamp_;
+  size_t points_;
+  std::span<double> entries_;
+  double lift_m_, far_m_;
+  Mat3 body_from_emitter_;
+  std::vector<PlacedPatch> placed_;
+  SampleBlock samples_;
+  RayBlock emitted_;
+  size_t count_ = 0;
+  std::array<ShadowRay, ray_block> shadow_;
+  std::array<double, ray_block> power_W_;
+  std::array<uint32_t, ray_block> bin_, instance_;
+  std::array<uint8_t, ray_block> lit_;
+};
+
+}  // namespace
+
+uint64_t sample_shaded(const GatherPlane& plane, const GatherLamp& lamp,
+                       std::span<const ShadedPair> pairs, int points, const SobolStream& stream,
+                       std::span<double> entries) {
+  return ShadedSampler(plane, lamp, static_cast<size_t>(points), entries).run(pairs, stream);
+}
+
+}  // namespace photorque

@@ -1,0 +1,85 @@
+#include "receivers/maps/torque_map.h"
+
+#include <limits>
+
+#include "receivers/kind.h"
+#include "receivers/maps/grid_map.h"
+#include "receivers/settings.h"
+
+namespace photorque {
+namespace {
+
+constexpr size_t axes = 3;
+
+}  // namespace
+
+TorqueMapReceiver::TorqueMapReceiver(std::string name, const Scene& scene, SurfaceGrid grid,
+                                     const Vec3& about_body_m)
+    : name_(std::move(name)),
+      grid_(std::move(grid)),
+      about_body_m_(about_body_m),
+      binner_(scene, grid_) {}
+
+size_t TorqueMapReceiver::bins() const {
+  return grid_.bins() * axes;
+}
+
+void TorqueMapReceiver::score(const Hits& hits, std::span<double> sums) const {
+  BinnedHits binned;
+  binner_.bin(hits, binned);
+  const Vec3 about_m = about_body_m_;
+  for_each_binned(binned, [&](size_t hit, size_t index) {
+    const Vec3 f(hits.force_N[0][hit], hits.force_N[1][hit], hits.force_N[2][hit]);
+    const Vec3 r(hits.position_m[0][hit], hits.position_m[1][hit], hits.position_m[2][hit]);
+    const Vec3 torque = (r - about_m).cross(f);
+    double* bin = sums.data() + index * axes;
+    bin[0] += torque.x();
+    bin[1] += torque.y();
+    bin[2] += torque.z();
+  });
+}
+
+TorqueMap TorqueMapReceiver::torque_map(const BinSums& sums) const {
+  TorqueMap map{grid_, about_body_m_, {}, {}};
+  for (size_t axis = 0; axis < axes; ++axis) {
+    for (size_t bin = 0; bin < grid_.bins(); ++bin) {
+      constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+      map.per_bin_N_m[axis].push_back(grid_.area_m2[bin] > 0.0 ? sums.estimate(bin * axes + axis)
+                                                               : Estimate{nan, nan});
+    }
+    map.total_N_m[axis] = sums.estimate([axis](std::span<const double> bins) {
+      double sum = 0.0;
+      for (size_t bin = axis; bin < bins.size(); bin += axes) sum += bins[bin];
+      return sum;
+    });
+  }
+  return map;
+}
+
+Product TorqueMapReceiver::product(const BinSums& sums) const {
+  const TorqueMap map = torque_map(sums);
+  Product product;
+  for (size_t axis = 0; axis < axes; ++axis) {
+    const std::string letter(1, "xyz"[axis]);
+    product.quantities.push_back(
+        {"torque_" + letter + "_" + name_ + "_body_N_m", map.total_N_m[axis]});
+    Map picture = grid_map(grid_, map.per_bin_N_m[axis], "torque_" + letter + "_" + name_,
+                           "Torque about " + letter + " per bin of " + name_, "N m");
+    picture.signed_values = true;
+    product.maps.push_back(std::move(picture));
+  }
+  return product;
+}
+
+ReceiverKind torque_map_kind() {
+  return {"torque_map", "Torque of light per bin of a surface",
+          [](const Settings& settings, const Scene& scene) -> std::unique_ptr<Receiver> {
+            const ReceiverTarget target = read_target(settings, scene);
+            // Light pushes on either side, so that the total is the torque on the node.
+            return std::make_unique<TorqueMapReceiver>(
+                target.name, scene, read_surface_grid(settings, scene, target, Side::both),
+                settings.vector3_or("about_m", Vec3::Zero()));
+          }};
+}
+
+}  // namespace photorque

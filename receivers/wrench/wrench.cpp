@@ -1,0 +1,157 @@
+#include "receivers/wrench/wrench.h"
+
+#include <set>
+
+#include "receivers/kind.h"
+#include "receivers/settings.h"
+
+namespace photorque {
+namespace {
+
+constexpr size_t components = std::tuple_size_v<WrenchComponents>;
+
+// Names as short as they can be while no two are equal: nodes, else paths, else paths with their
+// material, else numbered.
+std::vector<std::string> unique_names(const Scene& scene, const std::vector<uint32_t>& instances) {
+  const std::function<std::string(uint32_t)> spellings[] = {
+      [&](uint32_t i) { return scene.instances[i].node; },
+      [&](uint32_t i) { return scene.instances[i].path; },
+      [&](uint32_t i) { return scene.instances[i].path + ":" + scene.instances[i].material; },
+      [&](uint32_t i) { return scene.instances[i].path + "#" + std::to_string(i); }};
+  std::vector<std::string> names;
+  for (const auto& spelling : spellings) {
+    names.clear();
+    for (const uint32_t instance : instances) names.push_back(spelling(instance));
+    if (std::set<std::string>(names.begin(), names.end()).size() == names.size()) break;
+  }
+  return names;
+}
+
+// Adds the hits [begin, end), all on one part.
+void add_run(const Hits& hits, int begin, int end, const Vec3& about_m, std::span<double> sums) {
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {
+    const Vec3 f(hits.force_N[0][i], hits.force_N[1][i], hits.force_N[2][i]);
+    const Vec3 r(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
+    force += f;
+    torque += (r - about_m).cross(f);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    sums[static_cast<size_t>(axis)] += force[axis];
+    sums[static_cast<size_t>(axis) + 3] += torque[axis];
+  }
+}
+
+std::string component(const std::string& kind, int axis) {
+  return kind + "_" + std::string(1, "xyz"[axis]);
+}
+
+void add_columns(Table& table, const std::vector<WrenchEstimate>& wrenches, const std::string& kind,
+                 const std::string& unit, const std::function<Vec3(const WrenchEstimate&)>& value) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Table::Column column{component(kind, axis) + "_" + unit, {}, {}};
+    for (const WrenchEstimate& wrench : wrenches) column.values.push_back(value(wrench)[axis]);
+    table.columns.push_back(std::move(column));
+  }
+}
+
+}  // namespace
+
+WrenchReceiver::WrenchReceiver(std::string name, const Scene& scene,
+                               std::vector<uint32_t> instances, const Vec3& about_body_m)
+    : name_(std::move(name)),
+      about_body_m_(about_body_m),
+      part_names_(unique_names(scene, instances)),
+      part_of_instance_(scene.instances.size(), static_cast<uint32_t>(instances.size())) {
+  for (uint32_t part = 0; part < instances.size(); ++part) {
+    part_of_instance_[instances[part]] = part;
+  }
+}
+
+size_t WrenchReceiver::bins() const {
+  return part_names_.size() * components;
+}
+
+// Neighbouring hits mostly share an instance: a run of them is summed in registers.
+void WrenchReceiver::score(const Hits& hits, std::span<double> sums) const {
+  for (int begin = 0, end = 0; begin < hits.count; begin = end) {
+    const uint32_t instance = hits.instance[static_cast<size_t>(begin)];
+    while (end < hits.count && hits.instance[static_cast<size_t>(end)] == instance) ++end;
+    const size_t part = part_of_instance_[instance];
+    if (part == part_names_.size()) continue;
+    add_run(hits, begin, end, about_body_m_, sums.subspan(part * components, components));
+  }
+}
+
+std::vector<WrenchEstimate> WrenchReceiver::by_part(const BinSums& sums) const {
+  std::vector<WrenchEstimate> wrenches;
+  std::vector<WrenchComponents> replicates(static_cast<size_t>(sums.replicates));
+  for (size_t part = 0; part < part_names_.size(); ++part) {
+    for (size_t r = 0; r < replicates.size(); ++r) {
+      const auto bins = sums.of(static_cast<int>(r)).subspan(part * components, components);
+      std::copy(bins.begin(), bins.end(), replicates[r].begin());
+    }
+    wrenches.push_back(wrench_from_replicates(replicates, about_body_m_));
+  }
+  return wrenches;
+}
+
+WrenchEstimate WrenchReceiver::total(const BinSums& sums) const {
+  std::vector<WrenchComponents> replicates(static_cast<size_t>(sums.replicates));
+  for (size_t r = 0; r < replicates.size(); ++r) {
+    const auto bins = sums.of(static_cast<int>(r));
+    replicates[r].fill(0.0);
+    for (size_t bin = 0; bin < bins.size(); ++bin) replicates[r][bin % components] += bins[bin];
+  }
+  return wrench_from_replicates(replicates, about_body_m_);
+}
+
+Product WrenchReceiver::product(const BinSums& sums) const {
+  std::vector<WrenchEstimate> wrenches = by_part(sums);
+  std::vector<std::string> names = part_names_;
+  wrenches.push_back(total(sums));
+  names.emplace_back("total");
+  Product product;
+  product.quantities = wrench_quantities(wrenches.back(), name_);
+  product.tables.push_back(wrench_rows(wrenches, names, name_));
+  return product;
+}
+
+std::vector<Quantity> wrench_quantities(const WrenchEstimate& wrench, const std::string& name) {
+  const std::string where = "_" + name + (wrench.mean.frame == Frame::body ? "_body" : "_lab");
+  const Vec3 force_error_N = wrench.force_error_N(), torque_error_N_m = wrench.torque_error_N_m();
+  std::vector<Quantity> quantities;
+  quantities.reserve(components);
+  for (int axis = 0; axis < 3; ++axis) {
+    quantities.push_back({component("force", axis) + where + "_N",
+                          {wrench.mean.force_N[axis], force_error_N[axis]}});
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    quantities.push_back({component("torque", axis) + where + "_N_m",
+                          {wrench.mean.torque_N_m[axis], torque_error_N_m[axis]}});
+  }
+  return quantities;
+}
+
+Table wrench_rows(const std::vector<WrenchEstimate>& wrenches,
+                  const std::vector<std::string>& names, const std::string& name) {
+  Table table{"wrench_" + name, "Force and torque of light on " + name, {{"part", {}, names}}};
+  using W = WrenchEstimate;
+  add_columns(table, wrenches, "force", "N", [](const W& w) { return w.mean.force_N; });
+  add_columns(table, wrenches, "torque", "N_m", [](const W& w) { return w.mean.torque_N_m; });
+  add_columns(table, wrenches, "force_error", "N", [](const W& w) { return w.force_error_N(); });
+  add_columns(table, wrenches, "torque_error", "N_m",
+              [](const W& w) { return w.torque_error_N_m(); });
+  return table;
+}
+
+ReceiverKind wrench_kind() {
+  return {"wrench", "Force and torque of light on the whole body or a node, in total and per part",
+          [](const Settings& settings, const Scene& scene) -> std::unique_ptr<Receiver> {
+            ReceiverTarget target = read_target_or_all(settings, scene, "platform");
+            return std::make_unique<WrenchReceiver>(target.name, scene, std::move(target.instances),
+                                                    settings.vector3_or("about_m", Vec3::Zero()));
+          }};
+}
+
+}  // namespace photorque

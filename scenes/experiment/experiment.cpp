@@ -1,0 +1,204 @@
+// The second step of reading an experiment: the scene, beams and receivers that the text names.
+#include "scenes/experiment/experiment.h"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "core/constants.h"
+#include "core/files.h"
+#include "receivers/kind.h"
+#include "receivers/settings.h"
+#include "scenes/gltf/lights.h"
+#include "scenes/gltf/reader.h"
+#include "sources/kind.h"
+
+namespace photorque {
+namespace {
+
+template <typename Kind>
+std::vector<std::string> names_of(const std::vector<Kind>& kinds) {
+  std::vector<std::string> names;
+  for (const Kind& kind : kinds) names.push_back(kind.name);
+  return names;
+}
+
+void require_spectrum_inside(const Settings& source, const Beam& beam, const Bands& bands) {
+  // A Gaussian is cut at five standard deviations without complaint.
+  constexpr double negligible = 1e-6;
+  const BandValues fractions = band_fractions(beam.spectrum, bands);
+  double inside = 0.0;
+  for (const double fraction : fractions) inside += fraction;
+  if (inside >= 1.0 - negligible) return;
+  std::ostringstream outside;
+  outside.precision(3);
+  outside << "a spectrum with " << 100.0 * (1.0 - inside) << " % of its power outside the bands";
+  throw source.error("", outside.str(), "[scene] bands_nm that hold all of it");
+}
+
+// Notices and the files that the sources read go to the model's.
+std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
+  const Scene& scene = model.scene;
+  if (file.sources.empty())
+    throw file.settings.error("source", "nothing", "at least one [[source]]");
+  const std::vector<SourceKind> kinds = all_source_kinds();
+  std::vector<Beam> beams;
+  std::optional<std::vector<GltfLight>> lights;  // of the scene, once a source asks for one
+  for (const Settings& written : file.sources) {
+    if (written.has("light") && !lights) {
+      lights = read_gltf_lights(*file.scene_file, file.metres_per_unit);
+    }
+    const bool at_light = written.has("light");
+    const Settings source = at_light ? source_at_light(written, *lights) : written;
+    const SourceContext context{
+        .scene_radius_m = scene.radius_m(),
+        .notice =
+            [&](const std::string& line) { model.notices.push_back(source.name() + ": " + line); },
+        .folder = file.path.parent_path(),
+        .input = [&](const std::string& name,
+                     const std::string& hash) { model.inputs.emplace_back(name, hash); },
+        .within =
+            [&](const std::string& name) {
+              return at_light ? profile_of_lights(*lights, name) : std::nullopt;
+            }};
+    const SourceKind& kind = kinds[source.choice("kind", names_of(kinds))];
+    for (Beam& beam : kind.make(source, context)) {
+      require_spectrum_inside(source, beam, scene.bands);
+      beams.push_back(std::move(beam));
+    }
+    if (at_light) source.finish();
+  }
+  return beams;
+}
+
+const ReceiverKind& kind_of(const Settings& receiver, const std::vector<ReceiverKind>& kinds) {
+  const std::vector<std::string> names = names_of(kinds);
+  if (receiver.has("kind") || !receiver.has("node")) return kinds[receiver.choice("kind", names)];
+  return *std::find_if(kinds.begin(), kinds.end(),
+                       [](const ReceiverKind& kind) { return kind.name == "flux_map"; });
+}
+
+NamedReceiver make_receiver(const Settings& settings, const Scene& scene,
+                            const std::vector<ReceiverKind>& kinds) {
+  const ReceiverKind& kind = kind_of(settings, kinds);
+  std::string name = settings.has("node") ? read_target(settings, scene).name
+                                          : settings.text_or("name", kind.name);
+  return {std::move(name), kind.name, kind.make(settings, scene)};
+}
+
+std::vector<NamedReceiver> make_receivers(const ExperimentFile& file, const Scene& scene) {
+  const std::vector<ReceiverKind> kinds = all_receiver_kinds();
+  std::vector<NamedReceiver> receivers;
+  std::set<std::pair<std::string, std::string>> taken;  // their files would overwrite each other
+  for (const Settings& settings : file.receivers) {
+    receivers.push_back(make_receiver(settings, scene, kinds));
+    const NamedReceiver& added = receivers.back();
+    if (!taken.emplace(added.kind, added.name).second) {
+      throw settings.error("name", "a second " + added.kind + " called \"" + added.name + "\"",
+                           "a name of its own");
+    }
+  }
+  return receivers;
+}
+
+Camera read_camera(const ExperimentFile& file, double scene_radius_m) {
+  Camera camera = camera_framing(scene_radius_m);
+  if (!file.camera) return camera;
+  const Settings& settings = *file.camera;
+  camera.position_m = settings.vector3_or("position_m", camera.position_m);
+  camera.target_m = settings.vector3_or("target_m", camera.target_m);
+  camera.field_of_view_rad =
+      settings.number_or("field_of_view_deg", camera.field_of_view_rad, {0.0, pi, true, true});
+  camera.width = static_cast<int>(settings.integer_or("width", camera.width, 16, 16384));
+  camera.height = static_cast<int>(settings.integer_or("height", camera.height, 16, 16384));
+  if ((camera.position_m - camera.target_m).norm() < 1e-9) {
+    throw settings.error("position_m", "the target itself", "a point away from target_m");
+  }
+  return camera;
+}
+
+// The file's name as the user wrote it, where the user wrote it.
+void require_scene_file(const ExperimentFile& file) {
+  if (!file.scene_file) {
+    throw file.settings.error("scene", "nothing", "a table [scene] with a file");
+  }
+  std::error_code unreadable;
+  if (std::filesystem::is_regular_file(*file.scene_file, unreadable)) return;
+  const Settings scene = file.settings.table("scene");
+  throw scene.error("file", "\"" + scene.text("file") + "\"",
+                    "a file that exists beside the experiment");
+}
+
+// The bytes of files whose names are relative to a file's folder.
+std::function<std::optional<std::string>(const std::string&)> files_beside(
+    const std::filesystem::path& path) {
+  constexpr uint64_t largest_bytes = 1ull << 28;
+  return [folder = path.parent_path()](const std::string& name) -> std::optional<std::string> {
+    std::error_code unreadable;
+    if (!std::filesystem::is_regular_file(folder / name, unreadable)) return std::nullopt;
+    return read_file(folder / name, largest_bytes);
+  };
+}
+
+void require_triangles(const Scene& scene, const std::filesystem::path& path) {
+  const bool any = std::any_of(
+      scene.instances.begin(), scene.instances.end(),
+      [&](const Instance& instance) { return !scene.meshes[instance.mesh].triangles.empty(); });
+  if (!any) throw InputError({path.string()}, "", "no triangles", "a scene with at least one mesh");
+}
+
+}  // namespace
+
+Camera camera_framing(double radius_m) {
+  Camera camera;
+  const double half_width = 0.5 * camera.field_of_view_rad;
+  const double half_height = std::atan(std::tan(half_width) * camera.height / camera.width);
+  const double distance_m = std::max(radius_m, 1e-6) / std::sin(std::min(half_width, half_height));
+  camera.position_m = distance_m * Vec3(0.5, -0.7, 0.5).normalized();
+  return camera;
+}
+
+std::vector<const Receiver*> Experiment::receiver_pointers() const {
+  std::vector<const Receiver*> pointers;
+  for (const NamedReceiver& named : receivers) pointers.push_back(named.receiver.get());
+  return pointers;
+}
+
+Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture) {
+  require_scene_file(file);
+  if (file.textures && !picture) {
+    throw file.settings.table("scene").error("textures", "true",
+                                             "false: nobody here reads pictures");
+  }
+  GltfModel model = read_gltf(*file.scene_file, {.bands = file.bands,
+                                                 .materials = file.materials,
+                                                 .material_file = files_beside(file.path),
+                                                 .picture = file.textures ? picture : nullptr,
+                                                 .metres_per_unit = file.metres_per_unit});
+  require_triangles(model.scene, *file.scene_file);
+
+  std::vector<Beam> beams = make_beams(file, model);
+  std::vector<NamedReceiver> receivers = make_receivers(file, model.scene);
+  const Camera camera = read_camera(file, model.scene.radius_m());
+  file.settings.finish();
+
+  Experiment experiment;
+  experiment.file = std::move(file);
+  experiment.scene = std::move(model.scene);
+  experiment.beams = std::move(beams);
+  experiment.receivers = std::move(receivers);
+  experiment.lab_from_body =
+      lab_from_body_at(experiment.file.attitude.tilt_rad, experiment.file.attitude.heading_rad);
+  experiment.camera = camera;
+  experiment.notices = std::move(model.notices);
+  experiment.inputs = experiment.file.inputs;
+  experiment.inputs.insert(experiment.inputs.end(), model.inputs.begin(), model.inputs.end());
+  return experiment;
+}
+
+Experiment read_experiment(const std::filesystem::path& path,
+                           std::span<const std::string> overrides, const PictureReader& picture) {
+  return resolve_experiment(read_experiment_file(path, overrides), picture);
+}
+
+}  // namespace photorque

@@ -1,0 +1,136 @@
+// One experiment file: what is believed about the laboratory, ready to trace.
+//
+// The file is read in two steps. ExperimentFile is what the text says, checked as far as it can be
+// without the scene; Experiment is the scene, beams and receivers that it names.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/settings/settings.h"
+#include "core/transform.h"
+#include "raytrace/receiver.h"
+#include "raytrace/scene.h"
+#include "raytrace/tracing/tracer.h"
+#include "scenes/gltf/picture.h"
+
+namespace photorque {
+
+// [attitude]: how the platform stands, see lab_from_body_at().
+struct Attitude {
+  double tilt_rad = 0.0;     // in [0, π]
+  double heading_rad = 0.0;  // of the direction it leans to, from lab x (east) towards y
+};
+
+// [torque_map]: the attitudes of a wrench table, every tilt with every heading.
+struct AttitudeGrid {
+  std::vector<double> tilt_rad;     // ascending, at least one
+  std::vector<double> heading_rad;  // ascending, at least one
+};
+
+// [torque_map] with elevations and azimuths: directions towards the Sun in body axes, every
+// elevation with every azimuth, for the table of a body in sunlight.
+struct DirectionGrid {
+  std::vector<double> elevation_rad;  // ascending in [−π/2, π/2], at least one
+  std::vector<double> azimuth_rad;    // ascending in [−π, π], from x towards y, at least one
+};
+
+// [trace]: how much work the light on surfaces is worth.
+struct TraceEffort {
+  // Direct light, where it can be gathered from the surface's side: so always, never, or unless
+  // that would take much longer than the rays.
+  enum class Direct { automatic, gather, rays };
+  Direct direct = Direct::automatic;
+  // More rays until every bin above a tenth of its map's peak has this relative standard error,
+  std::optional<double> target_error;
+  std::optional<double> max_time_s;  // or until the next round would end later than this
+  // Of how many emitted rays those that arrive on each flux map become a file; nothing: no file.
+  std::optional<uint64_t> arriving_rays;
+};
+
+// [camera]: where a picture is taken from. Lab frame, z up in the picture.
+struct Camera {
+  Vec3 position_m = Vec3::Zero();
+  Vec3 target_m = Vec3::Zero();
+  double field_of_view_rad = 0.6;  // across the width of the picture, in (0, π)
+  int width = 1280;                // pixels
+  int height = 960;
+};
+
+// The camera that shows a whole scene of `radius_m` about the lab origin: from the south-east and
+// above, the sphere just inside the picture.
+Camera camera_framing(double radius_m);
+
+// What an experiment file says.
+struct ExperimentFile {
+  std::filesystem::path path;
+  // The whole file, overrides included.
+  Settings settings{std::make_shared<const SettingsNode>()};
+  std::vector<std::pair<std::string, std::string>> inputs;  // for Provenance: this file, overrides
+
+  // Of an optical run; empty when the file has no [scene].
+  std::optional<std::filesystem::path> scene_file;
+  double metres_per_unit = 1.0;  // [scene] metres_per_unit: of lengths in the scene's file
+  bool textures = false;         // [scene] textures: base colours from the model's pictures
+  Bands bands;
+  std::vector<Settings> materials;  // [[material]], overrides by name
+  std::vector<Settings> sources;
+  std::vector<Settings> receivers;
+
+  Attitude attitude;
+  TraceOptions trace;
+  TraceEffort effort;
+  AttitudeGrid torque_map;
+  std::optional<DirectionGrid> light_directions;  // instead of torque_map
+  std::optional<uint64_t> torque_map_rays;        // per attitude or direction; else trace.rays
+  std::optional<Settings> camera;
+
+  // A table that this reader leaves to others ([array], [platform], [environment], [[disturbance]],
+  // [sensors], [recording]), each item with its own record of the keys read: whoever reads one
+  // calls finish() on it. Empty when the file has none.
+  std::vector<Settings> others(const std::string& key) const;
+};
+
+// Reads the text and the overrides ("KEY=VALUE", see apply_override()). Throws InputError for
+// everything that is wrong without knowing the scene, except keys inside the tables that sources,
+// receivers and materials will read.
+ExperimentFile read_experiment_file(const std::filesystem::path& path,
+                                    std::span<const std::string> overrides = {});
+
+// A receiver and what the experiment calls it.
+struct NamedReceiver {
+  std::string name;  // the key `name`, else the node, else the kind
+  std::string kind;
+  std::shared_ptr<const Receiver> receiver;
+};
+
+// Everything that an optical run needs.
+struct Experiment {
+  ExperimentFile file;
+  Scene scene;
+  std::vector<Beam> beams;  // lab frame
+  std::vector<NamedReceiver> receivers;
+  RigidTransform lab_from_body;  // from [attitude]
+  Camera camera;
+  std::vector<std::string> notices;  // what the scene's reader had to assume, one line each
+  std::vector<std::pair<std::string, std::string>> inputs;  // experiment, overrides, scene files
+
+  std::vector<const Receiver*> receiver_pointers() const;
+};
+
+// Loads what the file names. Throws InputError for: no [scene], a scene without triangles, no
+// source, a source whose spectrum leaves the bands, a receiver on a node that does not exist, and
+// every key that nobody read; for textures without a `picture` reader too.
+Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture = {});
+
+// read_experiment_file() and resolve_experiment().
+Experiment read_experiment(const std::filesystem::path& path,
+                           std::span<const std::string> overrides = {},
+                           const PictureReader& picture = {});
+
+}  // namespace photorque

@@ -1,0 +1,210 @@
+// The first step of reading an experiment: the text, without the scene.
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+#include "core/files.h"
+#include "core/provenance.h"
+#include "scenes/experiment/experiment.h"
+#include "scenes/experiment/toml_reader.h"
+
+namespace photorque {
+namespace {
+
+// Tables that optical runs accept as they are; the programs that use them check them.
+constexpr const char* tables_of_others[] = {"array",       "sweep",   "platform",  "environment",
+                                            "disturbance", "sensors", "recording", "published",
+                                            "propagate",   "budget",  "balance"};
+
+void require_ascending(const Settings& settings, std::string_view key,
+                       const std::vector<double>& values) {
+  if (values.empty()) throw settings.error(key, "an empty array", "at least one number");
+  for (size_t i = 1; i < values.size(); ++i) {
+    if (values[i] <= values[i - 1]) {
+      throw settings.error(key, "a number that is not above the one before it",
+                           "numbers in rising order");
+    }
+  }
+}
+
+Bands read_bands(const Settings& scene) {
+  Bands bands;
+  if (!scene.has("bands_nm")) return bands;
+  bands.edges_m = scene.numbers("bands_nm", Range::not_negative());
+  require_ascending(scene, "bands_nm", bands.edges_m);
+  if (bands.count() < 1 || bands.count() > max_bands) {
+    throw scene.error("bands_nm", std::to_string(bands.edges_m.size()) + " edges",
+                      "from 2 to " + std::to_string(max_bands + 1) + " edges");
+  }
+  return bands;
+}
+
+Attitude read_attitude(const Settings& root) {
+  Attitude attitude;
+  if (!root.has("attitude")) return attitude;
+  const Settings table = root.table("attitude");
+  attitude.tilt_rad = table.number_or("tilt_deg", 0.0, {0.0, pi});
+  attitude.heading_rad = table.number_or("heading_deg", 0.0, {-2.0 * pi, 2.0 * pi});
+  return attitude;
+}
+
+TraceOptions read_trace_options(const Settings& root) {
+  TraceOptions options;
+  if (!root.has("trace")) return options;
+  const Settings table = root.table("trace");
+  options.rays = static_cast<uint64_t>(
+      table.integer_or("rays", static_cast<int64_t>(options.rays), 1, int64_t{1} << 40));
+  options.replicates =
+      static_cast<int>(table.integer_or("replicates", options.replicates, 8, 1024));
+  options.seed = static_cast<uint64_t>(
+      table.integer_or("seed", static_cast<int64_t>(options.seed), 0, INT64_MAX));
+  options.max_depth = static_cast<int>(table.integer_or("max_depth", options.max_depth, 1, 65535));
+  options.cutoff = table.number_or("cutoff", options.cutoff, {0.0, 1.0, false, true});
+  return options;
+}
+
+TraceEffort read_effort(const Settings& root) {
+  TraceEffort effort;
+  if (!root.has("trace")) return effort;
+  const Settings table = root.table("trace");
+  constexpr TraceEffort::Direct ways[] = {TraceEffort::Direct::automatic,
+                                          TraceEffort::Direct::gather, TraceEffort::Direct::rays};
+  effort.direct = ways[table.choice_or("direct", {"auto", "gather", "rays"}, 0)];
+  if (table.has("target_error")) {
+    effort.target_error = table.number("target_error", {1e-6, 1.0, false, false});
+  }
+  if (table.has("max_time_s")) effort.max_time_s = table.number("max_time_s", Range::positive());
+  if (table.has("arriving_rays")) {
+    constexpr int64_t most_rays = 10'000'000;  // they are kept in memory
+    effort.arriving_rays = static_cast<uint64_t>(table.integer("arriving_rays", 1, most_rays));
+  }
+  if (effort.max_time_s && !effort.target_error) {
+    throw table.error("max_time_s", "a limit without a target",
+                      "also target_error: only then are rays added");
+  }
+  return effort;
+}
+
+AttitudeGrid read_torque_map(const Settings& root, const Attitude& attitude) {
+  AttitudeGrid grid{{attitude.tilt_rad}, {attitude.heading_rad}};
+  if (!root.has("torque_map")) return grid;
+  const Settings table = root.table("torque_map");
+  if (table.has("tilt_deg")) {
+    grid.tilt_rad = table.numbers("tilt_deg", {0.0, pi});
+    require_ascending(table, "tilt_deg", grid.tilt_rad);
+  }
+  if (table.has("heading_deg")) {
+    grid.heading_rad = table.numbers("heading_deg", {-2.0 * pi, 2.0 * pi});
+    require_ascending(table, "heading_deg", grid.heading_rad);
+  }
+  return grid;
+}
+
+// An axis of directions: its array in degrees, or −half … half in even steps.
+std::vector<double> read_direction_axis(const Settings& table, const std::string& name,
+                                        double half_rad) {
+  const std::string array = name + "_deg", step = name + "_step_deg";
+  if (table.has(array)) {
+    const std::vector<double> values = table.numbers(array, {-half_rad, half_rad});
+    require_ascending(table, array, values);
+    if (table.has(step)) throw table.error(step, "a step beside " + array, "one of the two");
+    return values;
+  }
+  const double step_rad = table.number(step, {0.0, 2.0 * half_rad, true, false});
+  const double steps = 2.0 * half_rad / step_rad;
+  const double whole = std::round(steps);
+  if (std::abs(steps - whole) > 1e-9 * whole || whole > 3600.0) {
+    throw table.error(step, std::to_string(step_rad / degree_rad),
+                      "a whole fraction of " +
+                          std::to_string(std::lround(2.0 * half_rad / degree_rad)) +
+                          ", at least 0.1");
+  }
+  std::vector<double> values;
+  const auto count = static_cast<size_t>(whole);
+  for (size_t i = 0; i <= count; ++i) {
+    values.push_back(half_rad * (2.0 * static_cast<double>(i) / whole - 1.0));
+  }
+  return values;
+}
+
+std::optional<uint64_t> read_torque_map_rays(const Settings& root) {
+  if (!root.has("torque_map")) return std::nullopt;
+  const Settings table = root.table("torque_map");
+  if (!table.has("rays")) return std::nullopt;
+  return static_cast<uint64_t>(table.integer("rays", 1, int64_t{1} << 40));
+}
+
+std::optional<DirectionGrid> read_light_directions(const Settings& root) {
+  if (!root.has("torque_map")) return std::nullopt;
+  const Settings table = root.table("torque_map");
+  bool any = false;
+  for (const char* key :
+       {"azimuth_deg", "azimuth_step_deg", "elevation_deg", "elevation_step_deg"}) {
+    any = any || table.has(key);
+  }
+  if (!any) return std::nullopt;
+  for (const char* key : {"tilt_deg", "heading_deg"}) {
+    if (table.has(key)) {
+      throw table.error(key, "an attitude beside directions of light",
+                        "tilts and headings, or elevations and azimuths");
+    }
+  }
+  return DirectionGrid{read_direction_axis(table, "elevation", 0.5 * pi),
+                       read_direction_axis(table, "azimuth", pi)};
+}
+
+}  // namespace
+
+std::vector<Settings> ExperimentFile::others(const std::string& key) const {
+  std::vector<Settings> all;
+  if (!settings.has(key)) return all;
+  const SettingsNode& node = settings.raw(key);
+  if (node.is_table()) {
+    all.emplace_back(std::make_shared<const SettingsNode>(node), key);
+  } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (size_t i = 0; i < items->size(); ++i) {
+      all.emplace_back(std::make_shared<const SettingsNode>((*items)[i]),
+                       key + "[" + std::to_string(i) + "]");
+    }
+  }
+  return all;
+}
+
+ExperimentFile read_experiment_file(const std::filesystem::path& path,
+                                    std::span<const std::string> overrides) {
+  constexpr uint64_t largest_bytes = 1ull << 26;
+  const std::string text = read_file(path, largest_bytes);
+  auto root = std::make_shared<SettingsNode>(parse_toml(text, path.string()));
+  ExperimentFile file;
+  file.path = path;
+  file.inputs = {{path.filename().string(), content_hash(text)}};
+  for (const std::string& assignment : overrides) {
+    apply_override(*root, assignment);
+    file.inputs.emplace_back("--set " + assignment, content_hash(assignment));
+  }
+  file.settings = Settings(std::move(root));
+  const Settings& settings = file.settings;
+  if (settings.has("scene")) {
+    const Settings scene = settings.table("scene");
+    file.scene_file = path.parent_path() / scene.text("file");
+    file.metres_per_unit = scene.number_or("metres_per_unit", 1.0, Range::positive());
+    file.textures = scene.flag_or("textures", false);
+    file.bands = read_bands(scene);
+  }
+  file.materials = settings.tables("material");
+  file.sources = settings.tables("source");
+  file.receivers = settings.tables("receiver");
+  file.attitude = read_attitude(settings);
+  file.trace = read_trace_options(settings);
+  file.effort = read_effort(settings);
+  file.torque_map = read_torque_map(settings, file.attitude);
+  file.light_directions = read_light_directions(settings);
+  file.torque_map_rays = read_torque_map_rays(settings);
+  if (settings.has("camera")) file.camera = settings.table("camera");
+  for (const char* key : tables_of_others) {
+    if (settings.has(key)) settings.raw(key);
+  }
+  return file;
+}
+
+}  // namespace photorque

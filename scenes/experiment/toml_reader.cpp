@@ -1,0 +1,186 @@
+#include "scenes/experiment/toml_reader.h"
+
+#include <toml++/toml.h>
+#include <charconv>
+#include <sstream>
+
+#include "core/files.h"
+
+namespace photorque {
+namespace {
+
+template <typename T>
+std::string iso_text(const T& date_or_time) {
+  std::ostringstream text;
+  text << date_or_time;
+  return text.str();
+}
+
+SettingsNode to_settings(const toml::node& node, const std::string& name) {
+  SettingsNode result;
+  result.where = {name, static_cast<int>(node.source().begin.line)};
+  if (const auto* table = node.as_table()) {
+    SettingsNode::Table items;
+    for (const auto& [key, item] : *table) {
+      SettingsNode& entry = items[std::string(key.str())] = to_settings(item, name);
+      // The key, not its value: a table made by a dotted key has no place of its own.
+      entry.where.line = static_cast<int>(key.source().begin.line);
+    }
+    result.value = std::move(items);
+  } else if (const auto* array = node.as_array()) {
+    SettingsNode::Array items;
+    for (const auto& item : *array) items.push_back(to_settings(item, name));
+    result.value = std::move(items);
+  } else if (const auto* text = node.as_string()) {
+    result.value = text->get();
+  } else if (const auto* whole = node.as_integer()) {
+    result.value = whole->get();
+  } else if (const auto* real = node.as_floating_point()) {
+    result.value = real->get();
+  } else if (const auto* flag = node.as_boolean()) {
+    result.value = flag->get();
+  } else if (const auto* date = node.as_date()) {
+    result.value = iso_text(date->get());
+  } else if (const auto* time = node.as_time()) {
+    result.value = iso_text(time->get());
+  } else if (const auto* moment = node.as_date_time()) {
+    result.value = iso_text(moment->get());
+  }
+  return result;
+}
+
+// A step of a key's path: a name, or an index when the name is empty.
+struct Step {
+  std::string name;
+  size_t index = 0;
+};
+
+const InputLocation command_line{"--set", 0};
+
+InputError wrong_key(const std::string& assignment) {
+  return {command_line, "", "\"" + assignment + "\"",
+          "KEY=VALUE, where KEY is like source[0].power_W"};
+}
+
+// "source[0].power_W" → source, [0], power_W. Empty when it is not a path.
+std::vector<Step> steps_of(std::string_view key) {
+  std::vector<Step> steps;
+  while (!key.empty()) {
+    const size_t length = std::min(key.find_first_of(".["), key.size());
+    if (length == 0) return {};
+    steps.push_back({std::string(key.substr(0, length))});
+    key.remove_prefix(length);
+    while (key.starts_with('[')) {
+      Step step;
+      const auto [end, error] =
+          std::from_chars(key.data() + 1, key.data() + key.size(), step.index);
+      if (error != std::errc() || end == key.data() + key.size() || *end != ']') return {};
+      steps.push_back(step);
+      key.remove_prefix(static_cast<size_t>(end - key.data()) + 1);
+    }
+    if (key.empty()) break;
+    if (!key.starts_with('.') || key.size() == 1) return {};
+    key.remove_prefix(1);
+  }
+  return steps;
+}
+
+bool is_bare_word(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./+:~").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+}
+
+SettingsNode value_of(const std::string& text, const std::string& key) {
+  SettingsNode node;
+  try {
+    SettingsNode document = to_settings(toml::parse("value = " + text), command_line.file);
+    auto& table = std::get<SettingsNode::Table>(document.value);
+    if (table.size() != 1) throw InputError(command_line, key, "\"" + text + "\"", "one value");
+    node = std::move(table.begin()->second);
+  } catch (const toml::parse_error&) {
+    if (!is_bare_word(text)) {
+      throw InputError(command_line, key, "\"" + text + "\"", "a TOML value or one bare word");
+    }
+    node.value = text;
+  }
+  return node;
+}
+
+void locate_on_command_line(SettingsNode& node) {
+  node.where = command_line;
+  if (auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (auto& item : *array) locate_on_command_line(item);
+  } else if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    for (auto& [key, item] : *table) locate_on_command_line(item);
+  }
+}
+
+// The item that one step leads to, made if it is a new key of a table.
+SettingsNode& follow(SettingsNode& node, const Step& step, const std::string& key) {
+  if (!step.name.empty()) {
+    auto* table = std::get_if<SettingsNode::Table>(&node.value);
+    if (table == nullptr) {
+      throw InputError(command_line, key, "that " + step.name + " lies in " + describe(node),
+                       "a table there");
+    }
+    const auto [item, is_new] = table->try_emplace(step.name);
+    if (is_new) item->second.where = command_line;
+    return item->second;
+  }
+  if (node.is_table() && step.index == 0) return node;  // [source] is short for one [[source]]
+  auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  const size_t size = array == nullptr ? 0 : array->size();
+  if (step.index >= size) {
+    throw InputError(command_line, key, "index " + std::to_string(step.index),
+                     array == nullptr ? "no index: this is " + describe(node)
+                                      : "an index from 0 to " + std::to_string(size - 1));
+  }
+  return (*array)[step.index];
+}
+
+void erase_other_units(SettingsNode::Table& table, const std::string& key) {
+  const KeyUnit unit = unit_of_key(key);
+  if (unit.unit.empty()) return;
+  std::erase_if(table, [&](const auto& item) {
+    const KeyUnit other = unit_of_key(item.first);
+    return item.first != key && other.stem == unit.stem && other.dimension == unit.dimension;
+  });
+}
+
+}  // namespace
+
+SettingsNode parse_toml(const std::string& text, const std::string& name) {
+  try {
+    return to_settings(toml::parse(text, name), name);
+  } catch (const toml::parse_error& error) {
+    const InputLocation where{name, static_cast<int>(error.source().begin.line)};
+    throw InputError(where, "", "a syntax error (" + std::string(error.description()) + ")",
+                     "TOML");
+  }
+}
+
+SettingsNode read_toml(const std::filesystem::path& path) {
+  constexpr uint64_t largest_bytes = 1ull << 26;
+  return parse_toml(read_file(path, largest_bytes), path.string());
+}
+
+void apply_override(SettingsNode& root, const std::string& assignment) {
+  const size_t equals = assignment.find('=');
+  if (equals == std::string::npos) throw wrong_key(assignment);
+  const std::string key = assignment.substr(0, equals);
+  const std::vector<Step> steps = steps_of(key);
+  if (steps.empty()) throw wrong_key(assignment);
+
+  SettingsNode value = value_of(assignment.substr(equals + 1), key);
+  locate_on_command_line(value);
+  SettingsNode* holder = &root;
+  for (size_t i = 0; i + 1 < steps.size(); ++i) holder = &follow(*holder, steps[i], key);
+  follow(*holder, steps.back(), key) = std::move(value);
+  if (auto* table = std::get_if<SettingsNode::Table>(&holder->value)) {
+    erase_other_units(*table, steps.back().name);
+  }
+}
+
+}  // namespace photorque

@@ -1,0 +1,201 @@
+#include "scenes/gltf/file/buffers.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+
+#include "core/provenance.h"
+#include "scenes/gltf/file/schema.h"
+
+namespace photorque::gltf {
+namespace {
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  const int lower = std::tolower(static_cast<unsigned char>(c));
+  return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+}
+
+// Nothing when an escape is malformed. A plus sign stays one (that it means a space holds in web
+// forms, not in URIs).
+std::optional<std::string> percent_decoded(std::string_view text) {
+  std::string decoded;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      decoded += text[i];
+      continue;
+    }
+    if (i + 2 >= text.size()) return std::nullopt;
+    const int high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
+    if (high < 0 || low < 0) return std::nullopt;
+    decoded += static_cast<char>(16 * high + low);
+    i += 2;
+  }
+  return decoded;
+}
+
+int base64_digit(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  if (c == '+' || c == '-') return 62;  // '-' and '_': the alphabet for URLs, RFC 4648 section 5
+  if (c == '/' || c == '_') return 63;
+  return -1;
+}
+
+// RFC 4648, padding optional. Nothing when a character or the length is impossible.
+std::optional<std::string> base64_decoded(std::string_view text) {
+  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
+  if (text.size() % 4 == 1) return std::nullopt;
+  std::string decoded;
+  decoded.reserve(text.size() / 4 * 3 + 2);
+  uint32_t bits = 0;
+  int held = 0;
+  for (const char c : text) {
+    const int digit = base64_digit(c);
+    if (digit < 0) return std::nullopt;
+    bits = bits << 6 | static_cast<uint32_t>(digit);
+    held += 6;
+    if (held < 8) continue;
+    held -= 8;
+    decoded += static_cast<char>(bits >> held & 0xFF);
+  }
+  return decoded;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+// A short piece of a URI for messages: data URIs can be megabytes.
+std::string excerpt(const std::string& uri) {
+  return describe_json(nlohmann::json(uri));
+}
+
+class Loader {
+ public:
+  Loader(std::optional<std::string_view> binary, bool is_glb, const std::string& file,
+         const GltfOpen& open, MemoryBudget* budget)
+      : binary_(binary), is_glb_(is_glb), file_(file), open_(open), budget_(budget) {}
+
+  std::string uri(const UriHolder& holder) {
+    where_ = holder.where;
+    const auto uri = holder.object.find("uri");
+    if (uri == holder.object.end() || !uri->is_string()) {
+      throw wrong("uri", "nothing", "a text, or a bufferView");
+    }
+    const std::string& text = uri->get_ref<const std::string&>();
+    return text.starts_with("data:") ? data_uri(text, holder.media_types) : external(text);
+  }
+
+  Buffers load(const nlohmann::json& list) {
+    for (size_t i = 0; i < list.size(); ++i) {
+      where_ = pointer("buffers", i);
+      Buffer buffer{list[i]["byteLength"].get<uint64_t>(), bytes(list[i], i)};
+      if (buffer.bytes && buffer.bytes->size() < buffer.byte_length) {
+        throw wrong(
+            "byteLength", std::to_string(buffer.byte_length),
+            "at most the " + std::to_string(buffer.bytes->size()) + " bytes that are there");
+      }
+      loaded_.buffers.push_back(std::move(buffer));
+    }
+    return std::move(loaded_);
+  }
+
+ private:
+  InputError wrong(const char* member, const std::string& found,
+                   const std::string& expected) const {
+    return {{file_}, where_ + pointer(member), found, expected};
+  }
+
+  std::optional<std::string> bytes(const nlohmann::json& buffer, size_t i) {
+    const auto uri = buffer.find("uri");
+    if (uri != buffer.end()) {
+      const std::string& text = uri->get_ref<const std::string&>();
+      return text.starts_with("data:")
+                 ? data_uri(text, {"application/octet-stream", "application/gltf-buffer"})
+                 : external(text);
+    }
+    if (!is_glb_ || i != 0) return std::nullopt;
+    if (!binary_) throw wrong("uri", "neither it nor a BIN chunk", "one of them");
+    budget_->charge(binary_->size(), 1, where_);
+    return std::string(*binary_);
+  }
+
+  // RFC 2397; the media types are those that section 3.6.1.1 of the specification admits.
+  std::string data_uri(const std::string& uri, const std::array<std::string_view, 2>& types) {
+    const size_t comma = uri.find(',');
+    if (comma == std::string::npos) throw wrong("uri", excerpt(uri), "a data URI with a comma");
+    std::string type = lower_case(std::string_view(uri).substr(5, comma - 5));
+    const std::string_view data = std::string_view(uri).substr(comma + 1);
+    constexpr std::string_view marker = ";base64";
+    const bool base64 = type.ends_with(marker);
+    if (base64) type.resize(type.size() - marker.size());
+    if (!type.empty() && type != types[0] && type != types[1]) {
+      throw wrong("uri", "media type \"" + type + "\"",
+                  std::string(types[0]) + " or " + std::string(types[1]));
+    }
+    budget_->charge(data.size(), 1, where_ + "/uri");
+    const std::optional<std::string> decoded =
+        base64 ? base64_decoded(data) : percent_decoded(data);
+    if (!decoded) {
+      throw wrong("uri", excerpt(uri),
+                  std::string("data in ") + (base64 ? "base64" : "percent encoding"));
+    }
+    return *decoded;
+  }
+
+  // The path of an external file, relative to the model's folder and inside it.
+  std::string checked_path(const std::string& uri) const {
+    const std::string expected = "a relative path inside the model's folder";
+    const std::optional<std::string> decoded = percent_decoded(uri);
+    if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) {
+      throw wrong("uri", excerpt(uri), expected);
+    }
+    const std::string first = decoded->substr(0, decoded->find_first_of("/\\"));
+    const std::filesystem::path path = std::filesystem::path(*decoded).lexically_normal();
+    if (first.find(':') != std::string::npos || decoded->find('\\') != std::string::npos ||
+        path.is_absolute() || *path.begin() == "..") {
+      throw wrong("uri", excerpt(uri), expected);
+    }
+    return path.generic_string();
+  }
+
+  std::string external(const std::string& uri) {
+    const std::string path = checked_path(uri);
+    std::optional<std::string> found = open_(path);
+    if (!found) throw wrong("uri", excerpt(uri) + ", which does not exist", "an existing file");
+    budget_->charge(found->size(), 1, where_ + "/uri");
+    loaded_.inputs.emplace_back(path, content_hash(*found));
+    return std::move(*found);
+  }
+
+  std::string where_;  // of what is being loaded, a JSON pointer
+  std::optional<std::string_view> binary_;
+  bool is_glb_;
+  const std::string& file_;
+  const GltfOpen& open_;
+  MemoryBudget* budget_;
+  Buffers loaded_;
+};
+
+}  // namespace
+
+Buffers load_buffers(const nlohmann::json& document, std::optional<std::string_view> binary,
+                     bool is_glb, const std::string& file, const GltfOpen& open,
+                     MemoryBudget* budget) {
+  const auto list = document.find("buffers");
+  if (list == document.end()) return {};
+  return Loader(binary, is_glb, file, open, budget).load(*list);
+}
+
+std::string load_uri(const UriHolder& holder, const std::string& file, const GltfOpen& open,
+                     MemoryBudget* budget) {
+  return Loader(std::nullopt, false, file, open, budget).uri(holder);
+}
+
+}  // namespace photorque::gltf

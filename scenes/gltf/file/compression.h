@@ -1,0 +1,37 @@
+// Compressed geometry of a glTF document, replaced by plain geometry.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "scenes/gltf/file/document.h"
+
+namespace photorque::gltf {
+
+// Decodes EXT_meshopt_compression (buffer views) and KHR_draco_mesh_compression (primitives), so
+// that no other part of the reader need know of them: the bytes become further buffers of the
+// document, with views and accessors of their own. To be called before the typed model is made.
+//
+// A primitive with Draco data keeps its plain accessors where they have bytes; else it gets
+// POSITION, TEXCOORD_0 and indices from the data, and no other attribute. Throws InputError for
+// data that cannot be decoded or do not match what the document says of them.
+void decompress(Document* document, MemoryBudget* budget);
+
+// The two codecs; `where` points at the extension for messages.
+void decode_meshopt_views(Document* document, MemoryBudget* budget);
+void decode_draco_primitives(Document* document, MemoryBudget* budget);
+
+// An unsigned integer below 2^53 of an extension, which no schema has checked.
+uint64_t extension_number(const Document& document, const nlohmann::json& extension,
+                          const char* key, const std::string& where);
+
+// Bytes of a buffer; InputError when they are not all there.
+std::span<const unsigned char> buffer_bytes(const Document& document, uint64_t buffer,
+                                            uint64_t offset, uint64_t length,
+                                            const std::string& where);
+
+// Adds a buffer to the document; returns its index.
+size_t add_buffer(Document* document, std::string bytes);
+
+}  // namespace photorque::gltf

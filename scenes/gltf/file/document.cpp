@@ -1,0 +1,219 @@
+#include "scenes/gltf/file/document.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "scenes/gltf/file/compression.h"
+#include "scenes/gltf/file/container.h"
+#include "scenes/gltf/file/schema.h"
+
+namespace photorque::gltf {
+namespace {
+
+using nlohmann::json;
+
+// Deeper nesting means nothing in glTF, and readers recurse once per level.
+constexpr int deepest_nesting = 64;
+
+// Extensions that leave triangles and transforms alone, or that are implemented. Those that end in
+// an underscore are families.
+constexpr std::array harmless_extensions = {"KHR_materials_",
+                                            "KHR_texture_",
+                                            "EXT_texture_",
+                                            "MSFT_texture_",
+                                            "KHR_lights_",
+                                            "EXT_lights_",
+                                            "KHR_xmp",
+                                            "KHR_xmp_",
+                                            "KHR_animation_pointer",
+                                            "KHR_draco_mesh_compression",
+                                            "KHR_mesh_quantization",
+                                            "EXT_meshopt_compression",
+                                            "EXT_mesh_manifold",
+                                            "EXT_mesh_gpu_instancing",
+                                            "AGI_articulations",
+                                            "AGI_stk_metadata",
+                                            "CESIUM_primitive_outline"};
+
+bool is_harmless(std::string_view extension) {
+  return std::any_of(
+      harmless_extensions.begin(), harmless_extensions.end(), [&](std::string_view known) {
+        return known.ends_with('_') ? extension.starts_with(known) : extension == known;
+      });
+}
+
+// Refuses what would cost more than it can mean, before anything is built from it: deep nesting,
+// and more values than there is memory for. Every value follows one of [ { , : outside a string.
+void check_extent(std::string_view text, const std::string& file, MemoryBudget* budget) {
+  constexpr uint64_t bytes_per_value = 256;
+  uint64_t values = 0;
+  int depth = 0;
+  bool in_string = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+      continue;
+    }
+    if (c == '"') in_string = true;
+    if (c == '{' || c == '[' || c == ',' || c == ':') ++values;
+    if (c == '{' || c == '[') ++depth;
+    if (c == '}' || c == ']') --depth;
+    if (depth > deepest_nesting) {
+      throw InputError({file}, "", "JSON nested deeper than " + std::to_string(deepest_nesting),
+                       "a glTF document");
+    }
+  }
+  budget->charge(text.size(), 2, "");
+  budget->charge(values, bytes_per_value, "");
+}
+
+// "[json.exception.parse_error.101] parse error at line 1, column 2: unexpected end" → "unexpected
+// end": the place is told by the caller.
+std::string reason(const json::exception& error) {
+  const std::string text = error.what();
+  const size_t place = text.find("column ");
+  const size_t colon = place == std::string::npos ? std::string::npos : text.find(": ", place);
+  if (colon != std::string::npos) return text.substr(colon + 2);
+  const size_t bracket = text.find("] ");
+  return bracket == std::string::npos ? text : text.substr(bracket + 2);
+}
+
+json parse_text(std::string_view text, const std::string& file, MemoryBudget* budget) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) {
+    throw InputError({file, 1}, "", "a byte order mark", "JSON text in UTF-8 without one");
+  }
+  check_extent(text, file, budget);
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    const auto newlines =
+        std::count(text.begin(), text.begin() + std::min(error.byte, text.size()), '\n');
+    throw InputError({file, static_cast<int>(newlines) + 1}, "", reason(error), "JSON text");
+  } catch (const json::out_of_range& error) {
+    throw InputError({file}, "", reason(error), "numbers within double precision");
+  }
+}
+
+void check_version(const Document& document) {
+  const json& asset = document.json["asset"];
+  for (const char* key : {"version", "minVersion"}) {
+    const std::string version = asset.value(key, "2.0");
+    const bool known = key == std::string("version") ? version.starts_with("2.") : version == "2.0";
+    if (!known) throw document.wrong(pointer("asset", key), "\"" + version + "\"", "\"2.0\"");
+  }
+}
+
+void check_required_extensions(const Document& document) {
+  const auto required = document.json.find("extensionsRequired");
+  if (required == document.json.end()) return;
+  if (!required->is_array()) {
+    throw document.wrong("/extensionsRequired", describe_json(*required), "an array of texts");
+  }
+  for (size_t i = 0; i < required->size(); ++i) {
+    const json& extension = (*required)[i];
+    if (!extension.is_string() || !is_harmless(extension.get_ref<const std::string&>())) {
+      throw document.wrong(pointer("extensionsRequired", i), describe_json(extension),
+                           "extensions that this program supports");
+    }
+  }
+}
+
+// Extras and extensions are read from the JSON; tinygltf would take a hundred times their size.
+void strip_extras(json* value) {
+  if (value->is_object()) {
+    value->erase("extras");
+    value->erase("extensions");
+  }
+  if (!value->is_structured()) return;
+  for (json& item : *value) strip_extras(&item);
+}
+
+// What tinygltf is given: without the sections that no tracer needs, so that nothing in them can
+// fail; without buffers, whose bytes are already here; and without indices, of which it wants to
+// touch the bufferView.
+json geometry_of(const json& document) {
+  json geometry = json::object();
+  for (const char* key :
+       {"asset", "bufferViews", "accessors", "materials", "meshes", "nodes", "scenes", "scene"}) {
+    const auto section = document.find(key);
+    if (section != document.end()) geometry[key] = *section;
+  }
+  strip_extras(&geometry);
+  if (geometry.contains("meshes")) {
+    for (json& mesh : geometry["meshes"]) {
+      for (json& primitive : mesh["primitives"]) primitive.erase("indices");
+    }
+  }
+  return geometry;
+}
+
+tinygltf::Model typed_model(const Document& document) {
+  const std::string text = geometry_of(document.json).dump();
+  tinygltf::Model model;
+  std::string error, warning;
+  if (!tinygltf::TinyGLTF().LoadASCIIFromString(&model, &error, &warning, text.c_str(),
+                                                static_cast<unsigned int>(text.size()), "")) {
+    throw document.wrong("", error.empty() ? "a document that does not load" : error,
+                         "a glTF 2.0 document");
+  }
+  for (size_t m = 0; m < model.meshes.size(); ++m) {
+    const json& primitives = document.json["meshes"][m]["primitives"];
+    for (size_t p = 0; p < primitives.size(); ++p) {
+      model.meshes[m].primitives[p].indices = primitives[p].value("indices", -1);
+    }
+  }
+  return model;
+}
+
+}  // namespace
+
+Document read_document(const std::string& bytes, const std::string& file, const GltfOpen& open,
+                       MemoryBudget* budget) {
+  Container container = open_container(bytes, file);
+  Document document;
+  document.file = file;
+  document.notices = std::move(container.notices);
+  document.json = parse_text(container.json, file, budget);
+  check_schema(document.json, file);
+  check_version(document);
+  check_required_extensions(document);
+  Buffers loaded =
+      load_buffers(document.json, container.binary, container.is_binary, file, open, budget);
+  document.buffers = std::move(loaded.buffers);
+  document.inputs = std::move(loaded.inputs);
+  if (document.json.contains("buffers")) {
+    for (json& buffer : document.json["buffers"]) buffer.erase("uri");  // may be most of the file
+  }
+  decompress(&document, budget);
+  document.model = typed_model(document);
+  return document;
+}
+
+const json& element_of(const Document& document, const std::string& where, const json& index,
+                       const char* section) {
+  const auto list = document.json.find(section);
+  const bool there = list != document.json.end() && list->is_array() &&
+                     index.is_number_unsigned() && index.get<uint64_t>() < list->size() &&
+                     (*list)[index.get<size_t>()].is_object();
+  if (!there) throw document.wrong(where, describe_json(index), std::string("one of ") + section);
+  return (*list)[index.get<size_t>()];
+}
+
+std::string bytes_of_view(const Document& document, const std::string& where, const json& index) {
+  const json& view = element_of(document, where, index, "bufferViews");
+  const auto buffer = view.value("buffer", size_t{0});
+  const auto offset = view.value("byteOffset", uint64_t{0});
+  const auto length = view.value("byteLength", uint64_t{0});
+  if (buffer >= document.buffers.size() || !document.buffers[buffer].bytes ||
+      offset > document.buffers[buffer].bytes->size() ||
+      length > document.buffers[buffer].bytes->size() - offset) {
+    throw document.wrong(where, "a view beyond its buffer", "a view of bytes that are there");
+  }
+  return document.buffers[buffer].bytes->substr(offset, length);
+}
+
+}  // namespace photorque::gltf

@@ -1,0 +1,52 @@
+// Lamps that a glTF file places: where they stand and how wide they shine (KHR_lights_punctual), or
+// the photometric file of their shape (EXT_lights_ies).
+//
+// Their intensity is for pictures (candela, lux) and is not read: what a lamp radiates, and at
+// which wavelength, the experiment says.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/settings/settings.h"
+#include "core/vector.h"
+#include "scenes/gltf/reader.h"
+
+namespace photorque {
+
+// As the file shows it, with the platform at zero tilt: lab frame.
+struct GltfLight {
+  enum class Kind { point, spot, directional, profile };
+  std::string name;  // of its node, else of the light, else "light_3"
+  Kind kind = Kind::point;
+  Vec3 position_m = Vec3::Zero();
+  Vec3 direction = -Vec3::UnitZ();  // in which it shines; not of a point
+  double outer_cone_rad = 0.0;      // of a spot: half the angle of its cone
+  // Of a profile: the IES file, what messages call it, and the angle about `direction` that a lamp
+  // as place_lamps() puts it is turned by for its C0 to lie along the node's x.
+  std::string profile_name, profile_bytes;
+  double turn_rad = 0.0;
+};
+
+// In the order of the nodes. Throws InputError as read_gltf() does, and for lights that are not as
+// the extension says.
+std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, double metres_per_unit);
+
+// The same from bytes, `file` is how messages call them.
+std::vector<GltfLight> read_gltf_lights_bytes(const std::string& bytes, const std::string& file,
+                                              const GltfOpen& open, double metres_per_unit,
+                                              uint64_t largest_bytes = 4ull << 30);
+
+// A `[[source]]` that names one of them, `light = "NAME"`, with its place written out as keys, in
+// so far as the user has not given them: position_m; direction, but of a point; kind (spot: "led",
+// directional: "sun", profile: "ies"); of a spot that is to be an LED, without `profile`, an even
+// cone; of a profile `file` and turn_rad. Throws InputError for a name that none or several have.
+Settings source_at_light(const Settings& source, const std::vector<GltfLight>& lights);
+
+// The bytes of the profile that a source's key `file` means, if it is one of the lights'.
+std::optional<std::string> profile_of_lights(const std::vector<GltfLight>& lights,
+                                             const std::string& file);
+
+}  // namespace photorque

@@ -1,0 +1,124 @@
+#include "scenes/gltf/mesh_closure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <sstream>
+#include <vector>
+
+namespace photorque {
+namespace {
+
+struct Edge {
+  uint32_t low, high;
+  auto operator<=>(const Edge&) const = default;
+};
+
+// For every vertex the first one at its place.
+std::vector<uint32_t> welded(const std::vector<Vec3>& vertices_m) {
+  std::vector<uint32_t> order(vertices_m.size()), first(vertices_m.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto less = [&](uint32_t a, uint32_t b) {
+    return std::lexicographical_compare(vertices_m[a].data(), vertices_m[a].data() + 3,
+                                        vertices_m[b].data(), vertices_m[b].data() + 3);
+  };
+  std::sort(order.begin(), order.end(), less);
+  for (size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && vertices_m[order[i]] == vertices_m[order[i - 1]];
+    first[order[i]] = same ? first[order[i - 1]] : order[i];
+  }
+  return first;
+}
+
+std::vector<Edge> edges_of(const Mesh& mesh, const std::vector<uint32_t>& first) {
+  std::vector<Edge> edges;
+  edges.reserve(3 * mesh.triangles.size());
+  for (const auto& triangle : mesh.triangles) {
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t a = first[triangle[k]], b = first[triangle[(k + 1) % 3]];
+      if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+// Whether `point` lies within the edge from a to b, to a millionth of its length.
+bool lies_on(const Vec3& point, const Vec3& a, const Vec3& b) {
+  constexpr double tolerance = 1e-6;
+  const Vec3 along = b - a, to = point - a;
+  const double t = to.dot(along) / along.squaredNorm();
+  return t > tolerance && t < 1.0 - tolerance &&
+         (to - t * along).norm() <= tolerance * along.norm();
+}
+
+// T-junctions have open edges on both sides, so only their ends need be tried; they are sorted
+// along x, and each edge looks at its own interval.
+size_t count_t_junctions(const Mesh& mesh, const std::vector<Edge>& open) {
+  std::vector<uint32_t> ends;
+  for (const Edge& edge : open) ends.insert(ends.end(), {edge.low, edge.high});
+  const auto x_of = [&](uint32_t vertex) { return mesh.vertices_m[vertex].x(); };
+  std::sort(ends.begin(), ends.end(),
+            [&](uint32_t a, uint32_t b) { return x_of(a) != x_of(b) ? x_of(a) < x_of(b) : a < b; });
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  size_t count = 0;
+  for (const Edge& edge : open) {
+    const Vec3 &a = mesh.vertices_m[edge.low], &b = mesh.vertices_m[edge.high];
+    const double slack = 1e-6 * (b - a).norm();
+    const double low = std::min(a.x(), b.x()) - slack, high = std::max(a.x(), b.x()) + slack;
+    auto end = std::lower_bound(ends.begin(), ends.end(), low,
+                                [&](uint32_t vertex, double x) { return x_of(vertex) < x; });
+    for (; end != ends.end() && x_of(*end) <= high; ++end) {
+      if (*end == edge.low || *end == edge.high || !lies_on(mesh.vertices_m[*end], a, b)) continue;
+      ++count;
+      break;
+    }
+  }
+  return count;
+}
+
+void add(const Mesh& mesh, MeshClosure& closure) {
+  constexpr size_t most_open_edges = 100'000;
+  const std::vector<Edge> edges = edges_of(mesh, welded(mesh.vertices_m));
+  std::vector<Edge> open;
+  size_t distinct = 0;
+  for (size_t i = 0; i < edges.size();) {
+    size_t end = i;
+    while (end < edges.size() && edges[end] == edges[i]) ++end;
+    ++distinct;
+    if (end - i == 1) open.push_back(edges[i]);
+    if (end - i > 2) ++closure.forked_edges;
+    i = end;
+  }
+  ++closure.meshes;
+  const bool closed = open.empty() && distinct > 0, few_open = open.size() * open.size() < distinct;
+  if (open.empty()) ++closure.closed;
+  if (!open.empty() && few_open) ++closure.almost_closed;
+  closure.encloses.push_back(closed || few_open ? 1 : 0);
+  closure.open_edges += open.size();
+  if (open.size() <= most_open_edges) closure.t_junctions += count_t_junctions(mesh, open);
+}
+
+}  // namespace
+
+MeshClosure closure_of(const Scene& scene) {
+  MeshClosure closure;
+  for (const Mesh& mesh : scene.meshes) add(mesh, closure);
+  return closure;
+}
+
+std::string describe_closure(const MeshClosure& closure) {
+  if (closure.t_junctions == 0 && closure.almost_closed == 0) return "";
+  std::ostringstream line;
+  line << closure.closed << " of " << closure.meshes << " meshes are closed; the others have "
+       << closure.open_edges << " open edges, " << closure.t_junctions
+       << " of them with a vertex on them (T-junctions)";
+  if (closure.almost_closed > 0) {
+    line << "; " << closure.almost_closed << " mesh(es) are closed but for a few edges";
+  }
+  line << ": light may leak there";
+  return line.str();
+}
+
+}  // namespace photorque

@@ -1,0 +1,164 @@
+#include "scenes/gltf/nodes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/gltf/instancing.h"
+
+namespace photorque::gltf {
+namespace {
+
+constexpr size_t deepest_hierarchy = 1000;
+
+std::vector<int> roots_of(const Document& document) {
+  const tinygltf::Model& model = document.model;
+  if (!model.scenes.empty()) {
+    return model.scenes[static_cast<size_t>(std::max(model.defaultScene, 0))].nodes;
+  }
+  std::vector<bool> is_child(model.nodes.size(), false);
+  for (const tinygltf::Node& node : model.nodes) {
+    for (const int child : node.children) is_child[static_cast<size_t>(child)] = true;
+  }
+  std::vector<int> roots;
+  for (size_t i = 0; i < is_child.size(); ++i) {
+    if (!is_child[i]) roots.push_back(static_cast<int>(i));
+  }
+  return roots;
+}
+
+// Meshes that are deformed before they are drawn would be traced in a shape nobody sees.
+void refuse_deformation(const Document& document, int index) {
+  const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(index)];
+  const tinygltf::Mesh& mesh = document.model.meshes[static_cast<size_t>(node.mesh)];
+  if (node.skin >= 0) {
+    throw document.wrong(pointer("nodes", index, "skin"), "a skinned mesh",
+                         "rigid meshes (apply the pose before exporting)");
+  }
+  const bool morphs = std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                                  [](const auto& primitive) { return !primitive.targets.empty(); });
+  const std::vector<double>& weights = node.weights.empty() ? mesh.weights : node.weights;
+  const auto is_zero = [](double weight) { return weight == 0.0; };
+  if (morphs && !std::all_of(weights.begin(), weights.end(), is_zero)) {
+    throw document.wrong(node.weights.empty() ? pointer("meshes", node.mesh, "weights")
+                                              : pointer("nodes", index, "weights"),
+                         "morph targets with weights",
+                         "rigid meshes (apply the shape before exporting)");
+  }
+}
+
+// A node still to be visited.
+struct Visit {
+  int node;
+  size_t depth;
+  std::string parent_path;
+  Affine world_from_parent;
+};
+
+class Walk {
+ public:
+  Walk(const Document& document, MemoryBudget* budget) : document_(document), budget_(budget) {}
+
+  std::vector<Placement> from(const std::vector<int>& roots) {
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root)
+      waiting_.push_back({*root, 1, "", Affine::Identity()});
+    while (!waiting_.empty()) {
+      const Visit visit = std::move(waiting_.back());
+      waiting_.pop_back();
+      enter(visit);
+    }
+    return std::move(placements_);
+  }
+
+ private:
+  void enter(const Visit& visit) {
+    const tinygltf::Node& node = document_.model.nodes[static_cast<size_t>(visit.node)];
+    const std::string where = pointer("nodes", visit.node);
+    if (visit.depth > deepest_hierarchy) {
+      throw document_.wrong(where, "a hierarchy deeper than " + std::to_string(deepest_hierarchy),
+                            "a shallower one");
+    }
+    std::string name = node.name.empty() ? "node_" + std::to_string(visit.node) : node.name;
+    std::string path = visit.parent_path.empty() ? name : visit.parent_path + "/" + name;
+    const Affine world_from_node = visit.world_from_parent * parent_from_node(node);
+    if (!is_invertible(world_from_node)) {
+      throw document_.wrong(where, "a product of transforms that is singular or overflows",
+                            "an invertible one");
+    }
+    budget_->charge(node.children.size(), sizeof(Visit) + path.size(), where);
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+      waiting_.push_back({*child, visit.depth + 1, path, world_from_node});
+    }
+    if (node.mesh < 0) return;
+    refuse_deformation(document_, visit.node);
+    for (const Affine& node_from_mesh : gpu_instances(document_, visit.node, budget_)) {
+      budget_->charge(1, sizeof(Placement) + name.size() + path.size(), where);
+      placements_.push_back({visit.node, node.mesh, name, path, world_from_node * node_from_mesh});
+    }
+  }
+
+  const Document& document_;
+  MemoryBudget* budget_;
+  std::vector<Visit> waiting_;  // a stack: files decide how deep it gets
+  std::vector<Placement> placements_;
+};
+
+}  // namespace
+
+Affine parent_from_node(const tinygltf::Node& node) {
+  Affine transform = Affine::Identity();
+  if (!node.matrix.empty()) {
+    transform.matrix() = Eigen::Map<const Eigen::Matrix4d>(node.matrix.data());  // by columns
+    transform.makeAffine();
+    return transform;
+  }
+  const auto& t = node.translation;
+  const auto& q = node.rotation;  // x, y, z, w
+  const auto& s = node.scale;
+  if (!t.empty()) transform.translate(Vec3(t[0], t[1], t[2]));
+  if (!q.empty()) transform.rotate(Quat(q[3], q[0], q[1], q[2]).normalized());
+  if (!s.empty()) transform.scale(Vec3(s[0], s[1], s[2]));
+  return transform;
+}
+
+bool is_unit(const Quat& rotation) {
+  return std::abs(rotation.norm() - 1.0) <= 0.01;
+}
+
+bool is_invertible(const Affine& transform) {
+  const Mat3 axes = transform.linear();
+  // The determinant of the normalised axes: the sine of the angle left between them.
+  const double lengths = axes.col(0).norm() * axes.col(1).norm() * axes.col(2).norm();
+  return transform.matrix().allFinite() && std::isnormal(lengths) &&
+         std::abs(axes.determinant()) > 1e-12 * lengths;
+}
+
+void visit_nodes(const Document& document,
+                 const std::function<void(int node, const std::string& name,
+                                          const Affine& world_from_node)>& visit) {
+  std::vector<Visit> waiting;
+  const std::vector<int> roots = roots_of(document);
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
+    waiting.push_back({*root, 1, "", Affine::Identity()});
+  }
+  while (!waiting.empty()) {
+    const Visit next = std::move(waiting.back());
+    waiting.pop_back();
+    const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(next.node)];
+    if (next.depth > deepest_hierarchy) {
+      throw document.wrong(pointer("nodes", next.node),
+                           "a hierarchy deeper than " + std::to_string(deepest_hierarchy),
+                           "a shallower one");
+    }
+    const Affine world_from_node = next.world_from_parent * parent_from_node(node);
+    visit(next.node, node.name, world_from_node);
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+      waiting.push_back({*child, next.depth + 1, "", world_from_node});
+    }
+  }
+}
+
+std::vector<Placement> place_meshes(const Document& document, MemoryBudget* budget) {
+  return Walk(document, budget).from(roots_of(document));
+}
+
+}  // namespace photorque::gltf

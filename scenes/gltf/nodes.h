@@ -1,0 +1,46 @@
+// The node hierarchy of a glTF document: where its meshes stand.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/vector.h"
+#include "scenes/gltf/file/document.h"
+
+namespace photorque::gltf {
+
+// The local transform of a node, from its matrix or from translation · rotation · scale (section
+// 3.5.2). The rotation is normalised.
+Affine parent_from_node(const tinygltf::Node& node);
+
+// Of unit length within 1 %: quaternions in normalized bytes are off by up to 0.8 %.
+bool is_unit(const Quat& rotation);
+
+// Finite, and with three axes that are neither zero nor (to 1e-12) in one plane, however unequal
+// their lengths.
+bool is_invertible(const Affine& transform);
+
+// A mesh in the world of the file (glTF axes and units).
+struct Placement {
+  int node = 0;
+  int mesh = 0;
+  std::string name;  // of the node, "node_7" if it has none
+  std::string path;  // names from the root to the node, joined by "/"
+  Affine world_from_mesh = Affine::Identity();
+};
+
+// Calls `visit` with the index of every node of the default scene, its name as the file has it and
+// its transform into the world of the file, parents first. As place_meshes().
+void visit_nodes(const Document& document,
+                 const std::function<void(int node, const std::string& name,
+                                          const Affine& world_from_node)>& visit);
+
+// Every mesh of the default scene, in depth-first order: scene `scene`, else scene 0, else (no
+// scenes) everything below all root nodes. A node with EXT_mesh_gpu_instancing gives one placement
+// per instance. The document must have passed validate_nodes() and validate_accessors(). Throws
+// InputError for hierarchies deeper than 1000 nodes, for products of transforms that are singular
+// or overflow, for skinned meshes and for morph targets whose weights are not zero.
+std::vector<Placement> place_meshes(const Document& document, MemoryBudget* budget);
+
+}  // namespace photorque::gltf

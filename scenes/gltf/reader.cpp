@@ -1,0 +1,322 @@
+#include "scenes/gltf/reader.h"
+
+#include <map>
+#include <set>
+#include <sstream>
+#include <tuple>
+
+#include "core/files.h"
+#include "core/provenance.h"
+#include "scenes/gltf/geometry.h"
+#include "scenes/gltf/mesh_closure.h"
+#include "scenes/gltf/nodes.h"
+#include "scenes/gltf/optics.h"
+#include "scenes/gltf/texture.h"
+#include "scenes/gltf/validation.h"
+
+namespace photorque {
+namespace {
+
+using gltf::Document;
+using gltf::MemoryBudget;
+using gltf::Placement;
+using gltf::pointer;
+
+// Larger scenes are mistakes of units; it keeps coordinates well inside Embree's floats.
+constexpr double largest_radius_m = 1e12;
+// Larger than any platform, and than all spacecraft but a few.
+constexpr double surprising_radius_m = 100.0;
+
+// (x, y, z) with y up becomes (x, −z, y).
+Affine body_from_world(double metres_per_unit) {
+  Affine transform = Affine::Identity();
+  transform.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  transform.linear() *= metres_per_unit;
+  return transform;
+}
+
+std::string in_quotes(const std::string& name) {
+  return name.empty() ? "material without a name" : "material '" + name + "'";
+}
+
+// Puts the parts of a document together.
+class Assembly {
+ public:
+  Assembly(const Document& document, const GltfOpen& open, const GltfOptions& options,
+           MemoryBudget* budget)
+      : document_(document),
+        options_(options),
+        budget_(budget),
+        geometry_(document, budget),
+        open_(open),
+        beside_model_(recorded(open)),
+        overrides_(gltf::read_overrides(document, options, recorded(options.material_file))) {
+    model_.scene.bands = options.bands;
+    model_.notices = document.notices;
+  }
+
+  GltfModel build() {
+    for (const Placement& placement : gltf::place_meshes(document_, budget_)) {
+      const auto& primitives =
+          document_.model.meshes[static_cast<size_t>(placement.mesh)].primitives;
+      for (size_t p = 0; p < primitives.size(); ++p) {
+        const std::optional<uint32_t> mesh = mesh_of(placement.mesh, p, primitives[p].material);
+        if (mesh) add_instance(placement, *mesh, primitives[p].material);
+      }
+    }
+    const MeshClosure closure = closure_of(model_.scene);
+    for (size_t i = 0; i < closure.encloses.size(); ++i) {
+      model_.scene.meshes[i].encloses = closure.encloses[i] != 0;
+    }
+    add_notices(closure);
+    if (options_.picture) apply_pictures();
+    return std::move(model_);
+  }
+
+ private:
+  // The mesh of a primitive, read at its first use; nothing if it has no triangles. Primitives that
+  // take the same accessors in the same way share one.
+  std::optional<uint32_t> mesh_of(int mesh, size_t index, int material) {
+    const tinygltf::Primitive& primitive =
+        document_.model.meshes[static_cast<size_t>(mesh)].primitives[index];
+    const auto attribute = [&](const char* name) {
+      const auto found = primitive.attributes.find(name);
+      return found == primitive.attributes.end() ? -1 : found->second;
+    };
+    const std::optional<gltf::UvTransform> transform = gltf::uv_transform(document_, material);
+    const auto key = std::tuple(attribute("POSITION"), attribute("TEXCOORD_0"), primitive.indices,
+                                primitive.mode, transform ? material : -1);
+    const auto known = meshes_.find(key);
+    if (known != meshes_.end()) return known->second;
+    const std::optional<uint32_t> read = read_mesh(mesh, index);
+    if (read && transform) {
+      for (Vec2& uv : model_.scene.meshes[*read].uv) uv = *transform * uv;
+    }
+    return meshes_[key] = read;
+  }
+
+  std::optional<uint32_t> read_mesh(int mesh, size_t index) {
+    std::optional<gltf::PrimitiveMesh> read = geometry_.read(mesh, index);
+    if (!read) {
+      ++without_triangles_;
+      return std::nullopt;
+    }
+    degenerate_ += read->degenerate;
+    if (read->without_uv) {
+      model_.notices.push_back(pointer("meshes", mesh, "primitives", index) +
+                               ": texture coordinates that are not finite are ignored");
+    }
+    if (read->mesh.triangles.empty()) return std::nullopt;
+    double square = 0.0;
+    for (const Vec3& vertex : read->mesh.vertices_m) {
+      square = std::max(square, vertex.squaredNorm());
+    }
+    radii_.push_back(std::sqrt(square));
+    model_.scene.meshes.push_back(std::move(read->mesh));
+    return static_cast<uint32_t>(model_.scene.meshes.size() - 1);
+  }
+
+  void add_instance(const Placement& placement, uint32_t mesh, int material) {
+    Instance instance;
+    instance.body_from_mesh = body_from_world(options_.metres_per_unit) * placement.world_from_mesh;
+    const double reach_m = instance.body_from_mesh.linear().norm() * radii_[mesh] +
+                           instance.body_from_mesh.translation().norm();
+    if (!(reach_m <= largest_radius_m)) {
+      std::ostringstream found;
+      found << "a mesh up to " << reach_m << " m away";
+      throw document_.wrong(pointer("nodes", placement.node), found.str(), "at most 1e12 m");
+    }
+    budget_->charge(1, sizeof(Instance) + placement.path.size(), pointer("nodes", placement.node));
+    const GltfMaterial& optics = material_of(material);
+    instance.node = placement.name;
+    instance.path = placement.path;
+    instance.material = optics.name;
+    instance.mesh = mesh;
+    instance.front_surface = optics.front_surface;
+    instance.back_surface = optics.back_surface;
+    model_.scene.instances.push_back(std::move(instance));
+    material_indices_.push_back(material);
+  }
+
+  // Every instance whose colour comes from a picture becomes one for each step of it.
+  void apply_pictures() {
+    std::vector<Instance> all;
+    std::map<std::pair<uint32_t, int>, std::vector<Instance>> known;  // by mesh and material
+    std::map<int, std::optional<BaseColours>> pictures;
+    for (size_t i = 0; i < model_.scene.instances.size(); ++i) {
+      const Instance& whole = model_.scene.instances[i];
+      const int material = material_indices_[i];
+      if (model_.materials[materials_.at(material)].origin != OpticsOrigin::derived ||
+          model_.scene.meshes[whole.mesh].uv.empty()) {
+        all.push_back(whole);
+        continue;
+      }
+      if (!pictures.contains(material)) {
+        pictures[material] =
+            gltf::base_colour_picture(document_, material, open_, options_.picture, budget_);
+      }
+      const std::optional<BaseColours>& picture = pictures[material];
+      const auto [parts, is_new] = known.try_emplace({whole.mesh, material});
+      if (is_new && picture) parts->second = parts_of(whole, material, *picture);
+      if (parts->second.empty()) all.push_back(whole);
+      for (Instance part : parts->second) {
+        part.node = whole.node;
+        part.path = whole.path;
+        part.body_from_mesh = whole.body_from_mesh;
+        all.push_back(std::move(part));
+      }
+    }
+    model_.scene.instances = std::move(all);
+  }
+
+  std::vector<Instance> parts_of(const Instance& whole, int material, const BaseColours& picture) {
+    std::vector<Instance> parts;
+    double darkest = 1.0, brightest = 0.0;
+    for (gltf::TextureStep& step : gltf::texture_steps(model_.scene.meshes[whole.mesh], picture)) {
+      Instance part = whole;
+      part.front_surface = part.back_surface = add_surface(
+          gltf::derived_surface(document_.json["materials"][static_cast<size_t>(material)],
+                                step.colour, options_.bands.count(), whole.material));
+      const double absorbed = model_.scene.surfaces.back().absorbed[0];
+      darkest = std::min(darkest, absorbed);
+      brightest = std::max(brightest, absorbed);
+      part.mesh = static_cast<uint32_t>(model_.scene.meshes.size());
+      model_.scene.meshes.push_back(std::move(step.mesh));
+      parts.push_back(std::move(part));
+    }
+    std::ostringstream line;
+    line.precision(3);
+    line << in_quotes(whole.material) << ": absorptance " << darkest << " to " << brightest
+         << " from the picture of its base colour";
+    add_notice(line.str());
+    return parts;
+  }
+
+  const GltfMaterial& material_of(int index) {
+    const auto known = materials_.find(index);
+    if (known != materials_.end()) return model_.materials[known->second];
+    materials_[index] = model_.materials.size();
+    const gltf::MaterialOptics optics =
+        gltf::material_optics(document_, index, options_.bands.count(), overrides_, beside_model_);
+    GltfMaterial material;
+    if (index >= 0) {
+      const tinygltf::Material& from = document_.model.materials[static_cast<size_t>(index)];
+      material.name = from.name;
+      material.double_sided = from.doubleSided;
+    }
+    for (const std::string& line : optics.sheet.notices) {
+      add_notice(in_quotes(material.name) + ": " + line);
+    }
+    material.origin = optics.origin;
+    material.front_surface = add_surface(optics.sheet.front);
+    material.back_surface =
+        optics.sheet.back ? add_surface(*optics.sheet.back) : material.front_surface;
+    if (optics.origin == OpticsOrigin::derived) {
+      add_notice(in_quotes(material.name) + ": optical properties derived from PBR values: " +
+                 gltf::describe_surface(optics.sheet.front) +
+                 (has_texture(index) && !options_.picture ? " (textures are ignored)" : ""));
+    }
+    model_.materials.push_back(std::move(material));
+    return model_.materials.back();
+  }
+
+  // What `open` finds is an input.
+  SurfaceFiles recorded(const SurfaceFiles& open) {
+    if (!open) return {};
+    return [this, open](const std::string& name) {
+      std::optional<std::string> bytes = open(name);
+      if (bytes) {
+        budget_->charge(bytes->size(), 1, "");
+        model_.inputs.emplace_back(name, content_hash(*bytes));
+      }
+      return bytes;
+    };
+  }
+
+  // Materials of the same name and values are common; one line tells of them all.
+  void add_notice(const std::string& line) {
+    if (told_.insert(line).second) model_.notices.push_back(line);
+  }
+
+  bool has_texture(int material) const {
+    return material >= 0 &&
+           gltf::has_ignored_texture(document_.json["materials"][static_cast<size_t>(material)]);
+  }
+
+  uint32_t add_surface(const OpticalSurface& surface) {
+    model_.scene.surfaces.push_back(surface);
+    return static_cast<uint32_t>(model_.scene.surfaces.size() - 1);
+  }
+
+  void add_notices(const MeshClosure& closure) {
+    const auto count = [&](size_t number, const std::string& what) {
+      if (number > 0) model_.notices.push_back(std::to_string(number) + " " + what);
+    };
+    count(degenerate_, "triangle(s) without area left out");
+    count(without_triangles_, "primitive(s) without triangles (points, lines) left out");
+    const double radius_m = model_.scene.radius_m();
+    if (radius_m > surprising_radius_m) {
+      std::ostringstream line;
+      line.precision(3);
+      line << "the scene reaches " << radius_m
+           << " m from the body's origin; CAD exports often count millimetres";
+      model_.notices.push_back(line.str());
+    }
+    const std::string leaks = describe_closure(closure);
+    if (!leaks.empty()) model_.notices.push_back(leaks);
+    if (document_.json.contains("animations")) {
+      model_.notices.emplace_back("animations are ignored: everything is in its rest pose");
+    }
+    if (!document_.json.contains("scene") && document_.model.scenes.size() > 1) {
+      model_.notices.emplace_back("no default scene is named: the first one is taken");
+    }
+  }
+
+  const Document& document_;
+  const GltfOptions& options_;
+  MemoryBudget* budget_;
+  gltf::GeometryReader geometry_;
+  GltfModel model_;  // before what reads files into it
+  const GltfOpen& open_;
+  SurfaceFiles beside_model_;
+  gltf::MaterialOverrides overrides_;
+  std::map<std::tuple<int, int, int, int, int>, std::optional<uint32_t>> meshes_;
+  std::vector<double> radii_;          // of each mesh about its own origin
+  std::map<int, size_t> materials_;    // index in the file → in model_.materials
+  std::vector<int> material_indices_;  // of each instance, in the file
+  std::set<std::string> told_;
+  size_t degenerate_ = 0;
+  size_t without_triangles_ = 0;
+};
+
+}  // namespace
+
+GltfModel read_gltf_bytes(const std::string& bytes, const std::string& name, const GltfOpen& open,
+                          const GltfOptions& options) {
+  MemoryBudget budget(name, options.largest_bytes);
+  budget.charge(bytes.size(), 1, "");
+  const Document document = gltf::read_document(bytes, name, open, &budget);
+  gltf::validate_accessors(document);
+  gltf::validate_primitives(document);
+  gltf::validate_nodes(document);
+  GltfModel model = Assembly(document, open, options, &budget).build();
+  std::vector<std::pair<std::string, std::string>> inputs = {{name, content_hash(bytes)}};
+  inputs.insert(inputs.end(), document.inputs.begin(), document.inputs.end());
+  model.inputs.insert(model.inputs.begin(), inputs.begin(), inputs.end());
+  return model;
+}
+
+GltfModel read_gltf(const std::filesystem::path& path, const GltfOptions& options) {
+  const std::string bytes = read_file(path, options.largest_bytes);
+  const GltfOpen open = [&](const std::string& relative_path) -> std::optional<std::string> {
+    const std::filesystem::path file = path.parent_path() / relative_path;
+    std::error_code failure;
+    if (!std::filesystem::is_regular_file(file, failure)) return std::nullopt;
+    return read_file(file, options.largest_bytes);
+  };
+  GltfModel model = read_gltf_bytes(bytes, path.string(), open, options);
+  model.inputs.front().first = path.filename().string();
+  return model;
+}
+
+}  // namespace photorque

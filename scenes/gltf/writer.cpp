@@ -1,0 +1,220 @@
+#include "scenes/gltf/writer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace photorque {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
+
+// glTF 2.0, sections 3.6 and 3.7.
+constexpr int type_float = 5126, type_unsigned_short = 5123, type_unsigned_int = 5125;
+constexpr int target_vertices = 34962, target_indices = 34963;
+
+Json to_json(const SettingsNode& node) {
+  if (const auto* flag = std::get_if<bool>(&node.value)) return *flag;
+  if (const auto* whole = std::get_if<int64_t>(&node.value)) return *whole;
+  if (const auto* real = std::get_if<double>(&node.value)) return *real;
+  if (const auto* text = std::get_if<std::string>(&node.value)) return *text;
+  if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
+    Json items = Json::array();
+    for (const auto& item : *array) items.push_back(to_json(item));
+    return items;
+  }
+  Json items = Json::object();
+  for (const auto& [key, item] : std::get<SettingsNode::Table>(node.value))
+    items[key] = to_json(item);
+  return items;
+}
+
+std::string base64(const std::vector<std::byte>& bytes) {
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const size_t present = std::min<size_t>(3, bytes.size() - i);
+    uint32_t group = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      group = group << 8 | (k < present ? std::to_integer<uint32_t>(bytes[i + k]) : 0u);
+    }
+    for (size_t k = 0; k < 4; ++k) {
+      text += k <= present ? digits[group >> (18 - 6 * k) & 63u] : '=';
+    }
+  }
+  return text;
+}
+
+// Body (x, y, z) is glTF (x, z, −y).
+Vec3 to_gltf_axes(const Vec3& body) {
+  return {body.x(), body.z(), -body.y()};
+}
+
+// The last digits of sines and cosines differ between mathematical libraries; nobody needs them.
+double stable(double x) {
+  return std::round(x * 1e9) / 1e9 + 0.0;
+}
+
+// The binary buffer and the views and accessors that cut it up.
+class Buffer {
+ public:
+  // Rows of `columns` numbers; returns the accessor's index.
+  template <typename T>
+  size_t add(const std::vector<T>& numbers, int component_type, size_t columns, int target) {
+    const auto bytes = std::as_bytes(std::span(numbers));
+    views_.push_back({{"buffer", 0},
+                      {"byteOffset", bytes_.size()},
+                      {"byteLength", bytes.size()},
+                      {"target", target}});
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    constexpr const char* types[] = {"", "SCALAR", "VEC2", "VEC3"};
+    accessors_.push_back({{"bufferView", views_.size() - 1},
+                          {"componentType", component_type},
+                          {"count", numbers.size() / columns},
+                          {"type", types[columns]}});
+    return accessors_.size() - 1;
+  }
+
+  Json& accessor(size_t index) { return accessors_[index]; }
+
+  void write_to(Json& document) const {
+    document["accessors"] = accessors_;
+    document["bufferViews"] = views_;
+    document["buffers"] =
+        Json::array({{{"byteLength", bytes_.size()},
+                      {"uri", "data:application/octet-stream;base64," + base64(bytes_)}}});
+  }
+
+ private:
+  std::vector<std::byte> bytes_;
+  Json views_ = Json::array();
+  Json accessors_ = Json::array();
+};
+
+size_t add_positions(Buffer& buffer, const std::vector<Vec3>& vertices_m) {
+  std::vector<float> numbers;
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(1e30f), high = -low;
+  for (const Vec3& vertex : vertices_m) {
+    const Eigen::Vector3f position = to_gltf_axes(vertex).cast<float>();
+    low = low.cwiseMin(position);
+    high = high.cwiseMax(position);
+    for (const float x : position) numbers.push_back(x + 0.0f);  // no negative zeros
+  }
+  const size_t index = buffer.add(numbers, type_float, 3, target_vertices);
+  buffer.accessor(index)["min"] = {low.x() + 0.0f, low.y() + 0.0f, low.z() + 0.0f};
+  buffer.accessor(index)["max"] = {high.x() + 0.0f, high.y() + 0.0f, high.z() + 0.0f};
+  return index;
+}
+
+size_t add_texture_coordinates(Buffer& buffer, const std::vector<Vec2>& uv) {
+  std::vector<float> numbers;
+  for (const Vec2& point : uv) {
+    numbers.push_back(static_cast<float>(point.x()));
+    numbers.push_back(static_cast<float>(point.y()));
+  }
+  return buffer.add(numbers, type_float, 2, target_vertices);
+}
+
+size_t add_indices(Buffer& buffer, const Mesh& mesh) {
+  std::vector<uint32_t> wide;
+  for (const auto& triangle : mesh.triangles)
+    wide.insert(wide.end(), triangle.begin(), triangle.end());
+  constexpr size_t most_for_short = 65535;  // 65535 itself restarts a primitive
+  if (mesh.vertices_m.size() > most_for_short) {
+    return buffer.add(wide, type_unsigned_int, 1, target_indices);
+  }
+  const std::vector<uint16_t> narrow(wide.begin(), wide.end());
+  return buffer.add(narrow, type_unsigned_short, 1, target_indices);
+}
+
+Json primitive_json(Buffer& buffer, const Mesh& mesh, int material) {
+  Json primitive = {{"attributes", {{"POSITION", add_positions(buffer, mesh.vertices_m)}}}};
+  if (!mesh.uv.empty()) {
+    primitive["attributes"]["TEXCOORD_0"] = add_texture_coordinates(buffer, mesh.uv);
+  }
+  primitive["indices"] = add_indices(buffer, mesh);
+  if (material >= 0) primitive["material"] = material;
+  return primitive;
+}
+
+Json material_json(const GltfWriterMaterial& material) {
+  Json json = {
+      {"name", material.name},
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor",
+         {material.base_colour.x(), material.base_colour.y(), material.base_colour.z(), 1.0}},
+        {"metallicFactor", material.metallic},
+        {"roughnessFactor", material.roughness}}}};
+  if (material.optics) json["extras"]["photorque"] = to_json(*material.optics);
+  return json;
+}
+
+Json node_json(const GltfWriterNode& node) {
+  Json json = {{"name", node.name}};
+  const Vec3 translation_m = to_gltf_axes(node.parent_from_node.translation_m);
+  if (!translation_m.isZero(0.0)) {
+    json["translation"] = {stable(translation_m.x()), stable(translation_m.y()),
+                           stable(translation_m.z())};
+  }
+  const Quat& rotation = node.parent_from_node.rotation;
+  if (!rotation.vec().isZero(0.0)) {
+    const Vec3 axis = to_gltf_axes(rotation.vec());
+    json["rotation"] = {stable(axis.x()), stable(axis.y()), stable(axis.z()), stable(rotation.w())};
+  }
+  if (node.extras) json["extras"] = to_json(*node.extras);
+  return json;
+}
+
+// Nodes and roots, and the glTF meshes (a mesh with its material) that the nodes ask for.
+void write_nodes(const GltfWriterModel& model, Json& document, Buffer& buffer) {
+  std::map<std::pair<int, int>, size_t> mesh_indices;
+  Json nodes = Json::array(), meshes = Json::array(), roots = Json::array();
+  for (size_t i = 0; i < model.nodes.size(); ++i) {
+    const GltfWriterNode& node = model.nodes[i];
+    Json json = node_json(node);
+    if (node.mesh >= 0) {
+      const auto [entry, is_new] =
+          mesh_indices.try_emplace({node.mesh, node.material}, meshes.size());
+      if (is_new) {
+        const Mesh& mesh = model.meshes[static_cast<size_t>(node.mesh)];
+        const Json primitives = Json::array({primitive_json(buffer, mesh, node.material)});
+        meshes.push_back({{"name", node.name}, {"primitives", primitives}});
+      }
+      json["mesh"] = entry->second;
+    }
+    nodes.push_back(std::move(json));
+    if (node.parent < 0) {
+      roots.push_back(i);
+    } else {
+      nodes[static_cast<size_t>(node.parent)]["children"].push_back(i);
+    }
+  }
+  document["scene"] = 0;
+  document["scenes"] = Json::array({{{"nodes", roots}}});
+  document["nodes"] = std::move(nodes);
+  document["meshes"] = std::move(meshes);
+}
+
+}  // namespace
+
+std::string gltf_text(const GltfWriterModel& model) {
+  Json document;
+  document["asset"] = {{"version", "2.0"}, {"generator", "photorque make_platform"}};
+  if (model.extras) document["asset"]["extras"] = to_json(*model.extras);
+  Buffer buffer;
+  write_nodes(model, document, buffer);
+  Json materials = Json::array();
+  for (const GltfWriterMaterial& material : model.materials)
+    materials.push_back(material_json(material));
+  if (!materials.empty()) document["materials"] = std::move(materials);
+  buffer.write_to(document);
+  return document.dump(1) + "\n";
+}
+
+}  // namespace photorque

@@ -1,0 +1,52 @@
+// Optical properties as the user writes them, in an experiment's [[material]] or in the extras of a
+// glTF material.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/settings/settings.h"
+#include "raytrace/surfaces/surface.h"
+
+namespace photorque {
+
+// The optics of both sides of a sheet.
+struct SheetOptics {
+  OpticalSurface front;
+  std::optional<OpticalSurface> back;  // nothing: like the front
+  std::vector<std::string> notices = {};
+};
+
+// The bytes of a file that a table names, or nothing when there is none.
+using SurfaceFiles = std::function<std::optional<std::string>(const std::string& name)>;
+
+// Reads `absorptance`, `specular`, `diffuse`, `transmittance` and `retroreflectance` from a table:
+// each a fraction in [0, 1], one number for all bands or an array with one per band (`bands` of
+// them, at most max_bands). They sum to 1 in every band, the last being 0 when left out:
+//   all of the first four given   the sum is checked to 1e-9;
+//   one left out                  it is what remains;
+//   more left out                 they are zero, if the others sum to 1; else an error.
+// The fractions returned sum to 1 to rounding. Further keys, all optional:
+//   roughness            (0, 1], as in glTF: the specular share leaves by rough_mirror.h
+//   slope_error_mrad     (0, 200]: … by slope_error.h
+//   refractive_index     [1, 10]: glass in front, glass.h; the fractions are those behind it.
+//   Beneath
+//                        glass either diffuse, specular or transmittance is positive, roughness
+//                        goes with diffuse alone, and slope_error and retroreflectance with none
+// Other keys are left to the caller. Throws InputError with the table's file, line and key.
+OpticalSurface read_surface(const Settings& table, int bands, std::string name);
+
+// The same with an optional sub-table `back` for the side from which the corners of a triangle run
+// clockwise, and heat radiation of both sides together: `reemitted` (0), the share of the absorbed
+// power that leaves at once, and `emissivity_front` and `emissivity_back` (1, 1), in proportion to
+// which it leaves the sides. Instead of fractions a side may have
+//   brdf_file            a table of measured scattering, brdf_file.h, from `files`
+//   brdf_scale           (1) a factor on it, > 0, one number or one per band
+// InputError if the file is missing or wrong, or if the surface would reflect more than falls on
+// it.
+SheetOptics read_sheet(const Settings& table, int bands, const std::string& name,
+                       const SurfaceFiles& files = {});
+
+}  // namespace photorque

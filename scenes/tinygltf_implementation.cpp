@@ -1,5 +1,0 @@
-// Compiles tinygltf's own code, with the macros of the seam.
-#include <fstream>  // version 2.7 needs it in its writer, and leaves it out with TINYGLTF_NO_FS
-
-#define TINYGLTF_IMPLEMENTATION
-#include "scenes/tinygltf_seam.h"

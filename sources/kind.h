@@ -1,0 +1,43 @@
+// How a `[[source]]` of an experiment becomes beams.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/settings/settings.h"
+#include "raytrace/emitter.h"
+
+namespace photorque {
+
+// What a source may need to know of the scene that it lights.
+struct SourceContext {
+  double scene_radius_m = 1.0;  // of the sphere about the lab origin that holds the scene
+  // Told, in one line, of what is legal but cannot be meant (a beam that no optics can make). May
+  // be empty.
+  std::function<void(const std::string&)> notice;
+  // Relative paths of files that a source names start here: the folder of the experiment.
+  std::filesystem::path folder = {};
+  // Told the name and the content hash of every file read, for the provenance. May be empty.
+  std::function<void(const std::string& name, const std::string& hash)> input = {};
+  // The bytes of a file that lies within another, by the name that a source's key gives it. May be
+  // empty.
+  std::function<std::optional<std::string>(const std::string& name)> within = {};
+};
+
+// One kind of source: `kind = "led"`.
+struct SourceKind {
+  std::string name;
+  std::string summary;  // one sentence, no full stop
+  // Beams in the lab frame, at least one. Reads every key it knows; throws InputError.
+  std::function<std::vector<Beam>(const Settings&, const SourceContext&)> make;
+  // Keys of a typical source of this kind. The laws that every source obeys are tested on it.
+  SettingsNode::Table example;
+};
+
+// Every kind named in sources/CMakeLists.txt, in that order.
+std::vector<SourceKind> all_source_kinds();
+
+}  // namespace photorque

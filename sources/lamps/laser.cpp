@@ -1,0 +1,117 @@
+// A TEM00 laser beam as rays.
+//
+//   [[source]]
+//   kind = "laser"
+//   name = "pointer"                       # default "laser"
+//   power_W = 0.005                        # > 0
+//   wavelength_nm = 633
+//   spectral_fwhm_nm = 0                   # default 0, a line
+//   waist_radius_m = 0.0005                # w0: intensity 1/e² of the axis
+//   divergence_half_angle_deg = 0.1        # Θ: far field, 1/e²; default tan Θ = λ/(π w0)
+//   position_m = [0, 0, 1.5]               # centre of the waist, lab frame
+//   direction = [0, 0, -1]                 # or aim_m = [0, 0, 0]
+//
+// The rays are drawn from the Wigner distribution of the beam: position in the waist and transverse
+// slope are independent Gaussians, w0/2 and tan Θ/2 in standard deviation along each axis. The
+// irradiance at any distance z is then Gaussian with w(z)² = w0² + (z tan Θ)², exactly.
+// Source: R. Simon, N. Mukunda, E. C. G. Sudarshan, Phys. Rev. A 29 (1984) 3273; A. E. Siegman,
+// Lasers (1986), section 17.1, for w(z) and the diffraction limit.
+#include <cmath>
+#include <cstdio>
+
+#include "core/constants.h"
+#include "core/numerics/vector_math.h"
+#include "sources/lamps/settings.h"
+#include "sources/profiles/block_maps.h"
+
+namespace photorque {
+namespace {
+
+class GaussianBeam : public Emitter {
+ public:
+  GaussianBeam(double power_W, double waist_radius_m, double divergence_slope)
+      : power_W_(power_W), waist_radius_m_(waist_radius_m), slope_(divergence_slope) {}
+
+  double power_W() const override { return power_W_; }
+
+  void emit(const SampleBlock& samples, RayBlock& rays) const override {
+    const auto& bits = samples.bits;
+    for (int i = 0; i < ray_block; ++i) {
+      const double r_m = waist_radius_m_ * gaussian_radius(bits[0][i]);
+      const CirclePoint at = circle_point(bits[1][i]);
+      rays.origin_m[0][i] = r_m * at.cos;
+      rays.origin_m[1][i] = r_m * at.sin;
+      rays.origin_m[2][i] = 0.0;
+    }
+    for (int i = 0; i < ray_block; ++i) {
+      const double slope = slope_ * gaussian_radius(bits[2][i]);
+      const CirclePoint towards = circle_point(bits[3][i]);
+      const double cosine = 1.0 / std::sqrt(1.0 + slope * slope);
+      rays.direction[0][i] = slope * cosine * towards.cos;
+      rays.direction[1][i] = slope * cosine * towards.sin;
+      rays.direction[2][i] = cosine;
+    }
+  }
+
+  double relative_intensity(double angle_rad) const override {
+    if (angle_rad <= 0.0) return 1.0;
+    if (slope_ <= 0.0 || angle_rad >= 0.5 * pi) return 0.0;
+    const double x = std::tan(angle_rad) / slope_;
+    return std::exp(-2.0 * x * x) / std::pow(std::cos(angle_rad), 3);  // d(slope area) = dΩ/cos³θ
+  }
+
+ private:
+  // Distance from the axis in units of the 1/e² radius, for a uniform fraction.
+  static double gaussian_radius(uint32_t bits) {
+    return std::sqrt(-0.5 * log_positive(remainder_of(bits)));
+  }
+
+  double power_W_;
+  double waist_radius_m_;
+  double slope_;
+};
+
+std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
+  // Beyond 30 deg a paraxial beam has lost its meaning.
+  constexpr Range paraxial{0.0, 30.0 * degree_rad, false, false};
+  const std::string name = settings.text_or("name", "laser");
+  const Vec3 position_m = settings.vector3("position_m");
+  const Vec3 direction = read_direction(settings, position_m);
+  const Spectrum spectrum = read_line_spectrum(settings, 0.0);
+  const double waist_radius_m = settings.number("waist_radius_m", Range::positive());
+  const double power_W = settings.number("power_W", Range::positive());
+
+  const double limit_rad = std::atan(spectrum.centre_m / (pi * waist_radius_m));
+  const double half_angle_rad =
+      settings.number_or("divergence_half_angle_deg", limit_rad, paraxial);
+  if (half_angle_rad > paraxial.high) {
+    throw settings.error("waist_radius_m", "a waist that diffraction spreads by over 30 deg",
+                         "a wider waist");
+  }
+  if (half_angle_rad < limit_rad * (1.0 - 1e-6) && context.notice) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  ": diffraction spreads a waist of %.4g mm by %.4g deg (half-angle, 1/e²), more "
+                  "than the %.4g deg asked for",
+                  1e3 * waist_radius_m, limit_rad / degree_rad, half_angle_rad / degree_rad);
+    context.notice(name + text);
+  }
+  return {{name, std::make_shared<GaussianBeam>(power_W, waist_radius_m, std::tan(half_angle_rad)),
+           frame_looking_along(direction, position_m), spectrum}};
+}
+
+}  // namespace
+
+SourceKind laser_kind() {
+  return {"laser",
+          "A laser beam, Gaussian in position and angle",
+          make,
+          {{"power_W", {0.005}},
+           {"wavelength_nm", {633.0}},
+           {"waist_radius_m", {0.0005}},
+           {"divergence_half_angle_deg", {0.1}},
+           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}}};
+}
+
+}  // namespace photorque

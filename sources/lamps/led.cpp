@@ -1,0 +1,47 @@
+// An LED with its lens: a round aperture that shines with a given angular profile.
+//
+//   [[source]]
+//   kind = "led"
+//   name = "lamp"              # default "led"
+//   power_W = 2.0              # radiant, > 0
+//   aperture_diameter_m = 0.02
+//   profile = "gaussian"       # and its angles: see source_settings.h
+//   fwhm_deg = 3.0
+//   wavelength_nm = 730
+//   spectral_fwhm_nm = 30      # default 20
+//   position_m = [0, 0, 1.5]   # centre of the aperture, lab frame
+//   aim_m = [0, 0, 0]          # or direction = [0, 0, -1]
+//   die_size_m = 0.001         # optional: warns of beams that no optics can make
+#include "sources/lamps/settings.h"
+
+namespace photorque {
+namespace {
+
+std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
+  const std::string name = settings.text_or("name", "led");
+  const Vec3 position_m = settings.vector3("position_m");
+  const Vec3 direction = read_direction(settings, position_m);
+  const double power_W = settings.number("power_W", Range::positive());
+  const Lamp lamp = read_lamp(settings, context, name, power_W);
+  return {{name, lamp.emitter, frame_looking_along(direction, position_m), lamp.spectrum,
+           lamp.aperture}};
+}
+
+}  // namespace
+
+SourceKind led_kind() {
+  return {"led",
+          "One LED: a round aperture with an angular profile",
+          make,
+          {{"power_W", {2.0}},
+           {"aperture_diameter_m", {0.02}},
+           {"profile", {"gaussian"}},
+           {"fwhm_deg", {3.0}},
+           {"halo_fraction", {0.2}},
+           {"halo_fwhm_deg", {12.0}},
+           {"wavelength_nm", {730.0}},
+           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+           {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}}}};
+}
+
+}  // namespace photorque

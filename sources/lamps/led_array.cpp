@@ -1,0 +1,201 @@
+// LEDs of one kind on a plane, all parallel or all aimed at one point.
+//
+//   [[source]]
+//   kind = "led_array"
+//   name = "lamps"                   # default "led_array"; the LEDs are name[0], name[1], …
+//   layout = "grid"                  # how the LEDs stand:
+//   count = [10, 5]                  #   grid: columns along x and rows along y of the array,
+//   pitch_m = 0.03                   #         pitch_m apart (or [pitch x, pitch y])
+//   # layout = "ring"                #   ring: count LEDs evenly on ring_radius_m, from +x on
+//   # layout = "hexagonal"           #   hexagonal: count LEDs, close packed at pitch_m, the ring
+//                                    #         around the centre first
+//   # layout = "positions"           #   positions: positions_m, in the lab frame
+//   position_m = [0, 0, 1.5]         # centre of the array, lab frame (not for "positions")
+//   direction = [0, 0, -1]           # normal of the array's plane; its x and y axes are the lab's,
+//                                    # turned by the shortest rotation from +z to the direction
+//   aim = "parallel"                 # default: all look along `direction`, or from the centre
+//                                    #   at aim_m
+//   # aim = "converging"             # each looks at the point aim_m; `direction` may be left out
+//   power_W = 2.0                    # of each LED, or total_power_W
+//   # aperture_diameter_m, profile, fwhm_deg, wavelength_nm, … as for "led"
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "core/constants.h"
+#include "sources/lamps/settings.h"
+
+namespace photorque {
+namespace {
+
+constexpr int64_t most_leds = 100000;
+
+enum class Layout : size_t { grid, ring, hexagonal, positions };
+
+std::vector<Vec3> grid(int columns, int rows, const Vec2& pitch_m) {
+  std::vector<Vec3> all;
+  for (int iy = 0; iy < rows; ++iy) {
+    for (int ix = 0; ix < columns; ++ix) {
+      all.emplace_back((ix - 0.5 * (columns - 1)) * pitch_m.x(),
+                       (iy - 0.5 * (rows - 1)) * pitch_m.y(), 0.0);
+    }
+  }
+  return all;
+}
+
+std::vector<Vec3> ring(int64_t count, double radius_m) {
+  std::vector<Vec3> all;
+  for (int64_t k = 0; k < count; ++k) {
+    const double azimuth = 2.0 * pi * static_cast<double>(k) / static_cast<double>(count);
+    all.emplace_back(radius_m * std::cos(azimuth), radius_m * std::sin(azimuth), 0.0);
+  }
+  return all;
+}
+
+// Hexagonal rings about the centre: 1, 7, 19, 37, … points fill whole hexagons. Within a ring the
+// points nearest to the centre come first, so that a ring in part stays balanced.
+std::vector<Vec3> hexagonal(int64_t count, double pitch_m) {
+  struct Site {
+    int ring;
+    int norm;  // squared distance over squared pitch
+    double azimuth;
+    Vec3 at_m;
+  };
+  int rings = 0;
+  while (1 + 3ll * rings * (rings + 1) < count) ++rings;
+  std::vector<Site> sites;
+  for (int q = -rings; q <= rings; ++q) {
+    for (int r = std::max(-rings, -q - rings); r <= std::min(rings, rings - q); ++r) {
+      const Vec3 at_m(pitch_m * (q + 0.5 * r), pitch_m * (0.5 * std::sqrt(3.0)) * r, 0.0);
+      sites.push_back({std::max({std::abs(q), std::abs(r), std::abs(q + r)}), q * q + q * r + r * r,
+                       std::atan2(at_m.y(), at_m.x()), at_m});
+    }
+  }
+  std::sort(sites.begin(), sites.end(), [](const Site& a, const Site& b) {
+    return std::tie(a.ring, a.norm, a.azimuth) < std::tie(b.ring, b.norm, b.azimuth);
+  });
+  std::vector<Vec3> all;
+  for (int64_t k = 0; k < count; ++k) all.push_back(sites[static_cast<size_t>(k)].at_m);
+  return all;
+}
+
+std::vector<Vec3> read_grid(const Settings& settings) {
+  const std::vector<double> count = settings.numbers("count", {1.0, most_leds, false, false});
+  const bool whole =
+      std::all_of(count.begin(), count.end(), [](double n) { return n == std::floor(n); });
+  if (count.size() != 2 || !whole || count[0] * count[1] > most_leds) {
+    throw settings.error(
+        "count", describe(settings.raw("count")),
+        "two whole numbers [columns, rows], at most " + std::to_string(most_leds) + " LEDs");
+  }
+  Vec2 pitch_m;
+  if (settings.raw("pitch_m").is_array()) {
+    const std::vector<double> both_m = settings.numbers("pitch_m", Range::positive());
+    if (both_m.size() != 2) {
+      throw settings.error("pitch_m", describe(settings.raw("pitch_m")), "one or two numbers > 0");
+    }
+    pitch_m = {both_m[0], both_m[1]};
+  } else {
+    pitch_m.setConstant(settings.number("pitch_m", Range::positive()));
+  }
+  return grid(static_cast<int>(count[0]), static_cast<int>(count[1]), pitch_m);
+}
+
+// Where the LEDs stand in the array's frame (its plane is z = 0), for every layout but `positions`.
+std::vector<Vec3> read_layout(const Settings& settings, Layout layout) {
+  if (layout == Layout::grid) return read_grid(settings);
+  const int64_t count = settings.integer("count", 1, most_leds);
+  if (layout == Layout::ring) {
+    return ring(count, settings.number("ring_radius_m", Range::positive()));
+  }
+  return hexagonal(count, settings.number("pitch_m", Range::positive()));
+}
+
+struct Placement {
+  std::vector<Vec3> positions_m;  // lab frame
+  std::vector<Vec3> directions;   // lab frame
+};
+
+Placement read_placement(const Settings& settings) {
+  const auto layout =
+      static_cast<Layout>(settings.choice("layout", {"grid", "ring", "hexagonal", "positions"}));
+  const bool converging = settings.choice_or("aim", {"parallel", "converging"}, 0) == 1;
+
+  Placement placement;
+  Vec3 centre_m;
+  if (layout == Layout::positions) {
+    placement.positions_m = settings.vectors3("positions_m");
+    centre_m = std::accumulate(placement.positions_m.begin(), placement.positions_m.end(),
+                               Vec3(Vec3::Zero())) /
+               static_cast<double>(placement.positions_m.size());
+  } else {
+    centre_m = settings.vector3("position_m");
+  }
+
+  // A converging array may have both: a plane of its own and a point that its LEDs look at.
+  std::optional<Vec3> aim_m;
+  if (converging) {
+    // Said here, because Settings would take the key `aim` for an `aim_m` without its unit.
+    if (!settings.has("aim_m")) throw settings.error("aim_m", "nothing", "a point to converge on");
+    aim_m = settings.vector3("aim_m");
+  }
+  const Vec3 normal = converging && settings.has("direction") ? read_direction_vector(settings)
+                                                              : read_direction(settings, centre_m);
+  if (layout != Layout::positions) {
+    const RigidTransform lab_from_array = frame_looking_along(normal, centre_m);
+    for (const Vec3& at_m : read_layout(settings, layout)) {
+      placement.positions_m.push_back(lab_from_array.point(at_m));
+    }
+  }
+  for (const Vec3& at_m : placement.positions_m) {
+    placement.directions.push_back(aim_m ? direction_to(settings, "aim_m", at_m, *aim_m) : normal);
+  }
+  return placement;
+}
+
+double read_power_of_each(const Settings& settings, size_t count) {
+  const bool total = settings.has("total_power_W");
+  if (total && settings.has("power_W")) {
+    throw settings.error("total_power_W", "also power_W", "only one of the two");
+  }
+  if (!total) return settings.number("power_W", Range::positive());
+  return settings.number("total_power_W", Range::positive()) / static_cast<double>(count);
+}
+
+std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
+  const std::string name = settings.text_or("name", "led_array");
+  const Placement placement = read_placement(settings);
+  const double power_W = read_power_of_each(settings, placement.positions_m.size());
+  const Lamp lamp = read_lamp(settings, context, name, power_W);
+  std::vector<Beam> beams;
+  for (size_t i = 0; i < placement.positions_m.size(); ++i) {
+    beams.push_back({name + "[" + std::to_string(i) + "]", lamp.emitter,
+                     frame_looking_along(placement.directions[i], placement.positions_m[i]),
+                     lamp.spectrum, lamp.aperture});
+  }
+  return beams;
+}
+
+}  // namespace
+
+SourceKind led_array_kind() {
+  return {"led_array",
+          "Equal LEDs in a grid, ring, hexagon or at given points",
+          make,
+          {{"layout", {"ring"}},
+           {"count", {int64_t{6}}},
+           {"ring_radius_m", {0.2}},
+           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+           {"aim", {"converging"}},
+           {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}},
+           {"total_power_W", {90.0}},
+           {"aperture_diameter_m", {0.03}},
+           {"profile", {"super_gaussian"}},
+           {"fwhm_deg", {3.0}},
+           {"order", {4.0}},
+           {"wavelength_nm", {730.0}}}};
+}
+
+}  // namespace photorque

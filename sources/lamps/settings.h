@@ -1,0 +1,59 @@
+// The keys that several kinds of source share.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/settings/settings.h"
+#include "core/spectrum.h"
+#include "core/vector.h"
+#include "sources/kind.h"
+#include "sources/profiles/angular_distribution.h"
+
+namespace photorque {
+
+// Where a source looks, of any length but zero: either `direction`, a vector, or `aim_m`, a point
+// that is looked at from `position_m`. InputError for both, neither, or a vector of no length.
+Vec3 read_direction(const Settings& settings, const Vec3& position_m);
+
+// The key `direction` alone, of any length but zero.
+Vec3 read_direction_vector(const Settings& settings);
+
+// A vector from one point to another that `key` names; InputError if they coincide.
+Vec3 direction_to(const Settings& settings, const std::string& key, const Vec3& from_m,
+                  const Vec3& to_m);
+
+// The directions of a lamp. What an angle means is in its key:
+//   profile = "gaussian"        fwhm_deg: full width at half of the maximum intensity, (0, 180)
+//   profile = "super_gaussian"  fwhm_deg, order: 2 (Gaussian) to 100 (nearly a disc)
+//   profile = "pillbox"         half_angle_deg: axis to edge, (0, 90];
+//                               pillbox_measure = "angle" | "solid_angle" | "projected"
+//   profile = "cosine_power"    exponent: 0 (isotropic) to 1e9
+//   halo_fraction, halo_fwhm_deg  optional: this fraction of the flux, [0, 1), in a Gaussian halo
+AngularDistribution read_angular_distribution(const Settings& settings);
+
+// wavelength_nm, and spectral_fwhm_nm with a default.
+Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m);
+
+// What the Sun and what stands for it shine with:
+//   spectrum = "blackbody"    temperature_K, default 5772
+//   spectrum = "AM0"          as above the atmosphere (ASTM G173-03)
+//   spectrum = "AM1.5G"       as on the ground (the same)
+//   irradiance_W_m2           > 0, default 1361; with AM1.5G 1000
+struct Sunlight {
+  Spectrum spectrum;
+  double irradiance_W_m2;
+};
+Sunlight read_sunlight(const Settings& settings);
+
+// One lamp of power `power_W`: the keys above, aperture_diameter_m, and for the etendue optionally
+// die_size_m (side of a square) or die_diameter_m, with lens_index (default 1, a bare die).
+struct Lamp {
+  std::shared_ptr<const Emitter> emitter;
+  Spectrum spectrum;
+  UniformAperture aperture;
+};
+Lamp read_lamp(const Settings& settings, const SourceContext& context, const std::string& name,
+               double power_W);
+
+}  // namespace photorque

@@ -1,0 +1,105 @@
+// A solar simulator: a bundle of limited width and collimation that lights a round field evenly, or
+// nearly so.
+//
+//   [[source]]
+//   kind = "solar_simulator"
+//   name = "simulator"                # default "solar_simulator"
+//   irradiance_W_m2 = 1361            # in the middle of the field, on a plane normal to the beam
+//   footprint_diameter_m = 0.6        # of the field; no light falls beside it
+//   collimation_half_angle_deg = 2    # axis to edge, [0, 45]; default 0.2665: the Sun's at 1 au
+//   nonuniformity = 0.02              # (max − min)/(max + min) over the field, [0, 1); default 0
+//   position_m = [0, 0, 0]            # middle of the field, lab frame
+//   direction = [0, 0, -1]            # in which the light travels
+//   spectrum = "AM0"                  # or "AM1.5G", or a "blackbody" (default)
+//   temperature_K = 5772              # of the blackbody
+//
+// Nonuniformity is that of IEC 60904-9. The irradiance falls from the middle as E(r) = E0 (1 − k
+// r²/R²) with k = 2u/(1 + u), which has that nonuniformity u. Every point of the field sees the
+// same disc of constant radiance, so that the field is sharp at its own plane and blurs in front of
+// it and behind by the half-angle.
+#include <cmath>
+
+#include "core/constants.h"
+#include "core/numerics/vector_math.h"
+#include "sources/lamps/settings.h"
+#include "sources/profiles/block_maps.h"
+
+namespace photorque {
+namespace {
+
+class SolarSimulator : public Emitter {
+ public:
+  struct Field {
+    double irradiance_W_m2, radius_m, fall;  // fall: k above, ∈ [0, 1)
+    double half_angle_rad;
+    double distance_m;  // of the field's plane in front of z = 0
+  };
+  explicit SolarSimulator(const Field& field) : field_(field) {}
+
+  double power_W() const override {
+    return field_.irradiance_W_m2 * pi * field_.radius_m * field_.radius_m *
+           (1.0 - 0.5 * field_.fall);
+  }
+
+  void emit(const SampleBlock& samples, RayBlock& rays) const override {
+    const double sine = std::sin(field_.half_angle_rad);
+    const double whole = 1.0 - 0.5 * field_.fall;
+    ValueBlock rise;
+    for (int i = 0; i < ray_block; ++i) {
+      const double sine2 = sine * sine * fraction_of(samples.bits[2][i]);
+      rise[i] = sine2 / (1.0 + std::sqrt(1.0 - sine2));
+    }
+    fill_directions(rise, samples.bits[3], rays.direction);
+    for (int i = 0; i < ray_block; ++i) {
+      // The share of the power within r: (s − k s²/2)/(1 − k/2) with s = r²/R².
+      const double share = whole * fraction_of(samples.bits[0][i]);
+      const double s = 2.0 * share / (1.0 + std::sqrt(1.0 - 2.0 * field_.fall * share));
+      const double r_m = field_.radius_m * std::sqrt(s);
+      const CirclePoint turn = circle_point(samples.bits[1][i]);
+      const double back = field_.distance_m / rays.direction[2][i];
+      rays.origin_m[0][i] = r_m * turn.cos - back * rays.direction[0][i];
+      rays.origin_m[1][i] = r_m * turn.sin - back * rays.direction[1][i];
+      rays.origin_m[2][i] = 0.0;
+    }
+  }
+
+  double relative_intensity(double angle_rad) const override {
+    return angle_rad <= field_.half_angle_rad ? std::cos(angle_rad) : 0.0;
+  }
+
+ private:
+  Field field_;
+};
+
+std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
+  const std::string name = settings.text_or("name", "solar_simulator");
+  const Vec3 position_m = settings.vector3("position_m");
+  const Vec3 direction = read_direction_vector(settings);
+  // The rays start before the sphere that holds the scene.
+  constexpr double margin = 1.001;
+  const double distance_m = margin * (context.scene_radius_m + position_m.norm());
+  const double nonuniformity = settings.number_or("nonuniformity", 0.0, {0.0, 1.0, false, true});
+  const Sunlight light = read_sunlight(settings);
+  const SolarSimulator::Field field{
+      light.irradiance_W_m2, 0.5 * settings.number("footprint_diameter_m", Range::positive()),
+      2.0 * nonuniformity / (1.0 + nonuniformity),
+      settings.number_or("collimation_half_angle_deg", solar_angular_radius_rad, {0.0, 0.25 * pi}),
+      distance_m};
+  return {{name, std::make_shared<SolarSimulator>(field),
+           frame_looking_along(direction, position_m - distance_m * direction), light.spectrum}};
+}
+
+}  // namespace
+
+SourceKind solar_simulator_kind() {
+  return {"solar_simulator",
+          "A bundle of limited width and collimation that lights a round field",
+          make,
+          {{"footprint_diameter_m", {0.6}},
+           {"collimation_half_angle_deg", {2.0}},
+           {"nonuniformity", {0.05}},
+           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}},
+           {"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}}};
+}
+
+}  // namespace photorque

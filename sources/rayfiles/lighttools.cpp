@@ -1,0 +1,109 @@
+// LightTools ray data file in text: keywords up to lt_startofdata, then one ray a line,
+// x y z  l m n  flux [wavelength].
+#include <algorithm>
+
+#include "core/text/numbers.h"
+#include "sources/rayfiles/checks.h"
+#include "sources/rayfiles/set.h"
+
+namespace photorque {
+namespace {
+
+constexpr double nanometre_m = 1e-9;
+
+struct LightToolsHeader {
+  double metres_per_unit = 1e-3;
+  Vec3 origin = Vec3::Zero();  // in the file's unit
+  size_t columns = 7;
+};
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  while (!(line = trimmed(line)).empty()) {
+    const size_t end = std::min(line.find_first_of(" \t,"), line.size());
+    if (end > 0) words.push_back(line.substr(0, end));
+    line.remove_prefix(std::max<size_t>(end, 1));
+  }
+  return words;
+}
+
+double number_at(const std::vector<std::string_view>& words, size_t index,
+                 const InputLocation& where) {
+  const std::string_view word = index < words.size() ? words[index] : "";
+  if (const auto value = number_in(word)) return *value;
+  throw InputError(where, "column " + std::to_string(index + 1),
+                   "\"" + std::string(word.substr(0, 24)) + "\"", "a number");
+}
+
+double unit_of(std::string_view name, const InputLocation& where) {
+  if (name == "millimeters" || name == "millimetres") return 1e-3;
+  if (name == "centimeters" || name == "centimetres") return 1e-2;
+  if (name == "meters" || name == "metres") return 1.0;
+  if (name == "inches") return 0.0254;
+  if (name == "feet") return 0.3048;
+  throw InputError(where, "lt_length_units", "\"" + std::string(name.substr(0, 24)) + "\"",
+                   "millimeters, centimeters, meters, inches or feet");
+}
+
+void read_keyword(std::string_view line, const InputLocation& where, LightToolsHeader& header,
+                  RaySet& set) {
+  const size_t colon = line.find(':');
+  if (colon == std::string_view::npos) return;
+  const std::string_view key = trimmed(line.substr(0, colon));
+  const std::string_view value = trimmed(line.substr(colon + 1));
+  const std::vector<std::string_view> words = words_of(value);
+  if (key == "dataname") set.name = std::string(value);
+  if (key == "lt_length_units") header.metres_per_unit = unit_of(value, where);
+  if (key == "lt_datatype" && value.find("luminous") != std::string_view::npos) {
+    set.flux_unit = RaySet::FluxUnit::lumen;
+  }
+  if (key == "lt_data_origin") {
+    for (int k = 0; k < 3; ++k) header.origin[k] = number_at(words, static_cast<size_t>(k), where);
+  }
+  if (key == "lt_color_info" && value == "wavelength") header.columns = 8;
+  if (key == "lt_radiant_flux") set.stated_radiant_flux_W = number_at(words, 0, where);
+  if (key == "lt_luminous_flux") set.stated_luminous_flux_lm = number_at(words, 0, where);
+}
+
+RaySet::Ray read_ray(std::string_view line, const LightToolsHeader& header,
+                     const InputLocation& where) {
+  const std::vector<std::string_view> words = words_of(line);
+  RaySet::Ray ray;
+  for (int k = 0; k < 3; ++k) {
+    ray.origin_m[k] = header.metres_per_unit *
+                      (header.origin[k] + number_at(words, static_cast<size_t>(k), where));
+    ray.direction[k] = number_at(words, static_cast<size_t>(k) + 3, where);
+  }
+  ray.flux = number_at(words, 6, where);
+  if (header.columns == 8)
+    ray.wavelength_m = std::max(0.0, nanometre_m * number_at(words, 7, where));
+  return ray;
+}
+
+}  // namespace
+
+RaySet read_lighttools_rays(const std::string& bytes, const std::string& name) {
+  RaySet set;
+  set.format = "LightTools";
+  LightToolsHeader header;
+  bool in_data = false;
+  int line_number = 0;
+  for (const std::string_view line : lines_of(bytes)) {
+    const InputLocation where{name, ++line_number};
+    const std::string_view text = trimmed(line);
+    if (text.empty() || text.starts_with('#')) continue;
+    if (text == "lt_endofdata") break;
+    if (in_data) {
+      set.rays.push_back(read_ray(text, header, where));
+      require_sound(set.rays.back(), set.rays.size() - 1, where);
+    } else if (text == "lt_startofdata") {
+      in_data = true;
+    } else {
+      read_keyword(text, where, header, set);
+    }
+  }
+  require_flux(set, {name, line_number});
+  return set;
+}
+
+}  // namespace photorque

@@ -1,0 +1,206 @@
+// From a grid of light to the headline figures of an array.
+#include "photovoltaics/array/array.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "core/constants.h"
+#include "core/numerics/random.h"
+
+namespace photorque {
+namespace {
+
+SettingsNode number(double x) {
+  return {x, {"array.toml", 1}};
+}
+SettingsNode whole(int64_t x) {
+  return {x, {"array.toml", 1}};
+}
+SettingsNode text(const char* x) {
+  return {std::string(x), {"array.toml", 1}};
+}
+
+Settings settings(SettingsNode::Table table) {
+  SettingsNode root;
+  root.value = std::move(table);
+  root.where = {"array.toml", 1};
+  return Settings(std::make_shared<const SettingsNode>(root), "array");
+}
+
+SettingsNode::Table ten_by_ten() {
+  SettingsNode size;
+  size.value = SettingsNode::Array{whole(10), whole(10)};
+  return {{"cells", size}};
+}
+
+ArrayDesign design(SettingsNode::Table table = ten_by_ten()) {
+  return read_array_design(settings(std::move(table)));
+}
+
+constexpr double responsivity_A_W = 0.5;
+
+ArrayResult evaluate(const ArrayDesign& array, const ArrayLight& light) {
+  return evaluate_array(array, light, std::array{responsivity_A_W});
+}
+
+TEST(PhotovoltaicArray, EvenLightGivesTheSumOfItsCells) {
+  const ArrayResult result =
+      evaluate(design(), array_light(20, 20, 0.2, 0.2, std::vector<double>(400, 800.0)));
+  EXPECT_NEAR(result.area_of_cells_m2, 0.04, 1e-15);
+  EXPECT_NEAR(result.power_on_cells_W.value, 32.0, 1e-12);
+  EXPECT_NEAR(result.power_W.value, result.sum_of_cells_W.value, 1e-11 * result.power_W.value);
+  EXPECT_NEAR(result.mismatch_loss.value, 0.0, 1e-11);
+  EXPECT_EQ(result.maxima.size(), 1u);
+  EXPECT_GT(result.efficiency.value, 0.2);
+  EXPECT_LT(result.efficiency.value, 0.5);
+}
+
+TEST(PhotovoltaicArray, GapsAndMarginsLeaveTheirLightAside) {
+  auto table = ten_by_ten();
+  table["gap_mm"] = number(2.0);
+  table["margin_mm"] = number(6.0);
+  const ArrayResult result =
+      evaluate(design(table), array_light(7, 13, 0.2, 0.2, std::vector<double>(91, 500.0)));
+  const double side_m = (0.2 - 9 * 0.002 - 2 * 0.006) / 10.0;
+  EXPECT_NEAR(result.area_of_cells_m2, 100 * side_m * side_m, 1e-15);
+  EXPECT_NEAR(result.power_on_cells_W.value, 500.0 * 100 * side_m * side_m, 1e-12);
+}
+
+TEST(PhotovoltaicArray, PhotocurrentIsResponsivityTimesLightPerBand) {
+  ArrayLight light = array_light(10, 10, 0.1, 0.1, std::vector<double>(100, 1000.0));
+  ArrayLight two_bands = light;
+  two_bands.bands = 2;
+  two_bands.power_W = {200, 1, {}};
+  for (int i = 0; i < 100; ++i) {
+    two_bands.power_W.sums.push_back(0.03);
+    two_bands.power_W.sums.push_back(0.07);
+  }
+  const ArrayResult result = evaluate_array(design(), two_bands, std::array{0.6, 0.2});
+  for (const double current : result.cell_photocurrent_A) {
+    EXPECT_NEAR(current, 0.6 * 0.03 + 0.2 * 0.07, 1e-15);
+  }
+}
+
+TEST(PhotovoltaicArray, ShadedCellIsTheOneInReverse) {
+  std::vector<double> irradiance(100, 1000.0);
+  irradiance[37] = 100.0;
+  auto table = ten_by_ten();
+  table["bypass"] = text("none");
+  const ArrayResult result = evaluate(design(table), array_light(10, 10, 0.2, 0.2, irradiance));
+  for (size_t i = 0; i < 100; ++i) {
+    if (i == 37) {
+      EXPECT_LT(result.cells.voltages_V[i], 0.0);
+    } else {
+      EXPECT_GT(result.cells.voltages_V[i], 0.0);
+    }
+  }
+}
+
+TEST(PhotovoltaicArray, CellPowersAddUpToThePowerDeliveredAndLostInDiodes) {
+  std::vector<double> irradiance;
+  for (int i = 0; i < 100; ++i) irradiance.push_back(200.0 + 8.0 * (i % 10) * (i / 10));
+  for (const char* kind : {"none", "ideal", "junction"}) {
+    auto table = ten_by_ten();
+    table["bypass"] = text(kind);
+    table["bypass_every"] = whole(20);
+    const ArrayResult result = evaluate(design(table), array_light(10, 10, 0.2, 0.2, irradiance));
+    double delivered_W = 0.0;
+    for (size_t i = 0; i < 100; ++i) {
+      delivered_W += result.cells.voltages_V[i] * result.cells.currents_A[i];
+    }
+    // Bypass diodes only take.
+    EXPECT_GE(delivered_W, result.power_W.value * (1 - 1e-10)) << kind;
+    if (std::string(kind) == "none") {
+      EXPECT_NEAR(delivered_W, result.power_W.value, 1e-10 * delivered_W);
+    }
+  }
+}
+
+// Light to watts with one cell in full shade that cannot break down: its substring of 20 is lost,
+// and its bypass diode takes drop times current from the other 80 cells.
+TEST(PhotovoltaicArray, DarkCellWithoutBreakdownCostsItsSubstring) {
+  std::vector<double> irradiance(100, 1000.0);
+  irradiance[37] = 0.0;
+  SettingsNode circuit;
+  circuit.value = SettingsNode::Table{{"breakdown_fraction", number(0.0)},
+                                      {"shunt_ohm", number(1e9)},
+                                      {"reference_area_m2", number(1e-4)}};
+  auto table = ten_by_ten();
+  table["bypass_every"] = whole(20);
+  table["cell_parameters"] = circuit;
+  const ArrayDesign array = design(table);
+  const ArrayResult result = evaluate(array, array_light(10, 10, 0.2, 0.2, irradiance));
+  const CellCurve cell(parameters_at(array.cell, 4e-4, array.temperature_K));
+  const double light_A = responsivity_A_W * 1000.0 * 4e-4;
+  // Largest of I (80 V_cell(I) − 0.5), by a fine grid and its parabola.
+  const auto power_W = [&](double i) { return i * (80.0 * cell.voltage_V(light_A, i) - 0.5); };
+  const double step_A = 1e-5 * light_A;
+  double best_A = 0.9 * light_A;
+  while (power_W(best_A + step_A) > power_W(best_A)) best_A += step_A;
+  const double slope = 0.5 * (power_W(best_A + step_A) - power_W(best_A - step_A));
+  const double bend = power_W(best_A + step_A) + power_W(best_A - step_A) - 2.0 * power_W(best_A);
+  const double expected_W = power_W(best_A) - 0.5 * slope * slope / bend;
+  EXPECT_NEAR(result.power_W.value, expected_W, 1e-9 * expected_W);
+  double lost_V = 0.0;
+  for (size_t i = 0; i < 100; ++i) lost_V += result.cells.voltages_V[i];
+  EXPECT_NEAR(lost_V, result.voltage_V.value, 1e-9 * result.voltage_V.value);
+  EXPECT_LT(result.cells.voltages_V[37], -5.0);
+  EXPECT_LT(std::abs(result.cells.currents_A[37]), 1e-7);
+}
+
+TEST(PhotovoltaicArray, DarkArrayGivesNothingAndDoesNotFail) {
+  const ArrayResult result =
+      evaluate(design(), array_light(10, 10, 0.2, 0.2, std::vector<double>(100, 0.0)));
+  EXPECT_EQ(result.power_W.value, 0.0);
+  EXPECT_TRUE(result.maxima.empty());
+}
+
+// The spread of results over many independent data sets is what the standard error promises.
+TEST(PhotovoltaicArray, StandardErrorIsTheSpreadOverIndependentRuns) {
+  constexpr int runs = 50, replicates = 8;
+  const ArrayDesign array = design();
+  double sum = 0.0, squares = 0.0, promised = 0.0;
+  for (uint64_t run = 0; run < runs; ++run) {
+    ArrayLight light = array_light(10, 10, 0.2, 0.2, std::vector<double>(100, 500.0));
+    light.power_W = {100, replicates, {}};
+    for (uint64_t r = 0; r < replicates; ++r) {
+      for (uint64_t b = 0; b < 100; ++b) {
+        // Uniform noise with a standard deviation of 0.6 % in each bin of each replicate: small
+        // against the 3 % of current over which a cell in series goes from forward to reverse.
+        const double u = unit_interval(hash_words(7, run, r, b));
+        light.power_W.sums.push_back(500.0 * 4e-4 * (1.0 + 0.02 * (u - 0.5)));
+      }
+    }
+    const Estimate power = evaluate(array, light).power_W;
+    sum += power.value / runs;
+    squares += power.value * power.value / runs;
+    promised += power.standard_error * power.standard_error / runs;
+  }
+  const double spread2 = (squares - sum * sum) * runs / (runs - 1.0);
+  // A variance from 50 runs is uncertain by 20 %.
+  EXPECT_NEAR(spread2 / promised, 1.0, 0.6);
+}
+
+TEST(PhotovoltaicArray, WrongDesignsNameTheirKey) {
+  const auto message = [](const char* key, const SettingsNode& value) -> std::string {
+    auto table = ten_by_ten();
+    table[key] = value;
+    try {
+      design(table);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_NE(message("strings", whole(7)).find("array.toml:1: array.strings: found 7"),
+            std::string::npos);
+  EXPECT_NE(message("cell", text("silicon_heterojuntion")).find("did you mean"), std::string::npos);
+  EXPECT_NE(message("cells", text("ten")).find("array.cells"), std::string::npos);
+  EXPECT_NE(message("temperature_K", number(-4.0)).find("array.temperature_K"), std::string::npos);
+  EXPECT_NE(message("wiring", whole(3)).find("array.wiring"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,112 @@
+// The 100-cell array of the reference calculations: cells, maps, wirings, in the words of
+// ../shared/reference/electrical.md, whose numbers come from PVMismatch, from ngspice and from a
+// nested bracketed solver in Python.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/constants.h"
+#include "photovoltaics/array/design.h"
+#include "photovoltaics/network/curve.h"
+
+namespace photorque::reference {
+
+inline std::filesystem::path folder() {
+  return std::filesystem::path(PHOTORQUE_SOURCE_DIR).parent_path() / "shared" / "reference";
+}
+
+// All numbers of a CSV file without header; lines that begin with # are comments.
+inline std::vector<double> numbers(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<double> all;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::stringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) all.push_back(std::stod(cell));
+  }
+  return all;
+}
+
+// The 10 × 10 irradiances of a map over one sun; empty where the reference folder is absent.
+inline std::vector<double> suns(const std::string& map) {
+  return numbers(folder() / "electrical" / "maps" / (map + ".csv"));
+}
+
+// ngspice was run with constants of CODATA 2014; only kT/q enters, so this temperature gives the
+// same circuit.
+inline double ngspice_temperature_K() {
+  return 298.15 * (1.38064852e-23 / 1.6021766208e-19) / (boltzmann_J_K / elementary_charge_C);
+}
+
+inline CellParameters cell(double temperature_K = 298.15) {
+  CellParameters p;
+  p.saturation_1_A = 2.286188161253440e-11;
+  p.saturation_2_A = 1.117455042372326e-6;
+  p.series_ohm = 4.267236774264931e-3;
+  p.shunt_ohm = 10.01226369025448;
+  p.breakdown_fraction = 1.036748445065697e-4;
+  p.breakdown_V = -5.527260068445654;
+  p.breakdown_exponent = 3.284628553041425;
+  p.temperature_K = temperature_K;
+  return p;
+}
+
+// The reference's photocurrent leaves the breakdown term out at short circuit.
+inline double photocurrent_A(double suns, const CellParameters& p) {
+  const double isc = 6.3056 * suns, vd = isc * p.series_ohm;
+  const double vt = boltzmann_J_K * p.temperature_K / elementary_charge_C;
+  return isc + p.saturation_1_A * std::expm1(vd / vt) +
+         p.saturation_2_A * std::expm1(vd / (2 * vt)) + vd / p.shunt_ohm;
+}
+
+inline Diode clamp() {
+  Diode d;
+  d.kind = Diode::Kind::clamp;
+  d.drop_V = 0.5;
+  return d;
+}
+
+inline Diode schottky() {
+  Diode d;
+  d.kind = Diode::Kind::junction;
+  d.temperature_K = ngspice_temperature_K();
+  return d;
+}
+
+// 100 cells in series, down one column and up the next, a bypass diode over each 20.
+inline ArrayWiring series_5(const Diode& bypass) {
+  RegularWiring options;
+  options.bypass = bypass;
+  return regular_wiring(10, 10, options);
+}
+
+// Ten columns in parallel, each with one bypass and one blocking diode.
+inline ArrayWiring parallel_10(const Diode& bypass, const Diode& blocking) {
+  RegularWiring options;
+  options.strings = 10;
+  options.bypass_every = 10;
+  options.bypass = bypass;
+  options.blocking = blocking;
+  return regular_wiring(10, 10, options);
+}
+
+inline std::shared_ptr<const DiodeVoltageTable> table(const CellParameters& p) {
+  return std::make_shared<const DiodeVoltageTable>(CellCurve(p), 20.0);
+}
+
+inline ArrayCurve curve(const ArrayWiring& wiring, const std::vector<double>& suns,
+                        const CellParameters& p) {
+  std::vector<double> currents;
+  for (const double s : suns) currents.push_back(photocurrent_A(s, p));
+  return {wiring, CellTables(suns.size(), table(p)), currents};
+}
+
+}  // namespace photorque::reference

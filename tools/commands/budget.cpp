@@ -1,0 +1,96 @@
+// photorque budget: every disturbance torque at one state, ranked, beside the paper's figures.
+#include "attitude/studies/budget.h"
+
+#include <chrono>
+
+#include "core/constants.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/runs/optical_run.h"
+
+namespace photorque {
+namespace {
+
+const Table* find_table(const Product& product, const std::string& name) {
+  for (const Table& table : product.tables) {
+    if (table.name == name) return &table;
+  }
+  return nullptr;
+}
+
+const Table& table_named(const Product& product, const std::string& name) {
+  const Table* table = find_table(product, name);
+  if (table == nullptr) throw NumericalError("the budget has no table " + name);
+  return *table;
+}
+
+const Table::Column& column_named(const Table& table, const std::string& name) {
+  for (const Table::Column& column : table.columns) {
+    if (column.name == name) return column;
+  }
+  throw NumericalError("the table " + table.name + " has no column " + name);
+}
+
+void print_reasons(const Console& console, const Table& figures) {
+  const auto& quantity = column_named(figures, "quantity").texts;
+  const auto& why = column_named(figures, "why").texts;
+  console.heading("Why");
+  for (size_t i = 0; i < quantity.size(); ++i) console.line("  " + quantity[i] + ": " + why[i]);
+}
+
+void print_air(const Console& console, const Table& parts) {
+  console.heading(parts.title);
+  print_table(console, parts,
+              {{"part", "part"},
+               {"torque [N m]", "torque_N_m"},
+               {"share", "share"},
+               {"Reynolds", "reynolds"},
+               {"transition", "transition_reynolds"},
+               {"law holds", "law_holds"}});
+}
+
+void run_budget(const CommandLine& line) {
+  const auto start = std::chrono::steady_clock::now();
+  Console console(line);
+  const AttitudeExperiment experiment(line);
+  const Budget budget = read_budget(experiment.settings());
+  const Product product = budget_product(budget);
+  const PlatformState& state = budget.state;
+  console.line("State: tilt " + show(tilt_rad(state) / degree_rad) + " deg, heading " +
+               show(heading_rad(state) / degree_rad) + " deg, rate " +
+               show(state.rate_body_rad_s.norm()) + " rad/s, charge drawn " +
+               show(state.charge_drawn_C / 3600.0) + " Ah");
+  console.heading(
+      "Disturbance torques, largest first; the angle each would turn if it stayed constant");
+  print_table(console, table_named(product, "budget"),
+              {{"disturbance", "disturbance"},
+               {"torque [N m]", "torque_N_m"},
+               {"share", "share_of_sum"},
+               {"1 min [deg]", "angle_1_min_deg"},
+               {"1 h [deg]", "angle_1_h_deg"},
+               {"1 day [deg]", "angle_1_day_deg"},
+               {"paper [N m]", "paper_N_m"},
+               {"ours/paper", "ratio"}});
+  if (const Table* air = find_table(product, "external_air")) print_air(console, *air);
+  const Table& figures = table_named(product, "paper_figures");
+  console.heading("Figures of the paper beside ours");
+  print_table(console, figures,
+              {{"quantity", "quantity"},
+               {"section", "section"},
+               {"paper", "published"},
+               {"ours", "ours"},
+               {"ratio", "ratio"},
+               {"as published", "ours_as_published"}});
+  print_reasons(console, figures);
+  print_air(console, table_named(product, "paper_external_air"));
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  write_results(line, console, product, experiment.provenance(0), {wall.count(), {}});
+}
+
+}  // namespace
+
+Verb budget_verb() {
+  return {"budget", "Every disturbance torque at one state, ranked, beside published figures",
+          run_budget};
+}
+
+}  // namespace photorque

@@ -1,0 +1,254 @@
+// photorque prove: conceals effects in recordings, diagnoses them blind, and scores the answers.
+#include <atomic>
+#include <cmath>
+#include <mutex>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/parallel.h"
+#include "images/writers/product.h"
+#include "images/writers/summary.h"
+#include "scenes/experiment/toml_reader.h"
+#include "tools/proof/document.h"
+#include "tools/proof/files.h"
+#include "tools/runs/child_process.h"
+#include "tools/runs/console.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ProveSettings {
+  ConcealedPlan plan;
+  bool oracle = true;        // also diagnose with the truth told, for the held-out error
+  int at_once = 1;           // diagnoses side by side
+  double longest_s = 900.0;  // for one diagnosis
+  size_t most_cases = 100000;
+  std::optional<fs::path> document;  // whose section is renewed
+  std::string section = "prove";
+  std::string hash;  // of the settings
+};
+
+// [prove] of the settings file; docs/proof.md says what the keys mean.
+ProveSettings read_settings(const CommandLine& line) {
+  SettingsNode node = read_toml(line.experiment);
+  for (const std::string& change : line.overrides) apply_override(node, change);
+  const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
+  const Settings s = root.table("prove");
+  ProveSettings settings;
+  ConcealedPlan& plan = settings.plan;
+  constexpr int64_t most = 100000;
+  plan.seed = static_cast<uint64_t>(s.integer_or("seed", 1, 0, INT64_MAX));
+  if (line.seed) plan.seed = *line.seed;
+  plan.per_kind = static_cast<int>(s.integer_or("per_kind", plan.per_kind, 0, most));
+  plan.none = static_cast<int>(s.integer_or("none", plan.none, 0, most));
+  plan.pairs = static_cast<int>(s.integer_or("pairs", plan.pairs, 0, most));
+  plan.outside = static_cast<int>(s.integer_or("outside", plan.outside, 0, most));
+  const Range seconds{20.0, 1e5, false, false}, rate{1.0, 1000.0, false, false};
+  plan.duration_s = s.number_or("duration_s", plan.duration_s, seconds);
+  plan.holdout_s = s.number_or("holdout_s", plan.holdout_s, seconds);
+  if (s.has("rates_Hz")) plan.rates_Hz = s.numbers("rates_Hz", rate);
+  if (plan.rates_Hz.empty()) throw s.error("rates_Hz", "[]", "at least one rate");
+  plan.dirty_share = s.number_or("dirty_share", plan.dirty_share, Range::fraction());
+  settings.oracle = s.flag_or("oracle", settings.oracle);
+  settings.at_once = static_cast<int>(s.integer_or("at_once", 1, 1, 1024));
+  settings.longest_s = s.number_or("longest_s", settings.longest_s, Range::positive());
+  settings.most_cases = static_cast<size_t>(s.integer_or("most_cases", most, 1, most));
+  settings.section = s.text_or("section", settings.section);
+  if (s.has("document")) {
+    settings.document = line.experiment.parent_path() / s.text("document");
+    if (!fs::is_regular_file(*settings.document)) {
+      throw s.error("document", "no file " + settings.document->string(), "a page to renew");
+    }
+  }
+  root.finish();
+  settings.hash = content_hash(read_file(line.experiment));
+  return settings;
+}
+
+bool is_case(const fs::path& folder) {
+  return fs::exists(folder / "truth.json");
+}
+
+// Makes the cases that are not there yet.
+std::vector<fs::path> make_cases(const ProveSettings& settings, const fs::path& folder, int threads,
+                                 Console& console) {
+  const size_t count = std::min(case_count(settings.plan), settings.most_cases);
+  std::vector<fs::path> folders(count);
+  std::atomic<size_t> done = 0;
+  const auto progress = console.progress("concealing");
+  parallel_for(count, threads, [&](size_t i) {
+    char number[16];
+    std::snprintf(number, sizeof number, "%04zu", i + 1);
+    folders[i] = folder / number;
+    if (!is_case(folders[i])) write_concealed_case(draw_case(settings.plan, i), folders[i]);
+    ++done;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(count));
+  });
+  console.done();
+  return folders;
+}
+
+std::vector<fs::path> cases_in(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(folder, missing)) {
+    if (entry.is_directory() && is_case(entry.path())) folders.push_back(entry.path());
+  }
+  if (folders.empty()) {
+    throw InputError({}, "--cases", "no case in " + folder.string(),
+                     "folders with experiment.toml, run1.csv.gz, run2.csv.gz and truth.json");
+  }
+  for (const fs::path& each : folders) {
+    for (const char* file : {"experiment.toml", "run1.csv.gz", "run2.csv.gz"}) {
+      if (!fs::is_regular_file(each / file)) {
+        throw InputError({(each / file).string()}, "--cases", "no such file", "a complete case");
+      }
+    }
+  }
+  std::ranges::sort(folders);
+  return folders;
+}
+
+// Diagnoses one experiment in a folder that holds nothing but what a user would have. Does nothing
+// when this very program has done so before.
+void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
+                    const fs::path& blind, const std::string& program_hash,
+                    const ProveSettings& settings, int threads) {
+  const fs::path out = blind / "diagnosis", stamp = blind / "done.txt";
+  if (fs::exists(stamp) && read_file(stamp) == program_hash) return;
+  fs::remove_all(blind);
+  fs::create_directories(out);
+  fs::copy_file(case_folder / experiment, blind / "experiment.toml");
+  fs::copy_file(case_folder / "run1.csv.gz", blind / "run1.csv.gz");
+  fs::copy_file(case_folder / "run2.csv.gz", blind / "run2.csv.gz");
+  const ChildResult result = run_child(
+      own_program(),
+      {"diagnose", "experiment.toml", "--recording", "run1.csv.gz", "--holdout", "run2.csv.gz",
+       "--out", "diagnosis", "--quiet", "--threads", std::to_string(threads)},
+      blind, settings.longest_s);
+  fs::create_directories(out);
+  write_file_whole(out / "wall_s.txt", std::to_string(result.wall_s) + "\n");
+  if (result.status != 0 || !result.errors.empty()) {
+    write_file_whole(out / "error.txt",
+                     "exit " + std::to_string(result.status) + ": " + result.errors);
+  }
+  fs::remove(blind / "run1.csv.gz");
+  fs::remove(blind / "run2.csv.gz");
+  write_file_whole(stamp, program_hash);
+}
+
+std::vector<CaseScore> diagnose_and_score(const std::vector<fs::path>& folders,
+                                          const ProveSettings& settings, const CommandLine& line,
+                                          Console& console) {
+  const fs::path out = line.out_folder();
+  const std::string program = content_hash(read_file(own_program()));
+  const int threads = std::max(1, line.threads);
+  std::vector<CaseScore> scores(folders.size());
+  std::atomic<size_t> done = 0;
+  const auto progress = console.progress("diagnosing");
+  parallel_for(folders.size(), settings.at_once, [&](size_t i) {
+    const std::string name = folders[i].filename().string();
+    const fs::path blind = out / "blind" / name, oracle = out / "oracle" / name;
+    diagnose_blind(folders[i], "experiment.toml", blind, program, settings, threads);
+    CaseScore score = score_case(folders[i], blind / "diagnosis", oracle / "diagnosis");
+    if (settings.oracle && score.right && !score.kinds.empty() &&
+        fs::exists(folders[i] / "oracle.toml")) {
+      diagnose_blind(folders[i], "oracle.toml", oracle, program, settings, threads);
+      score = score_case(folders[i], blind / "diagnosis", oracle / "diagnosis");
+    }
+    scores[i] = std::move(score);
+    ++done;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(folders.size()));
+  });
+  console.done();
+  return scores;
+}
+
+Product proof_product(const std::vector<CaseScore>& scores) {
+  Product product;
+  product.quantities = proof_quantities(scores);
+  product.tables = {proof_summary(scores), proof_by_kind(scores), proof_reliability(scores),
+                    proof_cases(scores)};
+  return product;
+}
+
+void print_proof(const Console& console, const std::vector<CaseScore>& scores) {
+  for (const CaseScore& s : scores) {
+    if (s.right) continue;
+    const auto list = [](const std::vector<std::string>& names) {
+      std::string text;
+      for (const std::string& name : names) text += " " + name;
+      return text.empty() ? " nothing" : text;
+    };
+    console.line("  wrong: " + s.name + ": " + s.true_verdict + list(s.true_kinds) + "; said " +
+                 (s.answered ? s.verdict + list(s.kinds) : "nothing, " + s.failure));
+  }
+  console.heading("Proof");
+  for (const ProofRow& row : proof_rows(scores)) {
+    char text[160];
+    std::snprintf(text, sizeof text, "%4d of %4d  %5.1f %%  (%.1f to %.1f)  ", row.share.hits,
+                  row.share.of, 100.0 * row.share.hits / row.share.of, 100.0 * row.share.low(),
+                  100.0 * row.share.high());
+    console.line("  " + (text + row.question));
+  }
+  for (const Quantity& q : proof_quantities(scores)) {
+    console.line("  " + q.name + " " + show(q.estimate, ""));
+  }
+}
+
+std::string plan_text(const ProveSettings& s) {
+  const ConcealedPlan& p = s.plan;
+  std::string rates;
+  for (const double rate : p.rates_Hz) rates += (rates.empty() ? "" : ", ") + show(rate);
+  return std::to_string(p.per_kind) + " of every kind, " + std::to_string(p.pairs) + " pairs, " +
+         std::to_string(p.outside) + " of every law outside the catalogue, " +
+         std::to_string(p.none) + " with nothing missing; recordings of " + show(p.duration_s) +
+         " s and hold-outs of " + show(p.holdout_s) + " s at " + rates + " Hz, " +
+         show(100.0 * p.dirty_share) + " % of the files dirty; seed " + std::to_string(p.seed) +
+         ".";
+}
+
+void run_prove(const CommandLine& line) {
+  Console console(line);
+  const ProveSettings settings = read_settings(line);
+  const fs::path out = line.out_folder();
+  const std::vector<fs::path> folders =
+      line.cases ? cases_in(*line.cases)
+                 : make_cases(settings, out / "cases", line.threads, console);
+  console.line(std::to_string(folders.size()) + " cases");
+  if (line.only_make) return;
+  const auto scores = diagnose_and_score(folders, settings, line, console);
+  print_proof(console, scores);
+
+  Provenance provenance = build_provenance();
+  provenance.seed = settings.plan.seed;
+  provenance.inputs = {{line.experiment.filename().string(), settings.hash}};
+  const ProofSet set{
+      line.cases ? "Cases of " + line.cases->filename().string() : "Cases made by this command",
+      line.cases ? std::to_string(scores.size()) + " cases." : plan_text(settings), scores};
+  const std::string text = proof_markdown(set);
+  const Product product = proof_product(scores);
+  write_product(product, provenance, out, {"csv", "json"});
+  write_file_whole(out / "summary.json", summary_json(product, provenance));
+  write_file_whole(out / "proof.md", text);
+  if (settings.document) {
+    const std::string old = read_file(*settings.document);
+    write_file_whole(*settings.document,
+                     with_section(old, settings.section, text, settings.document->string()));
+  }
+  if (line.json) std::fputs(summary_json(product, provenance).c_str(), stdout);
+  console.heading("Written to " + out.string());
+}
+
+}  // namespace
+
+Verb prove_verb() {
+  Verb verb{"prove", "Conceal effects in recordings, diagnose them blind, score the answers",
+            run_prove};
+  verb.takes_cases = true;
+  return verb;
+}
+
+}  // namespace photorque

@@ -1,0 +1,258 @@
+// photorque sweep: one command over many designs, and what they gave as one table.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/files.h"
+#include "scenes/experiment/experiment.h"
+#include "tools/runs/optical_run.h"
+#include "tools/runs/sweep_design.h"
+
+namespace photorque {
+namespace {
+
+struct Shard {
+  size_t first = 0, step = 1;
+};
+
+Shard read_shard(const std::string& text) {
+  if (text.empty()) return {};
+  unsigned k = 0, n = 0;
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%u/%u%n", &k, &n, &end) != 2 ||
+      end != static_cast<int>(text.size()) || k < 1 || k > n) {
+    throw InputError({"--shard"}, "shard", '"' + text + '"', "K/N with 1 <= K <= N");
+  }
+  return {k - 1, n};
+}
+
+const Verb& verb_called(const std::vector<Verb>& verbs, const std::string& name) {
+  const auto it = std::ranges::find_if(verbs, [&](const Verb& v) {
+    return v.name == name && v.name != "sweep" && v.name != "prove";
+  });
+  if (it == verbs.end()) {
+    throw InputError({}, "sweep.verb", '"' + name + '"', "a command that writes a summary: power");
+  }
+  return *it;
+}
+
+// A value as text, with the content of every file that it names.
+std::string content_of(const SettingsNode& node, const std::filesystem::path& folder) {
+  std::string all;
+  if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    for (const auto& [key, value] : *table) all += key + "={" + content_of(value, folder) + "}\n";
+  } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (const SettingsNode& item : *items) all += '[' + content_of(item, folder) + ']';
+  } else {
+    all = toml_text(node);
+    const auto* text = std::get_if<std::string>(&node.value);
+    std::error_code failure;
+    if (text != nullptr && std::filesystem::is_regular_file(folder / *text, failure)) {
+      all += content_hash(read_file(folder / *text));
+    }
+  }
+  return all;
+}
+
+// What every design follows from: the program, the experiment but its plan, the files that it names
+// (not what these refer to).
+std::string common_content(const ExperimentFile& file, const SweepPlan& plan,
+                           const Provenance& build) {
+  std::string all = plan.verb + '\n' + build.version + build.git_hash + '\n';
+  for (const std::string& key : file.settings.keys()) {
+    if (key == "sweep") continue;
+    all += key + '=' + content_of(file.settings.raw(key), file.path.parent_path()) + '\n';
+  }
+  return content_hash(all);
+}
+
+double number_of(const nlohmann::json& value) {
+  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
+
+// The figures of one design, in the order of its summary.
+std::vector<Quantity> read_figures(const std::filesystem::path& summary) {
+  const auto json = nlohmann::ordered_json::parse(read_file(summary));
+  std::vector<Quantity> figures;
+  for (const auto& [name, value] : json.items()) {
+    if (!value.is_object() || !value.contains("value")) continue;
+    figures.push_back({name, {number_of(value["value"]), number_of(value["standard_error"])}});
+  }
+  return figures;
+}
+
+// The value of an axis as a column: numbers where all are numbers.
+Table::Column axis_column(const SweepPlan& plan, size_t axis) {
+  Table::Column column{plan.axes[axis].key, {}, {}};
+  for (size_t d = 0; d < plan.designs(); ++d) {
+    const std::string& text = plan.value(d, axis);
+    double number = 0.0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool whole = read.ec == std::errc() && read.ptr == text.data() + text.size();
+    column.values.push_back(whole ? number : std::numeric_limits<double>::quiet_NaN());
+    column.texts.push_back(text);
+  }
+  const bool numbers = std::ranges::none_of(column.values, [](double v) { return std::isnan(v); });
+  (numbers ? column.texts.clear() : column.values.clear());
+  return column;
+}
+
+std::vector<std::string> chosen_figures(const SweepPlan& plan, const std::vector<Quantity>& first) {
+  std::vector<std::string> names;
+  for (const Quantity& q : first) names.push_back(q.name);
+  if (plan.figures.empty()) return names;
+  for (const std::string& name : plan.figures) {
+    if (std::ranges::find(names, name) == names.end()) {
+      const std::string hint = nearest(name, {names.begin(), names.end()});
+      throw InputError({}, "sweep.figures", '"' + name + '"',
+                       hint.empty() ? "a figure of the command's summary.json"
+                                    : "a figure of the summary, perhaps \"" + hint + '"');
+    }
+  }
+  return plan.figures;
+}
+
+// Against the last axis, a curve for every combination of the others; of random plans, points.
+Plot figure_plot(const SweepPlan& plan, const Table& table, size_t column) {
+  const size_t axes = plan.axes.size();
+  const Table::Column& x = table.columns[axes];
+  const Table::Column& y = table.columns[column];
+  Plot plot{"sweep_" + y.name, y.name + " over " + x.name, x.name, y.name, {}, false, false, {}};
+  const size_t along = plan.grid ? plan.axes.back().values.size() : plan.designs();
+  for (size_t begin = 0; begin < plan.designs(); begin += along) {
+    Plot::Curve curve;
+    for (size_t axis = 0; plan.grid && axis + 1 < axes; ++axis) {
+      curve.label += (axis > 0 ? ", " : "") + plan.axes[axis].key + " " + plan.value(begin, axis);
+    }
+    curve.markers = !plan.grid;
+    for (size_t d = begin; d < begin + along; ++d) {
+      curve.x.push_back(x.values[d]);
+      curve.y.push_back(y.values[d]);
+      curve.y_error.push_back(table.columns[column + 1].values[d]);
+    }
+    plot.curves.push_back(std::move(curve));
+  }
+  return plot;
+}
+
+Product sweep_product(const SweepPlan& plan, const std::vector<std::vector<Quantity>>& designs) {
+  const std::vector<std::string> names = chosen_figures(plan, designs.front());
+  Table table{"sweep", "What " + plan.verb + " gave, design by design", {}};
+  table.columns.push_back({"design", {}, {}});
+  for (size_t d = 0; d < designs.size(); ++d) {
+    table.columns[0].values.push_back(static_cast<double>(d + 1));
+  }
+  for (size_t axis = 0; axis < plan.axes.size(); ++axis) {
+    table.columns.push_back(axis_column(plan, axis));
+  }
+  for (const std::string& name : names) {
+    Table::Column value{name, {}, {}}, error{name + "_standard_error", {}, {}};
+    for (const std::vector<Quantity>& figures : designs) {
+      const auto it = std::ranges::find(figures, name, &Quantity::name);
+      const double nan = std::numeric_limits<double>::quiet_NaN();
+      value.values.push_back(it == figures.end() ? nan : it->estimate.value);
+      error.values.push_back(it == figures.end() ? nan : it->estimate.standard_error);
+    }
+    table.columns.push_back(std::move(value));
+    table.columns.push_back(std::move(error));
+  }
+  Product product;
+  const size_t first_figure = plan.axes.size() + 1;
+  constexpr size_t most_curves = 12;
+  const size_t curves = plan.grid ? plan.designs() / plan.axes.back().values.size() : 1;
+  const bool plots = !plan.figures.empty() && curves <= most_curves &&
+                     !table.columns[plan.axes.size()].values.empty();
+  for (size_t k = 0; plots && k < names.size(); ++k) {
+    product.plots.push_back(figure_plot(plan, table, first_figure + 2 * k));
+  }
+  product.quantities.push_back({"designs", {static_cast<double>(designs.size()), 0.0}});
+  product.tables.push_back(std::move(table));
+  return product;
+}
+
+// The same error, said of the plan: its values reach a design as if by --set.
+InputError in_design(const CommandLine& line, size_t design, size_t count,
+                     const InputError& error) {
+  std::string text = error.what();
+  constexpr std::string_view by_set = "--set: ";
+  if (text.starts_with(by_set)) text.erase(0, by_set.size());
+  return {{line.experiment.string()},
+          "design " + std::to_string(design + 1) + " of " + std::to_string(count) + ": " + text,
+          "",
+          ""};
+}
+
+void run_sweep(const CommandLine& line) {
+  Console console(line);
+  const ExperimentFile file = read_experiment_file(line.experiment, line.all_overrides());
+  const auto tables = file.others("sweep");
+  if (tables.empty()) throw file.settings.error("sweep", "none", "a table [sweep]");
+  const SweepPlan plan = read_sweep_plan(tables.front());
+  const std::vector<Verb> verbs = all_verbs();
+  const Verb& verb = verb_called(verbs, plan.verb);
+  const Shard shard = read_shard(line.shard);
+  Provenance provenance = build_provenance();
+  provenance.inputs = file.inputs;
+  provenance.seed = file.trace.seed;
+
+  const size_t count = plan.designs();
+  const std::string common = common_content(file, plan, provenance);
+  // Under the hash of all that a design follows from: what changed is run again, what did not is
+  // not, and a plan may grow.
+  const auto summary_of = [&](size_t design) {
+    std::string all = common;
+    for (const std::string& assignment : plan.overrides(design)) all += '\n' + assignment;
+    return line.out_folder() / "designs" / content_hash(all) / "summary.json";
+  };
+  console.heading(std::to_string(count) + " designs by `" + plan.verb + '`');
+  const auto progress = console.progress("designs");
+  size_t kept = 0, run = 0;
+  for (size_t design = shard.first; design < count; design += shard.step) {
+    if (std::filesystem::exists(summary_of(design))) {
+      ++kept;
+    } else {
+      CommandLine one = line;
+      one.verb = plan.verb;
+      one.out = summary_of(design).parent_path();
+      one.quiet = one.summary_only = true;
+      one.json = false;
+      const auto changes = plan.overrides(design);
+      one.overrides.insert(one.overrides.end(), changes.begin(), changes.end());
+      try {
+        verb.run(one);
+      } catch (const InputError& error) {
+        throw in_design(line, design, count, error);
+      }
+      // A figure that no design has is told after the first, not after the last.
+      if (++run == 1) chosen_figures(plan, read_figures(summary_of(design)));
+    }
+    if (progress) progress(static_cast<double>(design + 1) / static_cast<double>(count));
+  }
+  console.done();
+  console.line("  " + std::to_string(run) + " run now, " + std::to_string(kept) +
+               " kept from before");
+
+  std::vector<std::vector<Quantity>> designs;
+  for (size_t design = 0; design < count; ++design) {
+    if (!std::filesystem::exists(summary_of(design))) {
+      console.line("  not all shards are done; the table is written by the last");
+      return;
+    }
+    designs.push_back(read_figures(summary_of(design)));
+  }
+  write_results(line, console, sweep_product(plan, designs), provenance, RunCost{});
+}
+
+}  // namespace
+
+Verb sweep_verb() {
+  Verb verb{"sweep", "One command over many designs: any keys of the experiment, one table",
+            run_sweep, true};
+  verb.takes_shard = true;
+  return verb;
+}
+
+}  // namespace photorque

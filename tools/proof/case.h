@@ -1,0 +1,71 @@
+// Concealed cases: a platform, two runs, and what acts on it without being believed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/proof/motion.h"
+
+namespace photorque {
+
+struct ConcealedRun {
+  ConcealedStart start;
+  std::vector<ConcealedCommand> commands;
+  double duration_s = 0.0;
+};
+
+// Realistic instruments.
+struct ConcealedSensors {
+  double rate_Hz = 10.0;  // rows, and the gyro
+  int camera_every = 1;   // rows from one attitude to the next
+  Triple camera_noise_arcsec = {37, 37, 12};
+  double gyro_noise_rad_s = 2e-4;
+  bool dirty = false;  // drop-outs, gaps, outliers, jittered times, sign flips, a preamble
+};
+
+// What the experiment file says; sigma 0: stated as exact.
+struct ConcealedBeliefs {
+  Triple offset_m = {}, offset_sigma_m = {};
+  double drag_N_m_s = 0.0, drag_sigma_N_m_s = 0.0;
+  double gyro_bias_sigma_rad_s = 0.0;
+};
+
+struct ConcealedCase {
+  std::string name;    // "magnetic_dipole_02"
+  std::string family;  // none | single | pair | outside
+  std::string topology;
+  uint64_t seed = 0;
+  ConcealedWorld world;
+  ConcealedBeliefs beliefs;
+  ConcealedSensors sensors;
+  std::array<ConcealedRun, 2> runs;  // recording and hold-out
+
+  // The truth, for scoring.
+  std::string verdict;
+  std::vector<std::vector<std::string>> accept;  // sets of names that count as right
+  std::vector<std::string> depends_on;
+  // By how much the effects change chi² of the first run beyond all that the uncertain beliefs and
+  // the unknown start can take up; of the weaker one where there are two.
+  double chi2_gain = 0.0;
+};
+
+struct ConcealedPlan {
+  uint64_t seed = 1;
+  int per_kind = 4;  // of every kind of the catalogue: strong, medium, weak, below the limit, …
+  int none = 30;     // with nothing missing
+  int pairs = 12;    // of two effects
+  int outside = 3;   // of every law outside the catalogue
+  double duration_s = 400.0;
+  double holdout_s = 300.0;
+  std::vector<double> rates_Hz = {10.0, 20.0};
+  double dirty_share = 0.3;
+};
+
+// How many cases a plan has, and the i-th of them: the same plan gives the same cases, in whatever
+// order they are drawn.
+size_t case_count(const ConcealedPlan& plan);
+ConcealedCase draw_case(const ConcealedPlan& plan, size_t index);
+
+}  // namespace photorque

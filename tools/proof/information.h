@@ -1,0 +1,54 @@
+// What the readings of a concealed run can tell, to first order.
+//
+// Differences of simulated readings, in units of their noise, are the columns of a linear model.
+// The initial state and the uncertain beliefs (with their priors) may take up what they can; what
+// is left of an effect's own difference is what can be seen of it.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tools/proof/case.h"
+
+namespace photorque {
+
+// Columns for the first run of a case, about its true motion.
+class ConcealedInformation {
+ public:
+  explicit ConcealedInformation(const ConcealedCase& concealed);
+
+  // How the readings change by effect `index` of the case's world: `share` of it taken away,
+  // divided by `share`, which must be small where the effect is strong. What has no strength to
+  // which it is proportional is taken away whole.
+  Eigen::VectorXd change_by(size_t index, double share) const;
+
+  // The columns of a kind's numbers, about the true motion.
+  Eigen::MatrixXd columns_of(const std::string& kind) const;
+
+  // The part of `change`, squared, that neither the start, the uncertain beliefs nor the columns of
+  // `others` can take up: what chi² gains by knowing.
+  double gain(const Eigen::VectorXd& change, const std::vector<Eigen::MatrixXd>& others = {}) const;
+
+  // Kinds of the catalogue with a linear strength, as competitors: all that could act here.
+  std::vector<std::string> competitors() const;
+
+ private:
+  struct Sampled {
+    std::vector<std::array<double, 4>> camera;
+    std::vector<Triple> gyro_rad_s;
+  };
+  Sampled sample(const ConcealedWorld& world, const ConcealedStart& start) const;
+  // From the base, in units of the noise.
+  Eigen::VectorXd difference(const Sampled& sampled) const;
+  void add_nuisances();
+
+  ConcealedCase case_;
+  std::vector<double> times_s_;
+  double weight_ = 1.0;  // root of the readings that one of times_s_ stands for
+  Sampled base_;
+  Eigen::MatrixXd nuisance_;  // the last rows are those of the priors
+};
+
+}  // namespace photorque

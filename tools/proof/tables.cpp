@@ -1,0 +1,247 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "tools/proof/score.h"
+
+namespace photorque {
+namespace {
+
+constexpr double visible = 30.0;  // gain of chi² from which a name is asked for
+constexpr double hopeless = 6.0;  // and below which nothing can be said
+
+template <class Belongs, class Hits>
+Share share_of(const std::vector<CaseScore>& scores, const Belongs& belongs, const Hits& hits) {
+  Share share;
+  for (const CaseScore& s : scores) {
+    if (!belongs(s)) continue;
+    ++share.of;
+    share.hits += hits(s) ? 1 : 0;
+  }
+  return share;
+}
+
+bool is_outside(const CaseScore& s) {
+  return s.true_verdict == "unexplained";
+}
+bool is_none(const CaseScore& s) {
+  return s.true_kinds.empty();
+}
+bool is_inside(const CaseScore& s) {
+  return !is_outside(s) && !is_none(s);
+}
+// Cases made elsewhere do not state their gain: all of them are meant to be seen.
+bool is_visible(const CaseScore& s) {
+  return is_inside(s) && s.true_verdict == "missing_physics" && !(s.chi2_gain <= visible);
+}
+
+// Half width for 95 %.
+double wilson(const Share& share, double sign) {
+  if (share.of == 0) return sign < 0 ? 0.0 : 1.0;
+  constexpr double z = 1.959963984540054;
+  const double n = share.of, p = share.hits / n, z2 = z * z / n;
+  const double half = z * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n));
+  return std::clamp((p + 0.5 * z2 + sign * half) / (1.0 + z2), 0.0, 1.0);
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " + ") + name;
+  return text.empty() ? "-" : text;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::ranges::sort(values);
+  const size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+}  // namespace
+
+double Share::low() const {
+  return wilson(*this, -1.0);
+}
+double Share::high() const {
+  return wilson(*this, 1.0);
+}
+
+std::vector<ProofRow> proof_rows(const std::vector<CaseScore>& scores) {
+  const auto all = [](const CaseScore&) { return true; };
+  const auto right = [](const CaseScore& s) { return s.right; };
+  const auto below = [](const CaseScore& s) { return is_inside(s) && s.chi2_gain < hopeless; };
+  const auto single = [](const CaseScore& s) { return is_visible(s) && s.true_kinds.size() == 1; };
+  const auto pair = [](const CaseScore& s) { return is_visible(s) && s.true_kinds.size() > 1; };
+  const auto seen_unknown = [](const CaseScore& s) {
+    return is_outside(s) && s.verdict == "unexplained";
+  };
+  std::vector<ProofRow> rows = {
+      {"all cases: verdict and names right", share_of(scores, all, right), "≥ 95 %"},
+      {"one effect that shows: name right", share_of(scores, single, right), "≥ 95 %"},
+      {"one effect that shows: right within the group named",
+       share_of(scores, single, [](const CaseScore& s) { return s.right_within_group; }), ""},
+      {"two effects: both names right", share_of(scores, pair, right), ""},
+      {"nothing missing: consistent", share_of(scores, is_none, right), "all"},
+      {"below the limit: consistent, or the right name", share_of(scores, below, right), "all"},
+      {"unknown law: unexplained, nothing wrong named", share_of(scores, is_outside, right), "all"},
+      {"unknown law called unexplained: variable right",
+       share_of(scores, seen_unknown, [](const CaseScore& s) { return s.dependence_right; }), ""},
+      {"cases with a wrong name",
+       share_of(scores, all, [](const CaseScore& s) { return s.wrong_name; }), "none"},
+      {"cases without an answer",
+       share_of(scores, all, [](const CaseScore& s) { return !s.answered; }), "none"},
+  };
+  std::erase_if(rows, [](const ProofRow& row) { return row.share.of == 0; });
+  return rows;
+}
+
+Table proof_summary(const std::vector<CaseScore>& scores) {
+  Table table{"proof", "What the diagnoses got right", {}};
+  table.columns = {{"question", {}, {}}, {"aim", {}, {}},    {"hits", {}, {}},   {"of", {}, {}},
+                   {"share", {}, {}},    {"low_95", {}, {}}, {"high_95", {}, {}}};
+  for (const ProofRow& row : proof_rows(scores)) {
+    table.columns[0].texts.push_back(row.question);
+    table.columns[1].texts.push_back(row.aim.empty() ? "-" : row.aim);
+    const double of = row.share.of;
+    size_t i = 2;
+    for (const double x : {static_cast<double>(row.share.hits), of, row.share.hits / of,
+                           row.share.low(), row.share.high()}) {
+      table.columns[i++].values.push_back(x);
+    }
+  }
+  return table;
+}
+
+Table proof_by_kind(const std::vector<CaseScore>& scores) {
+  struct Count {
+    double shown = 0, right = 0, below = 0, below_right = 0, wrong_name = 0, unanswered = 0;
+  };
+  std::map<std::string, Count> counts;
+  for (const CaseScore& s : scores) {
+    std::string name = joined(s.true_kinds);
+    if (s.true_kinds.size() > 1) name = "two effects";
+    if (s.true_kinds.empty()) name = "nothing missing";
+    if (is_outside(s)) name = "unknown: " + name;
+    Count& count = counts[name];
+    const bool shows = is_visible(s) || is_outside(s) || is_none(s);
+    (shows ? count.shown : count.below) += 1;
+    if (s.right) (shows ? count.right : count.below_right) += 1;
+    count.wrong_name += s.wrong_name ? 1 : 0;
+    count.unanswered += s.answered ? 0 : 1;
+  }
+  Table table{"proof_by_kind", "By what was concealed", {}};
+  table.columns = {{"concealed", {}, {}}, {"shown", {}, {}},          {"right", {}, {}},
+                   {"too_weak", {}, {}},  {"too_weak_right", {}, {}}, {"wrong_name", {}, {}},
+                   {"unanswered", {}, {}}};
+  for (const auto& [name, c] : counts) {
+    table.columns[0].texts.push_back(name);
+    size_t i = 1;
+    for (const double x : {c.shown, c.right, c.below, c.below_right, c.wrong_name, c.unanswered}) {
+      table.columns[i++].values.push_back(x);
+    }
+  }
+  return table;
+}
+
+Table proof_cases(const std::vector<CaseScore>& scores) {
+  Table table{"proof_cases", "Every case", {}};
+  const std::vector<std::string> texts = {"case", "true_verdict", "concealed", "verdict", "named"};
+  const std::vector<std::string> numbers = {
+      "right",        "right_within_group", "chi2_gain", "confidence",
+      "holdout_chi2", "oracle_chi2",        "pulls_rms", "wall_s"};
+  for (const auto& name : texts) table.columns.push_back({name, {}, {}});
+  for (const auto& name : numbers) table.columns.push_back({name, {}, {}});
+  for (const CaseScore& s : scores) {
+    size_t i = 0;
+    for (const std::string& text :
+         {s.name, s.true_verdict, joined(s.true_kinds),
+          s.answered ? s.verdict : std::string("no answer"), joined(s.kinds)}) {
+      table.columns[i++].texts.push_back(text);
+    }
+    double squares = 0.0;
+    for (const double pull : s.pulls) squares += pull * pull;
+    const double rms = std::sqrt(squares / static_cast<double>(s.pulls.size()));
+    for (const double x : {s.right ? 1.0 : 0.0, s.right_within_group ? 1.0 : 0.0, s.chi2_gain,
+                           s.confidence, s.holdout_chi2, s.oracle_chi2, rms, s.wall_s}) {
+      table.columns[i++].values.push_back(x);
+    }
+  }
+  return table;
+}
+
+Table proof_reliability(const std::vector<CaseScore>& scores) {
+  const std::vector<double> edges = {0.0, 0.5, 0.8, 0.95, 0.99, 1.0};
+  Table table{"proof_reliability", "Stated probability of a name, and how often it was right", {}};
+  for (const char* name :
+       {"from", "to", "names", "mean_stated", "share_right", "low_95", "high_95"}) {
+    table.columns.push_back({name, {}, {}});
+  }
+  for (size_t bin = 0; bin + 1 < edges.size(); ++bin) {
+    Share share;
+    double stated = 0.0;
+    for (const CaseScore& s : scores) {
+      for (const auto& [probability, right] : s.claims) {
+        const bool last = bin + 2 == edges.size();
+        if (!(probability >= edges[bin] && (probability < edges[bin + 1] || last))) continue;
+        ++share.of;
+        share.hits += right ? 1 : 0;
+        stated += probability;
+      }
+    }
+    if (share.of == 0) continue;
+    size_t i = 0;
+    const double n = share.of;
+    for (const double x :
+         {edges[bin], edges[bin + 1], n, stated / n, share.hits / n, share.low(), share.high()}) {
+      table.columns[i++].values.push_back(x);
+    }
+  }
+  return table;
+}
+
+std::vector<Quantity> proof_quantities(const std::vector<CaseScore>& scores) {
+  std::vector<double> pulls, ratios, times;
+  for (const CaseScore& s : scores) {
+    if (s.right && is_visible(s)) pulls.insert(pulls.end(), s.pulls.begin(), s.pulls.end());
+    if (s.right && is_visible(s) && s.holdout_chi2 > 0.0 && s.oracle_chi2 > 0.0) {
+      ratios.push_back(std::sqrt(s.holdout_chi2 / s.oracle_chi2));
+    }
+    if (s.answered) times.push_back(s.wall_s);
+  }
+  std::vector<Quantity> quantities = {{"cases", {static_cast<double>(scores.size()), 0.0}}};
+  const auto n = static_cast<double>(pulls.size());
+  double squares = 0.0, within = 0.0, largest = 0.0;
+  for (const double p : pulls) {
+    squares += p * p;
+    within += std::abs(p) <= 1.0 ? 1.0 : 0.0;
+  }
+  for (const double r : ratios) largest = std::max(largest, r);
+  if (n > 1) {
+    const double rms = std::sqrt(squares / n);
+    quantities.push_back({"pulls", {n, 0.0}});
+    quantities.push_back({"pulls_rms", {rms, rms / std::sqrt(2.0 * n)}});
+    quantities.push_back(
+        {"pulls_within_1_sigma", {within / n, std::sqrt(within * (n - within) / n) / n}});
+    std::vector<double> sizes;
+    for (const double p : pulls) sizes.push_back(std::abs(p));
+    // Of a normal distribution, the median of |x| is 0.6745.
+    quantities.push_back({"pulls_robust_sd", {median(sizes) / 0.6745, 0.0}});
+  }
+  if (!ratios.empty()) {
+    quantities.push_back({"holdout_error_over_oracle_median", {median(ratios), 0.0}});
+    quantities.push_back({"holdout_error_over_oracle_largest", {largest, 0.0}});
+    quantities.push_back(
+        {"holdout_within_10_percent_of_oracle",
+         {static_cast<double>(std::ranges::count_if(ratios, [](double r) { return r <= 1.1; })) /
+              static_cast<double>(ratios.size()),
+          0.0}});
+  }
+  if (!times.empty()) {
+    quantities.push_back({"wall_median_s", {median(times), 0.0}});
+    quantities.push_back({"wall_largest_s", {*std::ranges::max_element(times), 0.0}});
+  }
+  return quantities;
+}
+
+}  // namespace photorque

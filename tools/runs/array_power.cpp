@@ -1,0 +1,126 @@
+#include "tools/runs/array_power.h"
+
+#include <algorithm>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "photovoltaics/array/incidence.h"
+
+namespace photorque {
+
+namespace {
+
+// Power-weighted mean wavelength of the light in each band, from the ampere per watt that it would
+// give were every photon converted.
+std::vector<double> mean_wavelengths_m(const std::vector<double>& ideal_responsivity_A_W) {
+  std::vector<double> wavelength_m;
+  for (const double r : ideal_responsivity_A_W) {
+    wavelength_m.push_back(r * planck_J_s * speed_of_light_m_s / elementary_charge_C);
+  }
+  return wavelength_m;
+}
+
+// Within a band all light counts alike, whichever source it is from: said where it is not. From the
+// ampere per watt of each source in the band.
+std::vector<std::string> unlike_sources(const QuantumEfficiency& efficiency, const Bands& bands,
+                                        const std::vector<WeighedSpectrum>& spectra) {
+  constexpr double alike = 0.01;
+  std::vector<std::string> notices;
+  for (size_t b = 0; b < static_cast<size_t>(bands.count()); ++b) {
+    double least = 1e300, most = 0.0;
+    for (const WeighedSpectrum& one : spectra) {
+      if (!(band_fractions(one.spectrum, bands)[b] > 1e-6)) continue;
+      const double a = band_responsivity_A_W(efficiency, bands, std::span(&one, 1))[b];
+      least = std::min(least, a);
+      most = std::max(most, a);
+    }
+    if (!(most > (1.0 + alike) * least)) continue;
+    notices.push_back(
+        "in band " + std::to_string(b + 1) + " the cells turn " + show(least) + " to " +
+        show(most) +
+        " A/W of the sources' light into current; the mean over what they emit is "
+        "taken for all, so give unlike sources bands of their own ([scene] bands_nm)");
+  }
+  return notices;
+}
+
+}  // namespace
+
+ArrayPower read_array_power(OpticalRun& run) {
+  const Experiment& experiment = run.experiment();
+  const auto tables = experiment.file.others("array");
+  if (tables.size() != 1) {
+    throw InputError({experiment.file.path.string()}, "array",
+                     tables.empty() ? "no table" : "more than one table", "one table [array]");
+  }
+  ArrayPower array;
+  array.flux_map = run.flux_map_index(tables[0].text_or("receiver", ""));
+  const FluxMapReceiver& map = run.flux_map(array.flux_map);
+  array.design =
+      read_array_design(tables[0], read_cell_places(tables[0], experiment.scene, map.grid()));
+  array.report = read_array_report(tables[0], read_published(experiment.file.others("published")));
+  tables[0].finish();
+
+  std::vector<WeighedSpectrum> spectra;
+  for (const Beam& beam : experiment.beams) {
+    spectra.push_back({beam.spectrum, beam.emitter->power_W()});
+  }
+  const Bands& bands = experiment.scene.bands;
+  const auto over_bands = [&](const QuantumEfficiency& efficiency) {
+    const BandValues values = band_responsivity_A_W(efficiency, bands, spectra);
+    return std::vector<double>(values.begin(), values.begin() + bands.count());
+  };
+  array.responsivity_A_W = over_bands(array.design.efficiency);
+  array.notices = unlike_sources(array.design.efficiency, bands, spectra);
+  array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
+  if (array.design.front || has_own_front(experiment.scene, map.grid())) {
+    const InputLocation where = tables[0].where();
+    array.incidence =
+        run.add_receiver({"incidence", "incidence",
+                          std::make_shared<IncidenceReceiver>(
+                              experiment.scene, map.grid(), array.design.front,
+                              mean_wavelengths_m(array.ideal_responsivity_A_W), where)});
+  }
+  return array;
+}
+
+ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result) {
+  const ArrayLight light = array_light(run.flux_map(array.flux_map), result.sums[array.flux_map],
+                                       array.incidence ? result.sums[*array.incidence] : BinSums{});
+  return evaluate_array(array.design, light, array.responsivity_A_W);
+}
+
+Product array_power_product(const ArrayResult& array, const TraceResult& result) {
+  Product product = array_product(array);
+  const double emitted = result.ledger.emitted_W;
+  const auto over_emitted = [&](const Estimate& power) {
+    return Estimate{power.value / emitted, power.standard_error / emitted};
+  };
+  product.quantities.push_back({"illumination_efficiency", over_emitted(array.power_on_cells_W)});
+  product.quantities.push_back({"light_to_electric_efficiency", over_emitted(array.power_W)});
+  return product;
+}
+
+void print_array(const Console& console, const ArrayResult& array, const TraceResult& result) {
+  const double emitted = result.ledger.emitted_W;
+  console.heading("Solar array (maximum power point)");
+  console.line("  light on the cells      " + show(array.power_on_cells_W, "W") + "  (" +
+               show(100 * array.power_on_cells_W.value / emitted) + " % of emitted)");
+  console.line("  electric power          " + show(array.power_W, "W") + "  (" +
+               show(100 * array.efficiency.value) + " % of the light on the cells)");
+  console.line("  voltage, current        " + show(array.voltage_V, "V") + ", " +
+               show(array.current_A, "A"));
+  console.line("  every cell by itself    " + show(array.sum_of_cells_W, "W") + "  (" +
+               show(100 * array.mismatch_loss.value) + " % lost to uneven light and diodes)");
+  if (array.mismatch_loss.value > 0.2) {
+    console.line(
+        "  note: the weakest cells limit the rest; bypass diodes (array.bypass_every) or another "
+        "wiring (array.strings) give more");
+  }
+  const auto reversed = std::count_if(array.cells.voltages_V.begin(), array.cells.voltages_V.end(),
+                                      [](double v) { return v < 0.0; });
+  console.line("  local maxima of power   " + std::to_string(array.maxima.size()) +
+               "; cells in reverse at the best one: " + std::to_string(reversed));
+}
+
+}  // namespace photorque

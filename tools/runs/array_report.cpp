@@ -1,0 +1,273 @@
+#include "tools/runs/array_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "receivers/jackknife.h"
+#include "tools/runs/array_power.h"
+
+namespace photorque {
+namespace {
+
+std::optional<double> efficiency(const Settings& chain, const char* key) {
+  if (!chain.has(key)) return {};
+  return chain.number(key, {0.0, 1.0, true, false});
+}
+
+ArrayReport::Motion read_motion(const Settings& s) {
+  ArrayReport::Motion motion;
+  motion.trackers = read_trackers(s);
+  motion.time_s = s.numbers("time_s");
+  motion.tilt_rad = s.numbers("tilt_deg", {-pi, pi});
+  motion.heading_rad = s.has("heading_deg") ? s.numbers("heading_deg", {-2 * pi, 2 * pi})
+                                            : std::vector<double>(motion.time_s.size(), 0.0);
+  const bool rises =
+      std::ranges::adjacent_find(motion.time_s, std::greater_equal<>()) == motion.time_s.end();
+  if (motion.time_s.size() < 2 || !rises) {
+    throw s.error("time_s", std::to_string(motion.time_s.size()) + " instants",
+                  "at least two, ascending");
+  }
+  if (motion.tilt_rad.size() != motion.time_s.size() ||
+      motion.heading_rad.size() != motion.time_s.size()) {
+    throw s.error("tilt_deg", std::to_string(motion.tilt_rad.size()) + " angles",
+                  std::to_string(motion.time_s.size()) + ", one per instant");
+  }
+  return motion;
+}
+
+CellTables tables_for(const ArrayPower& array, const ArrayResult& result,
+                      const std::vector<std::vector<double>>& lights) {
+  double most_A = 0.0;
+  for (const auto& light : lights) most_A = std::max(most_A, *std::ranges::max_element(light));
+  return cell_tables(array.design, result.cell_area_m2, most_A);
+}
+
+Product tracker_product(const std::vector<TrackerRun>& runs) {
+  Product product;
+  Table table{"trackers",
+              "Trackers while the platform moves",
+              {{"tracker", {}, {}},
+               {"efficiency", {}, {}},
+               {"false_maximum_s", {}, {}},
+               {"energy_J", {}, {}},
+               {"best_energy_J", {}, {}}}};
+  Plot plot{
+      "tracking", "Trackers while the platform moves", "time [s]", "power [W]", {}, false, false,
+      {}};
+  Plot::Panel voltage{"voltage [V]", {}, false};
+  for (const TrackerRun& run : runs) {
+    const std::string name = name_of(run.tracker.kind);
+    table.columns[0].texts.push_back(name);
+    table.columns[1].values.push_back(run.efficiency);
+    table.columns[2].values.push_back(run.false_maximum_s);
+    table.columns[3].values.push_back(run.energy_J);
+    table.columns[4].values.push_back(run.best_energy_J);
+    if (plot.curves.empty()) {
+      plot.curves.push_back({"global maximum", run.time_s, run.best_W, {}, false});
+      voltage.curves.push_back({"global maximum", run.time_s, run.best_V, {}, false});
+    }
+    plot.curves.push_back({name, run.time_s, run.power_W, {}, false});
+    voltage.curves.push_back({name, run.time_s, run.voltage_V, {}, false});
+    product.quantities.push_back({"tracking_efficiency_" + name, {run.efficiency, 0.0}});
+    product.quantities.push_back({"false_maximum_" + name + "_s", {run.false_maximum_s, 0.0}});
+  }
+  plot.below.push_back(voltage);
+  product.tables.push_back(table);
+  product.plots.push_back(plot);
+  return product;
+}
+
+void print_trackers(const Console& console, const std::vector<TrackerRun>& runs) {
+  console.heading("Trackers over " + show(runs.front().duration_s) + " s of motion");
+  for (const TrackerRun& run : runs) {
+    console.line("  " + padded(name_of(run.tracker.kind), 26) + show_percent(run.efficiency) +
+                 " of the energy at the global maximum; on a false maximum for " +
+                 show(run.false_maximum_s) + " s");
+  }
+}
+
+LossInputs loss_inputs(const ArrayPower& array, const OpticalRun& run, const TraceResult& traced) {
+  LossInputs in;
+  in.emitted_W = traced.ledger.emitted_W;
+  const ArrayLight light = array_light(run.flux_map(array.flux_map), traced.sums[array.flux_map]);
+  const std::vector<double> bins_W = mean_bins(light.power_W);
+  const auto bands = static_cast<size_t>(light.bands);
+  double current_A = 0.0, ideal_A = 0.0;
+  for (size_t i = 0; i < bins_W.size(); ++i) {
+    in.on_receiver_W += bins_W[i];
+    current_A += bins_W[i] * array.responsivity_A_W[i % bands];
+    ideal_A += bins_W[i] * array.ideal_responsivity_A_W[i % bands];
+  }
+  if (ideal_A > 0) {
+    in.photon_V = in.on_receiver_W / ideal_A;
+    in.quantum_efficiency = current_A / ideal_A;
+  }
+  in.wall_plug_efficiency = array.report.chain.wall_plug;
+  in.collimator_efficiency = array.report.chain.collimator;
+  in.converter_efficiency = array.report.chain.converter;
+  return in;
+}
+
+// Rounding may leave a little more than there was.
+double lost_fraction(const LossStage& before, const LossStage& after) {
+  const double lost = 1.0 - after.power_W / before.power_W;
+  return lost > 1e-12 ? lost : 0.0;
+}
+
+void print_losses(const Console& console, const std::vector<LossStage>& stages) {
+  console.heading("From the light to the load");
+  for (size_t i = 0; i < stages.size(); ++i) {
+    std::string line =
+        "  " + padded(stages[i].name, 30) + padded(show(stages[i].power_W) + " W", 14);
+    if (i > 0 && stages[i - 1].power_W > 0) {
+      line += show_percent(lost_fraction(stages[i - 1], stages[i])) + " lost to " + stages[i].loss;
+    }
+    console.line(line);
+  }
+}
+
+void print_uniformity(const Console& console, const Table& table) {
+  console.heading("How even the light is");
+  for (size_t i = 0; i < table.columns[0].texts.size(); ++i) {
+    console.line("  " + padded(table.columns[0].texts[i], 12) + "mean " +
+                 show(table.columns[1].values[i]) + " W/m², least over mean " +
+                 show(table.columns[2].values[i]) + ", variation " +
+                 show_percent(table.columns[3].values[i]));
+  }
+}
+
+// The warmest cells may absorb no less than they deliver.
+void check_heat(const DaySettings& day, const ArrayResult& result,
+                const std::filesystem::path& experiment) {
+  const double share = result.power_W.value / result.power_on_cells_W.value;
+  if (!day.lamps_on || !day.heat || !(day.heat->absorptance < share)) return;
+  throw InputError({experiment.string()}, "array.day.absorptance", show(day.heat->absorptance),
+                   "at least what the cells deliver of the light on them, " + show(share));
+}
+
+Product day_report(const Console& console, const ArrayPower& array, const ArrayResult& result,
+                   double tracker_efficiency) {
+  DaySettings settings = *array.report.day;
+  settings.tracker_efficiency = tracker_efficiency;
+  const DayResult day = run_day(array.design, result, settings);
+  const double hours = settings.duration_s / 3600.0;
+  const double capacity_Wh = settings.battery.capacity_J / 3600.0;
+  console.heading("Array and battery over " + show(hours) + " h");
+  console.line("  cells end at            " + show(day.final_temperature_K) + " K, array at " +
+               show(day.array_W.back()) + " W, " + show(day.mean_array_W) + " W on average");
+  console.line("  load of " + show(settings.load_W) + " W needs " + show(settings.load_W * hours) +
+               " Wh; the battery holds " + show(capacity_Wh) + " Wh, which is " +
+               show(capacity_Wh / hours) + " W over the same time");
+  if (settings.load_W > 0.0) {
+    const double usable_Wh =
+        capacity_Wh * settings.battery.charge * settings.battery.discharge_efficiency;
+    console.line("  battery alone           " + show(usable_Wh / settings.load_W) + " h");
+  }
+  console.line(day.empty_after_s
+                   ? "  battery is empty after  " + show(*day.empty_after_s / 3600.0) + " h"
+                   : "  battery ends at         " + show(day.charge_J.back() / 3600.0) + " Wh");
+  return day_product(day);
+}
+
+Product layout_report(const Console& console, const ArrayPower& array, const CellTables& tables,
+                      const std::vector<std::vector<double>>& lights) {
+  const LayoutResult found =
+      search_layout(array.design.wiring, tables, lights, *array.report.layout_most_tried);
+  console.heading("Wiring for " + std::to_string(lights.size()) + " attitude" +
+                  (lights.size() == 1 ? "" : "s") +
+                  (found.exact ? ", no better one exists" : ", by exchanges"));
+  const double gap = found.bound_W / found.power_W - 1.0;
+  console.line("  as given " + show(found.start_power_W) + " W, best found " + show(found.power_W) +
+               " W, no wiring above " + show(found.bound_W) + " W" +
+               (gap > 1e-9 ? " (" + show_percent(gap) + " more)" : "") + "; " +
+               std::to_string(found.tried) + " tried");
+  std::string wiring = "[";
+  Table table{
+      "layout", "Best wiring found", {{"cell", {}, {}}, {"string", {}, {}}, {"substring", {}, {}}}};
+  for (size_t s = 0; s < found.wiring.strings.size(); ++s) {
+    wiring += s ? ", [" : "[";
+    for (size_t b = 0; b < found.wiring.strings[s].substrings.size(); ++b) {
+      wiring += b ? ", [" : "[";
+      const auto& rows = found.wiring.strings[s].substrings[b].rows;
+      for (size_t r = 0; r < rows.size(); ++r) {
+        wiring += (r ? ", " : "") + std::to_string(rows[r][0]);
+        table.columns[0].values.push_back(rows[r][0]);
+        table.columns[1].values.push_back(static_cast<double>(s + 1));
+        table.columns[2].values.push_back(static_cast<double>(b + 1));
+      }
+      wiring += "]";
+    }
+    wiring += "]";
+  }
+  console.line("  wiring = " + wiring + "]");
+  Product product;
+  product.quantities = {{"layout_power_W", {found.power_W, 0.0}},
+                        {"layout_bound_W", {found.bound_W, 0.0}}};
+  product.tables.push_back(table);
+  return product;
+}
+
+}  // namespace
+
+ArrayReport read_array_report(const Settings& array, std::vector<PublishedFigure> published) {
+  ArrayReport report;
+  report.published = std::move(published);
+  if (array.has("chain")) {
+    const Settings chain = array.table("chain");
+    report.chain = {efficiency(chain, "wall_plug_efficiency"),
+                    efficiency(chain, "collimator_efficiency"),
+                    efficiency(chain, "converter_efficiency")};
+  }
+  if (array.has("target"))
+    report.target = read_array_target(array.table("target"), report.published);
+  if (array.has("tracker")) report.motion = read_motion(array.table("tracker"));
+  if (array.has("day")) report.day = read_day(array.table("day"));
+  if (array.has("layout")) {
+    report.layout_most_tried = array.table("layout").integer_or("most_tried", 2000, 1, 10000000);
+  }
+  return report;
+}
+
+Product report_array(const Console& console, const OpticalRun& run, const ArrayPower& array,
+                     const TraceResult& traced, const ArrayResult& result) {
+  Product product;
+  const ArrayReport& report = array.report;
+  std::vector<std::vector<double>> lights = {result.cell_photocurrent_A};
+  LossInputs in = loss_inputs(array, run, traced);
+  if (report.motion) {
+    lights.clear();
+    for (size_t k = 0; k < report.motion->time_s.size(); ++k) {
+      const TraceResult at =
+          run.run(lab_from_body_at(report.motion->tilt_rad[k], report.motion->heading_rad[k]), {});
+      lights.push_back(evaluate(array, run, at).cell_photocurrent_A);
+    }
+    const std::vector<TrackerRun> runs =
+        run_trackers(report.motion->trackers, array.design.wiring,
+                     tables_for(array, result, lights), {report.motion->time_s, lights});
+    print_trackers(console, runs);
+    append(product, tracker_product(runs));
+    in.tracker_efficiency = runs.front().efficiency;
+  }
+  const std::vector<LossStage> stages = loss_waterfall(result, in);
+  print_losses(console, stages);
+  append(product, loss_product(stages));
+  const Table even = uniformity_table(result, array.design.wiring);
+  print_uniformity(console, even);
+  product.tables.push_back(even);
+  if (report.target) {
+    const Attitude& attitude = run.experiment().file.attitude;
+    append(product, target_report(console, *report.target, report.published, array.design, result,
+                                  in, attitude.tilt_rad));
+  }
+  if (report.day) {
+    check_heat(*report.day, result, run.experiment().file.path);
+    append(product, day_report(console, array, result, in.tracker_efficiency.value_or(1.0)));
+  }
+  if (report.layout_most_tried)
+    append(product, layout_report(console, array, tables_for(array, result, lights), lights));
+  return product;
+}
+
+}  // namespace photorque

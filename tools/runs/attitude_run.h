@@ -1,0 +1,38 @@
+// What the attitude commands have in common: the experiment, checked, and where it came from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/product.h"
+#include "core/provenance.h"
+#include "scenes/experiment/experiment.h"
+#include "tools/runs/console.h"
+
+namespace photorque {
+
+// An experiment file with the overrides of the command line. InputError for tables that no command
+// reads; those of optical commands are left alone.
+class AttitudeExperiment {
+ public:
+  explicit AttitudeExperiment(const CommandLine& line);
+
+  const Settings& settings() const { return file_.settings; }
+  // Names and hashes of the experiment, the overrides and every file that the experiment names.
+  Provenance provenance(uint64_t seed) const;
+  // Another input, of the command line.
+  void add_input(const std::filesystem::path& path);
+
+ private:
+  ExperimentFile file_;
+};
+
+// Columns of a table for people. Numbers have three digits.
+struct PrintedColumn {
+  std::string title;
+  std::string name;  // of the table's column; left out where there is none
+};
+void print_table(const Console& console, const Table& table,
+                 const std::vector<PrintedColumn>& columns);
+
+}  // namespace photorque

@@ -1,0 +1,79 @@
+#include "tools/runs/child_process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+pid_t start(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+            const std::filesystem::path& in, const std::filesystem::path& errors) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 2, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_addchdir_np(&actions, in.c_str());
+  std::vector<std::string> words = {program.string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  pid_t child = -1;
+  const int failed = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) throw NumericalError("cannot start " + program.string());
+  return child;
+}
+
+}  // namespace
+
+ChildResult run_child(const std::filesystem::path& program,
+                      const std::vector<std::string>& arguments, const std::filesystem::path& in,
+                      double longest_s) {
+  const auto folder = std::filesystem::absolute(in);
+  const auto errors = folder / "stderr.txt";
+  const Clock::time_point begin = Clock::now();
+  const pid_t child = start(program, arguments, folder, errors);
+  ChildResult result;
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (since(begin) > longest_s) {
+      kill(child, SIGKILL);
+      waitpid(child, &status, 0);
+      result.errors = "stopped after " + std::to_string(static_cast<int>(longest_s)) + " s\n";
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  result.wall_s = since(begin);
+  if (WIFEXITED(status)) result.status = WEXITSTATUS(status);
+  std::ifstream in_file(errors);
+  std::string text(4096, '\0');
+  in_file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<size_t>(in_file.gcount()));
+  result.errors += text;
+  std::error_code ignored;
+  std::filesystem::remove(errors, ignored);
+  return result;
+}
+
+std::filesystem::path own_program() {
+  return std::filesystem::read_symlink("/proc/self/exe");
+}
+
+}  // namespace photorque

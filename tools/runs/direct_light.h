@@ -1,0 +1,42 @@
+// Direct light both ways: gathered from the surface's side, and by the rays that it is checked
+// with.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "receivers/gather/gather.h"
+#include "scenes/experiment/experiment.h"
+
+namespace photorque {
+
+// How the two routes to the direct light on a flux map agree.
+struct DirectLight {
+  size_t receiver = 0;  // its place among the experiment's
+  std::string name;
+  Estimate gathered_W, rays_W;
+  double difference_sigma = 0.0;  // of the totals, in standard errors of both
+  // Mean of (difference/error)² over the bins that the rays light well; about 1 + 2/replicates.
+  double mean_square = 0.0;
+  size_t open_pairs = 0, shaded_pairs = 0;  // of bins and beams: by quadrature, by shadow rays
+  uint64_t shadow_rays = 0;
+};
+
+// Which way the direct light went.
+struct DirectRoute {
+  std::vector<DirectLight> gathered;  // by flux map; empty where rays alone had to do
+  std::vector<std::string> notices;  // one line for each map that was left to the rays for its cost
+};
+
+// Replaces the direct light of every flat flux map in `result` by what gather_direct() finds, where
+// the experiment wants it and the sources allow it, and says how it agrees with the rays' own. An
+// experiment with a target error always gathers, unless it says "rays".
+DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
+                        const RigidTransform& lab_from_body, const TraceOptions& options,
+                        TraceResult& result);
+
+// Largest relative standard error of any bin of any flux map with more than a tenth of the map's
+// largest irradiance.
+double worst_bin_error(const Experiment& experiment, const TraceResult& result);
+
+}  // namespace photorque

@@ -1,0 +1,139 @@
+#include "tools/runs/direction_map.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "receivers/wrench/spad.h"
+#include "receivers/wrench/table_product.h"
+
+namespace photorque {
+namespace {
+
+// The experiment's sun: the table is per unit of its pressure.
+struct SunLight {
+  Vec3 towards_lab;
+  double pressure_Pa = 0.0;  // irradiance over the speed of light
+};
+
+SunLight only_sun(const Experiment& experiment) {
+  const std::vector<Settings>& sources = experiment.file.sources;
+  if (sources.size() != 1 || sources[0].text("kind") != "sun") {
+    throw experiment.file.settings.error(
+        "torque_map",
+        "directions of light with " + std::to_string(sources.size()) +
+            (sources.size() == 1 ? " source that is no sun" : " sources"),
+        "one [[source]] of kind \"sun\" (lamps at a place have no single direction: use tilts)");
+  }
+  const double irradiance_W_m2 = sources[0].number_or("irradiance_W_m2", solar_irradiance_W_m2);
+  const Vec3 travel = experiment.beams[0].lab_from_emitter.rotation * Vec3::UnitZ();
+  return {-travel, irradiance_W_m2 / speed_of_light_m_s};
+}
+
+// Attitude in which the Sun stands at `towards_body`. It depends on nothing else, so that the same
+// direction, reached by two azimuths, is the same trace.
+RigidTransform lab_from_body_with_sun(const Vec3& towards_body, const Vec3& towards_lab) {
+  return {Quat::FromTwoVectors(towards_body, towards_lab), Vec3::Zero()};
+}
+
+// The earlier node with the same direction, or this one: azimuths at a pole, and a full turn.
+size_t first_of_direction(const WrenchTable& table, size_t around, size_t polar) {
+  constexpr double same = 1e-12;
+  if (std::abs(table.polar_rad[polar]) > 0.5 * pi - same) return table.node(0, polar);
+  const double turn = table.around_rad[around] - table.around_rad[0];
+  return std::abs(turn - 2.0 * pi) < same ? table.node(0, polar) : table.node(around, polar);
+}
+
+// Without what only a full, regular sphere has, format_spad() refuses: then there is no such file.
+bool covers_sphere(const WrenchTable& table) {
+  const auto spans = [](const std::vector<double>& axis, double half) {
+    return axis.size() > 1 && std::abs(axis.front() + half) < 1e-9 &&
+           std::abs(axis.back() - half) < 1e-9;
+  };
+  const auto regular = [](const std::vector<double>& axis) {
+    for (size_t i = 2; i < axis.size(); ++i) {
+      if (std::abs(axis[i] - 2.0 * axis[i - 1] + axis[i - 2]) > 1e-9) return false;
+    }
+    return true;
+  };
+  return spans(table.around_rad, pi) && spans(table.polar_rad, 0.5 * pi) &&
+         regular(table.around_rad) && regular(table.polar_rad);
+}
+
+void copy_node(WrenchTable& table, size_t to, size_t from) {
+  for (auto* values : {&table.force_body_N, &table.torque_body_N_m, &table.force_error_N,
+                       &table.torque_error_N_m}) {
+    (*values)[to] = (*values)[from];
+  }
+}
+
+// The longest of these vectors; its error is that of the component along it.
+Estimate longest(const std::vector<Vec3>& vectors, const std::vector<Vec3>& errors) {
+  Estimate result;
+  for (size_t i = 0; i < vectors.size(); ++i) {
+    const double length = vectors[i].norm();
+    if (length <= result.value) continue;
+    result = {length, (vectors[i] / length).cwiseProduct(errors[i]).norm()};
+  }
+  return result;
+}
+
+void print_summary(const Console& console, const WrenchTable& table, const SunLight& sun) {
+  const Estimate force_N = longest(table.force_body_N, table.force_error_N);
+  const Estimate torque_N_m = longest(table.torque_body_N_m, table.torque_error_N_m);
+  const auto over_pressure = [&](const Estimate& e) {
+    return Estimate{e.value / sun.pressure_Pa, e.standard_error / sun.pressure_Pa};
+  };
+  console.heading("Light pressure over " + std::to_string(table.nodes()) + " directions");
+  console.line("  torques are about the origin of the body frame (of the model's file)");
+  console.line("  largest force    " + show(force_N, "N") + ", over pressure " +
+               show(over_pressure(force_N), "m2"));
+  console.line("  largest torque   " + show(torque_N_m, "N m") + ", over pressure " +
+               show(over_pressure(torque_N_m), "m3"));
+  console.line("  mean push along the light's travel over all directions " +
+               show(mean_push_N(table) / sun.pressure_Pa) + " m2");
+}
+
+}  // namespace
+
+void map_over_direction(const CommandLine& line, Console& console, const OpticalRun& run) {
+  const DirectionGrid& grid = *run.experiment().file.light_directions;
+  const SunLight sun = only_sun(run.experiment());
+  WrenchTable table = make_wrench_table(WrenchTable::Angles::azimuth_elevation, grid.elevation_rad,
+                                        grid.azimuth_rad);
+  uint64_t rays = 0;
+  double wall_s = 0.0;
+  const auto progress = console.progress("directions");
+  for (size_t a = 0; a < grid.azimuth_rad.size(); ++a) {
+    for (size_t e = 0; e < grid.elevation_rad.size(); ++e) {
+      const size_t node = table.node(a, e);
+      const size_t first = first_of_direction(table, a, e);
+      if (first != node) {
+        copy_node(table, node, first);
+        continue;
+      }
+      const Vec3 towards_body = towards_light({grid.elevation_rad[e], grid.azimuth_rad[a]});
+      const OpticalResult result = run.run(lab_from_body_with_sun(towards_body, sun.towards_lab),
+                                           {}, run.experiment().file.torque_map_rays);
+      set_node(table, node, run.wrench().total(result.sums[run.wrench_index()]));
+      rays += result.rays;
+      wall_s += result.wall_s;
+      if (progress) progress(static_cast<double>(node + 1) / static_cast<double>(table.nodes()));
+    }
+  }
+  console.done();
+  print_summary(console, table, sun);
+
+  write_results(line, console, wrench_table_product(table, "body"), run.provenance(), rays, wall_s);
+  if (covers_sphere(table)) {
+    const std::string body = run.experiment().file.path.stem().string();
+    const SpadFile spad{body, scaled(table, 1.0 / sun.pressure_Pa), true};
+    write_file_whole(line.out_folder() / (body + ".spo"),
+                     format_spad(spad, run.provenance().one_line()));
+    console.line("  " + body + ".spo: force and torque over pressure in the SPAD layout");
+  }
+}
+
+}  // namespace photorque

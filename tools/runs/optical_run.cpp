@@ -1,0 +1,266 @@
+#include "tools/runs/optical_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "images/writers/product.h"
+#include "images/writers/read_picture.h"
+#include "sources/profiles/beam_shape.h"
+
+namespace photorque {
+namespace {
+
+Experiment read(const CommandLine& line) {
+  Experiment experiment =
+      read_experiment(line.experiment, line.all_overrides(), [](const std::string& bytes) {
+        LinearPicture picture = read_picture(bytes);
+        return BaseColours{picture.width, picture.height, std::move(picture.rgb)};
+      });
+  return experiment;
+}
+
+// The first wrench receiver that sees every instance; adds one if there is none.
+size_t whole_wrench(Experiment& experiment) {
+  std::vector<uint32_t> all(experiment.scene.instances.size());
+  for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<uint32_t>(i);
+  for (size_t i = 0; i < experiment.receivers.size(); ++i) {
+    const auto* wrench =
+        dynamic_cast<const WrenchReceiver*>(experiment.receivers[i].receiver.get());
+    if (wrench != nullptr && wrench->part_names().size() == all.size()) return i;
+  }
+  experiment.receivers.push_back(
+      {"body", "wrench", std::make_shared<WrenchReceiver>("body", experiment.scene, all)});
+  return experiment.receivers.size() - 1;
+}
+
+// A watch over the closed parts, if there are any.
+std::optional<size_t> watch_insides(Experiment& experiment) {
+  auto watch = std::make_shared<InsideLightReceiver>(experiment.scene);
+  if (watch->bins() == 0) return std::nullopt;
+  experiment.receivers.push_back({"inside", "inside_light", std::move(watch)});
+  return experiment.receivers.size() - 1;
+}
+
+// The largest disagreement, in standard errors, between the force and torque summed over surfaces
+// and the same from the rays alone.
+double momentum_disagreement(const Ledger& ledger, const BinSums& sums,
+                             const WrenchReceiver& wrench) {
+  const WrenchEstimate surfaces = wrench_about(wrench.total(sums), Vec3::Zero());
+  double worst = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<size_t>(k);
+    const auto compare = [&](const Estimate& rays, double value, double error) {
+      const double sigma = std::hypot(rays.standard_error, error);
+      const double rounding = 1e-7 * ledger.emitted_W / speed_of_light_m_s;
+      worst = std::max(worst, std::abs(rays.value - value) / (sigma + rounding));
+    };
+    compare(ledger.force_N[i], surfaces.mean.force_N[k], surfaces.force_error_N()[k]);
+    compare(ledger.torque_N_m[i], surfaces.mean.torque_N_m[k], surfaces.torque_error_N_m()[k]);
+  }
+  return worst;
+}
+
+}  // namespace
+
+OpticalRun::OpticalRun(const CommandLine& line, const Console& console)
+    : experiment_(read(line)), scene_(experiment_.scene), threads_(line.threads) {
+  wrench_ = whole_wrench(experiment_);
+  inside_light_ = watch_insides(experiment_);
+  provenance_ = build_provenance();
+  provenance_.seed = experiment_.file.trace.seed;
+  provenance_.inputs = experiment_.inputs;
+  for (const std::string& notice : experiment_.notices) console.line("note: " + notice);
+  console.line("Sources");
+  for (const std::string& text : beam_shape_lines(experiment_.beams)) console.line("  " + text);
+}
+
+size_t OpticalRun::add_receiver(NamedReceiver receiver) {
+  experiment_.receivers.push_back(std::move(receiver));
+  return experiment_.receivers.size() - 1;
+}
+
+OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
+                              const std::function<void(double)>& progress,
+                              std::optional<uint64_t> rays) const {
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed_s = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const TraceEffort& effort = experiment_.file.effort;
+  TraceOptions options = experiment_.file.trace;
+  options.rays = rays.value_or(options.rays);
+  // A sequence has at most 2^31 points (see trace()).
+  const uint64_t most_rays =
+      std::min<uint64_t>(1ull << 38, static_cast<uint64_t>(options.replicates) << 31);
+  options.threads = threads_;
+  options.progress = progress;
+  const auto receivers = experiment_.receiver_pointers();
+  for (;; options.rays *= 2) {
+    const double before_s = elapsed_s();
+    OpticalResult result{trace(scene_, lab_from_body, experiment_.beams, receivers, options), {}};
+    result.direct = gather_into(experiment_, scene_, lab_from_body, options, result);
+    result.worst_bin_error = worst_bin_error(experiment_, result);
+    result.wall_s = elapsed_s();
+    const double next_s = 2.0 * (result.wall_s - before_s);
+    const bool reached = !effort.target_error || result.worst_bin_error <= *effort.target_error;
+    const bool late = effort.max_time_s && result.wall_s + next_s > *effort.max_time_s;
+    if (reached || late || 2 * options.rays > most_rays) return result;
+  }
+}
+
+size_t OpticalRun::flux_map_index(const std::string& name) const {
+  std::string known;
+  for (size_t i = 0; i < experiment_.receivers.size(); ++i) {
+    const NamedReceiver& receiver = experiment_.receivers[i];
+    if (dynamic_cast<const FluxMapReceiver*>(receiver.receiver.get()) == nullptr) continue;
+    if (name.empty() || receiver.name == name) return i;
+    known += (known.empty() ? "\"" : ", \"") + receiver.name + "\"";
+  }
+  throw InputError({experiment_.file.path.string()}, "array.receiver",
+                   name.empty() ? "no receiver of kind \"flux_map\"" : "\"" + name + "\"",
+                   known.empty() ? "a [[receiver]] of kind \"flux_map\"" : "one of " + known);
+}
+
+const WrenchReceiver& OpticalRun::wrench() const {
+  return dynamic_cast<const WrenchReceiver&>(*experiment_.receivers[wrench_].receiver);
+}
+
+const FluxMapReceiver& OpticalRun::flux_map(size_t index) const {
+  return dynamic_cast<const FluxMapReceiver&>(*experiment_.receivers[index].receiver);
+}
+
+std::string OpticalRun::inside_light(const TraceResult& result) const {
+  if (!inside_light_) return "";
+  const auto& watch =
+      dynamic_cast<const InsideLightReceiver&>(*experiment_.receivers[*inside_light_].receiver);
+  return describe_inside_light(experiment_.scene, watch.lit_inside(result.sums[*inside_light_]),
+                               result.ledger.emitted_W);
+}
+
+Product OpticalRun::product(const OpticalResult& result) const {
+  const Ledger& ledger = result.ledger;
+  Product product;
+  product.quantities = {
+      {"emitted_W", {ledger.emitted_W, 0.0}},
+      {"absorbed_W", ledger.absorbed_W},
+      {"escaped_W", ledger.escaped_W},
+      {"truncated_W", ledger.truncated_W},
+      {"ledger_closure", {ledger.closure, 0.0}},
+      {"momentum_disagreement_sigma",
+       {momentum_disagreement(ledger, result.sums[wrench_], wrench()), 0.0}},
+  };
+  for (const DirectLight& direct : result.direct.gathered) {
+    product.quantities.push_back({"direct_on_" + direct.name + "_W", direct.gathered_W});
+    product.quantities.push_back({"direct_by_rays_on_" + direct.name + "_W", direct.rays_W});
+  }
+  Table parts{"absorbed_by_part", "Power absorbed by each part", {}};
+  parts.columns = {{"part", {}, {}}, {"absorbed_W", {}, {}}, {"standard_error_W", {}, {}}};
+  for (size_t i = 0; i < ledger.absorbed_by_instance_W.size(); ++i) {
+    parts.columns[0].texts.push_back(experiment_.scene.instances[i].path);
+    parts.columns[1].values.push_back(ledger.absorbed_by_instance_W[i].value);
+    parts.columns[2].values.push_back(ledger.absorbed_by_instance_W[i].standard_error);
+  }
+  product.tables = {beam_shape_table(experiment_.beams), std::move(parts)};
+  for (size_t i = 0; i < experiment_.receivers.size(); ++i) {
+    append(product, experiment_.receivers[i].receiver->product(result.sums[i]));
+  }
+  return product;
+}
+
+void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result) {
+  const Ledger& ledger = result.ledger;
+  const auto row = [&](const std::string& name, const Estimate& power) {
+    const double percent = 100.0 * power.value / ledger.emitted_W;
+    console.line("  " + name + std::string(24 - std::min<size_t>(24, name.size()), ' ') +
+                 show(power, "W") + "  (" + show(std::round(percent * 1000) / 1000) + " %)");
+  };
+  console.heading("Power");
+  row("emitted", {ledger.emitted_W, 0.0});
+  row("absorbed", ledger.absorbed_W);
+  row("escaped", ledger.escaped_W);
+  row("truncated", ledger.truncated_W);
+  if (ledger.escaped_W.value >= ledger.emitted_W) {
+    console.line("  note: no light meets the scene: where do the sources stand and look?");
+  }
+  for (size_t i = 0; i < run.experiment().receivers.size(); ++i) {
+    const NamedReceiver& receiver = run.experiment().receivers[i];
+    if (receiver.kind != "flux_map") continue;
+    const FluxMap map = run.flux_map(i).flux_map(result.sums[i]);
+    row("on " + receiver.name, map.incident.power_W);
+  }
+  const WrenchEstimate body =
+      wrench_about(run.wrench().total(result.sums[run.wrench_index()]), Vec3::Zero());
+  console.heading("Radiation pressure (body frame, about the centre of rotation)");
+  for (int k = 0; k < 3; ++k) {
+    console.line(std::string("  force ") + "xyz"[k] + "   " +
+                 show(Estimate{body.mean.force_N[k], body.force_error_N()[k]}, "N"));
+  }
+  for (int k = 0; k < 3; ++k) {
+    console.line(std::string("  torque ") + "xyz"[k] + "  " +
+                 show(Estimate{body.mean.torque_N_m[k], body.torque_error_N_m()[k]}, "N m"));
+  }
+  console.heading("Checks");
+  console.line("  power: emitted = absorbed + escaped + truncated to " + show(ledger.closure));
+  console.line("  momentum: surfaces and rays differ by at most " +
+               show(momentum_disagreement(ledger, result.sums[run.wrench_index()], run.wrench())) +
+               " standard errors");
+  const std::string inside = run.inside_light(result);
+  if (!inside.empty()) console.line("  note: " + inside);
+  for (const std::string& notice : result.direct.notices) console.line("  note: " + notice);
+  for (const DirectLight& direct : result.direct.gathered) {
+    console.line("  direct light on " + direct.name + ": gathered and by rays differ by " +
+                 show(std::abs(direct.difference_sigma)) + " standard errors in all, " +
+                 show(std::sqrt(direct.mean_square)) + " (rms) in a bin");
+  }
+  console.line("  largest standard error of a bin above a tenth of the peak: " +
+               show(100.0 * result.worst_bin_error) + " %");
+  console.line("  " + std::to_string(result.rays) + " rays, " + std::to_string(result.segments) +
+               " segments in " + show(result.wall_s) + " s (" +
+               show(static_cast<double>(result.segments) / result.wall_s / 1e6) +
+               " million segments/s)");
+}
+
+void append(Product& product, Product more) {
+  const auto move_all = [](auto& to, auto& from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  move_all(product.quantities, more.quantities);
+  move_all(product.maps, more.maps);
+  move_all(product.tables, more.tables);
+  move_all(product.plots, more.plots);
+}
+
+void write_results(const CommandLine& line, const Console& console, const Product& product,
+                   const Provenance& provenance, uint64_t rays, double wall_s) {
+  write_results(line, console, product, provenance, {wall_s, rays});
+}
+
+void write_results(const CommandLine& line, const Console& console, const Product& product,
+                   const Provenance& provenance, const RunCost& cost) {
+  const auto folder = line.out_folder();
+  for (const Quantity& figure : product.quantities) {
+    if (!std::isfinite(figure.estimate.value)) {
+      throw NumericalError(figure.name + " came out as no finite number");
+    }
+  }
+  const std::string summary = summary_json(product, provenance, cost);
+  if (line.summary_only) {
+    write_file_whole(folder / "summary.json", summary);
+    return;
+  }
+  const auto files = write_product(product, provenance, folder);
+  write_file_whole(folder / "summary.json", summary);
+  if (line.json) std::fputs(summary.c_str(), stdout);
+  console.heading("Written to " + folder.string());
+  console.line("  summary.json and " + std::to_string(files.size()) + " more files; pictures:");
+  for (const auto& file : files) {
+    if (file.extension() == ".png") console.line("  " + file.filename().string());
+  }
+}
+
+}  // namespace photorque

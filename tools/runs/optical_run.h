@@ -1,0 +1,83 @@
+// What the optical commands have in common: experiment → trace → products → files.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/product.h"
+#include "core/provenance.h"
+#include "images/writers/summary.h"
+#include "receivers/maps/flux_map.h"
+#include "receivers/maps/inside_light.h"
+#include "receivers/wrench/wrench.h"
+#include "scenes/experiment/experiment.h"
+#include "tools/runs/console.h"
+#include "tools/runs/direct_light.h"
+
+namespace photorque {
+
+// What a run found: the trace, the direct light of its flux maps gathered where possible.
+struct OpticalResult : TraceResult {
+  DirectRoute direct;
+  double worst_bin_error = 0.0;  // see worst_bin_error()
+};
+
+// An experiment made ready to trace: its scene built once, its receivers, always a wrench over the
+// whole scene ("body", added if the experiment names none), and a watch over closed parts.
+class OpticalRun {
+ public:
+  // Reads the experiment; prints its notices and the shapes of its sources.
+  OpticalRun(const CommandLine& line, const Console& console);
+
+  const Experiment& experiment() const { return experiment_; }
+  const TraceableScene& scene() const { return scene_; }
+  const Provenance& provenance() const { return provenance_; }
+
+  // Adds one that is not in the experiment file, for all later runs; returns its place.
+  size_t add_receiver(NamedReceiver receiver);
+
+  // Traces at an attitude, with the options of the experiment but, if given, another number of
+  // rays; goes on with twice the rays until the experiment's target error or time is reached.
+  OpticalResult run(const RigidTransform& lab_from_body,
+                    const std::function<void(double)>& progress,
+                    std::optional<uint64_t> rays = {}) const;
+
+  // The place of a receiver among experiment().receivers and TraceResult::sums.
+  size_t wrench_index() const { return wrench_; }
+  // The flux map called `name`, or the first one if `name` is empty. InputError if there is none.
+  size_t flux_map_index(const std::string& name) const;
+
+  const WrenchReceiver& wrench() const;
+  const FluxMapReceiver& flux_map(size_t index) const;
+  // Light on the inside of closed parts, as a line for people; empty if there is none.
+  std::string inside_light(const TraceResult& result) const;
+
+  // Ledger, shapes of the sources, and the product of every receiver.
+  Product product(const OpticalResult& result) const;
+
+ private:
+  Experiment experiment_;
+  TraceableScene scene_;
+  Provenance provenance_;
+  size_t wrench_ = 0;
+  std::optional<size_t> inside_light_;  // none where no part is closed
+  int threads_ = 0;
+};
+
+// Where the light went and what it did, as text.
+void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result);
+
+// Adds the items of `more` to `product`.
+void append(Product& product, Product more);
+
+// Writes every item of the product and summary.json into the command's folder and says where; with
+// --json prints the summary.
+void write_results(const CommandLine& line, const Console& console, const Product& product,
+                   const Provenance& provenance, uint64_t rays, double wall_s);
+// The same for a command that traces nothing.
+void write_results(const CommandLine& line, const Console& console, const Product& product,
+                   const Provenance& provenance, const RunCost& cost);
+
+}  // namespace photorque
