@@ -13,7 +13,7 @@ struct InputLocation {
   int line = 0;
 };
 
-// The input is wrong and the user can mend it. what() is one line:
+// The input is wrong and the user can repair it. what() is one line:
 //   experiment.toml:12: source[0].power_W: found -3, expected a number > 0
 class InputError : public std::runtime_error {
  public:

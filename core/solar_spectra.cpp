@@ -54,7 +54,7 @@ constexpr auto solar_bands = std::to_array<SolarBand>({
 
 }  // namespace
 
-double solar_share_below(SolarStandard standard, double wavelength_m) {
+double solar_fraction_below(SolarStandard standard, double wavelength_m) {
   const double wavelength_nm = 1e9 * wavelength_m;
   double below_W_m2 = 0.0, all_W_m2 = 0.0, begin_nm = first_nm;
   for (const SolarBand& band : solar_bands) {

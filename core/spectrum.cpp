@@ -40,11 +40,11 @@ double fraction_below(const Spectrum& spectrum, double wavelength_m) {
     case Spectrum::Shape::blackbody:
       return blackbody_below(spectrum, wavelength_m);
     case Spectrum::Shape::am0:
-      return solar_share_below(SolarStandard::am0, wavelength_m);
+      return solar_fraction_below(SolarStandard::am0, wavelength_m);
     case Spectrum::Shape::am15g:
       break;
   }
-  return solar_share_below(SolarStandard::am15g, wavelength_m);
+  return solar_fraction_below(SolarStandard::am15g, wavelength_m);
 }
 
 }  // namespace

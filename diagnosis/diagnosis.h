@@ -48,11 +48,11 @@ struct EmpiricalTorque {
   std::vector<Vec3> standard_error_N_m;  // of each; empty: unknown
 };
 
-// Where recording and belief part.
+// Where recording and nominal model part.
 struct Where {
   struct ChannelMisfit {
     std::string name;              // "gyro_z_rad_s", "attitude_x_arcsec"
-    double chi2_per_sample = 0.0;  // under what was believed; 1 for noise alone
+    double chi2_per_sample = 0.0;  // under the nominal model; 1 for noise alone
   };
   std::vector<ChannelMisfit> channels;  // worst first
   struct Interval {
@@ -62,7 +62,7 @@ struct Where {
   std::optional<Interval> band_Hz;
   struct Dependence {
     std::string variable;   // tilt, heading, rate, time, charge, command, irradiance, …
-    double strength = 0.0;  // share of the difference that a function of it explains, 0 to 1
+    double strength = 0.0;  // fraction of the difference that a function of it explains, 0 to 1
   };
   std::vector<Dependence> depends_on;  // strongest first
 };
@@ -111,7 +111,7 @@ struct RecordingSeries {
   std::vector<Where::Interval> held_out_s;  // never used in the fit
 };
 
-// State and length of the first recording, so that improved.toml can fly it again.
+// State and length of the first recording, so that improved.toml can propagate it again.
 struct Replay {
   std::string recording;  // path as given: commands and currents are read from it
   bool has_commands = false;
@@ -126,10 +126,10 @@ struct DataQuality {
   int64_t rows = 0;
   int64_t used = 0;                         // rows of which a number entered the fit
   std::map<std::string, int64_t> rejected;  // by reason: "outlier", "gap", "repeated_time", …
-  std::map<std::string, int64_t> mended;    // "flipped_quaternion", …
+  std::map<std::string, int64_t> repaired;  // "flipped_quaternion", …
   double median_interval_s = 0.0;
   double jitter_s = 0.0;
-  double longest_gap_s = 0.0;
+  double max_gap_s = 0.0;
 };
 
 struct Diagnosis {
@@ -145,8 +145,8 @@ struct Diagnosis {
   std::optional<Holdout> holdout;
   std::vector<Alternative> alternatives;  // best first
   std::vector<Manoeuvre> manoeuvres;
-  // What was believed with an uncertainty, after the fit; keys as "disturbance[0].offset_m".
-  std::vector<FittedParameter> beliefs_refined;
+  // What was nominal with an uncertainty, after the fit; keys as "disturbance[0].offset_m".
+  std::vector<FittedParameter> priors_refined;
   std::vector<std::string> warnings;  // "the quaternions look conjugated", …
   DataQuality data;
   std::vector<RecordingSeries> series;

@@ -35,7 +35,7 @@ class Emitter {
  public:
   virtual ~Emitter() = default;
 
-  // Radiant power of all rays together [W], > 0. Every ray carries an equal share.
+  // Radiant power of all rays together [W], > 0. Every ray carries an equal fraction.
   virtual double power_W() const = 0;
 
   // Turns uniform points into rays. Points that are well distributed must give rays that are: each

@@ -69,7 +69,7 @@ class Receiver {
 
   virtual size_t bins() const = 0;
 
-  // Adds the share of these hits to `sums` (of bins() entries). Only sums over hits, so that
+  // Adds the fraction of these hits to `sums` (of bins() entries). Only sums over hits, so that
   // batches can be added in any grouping.
   virtual void score(const Hits& hits, std::span<double> sums) const = 0;
 

@@ -58,8 +58,8 @@ AttitudeEphemeris read_aem(const std::filesystem::path& path);
 KvnItem to_kvn(const AttitudeEphemeris& aem);
 void write_aem(const std::filesystem::path& path, const AttitudeEphemeris& aem);
 
-// One segment of quaternions, scalar last, from a flown platform: `epoch` is the calendar time of
-// t = 0. InputError when it is none.
+// One segment of quaternions, scalar last, from a propagated platform: `epoch` is the calendar time
+// of t = 0. InputError when it is none.
 AttitudeEphemeris make_aem(const std::vector<PlatformState>& states, const std::string& epoch,
                            const std::string& object_name, const std::string& creation_date);
 

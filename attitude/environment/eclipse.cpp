@@ -16,7 +16,8 @@ double segment_area(double radius, double distance) {
 
 }  // namespace
 
-double uncovered_share(double source_radius_rad, double cover_radius_rad, double separation_rad) {
+double uncovered_fraction(double source_radius_rad, double cover_radius_rad,
+                          double separation_rad) {
   const double a = source_radius_rad, b = cover_radius_rad, c = separation_rad;
   if (c >= a + b) return 1.0;
   if (c <= b - a) return 0.0;
@@ -27,12 +28,13 @@ double uncovered_share(double source_radius_rad, double cover_radius_rad, double
   return 1.0 - covered / (pi * a * a);
 }
 
-double sunlit_share(const Vec3& satellite_m, const Vec3& sun_m, double planet_radius_m,
-                    double sun_radius_m) {
+double sunlit_fraction(const Vec3& satellite_m, const Vec3& sun_m, double planet_radius_m,
+                       double sun_radius_m) {
   const Vec3 to_sun = sun_m - satellite_m, to_planet = -satellite_m;
   const double separation = std::atan2(to_sun.cross(to_planet).norm(), to_sun.dot(to_planet));
-  return uncovered_share(std::asin(sun_radius_m / to_sun.norm()),
-                         std::asin(std::min(1.0, planet_radius_m / to_planet.norm())), separation);
+  return uncovered_fraction(std::asin(sun_radius_m / to_sun.norm()),
+                            std::asin(std::min(1.0, planet_radius_m / to_planet.norm())),
+                            separation);
 }
 
 }  // namespace photorque

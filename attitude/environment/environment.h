@@ -1,4 +1,5 @@
-// What surrounds the platform, constant in time; disturbances may change it (see Moment).
+// What surrounds the platform, constant in time; disturbances may change it (see
+// EvaluationContext).
 #pragma once
 
 #include "core/constants.h"

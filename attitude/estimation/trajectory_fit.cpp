@@ -103,9 +103,9 @@ class Fitter {
     for (int i = 0; i < initial_variables; ++i) fit_.variables.push_back({i, 0, -1});
     for (const FreeParameter& free : parameters) {
       fit_.variables.push_back(Variable::of(free.disturbance, free.parameter));
-      believed_.push_back(model.disturbances[free.disturbance]
-                              .parameters[static_cast<size_t>(free.parameter)]
-                              .value);
+      nominal_.push_back(model.disturbances[free.disturbance]
+                             .parameters[static_cast<size_t>(free.parameter)]
+                             .value);
     }
     start();
   }
@@ -113,9 +113,9 @@ class Fitter {
   TrajectoryFit run() {
     const size_t rows = measured_.recording.rows() - first_row_;
     std::optional<NormalEquations> last;
-    for (const double share : options_.windows) {
-      const size_t count = std::max<size_t>(std::min<size_t>(rows, 20),
-                                            static_cast<size_t>(share * static_cast<double>(rows)));
+    for (const double fraction : options_.windows) {
+      const size_t count = std::max<size_t>(
+          std::min<size_t>(rows, 20), static_cast<size_t>(fraction * static_cast<double>(rows)));
       last = fit_window(count);
     }
     fit_.samples = last->samples;
@@ -153,7 +153,7 @@ class Fitter {
   NormalEquations fit_window(size_t rows) {
     double damping = 1e-6;
     NormalEquations now = evaluate(fit_.model, fit_.initial, rows, false);
-    for (int iteration = 0; iteration < options_.most_iterations; ++iteration) {
+    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       Eigen::MatrixXd matrix = now.matrix.selfadjointView<Eigen::Lower>();
       matrix.diagonal() *= 1.0 + damping;
       const Eigen::VectorXd step = matrix.ldlt().solve(now.gradient);
@@ -226,7 +226,7 @@ class Fitter {
       const double value = model.disturbances[parameters_[i].disturbance]
                                .parameters[static_cast<size_t>(parameters_[i].parameter)]
                                .value;
-      const double off = (believed_[i] - value) / *parameters_[i].sigma;
+      const double off = (nominal_[i] - value) / *parameters_[i].sigma;
       sums.matrix(v, v) += 1.0 / (*parameters_[i].sigma * *parameters_[i].sigma);
       sums.gradient[v] += off / *parameters_[i].sigma;
       sums.chi2 += off * off;
@@ -298,7 +298,7 @@ class Fitter {
   FitOptions options_;
   Vec3 camera_noise_rad_;
   double gyro_noise_rad_s_;
-  std::vector<double> believed_;
+  std::vector<double> nominal_;
   size_t first_row_ = 0;
   TrajectoryFit fit_;
 };

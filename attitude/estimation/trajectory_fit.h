@@ -2,7 +2,7 @@
 // disturbances, that make the model pass closest to what the instruments read.
 //
 // Gauss–Newton with Levenberg's damping on exact derivatives (sensitivity.h), over a window that
-// grows, so that a start that is far off is mended before a long run can run away from it.
+// grows, so that a start that is far off is repaired before a long run can run away from it.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct FitOptions {
   double gyro_noise_rad_s = 2e-4;
   // Shares of the recording that are fitted in turn.
   std::vector<double> windows = {0.02, 0.07, 0.25, 1.0};
-  int most_iterations = 30;  // in each window
+  int max_iterations = 30;  // in each window
   PropagationOptions propagation{.tolerance = 1e-8};
 };
 
@@ -36,7 +36,7 @@ struct TrajectoryFit {
   std::vector<Vec3> camera_residual_rad;
 };
 
-// A parameter to fit: with a finite sigma its value is drawn to the believed one.
+// A parameter to fit: with a finite sigma its value is drawn to the nominal one.
 struct FreeParameter {
   size_t disturbance = 0;
   int parameter = 0;

@@ -12,7 +12,7 @@
 //   // T = −c ω.
 //   struct BearingDrag final : TorqueLaw<BearingDrag> {
 //     template <class T>
-//     Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+//     Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
 //       return -own.parameter(0) * now.rate_body_rad_s;
 //     }
 //   };
@@ -47,7 +47,7 @@ namespace photorque {
 // experiment file and must not matter.
 enum class Stage {
   conditions,   // changes what all others see: gravity, field, command, inertia
-  mass,         // moves the centre of mass, by Moment::move_mass(), or turns the lab
+  mass,         // moves the centre of mass, by EvaluationContext::move_mass(), or turns the lab
   torque,       // acts on the body
   measurement,  // changes only what the instruments read
 };
@@ -55,7 +55,7 @@ enum class Stage {
 // Everything about eight instants that a disturbance may read, and what it may add to. Body vectors
 // are in body axes and about the centre of rotation; `_lab` vectors are in lab axes.
 template <class T>
-struct Moment {
+struct EvaluationContext {
   const Platform& platform;
   const Environment& environment;
 
@@ -73,7 +73,7 @@ struct Moment {
   Vec3Of<T> magnetic_field_lab_T;
   Vec3Of<T> up_lab;            // unit, away from the Earth's centre
   T gravity_gradient_1_s2;     // g/R on the ground, μ/r³ in orbit
-  T illumination;              // share of the light that arrives: 1 lit, 0 in shadow
+  T illumination;              // fraction of the light that arrives: 1 lit, 0 in shadow
   Vec3Of<T> command_body_N_m;  // torque commanded; acts on the body by itself
   T battery_current_A;         // drawn from the battery (positive discharges)
   bool current_is_measured;    // Schedule::current_is_measured
@@ -145,7 +145,7 @@ struct ExtraState {
 
 // What belongs to one disturbance alone.
 template <class T>
-struct Own {
+struct ParametersAndStates {
   const T* parameters;
   const T* states;  // of the ExtraStates that it declared
   T* state_rates;   // to be set: d/dt of each
@@ -174,8 +174,9 @@ class Law {
  public:
   virtual ~Law() = default;
 
-  virtual void act(const Own<Lanes>& own, Moment<Lanes>& now) const = 0;
-  virtual void act(const Own<DualLanes>& own, Moment<DualLanes>& now) const = 0;
+  virtual void act(const ParametersAndStates<Lanes>& own, EvaluationContext<Lanes>& now) const = 0;
+  virtual void act(const ParametersAndStates<DualLanes>& own,
+                   EvaluationContext<DualLanes>& now) const = 0;
 
   // Jumps in (from_s, to_s), in any order. A law that jumps uses active_from() or the like, which
   // look at each lane.
@@ -186,12 +187,16 @@ class Law {
 };
 
 // For laws that change the moment: Derived has
-//   template <class T> void apply(const Own<T>& own, Moment<T>& now) const;
+//   template <class T> void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now)
+//   const;
 template <class Derived>
 class LawOf : public Law {
  public:
-  void act(const Own<Lanes>& own, Moment<Lanes>& now) const final { self().apply(own, now); }
-  void act(const Own<DualLanes>& own, Moment<DualLanes>& now) const final {
+  void act(const ParametersAndStates<Lanes>& own, EvaluationContext<Lanes>& now) const final {
+    self().apply(own, now);
+  }
+  void act(const ParametersAndStates<DualLanes>& own,
+           EvaluationContext<DualLanes>& now) const final {
     self().apply(own, now);
   }
 
@@ -200,14 +205,16 @@ class LawOf : public Law {
 };
 
 // For laws that are just a torque: Derived has
-//   template <class T> Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const;
+//   template <class T> Vec3Of<T> torque(const ParametersAndStates<T>& own, const
+//   EvaluationContext<T>& now) const;
 template <class Derived>
 class TorqueLaw : public Law {
  public:
-  void act(const Own<Lanes>& own, Moment<Lanes>& now) const final {
+  void act(const ParametersAndStates<Lanes>& own, EvaluationContext<Lanes>& now) const final {
     now.torque_body_N_m += self().torque(own, now);
   }
-  void act(const Own<DualLanes>& own, Moment<DualLanes>& now) const final {
+  void act(const ParametersAndStates<DualLanes>& own,
+           EvaluationContext<DualLanes>& now) const final {
     now.torque_body_N_m += self().torque(own, now);
   }
 

@@ -65,7 +65,7 @@ bool Dynamics::changes_inertia() const {
   const std::vector<double> start = to_vector(initial_state());
   const std::vector<Lanes> y(start.begin(), start.end());
   std::vector<Lanes> rates(y.size(), Lanes(0.0));
-  Moment<Lanes> now = begin(Lanes(0.0), broadcast({}), y.data());
+  EvaluationContext<Lanes> now = begin(Lanes(0.0), broadcast({}), y.data());
   run_stages(order_, now, [&](size_t d) {
     const Layout& own = layout_[d];
     model_.disturbances[d].law->act({parameters_.data() + own.first_parameter,
@@ -86,14 +86,14 @@ PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
   return state;
 }
 
-Dynamics::Command Dynamics::broadcast(const Held& held) {
+Dynamics::Command Dynamics::broadcast(const ZeroOrderHold& held) {
   return {held.command_body_N_m.cast<Lanes>(), held.battery_current_A};
 }
 
-Dynamics::Command Dynamics::gather(const std::array<Held, Lanes::count>& held) {
+Dynamics::Command Dynamics::gather(const std::array<ZeroOrderHold, Lanes::count>& held) {
   Command command;
   for (int i = 0; i < Lanes::count; ++i) {
-    const Held& lane = held[static_cast<size_t>(i)];
+    const ZeroOrderHold& lane = held[static_cast<size_t>(i)];
     for (int k = 0; k < 3; ++k) command.torque_body_N_m[k].set(i, lane.command_body_N_m[k]);
     command.battery_current_A.set(i, lane.battery_current_A);
   }
@@ -101,7 +101,7 @@ Dynamics::Command Dynamics::gather(const std::array<Held, Lanes::count>& held) {
 }
 
 template <class T>
-Moment<T> Dynamics::begin(const T& time_s, const Command& command, const T* y) const {
+EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, const T* y) const {
   const Platform& platform = model_.platform;
   const Environment& environment = model_.environment;
   const Vec3Of<T> zero = Vec3Of<T>::Constant(T(0.0));
@@ -140,7 +140,8 @@ Moment<T> Dynamics::begin(const T& time_s, const Command& command, const T* y) c
 // Calls act(d) for every disturbance of `order`, and brings the conditions into body axes as soon
 // as they are final.
 template <class T, class Act>
-void Dynamics::run_stages(const std::vector<size_t>& order, Moment<T>& now, const Act& act) const {
+void Dynamics::run_stages(const std::vector<size_t>& order, EvaluationContext<T>& now,
+                          const Act& act) const {
   auto d = order.begin();
   for (; d != order.end() && model_.disturbances[*d].stage == Stage::conditions; ++d) act(*d);
   now.gravity_body_m_s2 = now.to_body(now.gravity_lab_m_s2);
@@ -151,7 +152,7 @@ void Dynamics::run_stages(const std::vector<size_t>& order, Moment<T>& now, cons
 }
 
 template <class T>
-void Dynamics::solve(const Moment<T>& now, T* rates) const {
+void Dynamics::solve(const EvaluationContext<T>& now, T* rates) const {
   const Vec3Of<T>& w = now.rate_body_rad_s;
   put_attitude_rates(now.attitude, w, rates);
   Vec3Of<T> acceleration;
@@ -182,9 +183,10 @@ void Dynamics::free_body_rates(const Command& command, const Lanes* y, Lanes* ra
   rates[component::charge] = command.battery_current_A;
 }
 
-void Dynamics::rates(const Lanes& time_s, const Held& held, const Lanes* y, Lanes* rates) const {
+void Dynamics::rates(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
+                     Lanes* rates) const {
   if (order_.empty()) return free_body_rates(broadcast(held), y, rates);
-  Moment<Lanes> now = begin(time_s, broadcast(held), y);
+  EvaluationContext<Lanes> now = begin(time_s, broadcast(held), y);
   run_stages(order_, now, [&](size_t d) {
     const Layout& own = layout_[d];
     model_.disturbances[d].law->act(
@@ -194,12 +196,13 @@ void Dynamics::rates(const Lanes& time_s, const Held& held, const Lanes* y, Lane
   solve(now, rates);
 }
 
-Dynamics::Instants Dynamics::at(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+Dynamics::Instants Dynamics::at(const Lanes& time_s,
+                                const std::array<ZeroOrderHold, Lanes::count>& held,
                                 const Lanes* y) const {
   Instants result;
   result.torque_body_N_m.assign(model_.disturbances.size(), Vec3Of<Lanes>::Constant(Lanes(0.0)));
   result.rates.assign(static_cast<size_t>(size_), Lanes(0.0));
-  Moment<Lanes> now = begin(time_s, gather(held), y);
+  EvaluationContext<Lanes> now = begin(time_s, gather(held), y);
   const auto act = [&](size_t d) {
     const Layout& own = layout_[d];
     const Vec3Of<Lanes> before = now.torque_body_N_m;
@@ -227,9 +230,10 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s, const std::array<Held, Lane
   return result;
 }
 
-Moment<DualLanes> Dynamics::differentiate(const Lanes& time_s, const Command& command,
-                                          const Lanes* y, const Block& block, bool with_instruments,
-                                          std::vector<DualLanes>& rates) const {
+EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const Command& command,
+                                                     const Lanes* y, const Block& block,
+                                                     bool with_instruments,
+                                                     std::vector<DualLanes>& rates) const {
   std::vector<DualLanes> y_dual(y, y + size_);
   // Any law may change the inertia that all torques are divided by.
   bool everything = inertia_changes_;
@@ -266,7 +270,7 @@ Moment<DualLanes> Dynamics::differentiate(const Lanes& time_s, const Command& co
 
   std::vector<DualLanes> own_parameters;
   rates.assign(static_cast<size_t>(size_), DualLanes(0.0));
-  Moment<DualLanes> now = begin(DualLanes(time_s), command, y_dual.data());
+  EvaluationContext<DualLanes> now = begin(DualLanes(time_s), command, y_dual.data());
   const auto act = [&](size_t d) {
     const Disturbance& disturbance = model_.disturbances[d];
     const Layout& own = layout_[d];
@@ -290,7 +294,7 @@ Moment<DualLanes> Dynamics::differentiate(const Lanes& time_s, const Command& co
   return now;
 }
 
-void Dynamics::derivatives(const Lanes& time_s, const Held& held, const Lanes* y,
+void Dynamics::derivatives(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
                            const Block& block, Lanes* derivatives) const {
   std::vector<DualLanes> rates;
   differentiate(time_s, broadcast(held), y, block, false, rates);
@@ -299,10 +303,12 @@ void Dynamics::derivatives(const Lanes& time_s, const Held& held, const Lanes* y
   }
 }
 
-void Dynamics::reading_derivatives(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+void Dynamics::reading_derivatives(const Lanes& time_s,
+                                   const std::array<ZeroOrderHold, Lanes::count>& held,
                                    const Lanes* y, const Block& block, Lanes* derivatives) const {
   std::vector<DualLanes> rates;
-  const Moment<DualLanes> now = differentiate(time_s, gather(held), y, block, true, rates);
+  const EvaluationContext<DualLanes> now =
+      differentiate(time_s, gather(held), y, block, true, rates);
   const auto put = [&](const DualLanes& x) {
     derivatives = std::copy(x.partial.begin(), x.partial.end(), derivatives);
   };
@@ -316,7 +322,7 @@ std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,
   const Dynamics dynamics(model);
   std::vector<Lanes> y;
   for (const double x : to_vector(state)) y.emplace_back(x);
-  std::array<Held, Lanes::count> held;
+  std::array<ZeroOrderHold, Lanes::count> held;
   held.fill(model.schedule.at(state.time_s));
   const Dynamics::Instants now = dynamics.at(state.time_s, held, y.data());
   std::vector<Vec3> torques;

@@ -5,7 +5,8 @@
 //   Q' = battery current
 //
 // and the extra states of the disturbances; I_d is the inertia that sits on its own springs and
-// bearings (Moment::detach_inertia). The lab counts as inertial: earth_rotation is a disturbance.
+// bearings (EvaluationContext::detach_inertia). The lab counts as inertial: earth_rotation is a
+// disturbance.
 #pragma once
 
 #include <vector>
@@ -16,7 +17,7 @@
 
 namespace photorque {
 
-// Everything that is believed about a platform and what acts on it.
+// Everything that is nominal about a platform and what acts on it.
 struct AttitudeModel {
   Platform platform;
   Environment environment;
@@ -55,7 +56,7 @@ class Dynamics {
   PlatformState initial_state(const Vec3& rate_body_rad_s = Vec3::Zero()) const;
 
   // dy/dt at eight instants; `y` and `rates` hold size() components.
-  void rates(const Lanes& time_s, const Held& held, const Lanes* y, Lanes* rates) const;
+  void rates(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y, Lanes* rates) const;
 
   // What is differentiated, at most DualLanes::block variables: component `state`[k] of the state
   // or parameter `parameter`[k], −1 for neither.
@@ -64,8 +65,8 @@ class Dynamics {
     std::array<int, DualLanes::block> parameter;
   };
   // ∂(dy/dt)/∂(variable k) of every component c at derivatives[c·block + k].
-  void derivatives(const Lanes& time_s, const Held& held, const Lanes* y, const Block& block,
-                   Lanes* derivatives) const;
+  void derivatives(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
+                   const Block& block, Lanes* derivatives) const;
 
   // Everything known about eight instants. `held` may differ from lane to lane.
   struct Instants {
@@ -75,19 +76,19 @@ class Dynamics {
     Lanes battery_current_A;
     Lanes array_power_W;
     Lanes illumination;
-    // What noiseless instruments read; see Moment.
+    // What noiseless instruments read; see EvaluationContext.
     Vec3Of<Lanes> gyro_rad_s;
     Vec3Of<Lanes> camera_error_rad;
     Lanes camera_delay_s;
     std::vector<Lanes> rates;  // dy/dt
   };
-  Instants at(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+  Instants at(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
               const Lanes* y) const;
 
   // Derivatives of the instruments' readings by the variables of `block`: gyro [0, 3), camera error
   // [3, 6), camera delay [6], each a row of `block` numbers.
   static constexpr int reading_count = 7;
-  void reading_derivatives(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+  void reading_derivatives(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
                            const Lanes* y, const Block& block, Lanes* derivatives) const;
 
  private:
@@ -95,26 +96,28 @@ class Dynamics {
     int first_state = 0;
     int first_parameter = 0;
   };
-  // Held values as lanes.
+  // ZeroOrderHold values as lanes.
   struct Command {
     Vec3Of<Lanes> torque_body_N_m;
     Lanes battery_current_A;
   };
-  static Command broadcast(const Held& held);
-  static Command gather(const std::array<Held, Lanes::count>& held);
+  static Command broadcast(const ZeroOrderHold& held);
+  static Command gather(const std::array<ZeroOrderHold, Lanes::count>& held);
 
   template <class T>
-  Moment<T> begin(const T& time_s, const Command& command, const T* y) const;
+  EvaluationContext<T> begin(const T& time_s, const Command& command, const T* y) const;
   template <class T, class Act>
-  void run_stages(const std::vector<size_t>& order, Moment<T>& now, const Act& act) const;
+  void run_stages(const std::vector<size_t>& order, EvaluationContext<T>& now,
+                  const Act& act) const;
   template <class T>
-  void solve(const Moment<T>& now, T* rates) const;
+  void solve(const EvaluationContext<T>& now, T* rates) const;
   bool changes_inertia() const;
   void free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const;
   // Evaluates with derivatives, leaving out disturbances that cannot depend on the block.
-  Moment<DualLanes> differentiate(const Lanes& time_s, const Command& command, const Lanes* y,
-                                  const Block& block, bool with_instruments,
-                                  std::vector<DualLanes>& rates) const;
+  EvaluationContext<DualLanes> differentiate(const Lanes& time_s, const Command& command,
+                                             const Lanes* y, const Block& block,
+                                             bool with_instruments,
+                                             std::vector<DualLanes>& rates) const;
 
   AttitudeModel model_;
   int size_ = component::extra;

@@ -6,13 +6,13 @@
 
 namespace photorque {
 
-Held Schedule::at(double t_s) const {
+ZeroOrderHold Schedule::at(double t_s) const {
   const auto later = std::upper_bound(time_s.begin(), time_s.end(), t_s);
   if (later == time_s.begin()) return {};
   return held[static_cast<size_t>(later - time_s.begin()) - 1];
 }
 
-void Schedule::append(double t_s, const Held& values) {
+void Schedule::append(double t_s, const ZeroOrderHold& values) {
   if (!time_s.empty() && t_s <= time_s.back()) {
     throw NumericalError("a schedule must be written in order of time");
   }

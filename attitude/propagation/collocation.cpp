@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-constexpr int most_iterations = 60;
+constexpr int max_iterations = 60;
 
 double dot(const gauss::Row& row, const Lanes& x) {
   return sum(Lanes(row) * x);
@@ -32,7 +32,7 @@ Lanes CollocationStep::stage_times_s() const {
   return time_s_ + h_s_ * Lanes(gauss::nodes);
 }
 
-void CollocationStep::predict(double h_s, const Held& held) {
+void CollocationStep::predict(double h_s, const ZeroOrderHold& held) {
   if (has_polynomial_) {
     const double ratio = h_s / accepted_h_s_;
     if (ratio != continuation_ratio_) {
@@ -49,7 +49,8 @@ void CollocationStep::predict(double h_s, const Held& held) {
   for (size_t c = 0; c < y_.size(); ++c) increments_[c] = h_s * Lanes(gauss::weights) * rates_[c];
 }
 
-CollocationStep::Outcome CollocationStep::attempt(double h_s, const Held& held, double settled) {
+CollocationStep::Outcome CollocationStep::attempt(double h_s, const ZeroOrderHold& held,
+                                                  double settled) {
   predict(h_s, held);
   h_s_ = h_s;
   double size = 1.0;
@@ -60,7 +61,7 @@ CollocationStep::Outcome CollocationStep::attempt(double h_s, const Held& held, 
   const Lanes weighted_h_s = h_s * Lanes(gauss::weights);
   Outcome outcome;
   Settling settling(settled, 1e-14 * size);
-  for (int iteration = 1; iteration <= most_iterations; ++iteration) {
+  for (int iteration = 1; iteration <= max_iterations; ++iteration) {
     for (size_t c = 0; c < y_.size(); ++c) {
       stages_[c] = y_[c] + (carry_[c] + gauss::times(gauss::mu_columns, increments_[c]));
     }
@@ -90,10 +91,10 @@ CollocationStep::Outcome CollocationStep::attempt(double h_s, const Held& held, 
 // from the polynomial is the terms from the ninth on: less than the last one kept. At the end
 // itself the terms from the seventeenth on are missing, as the sums at Gauss points are exact up to
 // there; they are guessed from how the last four fall. A fast oscillation under a slow motion does
-// not fall, and would add up over the steps: the end is held to `end_share` of the bound on the
+// not fall, and would add up over the steps: the end is held to `end_fraction` of the bound on the
 // inside.
 double CollocationStep::estimate_error() const {
-  constexpr double end_share = 1e-3;
+  constexpr double end_fraction = 1e-3;
   double error = 0.0;
   for (size_t c = 0; c < y_.size(); ++c) {
     const auto term = [&](size_t k) {
@@ -103,7 +104,7 @@ double CollocationStep::estimate_error() const {
     const double last = std::max(term(7), 0.1 * term(6));
     const double fall = std::min(1.0, std::max(term(7), term(6)) / std::max(term(5), term(4)));
     const double square = fall * fall;
-    const double at_end = last * square * square / end_share;
+    const double at_end = last * square * square / end_fraction;
     error = std::max(error, inverse_scales_[c] * std::max(last, at_end));
   }
   return error;

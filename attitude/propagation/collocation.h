@@ -31,7 +31,7 @@ class CollocationStep {
     int iterations = 0;
     double error = 0.0;  // of the polynomial, relative to the scales; an upper estimate
   };
-  Outcome attempt(double h_s, const Held& held, double settled);
+  Outcome attempt(double h_s, const ZeroOrderHold& held, double settled);
   // Moves the start to the end of the attempted step, in compensated summation, and to the time
   // `end_s`, which is start + length but for rounding.
   void accept(double end_s);
@@ -53,7 +53,7 @@ class CollocationStep {
 
  private:
   double estimate_error() const;
-  void predict(double h_s, const Held& held);
+  void predict(double h_s, const ZeroOrderHold& held);
 
   const Dynamics& dynamics_;
   std::vector<double> inverse_scales_;

@@ -77,8 +77,8 @@ Propagator::Propagator(const Dynamics& dynamics, const PlatformState& initial, d
   for (const EventFunction& event : event_functions_) {
     event_values_.push_back(event.value(initial.time_s, start.data())[0]);
   }
-  // A first guess that the error control mends.
-  h_s_ = std::min(0.1, options.longest_step_s);
+  // A first guess that the error control repairs.
+  h_s_ = std::min(0.1, options.max_step_s);
 }
 
 void Propagator::collect_jumps(double from_s) {
@@ -125,7 +125,7 @@ void Propagator::check_pace() const {
   if (statistics_.steps == 0 || statistics_.steps % every != 0) return;
   const double pace_s = (step_.start_s() - begin_s_) / static_cast<double>(statistics_.steps);
   const double left_s = end_s_ - step_.start_s();
-  if (pace_s * static_cast<double>(options_.most_steps - statistics_.steps) < left_s) {
+  if (pace_s * static_cast<double>(options_.max_steps - statistics_.steps) < left_s) {
     throw NumericalError("steps of " + shown(pace_s) + " s on average will not reach " +
                          shown(end_s_) + " s: the motion is too fast for its duration");
   }
@@ -141,10 +141,10 @@ void Propagator::take_step() {
   for (;;) {
     // Half of what is left rather than nearly all of it: no slivers.
     const double left_s = stop_s - start_s;
-    double h_s = std::min(h_s_, options_.longest_step_s);
+    double h_s = std::min(h_s_, options_.max_step_s);
     const bool cut = h_s >= left_s;
     h_s = cut ? left_s : with_few_bits(h_s > 0.5 * left_s ? 0.5 * left_s : h_s);
-    if (++statistics_.steps > options_.most_steps || start_s + h_s <= start_s) {
+    if (++statistics_.steps > options_.max_steps || start_s + h_s <= start_s) {
       throw NumericalError("the step length of the propagator fell to " + shown(h_s) +
                            " s at t = " + shown(start_s) + " s");
     }

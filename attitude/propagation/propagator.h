@@ -23,8 +23,8 @@ struct PropagationOptions {
   // rad, 1 rad/s. The dense output is some ten times better, and the ends of steps, whose errors
   // are the ones that add up, better by many powers of ten.
   double tolerance = 1e-8;
-  double longest_step_s = std::numeric_limits<double>::infinity();
-  int64_t most_steps = 1'000'000'000;
+  double max_step_s = std::numeric_limits<double>::infinity();
+  int64_t max_steps = 1'000'000'000;
   // Of derivatives, relative to each one's size within a step: what their iteration leaves.
   double derivative_tolerance = 1e-16;
 };
@@ -61,14 +61,14 @@ class Propagator {
              std::vector<EventFunction> events = {});
 
   // Computes the next step; false when the run has ended. NumericalError when the step length falls
-  // below what the time can resolve, or below what reaches the end in `most_steps`.
+  // below what the time can resolve, or below what reaches the end in `max_steps`.
   bool advance();
 
-  // The last step; its end is the event's time when one ended the run. Held values are those of its
-  // whole length. Before the first step: both the initial time.
+  // The last step; its end is the event's time when one ended the run. ZeroOrderHold values are
+  // those of its whole length. Before the first step: both the initial time.
   double step_start_s() const { return step_.start_s(); }
   double step_end_s() const { return step_end_s_; }
-  const Held& held() const { return held_; }
+  const ZeroOrderHold& held() const { return held_; }
   // State at eight times within the last step.
   void dense(const Lanes& time_s, Lanes* y) const;
   // Its derivatives by the variables: component c by variable v at [c · variables + v].
@@ -113,7 +113,7 @@ class Propagator {
   std::vector<double> event_values_;  // at the start of the step
   std::vector<Jump> jumps_;           // by time
   size_t next_jump_ = 0;
-  Held held_;
+  ZeroOrderHold held_;
   double h_s_ = 0.0;  // length to try next
   // Just below the last length that failed; rises slowly, so that it is tried again some day.
   double ceiling_s_ = std::numeric_limits<double>::infinity();
@@ -145,7 +145,7 @@ struct Samples {
   size_t first = 0;  // index of lane 0 among the times asked for
   int count = 0;
   Lanes time_s;
-  std::array<Held, Lanes::count> held;
+  std::array<ZeroOrderHold, Lanes::count> held;
   std::vector<Lanes> y;  // Dynamics::size()
   std::vector<Lanes>
       derivatives;  // of y, as Propagator::dense_derivatives; empty without variables

@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-constexpr double longest_run_s = 1e10;  // three centuries
+constexpr double max_run_s = 1e10;  // three centuries
 
 std::vector<Disturbance> read_own_disturbances(const Settings& root,
                                                const DisturbanceContext& context) {
@@ -150,33 +150,33 @@ Settings own_table(const Settings& root, const std::string& key, bool required) 
   return Settings(std::make_shared<const SettingsNode>(root.raw(key)), table.name());
 }
 
-BelievedModel read_attitude_model(const Settings& root) {
+NominalModel read_attitude_model(const Settings& root) {
   const Settings platform = own_table(root, "platform", true);
   const Settings environment = own_table(root, "environment", false);
   const Settings sensors = own_table(root, "sensors", false);
-  BelievedModel believed;
-  AttitudeModel& model = believed.model;
+  NominalModel nominal;
+  AttitudeModel& model = nominal.model;
   model.platform = read_platform(platform);
   model.environment = read_environment(environment);
   const DisturbanceContext context{model.platform, model.environment};
   model.disturbances = read_own_disturbances(root, context);
-  believed.sensors = root.has("sensors") ? read_sensors(sensors, context) : perfect_sensors();
-  model.disturbances.insert(model.disturbances.end(), believed.sensors.errors.begin(),
-                            believed.sensors.errors.end());
+  nominal.sensors = root.has("sensors") ? read_sensors(sensors, context) : perfect_sensors();
+  model.disturbances.insert(model.disturbances.end(), nominal.sensors.errors.begin(),
+                            nominal.sensors.errors.end());
   for (const Settings& settings : {platform, environment, sensors}) settings.finish();
-  return believed;
+  return nominal;
 }
 
 PropagationRun read_propagation(const Settings& root) {
-  BelievedModel believed = read_attitude_model(root);
+  NominalModel nominal = read_attitude_model(root);
   PropagationRun run;
-  run.model = std::move(believed.model);
-  run.sensors = std::move(believed.sensors);
+  run.model = std::move(nominal.model);
+  run.sensors = std::move(nominal.sensors);
   const Settings settings = own_table(root, "propagate", false);
-  run.duration_s = settings.number_or("duration_s", 600.0, {0.0, longest_run_s, true, false});
+  run.duration_s = settings.number_or("duration_s", 600.0, {0.0, max_run_s, true, false});
   run.output_rate_Hz = settings.number_or("output_rate_Hz", 10.0, Range::positive());
-  constexpr double most_rows = 2e7;
-  if (run.duration_s * run.output_rate_Hz > most_rows) {
+  constexpr double max_rows = 2e7;
+  if (run.duration_s * run.output_rate_Hz > max_rows) {
     throw settings.error("output_rate_Hz", "more than 20 million rows", "a lower rate");
   }
   run.history_rows =
@@ -184,8 +184,8 @@ PropagationRun read_propagation(const Settings& root) {
   run.seed = static_cast<uint64_t>(settings.integer_or("seed", 1, 0, INT64_MAX));
   run.options.tolerance =
       settings.number_or("tolerance", run.options.tolerance, {1e-13, 1e-3, false, false});
-  run.options.longest_step_s =
-      settings.number_or("longest_step_s", run.options.longest_step_s, Range::positive());
+  run.options.max_step_s =
+      settings.number_or("longest_step_s", run.options.max_step_s, Range::positive());
   run.model.schedule = read_schedule(settings);
   run.epoch = settings.text_or("epoch", "2000-01-01T00:00:00");
   if (!parse_epoch(run.epoch)) {

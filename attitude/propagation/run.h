@@ -1,4 +1,4 @@
-// `propagate`: from an experiment file to a flown platform, its recording and its plots.
+// `propagate`: from an experiment file to a propagated platform, its recording and its plots.
 #pragma once
 
 #include <cstdint>
@@ -31,14 +31,14 @@ struct PropagationRun {
 // none is required.
 Settings own_table(const Settings& root, const std::string& key, bool required);
 
-// What is believed about the platform and its laboratory: [platform], [environment],
+// the nominal model of the platform and its laboratory: [platform], [environment],
 // [[disturbance]] and [sensors] of an experiment file. InputError for wrong or unknown keys in
 // them.
-struct BelievedModel {
+struct NominalModel {
   AttitudeModel model;
   Sensors sensors;
 };
-BelievedModel read_attitude_model(const Settings& root);
+NominalModel read_attitude_model(const Settings& root);
 
 // The same and [propagate], which may be absent:
 //   duration_s (default 600); output_rate_Hz (of the recording, default 10); history_rows (of the
@@ -60,7 +60,7 @@ struct PropagationResult {
 };
 
 // Flies the run. It ends early at the bearing's stop (Platform::tilt_limit_rad). `progress` is
-// called now and then with the share of the duration that is done.
+// called now and then with the fraction of the duration that is done.
 PropagationResult propagate(const PropagationRun& run,
                             const std::function<void(double)>& progress = {});
 

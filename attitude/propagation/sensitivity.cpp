@@ -7,7 +7,7 @@
 namespace photorque {
 namespace {
 
-constexpr int most_iterations = 100;
+constexpr int max_sweeps = 100;
 
 Dynamics::Block empty_block() {
   Dynamics::Block block;
@@ -99,7 +99,7 @@ void Sensitivity::make_blocks() {
   }
 }
 
-void Sensitivity::differentiate_rates(const CollocationStep& step, const Held& held) {
+void Sensitivity::differentiate_rates(const CollocationStep& step, const ZeroOrderHold& held) {
   const size_t n = static_cast<size_t>(dynamics_.size()), count = variables_.size();
   std::vector<Lanes> partials(n * DualLanes::block);
   jacobian_.clear();
@@ -127,7 +127,7 @@ void Sensitivity::differentiate_rates(const CollocationStep& step, const Held& h
   }
 }
 
-bool Sensitivity::solve(const CollocationStep& step, const Held& held, double tolerance) {
+bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, double tolerance) {
   const size_t count = variables_.size();
   differentiate_rates(step, held);
   h_s_ = step.length_s();
@@ -146,7 +146,7 @@ bool Sensitivity::solve(const CollocationStep& step, const Held& held, double to
   // yet let the stages settle in a step too long for it.
   constexpr int patience = 25;
   Settling settling(tolerance, 1e-13, patience);
-  for (int iteration = 1; iteration <= most_iterations; ++iteration) {
+  for (int iteration = 1; iteration <= max_sweeps; ++iteration) {
     for (size_t i = 0; i < start_.size(); ++i) {
       stages[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);
     }
@@ -194,7 +194,7 @@ void Sensitivity::dense(const Lanes& fraction, Lanes* derivatives) const {
   }
 }
 
-void Sensitivity::readings(const Lanes& time_s, const std::array<Held, Lanes::count>& held,
+void Sensitivity::readings(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
                            const Lanes* y, const Lanes* derivatives, Lanes* readings) const {
   const size_t count = variables_.size();
   std::fill(readings, readings + Dynamics::reading_count * count, Lanes(0.0));

@@ -42,7 +42,7 @@ class Sensitivity {
 
   // Differentiates an attempted step, to `tolerance` of each derivative's size. False when the
   // iteration does not settle: the step is too long for the derivatives.
-  bool solve(const CollocationStep& step, const Held& held, double tolerance);
+  bool solve(const CollocationStep& step, const ZeroOrderHold& held, double tolerance);
   void accept();
   void restart() { has_polynomial_ = false; }
   // Adds `change` (a derivative of the state) to the derivatives by variable `v`.
@@ -55,8 +55,8 @@ class Sensitivity {
 
   // The same for the readings of the instruments (Dynamics::reading_derivatives) at given states,
   // from the derivatives of those states; reading r by variable v at [r · variables + v].
-  void readings(const Lanes& time_s, const std::array<Held, Lanes::count>& held, const Lanes* y,
-                const Lanes* derivatives, Lanes* readings) const;
+  void readings(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
+                const Lanes* y, const Lanes* derivatives, Lanes* readings) const;
 
  private:
   // Variables of one evaluation with DualLanes: `variable[k]` is the index in variables_, or −1.
@@ -66,7 +66,7 @@ class Sensitivity {
   };
   void seed_bound_states(size_t v, int axis);
   void make_blocks();
-  void differentiate_rates(const CollocationStep& step, const Held& held);
+  void differentiate_rates(const CollocationStep& step, const ZeroOrderHold& held);
 
   const Dynamics& dynamics_;
   std::vector<Variable> variables_;

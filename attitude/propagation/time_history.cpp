@@ -185,7 +185,7 @@ Product TimeHistory::product(const std::vector<Event>& events,
     plot.curves = std::move(curves);
     product.plots.push_back(std::move(plot));
   };
-  // Of a long flight curves are bands that hide each other: every axis has its own panel.
+  // Of a long trajectory curves are bands that hide each other: every axis has its own panel.
   const auto add_vector_plot = [&](const std::string& name, const std::string& title,
                                    const std::string& unit, size_t x) {
     add_plot(name, title, "x [" + unit + "]", {curve("", t, values(x))});
@@ -215,11 +215,11 @@ Product TimeHistory::product(const std::vector<Event>& events,
     add_vector_plot("torque_" + labels_[i], "Torque of " + labels_[i] + ", body axes", "N m", x);
   }
   if (!shown.empty()) {
-    // Below this share of the largest torque nothing is to be seen of a platform.
-    constexpr double least_share = 1e-9;
+    // Below this fraction of the largest torque nothing is to be seen of a platform.
+    constexpr double min_fraction = 1e-9;
     std::vector<Plot::Curve> all;
     for (size_t i = 0; i < shown.size(); ++i) {
-      all.push_back(envelope(labels_[shown[i]], t, sizes[i], least_share * largest_N_m));
+      all.push_back(envelope(labels_[shown[i]], t, sizes[i], min_fraction * largest_N_m));
     }
     std::erase_if(all, [](const Plot::Curve& one) { return one.x.empty(); });
     add_plot("torques", "Size of every torque, largest within each 240th of the flight",

@@ -107,7 +107,7 @@ bool complete(const std::array<Channel*, 4>& q) {
 
 }  // namespace
 
-void mend_quaternions(Recording& recording) {
+void repair_quaternions(Recording& recording) {
   const std::array<Channel*, 4> q = quaternion_channels(recording);
   if (!complete(q)) return;
   std::array<double, 4> before{};

@@ -7,7 +7,7 @@ namespace photorque {
 
 // Works on the channels q_w, q_x, q_y, q_z, when all four are there: empties quaternions whose norm
 // is not 1 to 1 %, normalises the others and gives them the sign of the one before.
-void mend_quaternions(Recording& recording);
+void repair_quaternions(Recording& recording);
 
 // Empties cells of attitude and gyro channels that stand far from all their neighbours (a Hampel
 // filter: further from the median of the three on either side than 12 standard deviations of the

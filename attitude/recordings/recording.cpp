@@ -96,9 +96,9 @@ class RecordingReader {
 
   // The header is the first line that names the time; whatever stands before it is preamble.
   void read_header() {
-    constexpr int longest_preamble = 10000;
+    constexpr int max_preamble_lines = 10000;
     std::string_view line;
-    for (int i = 0; i < longest_preamble && lines_.next(line); ++i) {
+    for (int i = 0; i < max_preamble_lines && lines_.next(line); ++i) {
       if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
       for (const char separator : {',', ';', '\t'}) {
         if (take_header(line, separator)) return;
@@ -154,8 +154,8 @@ class RecordingReader {
       return;
     }
     kept_cells_ += static_cast<int64_t>(columns_.size());
-    if (kept_cells_ > options_.most_cells) {
-      throw error("", "more than " + std::to_string(options_.most_cells) + " numbers",
+    if (kept_cells_ > options_.max_cells) {
+      throw error("", "more than " + std::to_string(options_.max_cells) + " numbers",
                   "a recording that is shorter or has fewer channels");
     }
     recording_.time_s.push_back(time_s);
@@ -193,7 +193,7 @@ class RecordingReader {
                                                       [](double x) { return !std::isnan(x); });
                                  });
     if (!any) throw error("", "no number in any channel", "at least one channel with values");
-    mend_quaternions(recording_);
+    repair_quaternions(recording_);
     if (options_.remove_outliers) remove_outliers(recording_);
     measure_times(recording_);
   }
@@ -251,7 +251,7 @@ Schedule Recording::schedule() const {
   const Channel* current = find("battery_current_A");
   Schedule schedule;
   schedule.current_is_measured = current != nullptr;
-  Held held;
+  ZeroOrderHold held;
   // An empty cell holds what was before.
   const auto update = [](const Channel* channel, size_t row, double& value) {
     if (channel != nullptr && !std::isnan(channel->values[row])) value = channel->values[row];

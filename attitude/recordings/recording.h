@@ -73,7 +73,7 @@ struct RecordingOptions {
   std::map<std::string, std::string> columns;
   bool remove_outliers = true;
   // Largest number of cells that are kept, times included (8 bytes each).
-  int64_t most_cells = 150'000'000;
+  int64_t max_cells = 150'000'000;
 };
 // Reads [recording] columns.
 RecordingOptions read_recording_options(const Settings& settings);

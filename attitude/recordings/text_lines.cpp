@@ -8,7 +8,7 @@ namespace photorque {
 namespace {
 
 constexpr size_t chunk = 1 << 18;
-constexpr size_t longest_line = 1 << 20;
+constexpr size_t max_line_length = 1 << 20;
 
 }  // namespace
 
@@ -51,7 +51,7 @@ bool TextLines::next(std::string_view& line) {
   size_t end = buffer_.find('\n', begin_);
   while (end == std::string::npos) {
     const size_t searched = buffer_.size() - begin_;
-    if (searched > longest_line) {
+    if (searched > max_line_length) {
       throw InputError({path_.string(), static_cast<int>(number_ + 1)}, "",
                        "a line of more than a megabyte", "a text file");
     }

@@ -158,10 +158,10 @@ Vec3 offset_from_momentum_m(const Platform& platform, const Vec3& gravity_lab_m_
 }
 
 BalanceRun read_balance(const Settings& root, const std::filesystem::path& recording) {
-  BelievedModel believed = read_attitude_model(root);
+  NominalModel nominal = read_attitude_model(root);
   const Settings columns = own_table(root, "recording", false);
   const Settings masses = own_table(root, "balance", true);
-  BalanceRun run{std::move(believed.model), std::move(believed.sensors), read_moving_masses(masses),
+  BalanceRun run{std::move(nominal.model), std::move(nominal.sensors), read_moving_masses(masses),
                  read_recording(recording, read_recording_options(columns))};
   for (const Settings& settings : {columns, masses}) settings.finish();
   run.model.schedule = run.recording.schedule();
@@ -247,9 +247,9 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   plot.title = "Camera minus fitted trajectory, about lab axes";
   plot.x_label = "Time [s]";
   // More points than these only blot out each other.
-  constexpr size_t most_points = 2000;
+  constexpr size_t max_points = 2000;
   const size_t rows = result.fit.residual_time_s.size();
-  const size_t every = rows / most_points + 1;
+  const size_t every = rows / max_points + 1;
   if (every > 1) plot.title += ", one row in " + std::to_string(every);
   const auto residuals = [&](int axis) {
     Plot::Curve curve;

@@ -94,7 +94,7 @@ struct Snapshot {
 Snapshot snapshot(const Dynamics& dynamics, const PlatformState& state) {
   std::vector<Lanes> y;
   for (const double x : to_vector(state)) y.emplace_back(x);
-  std::array<Held, Lanes::count> held;
+  std::array<ZeroOrderHold, Lanes::count> held;
   held.fill(dynamics.model().schedule.at(state.time_s));
   const Dynamics::Instants now = dynamics.at(state.time_s, held, y.data());
   Snapshot result;
@@ -186,7 +186,7 @@ Table budget_table(const Budget& budget) {
   Table::Column name{"disturbance", {}, {}}, figure_name{"paper_figure", {}, {}};
   std::array<Table::Column, 3> torque;
   for (int k = 0; k < 3; ++k) torque[k].name = std::string("torque_") + "xyz"[k] + "_N_m";
-  Table::Column size{"torque_N_m", {}, {}}, share{"share_of_sum", {}, {}},
+  Table::Column size{"torque_N_m", {}, {}}, fraction{"share_of_sum", {}, {}},
       minute{"angle_1_min_deg", {}, {}}, hour{"angle_1_h_deg", {}, {}},
       day{"angle_1_day_deg", {}, {}}, published{"paper_N_m", {}, {}}, ratio{"ratio", {}, {}};
   double sum_N_m = 0.0;
@@ -198,7 +198,7 @@ Table budget_table(const Budget& budget) {
     figure_name.texts.push_back(figure.empty() ? "-" : figure);
     for (int k = 0; k < 3; ++k) torque[k].values.push_back(e.torque_body_N_m[k]);
     size.values.push_back(torque_N_m);
-    share.values.push_back(sum_N_m > 0.0 ? torque_N_m / sum_N_m : 0.0);
+    fraction.values.push_back(sum_N_m > 0.0 ? torque_N_m / sum_N_m : 0.0);
     minute.values.push_back(e.angle_after_minute_rad / degree_rad);
     hour.values.push_back(e.angle_after_hour_rad / degree_rad);
     day.values.push_back(e.angle_after_day_rad / degree_rad);
@@ -208,7 +208,7 @@ Table budget_table(const Budget& budget) {
   }
   return {"budget",
           "Disturbance torques at the state, largest first",
-          {name, figure_name, torque[0], torque[1], torque[2], size, share, minute, hour, day,
+          {name, figure_name, torque[0], torque[1], torque[2], size, fraction, minute, hour, day,
            published, ratio}};
 }
 

@@ -273,12 +273,12 @@ UnloadedDrag unloaded_drag(const PaperInputs& in) {
   for (int i = 0; i < 80; ++i) {
     feed.hole_area_m2 = std::sqrt(low_m2 * high_m2);
     const double inlet_Pa = orifice_fed_film(socket, feed, air).inlet_Pa;
-    (inlet_Pa < in.inlet_share * feed.supply_Pa ? low_m2 : high_m2) = feed.hole_area_m2;
+    (inlet_Pa < in.inlet_fraction * feed.supply_Pa ? low_m2 : high_m2) = feed.hole_area_m2;
   }
   UnloadedDrag result;
   result.rated_load_N = orifice_fed_film(socket, feed, air).load_N;
   result.load_as_published_N =
-      load_capacity_as_published_N(socket, in.inlet_share * feed.supply_Pa, ambient_Pa);
+      load_capacity_as_published_N(socket, in.inlet_fraction * feed.supply_Pa, ambient_Pa);
   const double step_m = 1e-4 * in.rated_gap_m;
   SphericalSocket wider = socket;
   wider.gap_m += step_m;

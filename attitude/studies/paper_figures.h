@@ -57,7 +57,7 @@ struct PaperInputs {
   double recess_half_angle_rad = 0.10;
   double rated_gap_m = 5e-6;
   double supply_gauge_Pa = 5.5e5;
-  double inlet_share = 0.85;
+  double inlet_fraction = 0.85;
   double ball_mass_kg = 0.36;
   PaperLight light = {};
 };

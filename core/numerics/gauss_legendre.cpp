@@ -37,7 +37,7 @@ std::vector<QuadratureNode> make_rule(size_t n) {
 
 std::vector<std::vector<QuadratureNode>> make_rules() {
   std::vector<std::vector<QuadratureNode>> rules;
-  for (size_t n = 1; n <= most_gauss_nodes; ++n) rules.push_back(make_rule(n));
+  for (size_t n = 1; n <= max_gauss_nodes; ++n) rules.push_back(make_rule(n));
   return rules;
 }
 

@@ -11,9 +11,9 @@ struct QuadratureNode {
   double weight;
 };
 
-inline constexpr size_t most_gauss_nodes = 64;
+inline constexpr size_t max_gauss_nodes = 64;
 
-// The rule of n nodes, 1 ≤ n ≤ most_gauss_nodes, rising; exact for polynomials of degree 2n − 1.
+// The rule of n nodes, 1 ≤ n ≤ max_gauss_nodes, rising; exact for polynomials of degree 2n − 1.
 std::span<const QuadratureNode> gauss_legendre(size_t n);
 
 }  // namespace photorque

@@ -9,7 +9,7 @@ using Quad = Lanes::Quad;
 using Bits = long long __attribute__((vector_size(32)));
 
 // |x| below this many quarter turns is reduced with exact products.
-constexpr double most_quarter_turns = 0x1p24;
+constexpr double max_quarter_turns = 0x1p24;
 
 // x = n π/2 + rest, |rest| ≤ π/4; `quarter` holds n in its low bits. π/2 comes in pieces of at most
 // 28 bits, so that their products with n are exact (W. J. Cody, W. Waite, Software Manual for the
@@ -54,7 +54,7 @@ Quad cos_kernel(const Quad& x) {
 
 // NaN goes either way.
 bool is_reducible(const Lanes& x) {
-  return largest(larger_magnitude(x, 0.0)) < 1.5 * most_quarter_turns;
+  return largest(larger_magnitude(x, 0.0)) < 1.5 * max_quarter_turns;
 }
 
 // sin(x + quarters π/2).

@@ -48,7 +48,7 @@ template <typename Function>
 double falling_root(double low, double high, double guess, double tolerance, Function&& function) {
   double x = std::isfinite(guess) ? std::max(low, std::min(guess, high)) : std::midpoint(low, high);
   double last_step = high - low;
-  const double least_step = std::numeric_limits<double>::min() + 1e-17 * last_step;
+  const double min_step = std::numeric_limits<double>::min() + 1e-17 * last_step;
   for (int iteration = 0; iteration < 200; ++iteration) {
     const FunctionAt f = function(x);
     if (f.value == 0.0) return x;
@@ -60,7 +60,7 @@ double falling_root(double low, double high, double guess, double tolerance, Fun
     last_step = std::abs(next - x);
     const bool exact = std::isnan(f.third) || last_step <= 1e-13 * std::abs(x) ||
                        (!bisected && step.left <= 1e-12 * std::abs(x));
-    if ((f.close && exact && last_step <= tolerance * std::abs(x)) || last_step <= least_step) {
+    if ((f.close && exact && last_step <= tolerance * std::abs(x)) || last_step <= min_step) {
       return next;
     }
     x = next;

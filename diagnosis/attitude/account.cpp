@@ -148,13 +148,13 @@ std::vector<Alternative> alternatives(const Decision& decision, const std::vecto
   return result;
 }
 
-std::vector<FittedParameter> refined_beliefs(const Trial& chosen) {
+std::vector<FittedParameter> refined_priors(const Trial& chosen) {
   std::vector<FittedParameter> result;
-  const size_t believed =
+  const size_t nominal =
       chosen.disturbances.empty()
           ? chosen.fit.best.model.disturbances.size()
           : *std::min_element(chosen.disturbances.begin(), chosen.disturbances.end());
-  for (size_t d = 0; d < believed; ++d) {
+  for (size_t d = 0; d < nominal; ++d) {
     for (FittedParameter& p : parameters_of(chosen, d)) {
       p.key = "disturbance[" + std::to_string(d) + "]." + p.key;
       result.push_back(std::move(p));

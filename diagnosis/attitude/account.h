@@ -10,12 +10,12 @@ namespace photorque {
 std::vector<FoundEffect> found_effects(const Decision& decision, const std::vector<Trial>& trials,
                                        const std::vector<Candidate>& all);
 
-// The best of every set of names, best first, relative to the belief.
+// The best of every set of names, best first, relative to the nominal model.
 std::vector<Alternative> alternatives(const Decision& decision, const std::vector<Trial>& trials,
                                       const std::vector<Candidate>& all);
 
-// What was believed with an uncertainty, as the chosen trial has it.
-std::vector<FittedParameter> refined_beliefs(const Trial& chosen);
+// What was nominal with an uncertainty, as the chosen trial has it.
+std::vector<FittedParameter> refined_priors(const Trial& chosen);
 
 std::string sentence_of(const Diagnosis& diagnosis);
 

@@ -16,11 +16,11 @@ struct Neighbours {
   double attitude_rows = 0.0;
   Vec3 gyro_rows = Vec3::Zero();
 
-  void add(const Observation& from, const Prediction& flown, size_t i) {
+  void add(const Observation& from, const Prediction& propagated, size_t i) {
     if (last == first) first = i;
     last = i + 1;
     time_sum_s += from.time_s[i];
-    const WhiteRow& white = flown.residual[i];
+    const WhiteRow& white = propagated.residual[i];
     const double rows = from.attitude_rows[i];
     if (rows > 0.0) {
       attitude_sum += std::sqrt(rows) * white.head<3>().cwiseProduct(Vec3(from.noise.camera_rad));
@@ -43,13 +43,13 @@ struct Neighbours {
     return best;
   }
 
-  void append_to(Observation& to, const Observation& from, const Prediction& flown) const {
+  void append_to(Observation& to, const Observation& from, const Prediction& propagated) const {
     const size_t m = middle(from);
     to.time_s.push_back(from.time_s[m]);
     Quat attitude(NAN, NAN, NAN, NAN);
     if (attitude_rows > 0.0) {
-      const Vec3 turn = flown.camera_offset_lab_rad[m] + attitude_sum / attitude_rows;
-      attitude = flown.states[m].lab_from_body;
+      const Vec3 turn = propagated.camera_offset_lab_rad[m] + attitude_sum / attitude_rows;
+      attitude = propagated.states[m].lab_from_body;
       if (const double angle = turn.norm(); angle > 0.0) {
         attitude = (Quat(Eigen::AngleAxisd(angle, turn / angle)) * attitude).normalized();
       }
@@ -58,14 +58,14 @@ struct Neighbours {
     to.attitude_rows.push_back(attitude_rows);
     Vec3 rate = Vec3::Constant(NAN);
     for (int k = 0; k < 3; ++k) {
-      if (gyro_rows[k] > 0.0) rate[k] = flown.gyro_rad_s[m][k] + gyro_sum[k] / gyro_rows[k];
+      if (gyro_rows[k] > 0.0) rate[k] = propagated.gyro_rad_s[m][k] + gyro_sum[k] / gyro_rows[k];
     }
     to.gyro_rad_s.push_back(rate);
     to.gyro_rows.push_back(gyro_rows);
   }
 };
 
-Observation averaged_run(const Prediction& flown, const Observation& seen, size_t blocks) {
+Observation averaged_run(const Prediction& propagated, const Observation& seen, size_t blocks) {
   Observation result = seen;
   result.time_s.clear();
   result.attitude.clear();
@@ -78,12 +78,12 @@ Observation averaged_run(const Prediction& flown, const Observation& seen, size_
   Neighbours block;
   for (size_t i = 0; i < seen.blocks(); ++i) {
     if (block.last > block.first && seen.time_s[i] > seen.time_s[block.first] + block_s - slack_s) {
-      block.append_to(result, seen, flown);
+      block.append_to(result, seen, propagated);
       block = {};
     }
-    block.add(seen, flown, i);
+    block.add(seen, propagated, i);
   }
-  block.append_to(result, seen, flown);
+  block.append_to(result, seen, propagated);
   return result;
 }
 
@@ -91,11 +91,12 @@ Observation averaged_run(const Prediction& flown, const Observation& seen, size_
 
 std::vector<Observation> averaged_about(const Fit& fit, const std::vector<Observation>& runs,
                                         size_t blocks) {
-  const std::vector<Prediction> flown = residuals_of(fit, runs);
+  const std::vector<Prediction> propagated = residuals_of(fit, runs);
   std::vector<Observation> result;
   for (size_t run = 0; run < runs.size(); ++run) {
-    result.push_back(runs[run].blocks() <= blocks ? runs[run]
-                                                  : averaged_run(flown[run], runs[run], blocks));
+    result.push_back(runs[run].blocks() <= blocks
+                         ? runs[run]
+                         : averaged_run(propagated[run], runs[run], blocks));
   }
   return result;
 }

@@ -133,7 +133,7 @@ std::string text_of(Reading reading) {
 
 }  // namespace
 
-std::string mend_conventions(Observation& seen) {
+std::string repair_conventions(Observation& seen) {
   if (!seen.has_gyro) return "";
   const std::vector<Pair> pairs = pairs_of(seen);
   if (pairs.size() < 20) return "";

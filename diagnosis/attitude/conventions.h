@@ -12,6 +12,6 @@ namespace photorque {
 // that says radians or the reverse) makes them agree, the observation is changed to that reading
 // and a sentence says so. Empty: nothing was changed. An observation without gyro cannot be
 // checked.
-std::string mend_conventions(Observation& seen);
+std::string repair_conventions(Observation& seen);
 
 }  // namespace photorque

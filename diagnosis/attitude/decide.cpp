@@ -9,15 +9,15 @@
 namespace photorque {
 namespace {
 
-// Evidence by which something must beat the belief before it is said: odds of 1 in 90, on top of
-// the prior odds against each name.
-constexpr double least_log_odds = 4.5;
+// Evidence by which something must beat the nominal model before it is said: odds of 1 in 90, on
+// top of the prior odds against each name.
+constexpr double min_log_odds = 4.5;
 // Of a named effect.
-constexpr double least_significance = 4.0;
-// Of the probability, for a name that only the recordings and what was held back show together.
-constexpr double least_share_of_a_hint = 0.7;
-// Of the structure left, before the best physics is called insufficient.
-constexpr double most_excess_sigma = 6.0;
+constexpr double min_significance = 4.0;
+// Of the probability, for a name that only the recordings and what was held out show together.
+constexpr double min_fraction_of_weak_evidence = 0.7;
+// Of the residual structure, before the best physics is called insufficient.
+constexpr double max_excess_sigma = 6.0;
 
 bool has_empirical(const Trial& t, const std::vector<Candidate>& all) {
   return std::any_of(t.candidates.begin(), t.candidates.end(),
@@ -29,7 +29,7 @@ bool is_significant(const Trial& t, const std::vector<Candidate>& all,
   for (size_t i = 0; i < t.candidates.size(); ++i) {
     const Candidate& c = all[t.candidates[i]];
     if (c.start.parameters.empty() || c.effect.kind == "flexible_mode") continue;
-    if (significance[i] < least_significance) return false;
+    if (significance[i] < min_significance) return false;
   }
   return true;
 }
@@ -70,7 +70,7 @@ Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& 
   size_t physics = 0, empirical = 0;
   for (size_t i = 1; i < trials.size(); ++i) {
     const Trial& t = trials[i];
-    if (!t.objection.empty() || t.log_evidence < none + least_log_odds) continue;
+    if (!t.objection.empty() || t.log_evidence < none + min_log_odds) continue;
     if (!is_significant(t, all)) continue;
     size_t& best = has_empirical(t, all) ? empirical : physics;
     if (best == 0 || t.log_evidence > trials[best].log_evidence) best = i;
@@ -78,8 +78,8 @@ Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& 
   d.physics = physics;
   const double physics_evidence = physics == 0 ? none : trials[physics].log_evidence;
   const bool law_unknown =
-      empirical != 0 && trials[empirical].log_evidence > physics_evidence + least_log_odds;
-  const bool structure_left = excess_sigma(trials[physics].fit, runs) > most_excess_sigma;
+      empirical != 0 && trials[empirical].log_evidence > physics_evidence + min_log_odds;
+  const bool structure_left = excess_sigma(trials[physics].fit, runs) > max_excess_sigma;
   if (law_unknown || structure_left) {
     d.verdict = Verdict::unexplained;
     d.chosen = law_unknown ? empirical : physics;
@@ -93,7 +93,7 @@ Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& 
     for (size_t i = 0; i < trials.size(); ++i) {
       if (names_of(trials[i], all) == names) d.confidence += d.probability[i];
     }
-    d.undecided = d.confidence < least_share_of_a_hint &&
+    d.undecided = d.confidence < min_fraction_of_weak_evidence &&
                   !is_significant(trials[physics], all, trials[physics].significance);
     d.verdict = d.undecided ? Verdict::consistent : Verdict::missing_physics;
     d.chosen = d.undecided ? 0 : physics;

@@ -12,12 +12,12 @@ struct Decision {
   // Consistent only because the effect that shows has no name: the recordings and what was held
   // back show it together, neither does alone, and no candidate is much likelier than all others.
   bool undecided = false;
-  size_t chosen = 0;                // index of the trial whose model is kept
-  size_t physics = 0;               // index of the best trial of physics alone (0: the belief)
+  size_t chosen = 0;   // index of the trial whose model is kept
+  size_t physics = 0;  // index of the best trial of physics alone (0: the nominal model)
   std::vector<double> probability;  // of each trial
 };
 
-// Trial 0 is the belief.
+// Trial 0 is the nominal model.
 Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& all,
                 const std::vector<Observation>& runs);
 

@@ -37,48 +37,50 @@ NoiseLevels noise_of(const Sensors& sensors) {
 }
 
 std::vector<Observation> observe_all(const std::vector<NamedRecording>& recordings,
-                                     const NoiseLevels& noise, size_t most_blocks,
+                                     const NoiseLevels& noise, size_t max_blocks,
                                      std::vector<std::string>& warnings) {
   std::vector<Observation> all;
   for (const NamedRecording& r : recordings) {
-    all.push_back(observe(r.recording, r.name, most_blocks));
+    all.push_back(observe(r.recording, r.name, max_blocks));
     all.back().noise = noise;
-    const std::string convention = mend_conventions(all.back());
+    const std::string convention = repair_conventions(all.back());
     if (!convention.empty()) warnings.push_back(r.name + ": " + convention);
   }
   return all;
 }
 
-Data read_data(const BelievedModel& believed, const std::vector<NamedRecording>& recordings,
+Data read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                const std::vector<NamedRecording>& holdouts, const DiagnoseOptions& options) {
-  const NoiseLevels noise = noise_of(believed.sensors);
+  const NoiseLevels noise = noise_of(nominal.sensors);
   Data data;
-  data.train = observe_all(recordings, noise, options.most_blocks, data.warnings);
-  data.held = observe_all(holdouts, noise, options.most_blocks, data.warnings);
+  data.train = observe_all(recordings, noise, options.max_blocks, data.warnings);
+  data.held = observe_all(holdouts, noise, options.max_blocks, data.warnings);
   if (!data.held.empty()) return data;
   for (Observation& seen : data.train) {
     const auto cut =
-        static_cast<size_t>((1.0 - options.holdout_share) * static_cast<double>(seen.blocks()));
+        static_cast<size_t>((1.0 - options.holdout_fraction) * static_cast<double>(seen.blocks()));
     data.held.push_back(seen.part(cut, seen.blocks()));
     seen = seen.part(0, cut);
   }
   return data;
 }
 
-// The belief fitted; readings that stand out are dropped and wrong noise levels mended on the way.
-Fit settle(const BelievedModel& believed, Data& data) {
-  Fit belief = fit_belief(believed, data.train);
-  if (!std::isfinite(belief.chi2)) {
+// The nominal model fitted; readings that stand out are dropped and wrong noise levels repaired on
+// the way.
+Fit settle(const NominalModel& nominal, Data& data) {
+  Fit fitted = fit_nominal(nominal, data.train);
+  if (!std::isfinite(fitted.chi2)) {
     throw NumericalError("the believed model cannot be propagated along the recording");
   }
-  const std::vector<Prediction> residuals = residuals_of(belief, data.train);
+  const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
   data.outliers = drop_outliers(residuals, data.train);
   const Whiteness found = whiteness(residuals);
   data.noise_corrected = correct_noise(found, data.train);
   correct_noise(found, data.held);
-  if (data.outliers > 0 || data.noise_corrected) belief = fit(belief.best, data.train);
-  data.outliers += drop_outliers(residuals_of(fly(belief, data.held), data.held), data.held);
-  return belief;
+  if (data.outliers > 0 || data.noise_corrected) fitted = fit(fitted.best, data.train);
+  data.outliers +=
+      drop_outliers(residuals_of(propagate_model(fitted, data.held), data.held), data.held);
+  return fitted;
 }
 
 DataQuality quality_of(const std::vector<NamedRecording>& recordings,
@@ -98,9 +100,9 @@ DataQuality quality_of(const std::vector<NamedRecording>& recordings,
       q.rejected["empty_cell"] += report.empty_cells;
       q.rejected["unreadable_cell"] += report.unreadable_cells;
       q.rejected["bad_quaternion"] += report.bad_quaternions;
-      q.mended["flipped_quaternion"] += report.flipped_quaternions;
+      q.repaired["flipped_quaternion"] += report.flipped_quaternions;
       for (const RecordingReport::Gap& gap : report.gaps) {
-        q.longest_gap_s = std::max(q.longest_gap_s, gap.to_s - gap.from_s);
+        q.max_gap_s = std::max(q.max_gap_s, gap.to_s - gap.from_s);
       }
     }
   }
@@ -113,8 +115,8 @@ DataQuality quality_of(const std::vector<NamedRecording>& recordings,
 Replay replay_of(const Fit& fit, const Observation& seen) {
   Replay replay;
   replay.recording = seen.name;
-  for (const Held& held : seen.schedule.held) {
-    replay.has_commands = replay.has_commands || held != Held{};
+  for (const ZeroOrderHold& held : seen.schedule.held) {
+    replay.has_commands = replay.has_commands || held != ZeroOrderHold{};
   }
   replay.duration_s = seen.duration_s();
   replay.output_rate_Hz = static_cast<double>(seen.blocks() - 1) / seen.duration_s();
@@ -131,17 +133,17 @@ void tell(const DiagnoseOptions& options, const std::string& what) {
 
 }  // namespace
 
-Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecording>& recordings,
+Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                    const std::vector<NamedRecording>& holdouts, const DiagnoseOptions& options) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
-  Data data = read_data(believed, recordings, holdouts, options);
+  Data data = read_data(nominal, recordings, holdouts, options);
   tell(options, "fitting what is believed");
-  const Fit belief = settle(believed, data);
-  const std::vector<Candidate> all = all_candidates(believed, data.train);
+  const Fit nominal_fit = settle(nominal, data);
+  const std::vector<Candidate> all = all_candidates(nominal, data.train);
   tell(options, "fitting every effect of the catalogue");
   std::vector<Trial> trials =
-      search(belief, all, data.train, {options.threads, options.most_effects});
-  // Before the runs held back count: in one that goes astray there all explanations differ by
+      search(nominal_fit, all, data.train, {options.threads, options.max_effects});
+  // Before the runs held out count: in one that diverges there all explanations differ by
   // chance.
   const std::vector<Where::Dependence> depends_on = dependences(trials, all);
   tell(options, "comparing with what was held back");
@@ -152,21 +154,22 @@ Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecordi
   Diagnosis d;
   d.verdict = decision.verdict;
   d.confidence = decision.confidence;
-  d.where = locate(residuals_of(belief, data.train), data.train);
+  d.where = locate(residuals_of(nominal_fit, data.train), data.train);
   if (d.verdict == Verdict::missing_physics) d.where.depends_on = depends_on;
   if (d.verdict == Verdict::unexplained) {
     d.where.depends_on = of_unknown_law(depends_on, chosen, all);
   }
   if (d.verdict == Verdict::missing_physics) d.effects = found_effects(decision, trials, all);
   if (d.verdict == Verdict::unexplained) d.empirical = empirical_torques(chosen, all, data.train);
-  d.chi2_per_sample_before = belief.chi2_per_sample();
+  d.chi2_per_sample_before = nominal_fit.chi2_per_sample();
   d.chi2_per_sample_after = chosen.fit.chi2_per_sample();
-  d.samples = belief.samples;
-  const Fit held_before = fly(belief, data.held), held_after = fly(chosen.fit, data.held);
+  d.samples = nominal_fit.samples;
+  const Fit held_before = propagate_model(nominal_fit, data.held),
+            held_after = propagate_model(chosen.fit, data.held);
   d.holdout = compare_holdout(held_before, held_after, data.held);
   d.alternatives = alternatives(decision, trials, all);
   d.manoeuvres = manoeuvres(d.effects, decision, trials, all, data.train, options.threads);
-  d.beliefs_refined = refined_beliefs(chosen);
+  d.priors_refined = refined_priors(chosen);
   d.warnings = data.warnings;
   if (data.noise_corrected) {
     d.warnings.push_back(
@@ -180,7 +183,7 @@ Diagnosis diagnose(const BelievedModel& believed, const std::vector<NamedRecordi
   }
   d.data = quality_of(recordings, holdouts, data);
   for (size_t run = 0; run < data.train.size(); ++run) {
-    d.series.push_back(series_of(belief, chosen.fit, data.train[run], run));
+    d.series.push_back(series_of(nominal_fit, chosen.fit, data.train[run], run));
   }
   for (size_t run = 0; run < data.held.size(); ++run) {
     d.series.push_back(series_of(held_before, held_after, data.held[run], run));

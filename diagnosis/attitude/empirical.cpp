@@ -11,7 +11,7 @@ class HeadingHarmonic final : public TorqueLaw<HeadingHarmonic> {
   explicit HeadingHarmonic(int order) : order_(order) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const T x = now.lab_from_body(0, 0), y = now.lab_from_body(1, 0);
     const T size = sqrt(x * x + y * y + T(1e-30));
     const T c1 = x / size, s1 = y / size;
@@ -36,7 +36,7 @@ class TiltPower final : public TorqueLaw<TiltPower> {
   explicit TiltPower(int power) : power_(power) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T> up = now.lab_from_body.row(2).transpose();
     // z × up: as long as the sine of the tilt.
     const Vec3Of<T> lean(-up[1] / tilt_unit, up[0] / tilt_unit, T(0.0));
@@ -59,7 +59,7 @@ class RatePower final : public TorqueLaw<RatePower> {
   explicit RatePower(double power) : power_(power) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T> w = now.rate_body_rad_s / T(rate_unit_rad_s);
     const T factor = pow(length(w) + T(1e-3), power_ - 1.0);
     const Vec3Of<T> shaped = factor * w;
@@ -75,20 +75,20 @@ class RatePower final : public TorqueLaw<RatePower> {
 class TimeCosines final : public TorqueLaw<TimeCosines> {
  public:
   TimeCosines(double duration_s, int first, int count)
-      : pulsation_(pi / duration_s), first_(first), count_(count) {}
+      : angular_frequency_(pi / duration_s), first_(first), count_(count) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     Vec3Of<T> sum = Vec3Of<T>::Constant(T(0.0));
     for (int j = 0; j < count_; ++j) {
-      const T wave = cos(now.time_s * T(pulsation_ * (first_ + j)));
-      sum += wave * own.vector(3 * j);
+      const T bounce = cos(now.time_s * T(angular_frequency_ * (first_ + j)));
+      sum += bounce * own.vector(3 * j);
     }
     return sum;
   }
 
  private:
-  double pulsation_;
+  double angular_frequency_;
   int first_, count_;
 };
 
@@ -98,7 +98,7 @@ class TimeDecay final : public TorqueLaw<TimeDecay> {
   explicit TimeDecay(double time_constant_s) : rate_1_s_(1.0 / time_constant_s) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const T fade = exp(-now.time_s * T(rate_1_s_));
     const T vertical = fade * own.parameter(3);
     return fade * own.vector(0) + vertical * now.lab_from_body.row(2).transpose();
@@ -114,10 +114,10 @@ class ChargePower final : public TorqueLaw<ChargePower> {
   ChargePower(double charge_C, int power) : charge_C_(charge_C), power_(power) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     T factor = T(1.0);
-    const T share = now.charge_drawn_C / T(charge_C_);
-    for (int k = 0; k < power_; ++k) factor = factor * share;
+    const T fraction = now.charge_drawn_C / T(charge_C_);
+    for (int k = 0; k < power_; ++k) factor = factor * fraction;
     return factor * own.vector(0);
   }
 
@@ -130,7 +130,7 @@ class ChargePower final : public TorqueLaw<ChargePower> {
 class CommandMatrix final : public TorqueLaw<CommandMatrix> {
  public:
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T>& c = now.command_body_N_m;
     const Vec3Of<T> across(own.parameter(0) * c[1] + own.parameter(1) * c[2],
                            own.parameter(2) * c[0] + own.parameter(3) * c[2],
@@ -172,8 +172,8 @@ std::vector<EmpiricalLaw> empirical_laws(double duration_s, double charge_C, boo
   }
   all.push_back(law<TimeCosines>("time", "slow", 9, torque_N_m, duration_s, 1, 3));
   all.push_back(law<TimeCosines>("time", "faster", 24, torque_N_m, duration_s, 1, 8));
-  for (const double share : {0.1, 0.3, 1.0}) {
-    all.push_back(law<TimeDecay>("time", "fading", 4, torque_N_m, share * duration_s));
+  for (const double fraction : {0.1, 0.3, 1.0}) {
+    all.push_back(law<TimeDecay>("time", "fading", 4, torque_N_m, fraction * duration_s));
   }
   if (charge_C > 0.0) {
     all.push_back(law<ChargePower>("charge", "linear", 3, torque_N_m, charge_C, 1));

@@ -9,7 +9,7 @@ namespace photorque {
 namespace {
 
 constexpr size_t torque_bins = 36;
-constexpr size_t flown_states = 1000;
+constexpr size_t propagated_states = 1000;
 
 struct Abscissa {
   std::string unit;
@@ -50,7 +50,7 @@ Eigen::Matrix3Xd shapes(const AttitudeModel& model, size_t law, const PlatformSt
 }
 
 EmpiricalTorque torque_of(const Trial& chosen, size_t which, const Candidate& candidate,
-                          const AttitudeModel& model, const Trajectory& flown) {
+                          const AttitudeModel& model, const Trajectory& propagated) {
   const size_t law = chosen.disturbances[which];
   const Abscissa abscissa = abscissa_of(candidate.variable);
   EmpiricalTorque torque;
@@ -59,7 +59,7 @@ EmpiricalTorque torque_of(const Trial& chosen, size_t which, const Candidate& ca
   torque.about_lab_axes = abscissa.lab_axes;
 
   std::vector<double> x;
-  for (const PlatformState& state : flown.states) {
+  for (const PlatformState& state : propagated.states) {
     x.push_back(value_of(candidate.variable, model, state));
   }
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
@@ -69,7 +69,7 @@ EmpiricalTorque torque_of(const Trial& chosen, size_t which, const Candidate& ca
   std::vector<Eigen::Matrix3Xd> sum(torque_bins, Eigen::Matrix3Xd::Zero(3, count));
   std::vector<double> samples(torque_bins, 0.0);
   for (size_t k = 0; k < x.size(); ++k) {
-    const PlatformState& state = flown.states[k];
+    const PlatformState& state = propagated.states[k];
     const auto bin = std::min(torque_bins - 1, static_cast<size_t>((x[k] - *low) / width));
     const Eigen::Matrix3Xd body = shapes(model, law, state);
     const Mat3 lab_from_body = state.lab_from_body.toRotationMatrix();
@@ -101,13 +101,13 @@ std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen,
                                                const std::vector<Observation>& runs) {
   const AttitudeModel model = chosen.fit.best.model_of(0, runs.front());
   const Dynamics dynamics(model);
-  const Trajectory flown =
+  const Trajectory propagated =
       propagate(dynamics, chosen.fit.best.runs.front().initial,
-                runs.front().averaged(flown_states).time_s, {.tolerance = 1e-7});
+                runs.front().averaged(propagated_states).time_s, {.tolerance = 1e-7});
   std::vector<EmpiricalTorque> result;
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
     const Candidate& c = all[chosen.candidates[i]];
-    if (c.empirical()) result.push_back(torque_of(chosen, i, c, model, flown));
+    if (c.empirical()) result.push_back(torque_of(chosen, i, c, model, propagated));
   }
   return result;
 }

@@ -110,18 +110,19 @@ void add_priors(const Hypothesis& h, const Layout& layout, NormalSums& sums) {
 
 // A sinusoid of no amplitude yet does not show in the error by which the propagator chooses its
 // steps, but its slopes have to be resolved: a step is no longer than its period, to 3e-4 of them.
-double longest_step_s(const AttitudeModel& model) {
-  double longest_s = infinity;
+double max_step_s(const AttitudeModel& model) {
+  double max_time_s = infinity;
   for (const Disturbance& d : model.disturbances) {
     for (const Parameter& p : d.parameters) {
-      if (p.key == "frequency_Hz" && p.value > 0.0) longest_s = std::min(longest_s, 1.0 / p.value);
+      if (p.key == "frequency_Hz" && p.value > 0.0)
+        max_time_s = std::min(max_time_s, 1.0 / p.value);
     }
   }
-  return longest_s;
+  return max_time_s;
 }
 
 Evaluation evaluate(const Hypothesis& h, const std::vector<Observation>& runs,
-                    const std::vector<Free>& extra, bool with_slopes, double share,
+                    const std::vector<Free>& extra, bool with_slopes, double fraction,
                     double tolerance) {
   const Layout layout(h);
   const auto size = static_cast<Eigen::Index>(layout.size() + extra.size());
@@ -129,13 +130,13 @@ Evaluation evaluate(const Hypothesis& h, const std::vector<Observation>& runs,
   result.sums = {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), 0.0, 0};
   PredictionOptions options;
   options.propagation.tolerance = tolerance;
-  options.propagation.longest_step_s = longest_step_s(h.model);
+  options.propagation.max_step_s = max_step_s(h.model);
   const std::vector<Variable> variables =
       with_slopes ? variables_of(h, extra) : std::vector<Variable>();
   try {
     for (size_t run = 0; run < runs.size(); ++run) {
       options.blocks = std::max<size_t>(
-          20, static_cast<size_t>(share * static_cast<double>(runs[run].blocks())));
+          20, static_cast<size_t>(fraction * static_cast<double>(runs[run].blocks())));
       const Dynamics dynamics(h.model_of(run, runs[run]));
       const NormalSums sums =
           predict(dynamics, h.runs[run].initial, runs[run], variables, options).sums;
@@ -210,7 +211,7 @@ class Fitter {
 
   Fit run() {
     bool converged = false;
-    for (const double share : settings_.windows) converged = fit_window(share);
+    for (const double fraction : settings_.windows) converged = fit_window(fraction);
     Evaluation last = evaluate_with_priors(now_, true, 1.0);
     Fit result;
     result.chi2 = last.sums.chi2;
@@ -226,37 +227,39 @@ class Fitter {
   }
 
  private:
-  Evaluation evaluate_with_priors(const Hypothesis& h, bool with_slopes, double share) const {
-    Evaluation e = evaluate(h, runs_, {}, with_slopes, share, settings_.tolerance);
+  Evaluation evaluate_with_priors(const Hypothesis& h, bool with_slopes, double fraction) const {
+    Evaluation e = evaluate(h, runs_, {}, with_slopes, fraction, settings_.tolerance);
     if (std::isfinite(e.sums.chi2)) add_priors(h, layout_, e.sums);
     return e;
   }
 
-  bool fit_window(double share) {
+  bool fit_window(double fraction) {
     double damping = 1e-9;
-    Evaluation now = evaluate_with_priors(now_, true, share);
-    for (int iteration = 0; iteration < settings_.most_iterations; ++iteration) {
+    Evaluation now = evaluate_with_priors(now_, true, fraction);
+    for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
       if (!std::isfinite(now.sums.chi2)) return false;
       const Eigen::VectorXd step = damped_step(now.sums, damping);
       if (!step.allFinite()) {
         damping = std::max(damping, 1e-6) * 10.0;
         continue;
       }
-      // What the step promises; nothing worth having: done.
-      const double promised = step.dot(2.0 * now.sums.gradient - now.sums.matrix * step);
+      // What the step predicts; nothing worth having: done.
+      const double predicted_gain = step.dot(2.0 * now.sums.gradient - now.sums.matrix * step);
       // So is what a bad fit could hardly show.
-      constexpr double least_share = 1e-6;
-      if (promised < std::max(settings_.converged_gain, least_share * now.sums.chi2)) return true;
+      constexpr double min_fraction = 1e-6;
+      if (predicted_gain < std::max(settings_.converged_gain, min_fraction * now.sums.chi2))
+        return true;
       Hypothesis tried = stepped(now_, step);
-      const Evaluation at = evaluate_with_priors(tried, false, share);
+      const Evaluation at = evaluate_with_priors(tried, false, fraction);
       if (!(at.sums.chi2 < now.sums.chi2)) {
         damping = std::max(damping, 1e-5) * 10.0;
         if (damping > 1e9) return false;
         continue;
       }
       now_ = std::move(tried);
-      damping = at.sums.chi2 < now.sums.chi2 - 0.25 * promised ? damping * 0.1 : damping * 3.0;
-      now = evaluate_with_priors(now_, true, share);
+      damping =
+          at.sums.chi2 < now.sums.chi2 - 0.25 * predicted_gain ? damping * 0.1 : damping * 3.0;
+      now = evaluate_with_priors(now_, true, fraction);
     }
     return false;
   }

@@ -61,8 +61,8 @@ struct Fit {
 };
 
 struct FitSettings {
-  std::vector<double> windows = {1.0};  // shares of each run that are fitted in turn
-  int most_iterations = 25;
+  std::vector<double> windows = {1.0};  // fractions of each run that are fitted in turn
+  int max_iterations = 25;
   double tolerance = 1e-7;       // of the propagation
   double converged_gain = 0.01;  // stop when a step improves χ² by less
 };
@@ -70,7 +70,7 @@ struct FitSettings {
 // A start of every run from what was seen at its beginning.
 PlatformState first_state(const AttitudeModel& model, const Observation& seen);
 
-// Such starts of all runs, their own parameters at what is believed.
+// Such starts of all runs, their own parameters at the nominal model.
 std::vector<RunStart> seen_starts(const Hypothesis& h, const std::vector<Observation>& runs);
 
 // Never throws for a model that cannot be propagated at the start: then chi2 is infinite.

@@ -16,7 +16,7 @@ namespace {
 constexpr double scanned_damping = 0.08;
 
 // On noise alone χ² falls by six with six strengths.
-constexpr double least_ringing_gain = 14.0;
+constexpr double min_ringing_gain = 14.0;
 
 // Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.
 ScoreGroup appendages(const Disturbance& start, double frequency_Hz) {
@@ -74,15 +74,15 @@ Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& ine
     if (along * along < best.gain * curvature) continue;
     best.gain = along * along / curvature;
     const double whole_kg_m2 = axis.dot(inertia_kg_m2 * axis);
-    const double share = std::min(along / curvature / whole_kg_m2, 0.5);
+    const double fraction = std::min(along / curvature / whole_kg_m2, 0.5);
     best.start = group.disturbances.front();
     auto& parameters = best.start.parameters;
     for (int k = 0; k < 3; ++k) parameters[static_cast<size_t>(k)].value = axis[k];
     best.start.states[1].per_body_rate = axis;
     // The platform's recoil makes a heavy appendage swing faster than with the platform held.
-    parameters[3].value *= std::sqrt(1.0 - share);
+    parameters[3].value *= std::sqrt(1.0 - fraction);
     parameters[4].value = 0.04;
-    parameters[5].value = share * whole_kg_m2;
+    parameters[5].value = fraction * whole_kg_m2;
   }
   return best;
 }
@@ -100,25 +100,25 @@ Score together(const Score& a, const Score& b) {
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,
                                         const std::vector<Observation>& slow_runs) {
-  constexpr double step = 1.2, most_Hz = 5.0;
-  constexpr size_t most_starts = 3, most_fast_starts = 2;
+  constexpr double step = 1.2, max_Hz = 5.0;
+  constexpr size_t max_starts = 3, max_fast_starts = 2;
   const auto interval_s = [](const Observation& seen) {
     return seen.duration_s() / static_cast<double>(seen.blocks());
   };
-  const double highest_Hz = std::min(most_Hz, 0.4 / interval_s(runs.front()));
+  const double highest_Hz = std::min(max_Hz, 0.4 / interval_s(runs.front()));
   // Below it, a swing passes through enough of the averages, and the platform's own motion takes
   // part in it; above, it is too slow to.
   const double slow_Hz = 0.14 / interval_s(slow_runs.front());
   const Mat3& inertia_kg_m2 = fit.best.model.platform.inertia_kg_m2;
-  const std::vector<Prediction> flown = residuals_of(fit, runs);
-  std::vector<FlownRun> all;
-  for (size_t run = 0; run < runs.size(); ++run) all.push_back({runs[run], flown[run]});
+  const std::vector<Prediction> propagated = residuals_of(fit, runs);
+  std::vector<PropagatedRun> all;
+  for (size_t run = 0; run < runs.size(); ++run) all.push_back({runs[run], propagated[run]});
   std::vector<Start> starts;
   const auto start_at_peaks = [&](const std::vector<Mode>& modes, size_t most) {
     std::vector<double> gain;
     for (const Mode& mode : modes) gain.push_back(mode.gain);
     for (const size_t i : peaks(gain, most)) {
-      if (gain[i] > least_scan_gain) starts.push_back({modes[i].start, gain[i]});
+      if (gain[i] > min_scan_gain) starts.push_back({modes[i].start, gain[i]});
     }
   };
   std::vector<Mode> modes;
@@ -127,7 +127,7 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
     const ScoreGroup group = appendages(start, f_Hz);
     modes.push_back(best_appendage(group, score(fit, slow_runs, {group}).front(), inertia_kg_m2));
   }
-  start_at_peaks(modes, most_starts);
+  start_at_peaks(modes, max_starts);
   // What swings fast turns along with slow motion, as a part of the inertia: the same for all.
   constexpr double stiff = 5.0;  // times slow_Hz
   const Score carried = score(fit, slow_runs, {appendages(start, stiff * slow_Hz)}).front();
@@ -136,11 +136,11 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
     const ScoreGroup group = appendages(start, f_Hz);
     const Score ringing =
         score_of_ringing(all, inertia_kg_m2, axes_of(group), f_Hz, scanned_damping);
-    modes.push_back(ringing.gain < least_ringing_gain
+    modes.push_back(ringing.gain < min_ringing_gain
                         ? Mode{}
                         : best_appendage(group, together(carried, ringing), inertia_kg_m2));
   }
-  start_at_peaks(modes, most_fast_starts);
+  start_at_peaks(modes, max_fast_starts);
   return starts;
 }
 

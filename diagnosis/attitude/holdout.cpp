@@ -49,7 +49,7 @@ std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
 
 }  // namespace
 
-Fit fly(const Fit& fitted, const std::vector<Observation>& runs) {
+Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs) {
   Hypothesis h = fitted.best;
   std::erase_if(h.free, [](const Free& f) { return !f.per_run; });
   std::vector<double> own;
@@ -70,7 +70,7 @@ Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<O
     result.rms_before = rms(residuals_of(before, runs), runs);
     result.rms_after = rms(residuals_of(after, runs), runs);
   } catch (const NumericalError&) {
-    // A model that cannot fly these runs has no residuals to show.
+    // A model that cannot propagate these runs has no residuals to show.
   }
   return result;
 }
@@ -79,15 +79,15 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
                           size_t run) {
   PredictionOptions options;
   options.keep_residuals = true;
-  const auto flown = [&](const Fit& fit) {
+  const auto propagated = [&](const Fit& fit) {
     const Dynamics dynamics(fit.best.model_of(run, seen));
     return predict(dynamics, fit.best.runs[run].initial, seen, {}, options);
   };
   RecordingSeries result;
   result.recording = seen.name;
-  const double longest_gap_s = 5.0 * seen.duration_s() / static_cast<double>(seen.blocks());
+  const double max_gap_s = 5.0 * seen.duration_s() / static_cast<double>(seen.blocks());
   try {
-    const Prediction a = flown(before), b = flown(after);
+    const Prediction a = propagated(before), b = propagated(after);
     for (Eigen::Index k = 0; k < 6; ++k) {
       ChannelSeries c;
       c.name = names[k];
@@ -99,7 +99,7 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
         const bool read = rows_of(seen, i, k) > 0.0;
         // A camera may see every second row only: what was not read is left out, and a longer gap
         // stays one.
-        const bool in_gap = !c.time_s.empty() && seen.time_s[i] - c.time_s.back() > longest_gap_s;
+        const bool in_gap = !c.time_s.empty() && seen.time_s[i] - c.time_s.back() > max_gap_s;
         if (!read && !in_gap) continue;
         c.time_s.push_back(seen.time_s[i]);
         c.residual_before.push_back(in_unit(a.residual[i], seen, i, k));

@@ -6,9 +6,9 @@
 
 namespace photorque {
 
-// The model of a fit flown on other runs: only how these runs began (initial state, instrument
+// The model of a fit propagated on other runs: only how these runs began (initial state, instrument
 // biases within their stated uncertainty) is taken from them.
-Fit fly(const Fit& fitted, const std::vector<Observation>& runs);
+Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs);
 
 Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<Observation>& runs);
 

@@ -7,10 +7,10 @@
 namespace photorque {
 namespace {
 
-// Enough to see whether a fit that is far off falls into another valley.
+// Enough to see whether a fit that is far off falls into another local minimum.
 FitSettings brief() {
   FitSettings settings;
-  settings.most_iterations = 10;
+  settings.max_iterations = 10;
   return settings;
 }
 
@@ -29,13 +29,13 @@ void learn(Trial& trial, const Trial& best, const std::vector<Candidate>& all,
 
 FitSettings patient_fit() {
   FitSettings settings;
-  settings.most_iterations = 60;
+  settings.max_iterations = 60;
   return settings;
 }
 
 bool is_near(const Trial& trial, const Trial& best) {
-  constexpr double share = 1.3, slack = 100.0;
-  return trial.fit.chi2 < share * best.fit.chi2 + slack;
+  constexpr double fraction = 1.3, slack = 100.0;
+  return trial.fit.chi2 < fraction * best.fit.chi2 + slack;
 }
 
 std::vector<size_t> by_evidence(const std::vector<Trial>& trials) {
@@ -50,10 +50,10 @@ std::vector<size_t> by_evidence(const std::vector<Trial>& trials) {
 void settle_leaders(std::vector<Trial>& found, std::vector<Trial>& parents,
                     std::vector<Trial>& trials, const std::vector<Candidate>& all,
                     const std::vector<Observation>& runs, int threads) {
-  constexpr size_t most_leaders = 6;
+  constexpr size_t max_leaders = 6;
   std::vector<size_t> leaders = by_evidence(found);
   if (leaders.empty()) return;
-  leaders.resize(std::min(most_leaders, leaders.size()));
+  leaders.resize(std::min(max_leaders, leaders.size()));
   const Trial first = found[leaders.front()];
   std::erase_if(leaders, [&](size_t i) { return !is_near(found[i], first); });
   parallel_for(leaders.size(), threads, [&](size_t i) {

@@ -11,8 +11,8 @@ std::vector<size_t> by_evidence(const std::vector<Trial>& trials);
 // Until a fit converges: one that is given up early makes whatever goes on from it seem to gain.
 FitSettings patient_fit();
 
-// Whether a trial explains nearly as much as the best on the same runs: where even the belief has
-// gone astray, most others are no leaders, however few they are.
+// Whether a trial explains nearly as much as the best on the same runs: where even the nominal
+// model has diverged, most others are no leaders, however few they are.
 bool is_near(const Trial& trial, const Trial& best);
 
 // The leaders' fits are carried on until they converge: what only goes on where its parent's fit

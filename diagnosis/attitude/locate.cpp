@@ -67,10 +67,10 @@ std::vector<Where::Interval> intervals(const Prediction& p, const Observation& s
 
 // The band that holds nine tenths of the power above that of noise.
 std::optional<Where::Interval> band(const Prediction& p, const Observation& seen) {
-  constexpr size_t most_lines = 400;
+  constexpr size_t max_lines = 400;
   const double step_Hz = 0.5 / seen.duration_s();
   const double highest_Hz = 0.5 * static_cast<double>(seen.blocks()) / seen.duration_s();
-  const auto lines = std::min(most_lines, static_cast<size_t>(highest_Hz / step_Hz));
+  const auto lines = std::min(max_lines, static_cast<size_t>(highest_Hz / step_Hz));
   std::vector<double> excess(lines, 0.0);
   double total = 0.0;
   for (size_t l = 0; l < lines; ++l) {
@@ -110,19 +110,19 @@ Where locate(const std::vector<Prediction>& residuals, const std::vector<Observa
 
 std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
                                            const std::vector<Candidate>& all) {
-  const double belief = trials.front().log_evidence;
-  double most = belief;
+  const double nominal = trials.front().log_evidence;
+  double most = nominal;
   for (const Trial& t : trials) most = std::max(most, t.log_evidence);
   std::map<std::string, double> strength;
   for (const Trial& t : trials) {
     if (t.candidates.size() != 1 || !all[t.candidates[0]].empirical()) continue;
-    const double share = (t.log_evidence - belief) / std::max(1.0, most - belief);
+    const double fraction = (t.log_evidence - nominal) / std::max(1.0, most - nominal);
     double& best = strength[all[t.candidates[0]].variable];
-    best = std::max(best, std::clamp(share, 0.0, 1.0));
+    best = std::max(best, std::clamp(fraction, 0.0, 1.0));
   }
   std::vector<Where::Dependence> result;
-  for (const auto& [variable, share] : strength) {
-    if (share > 0.1) result.push_back({variable, share});
+  for (const auto& [variable, fraction] : strength) {
+    if (fraction > 0.1) result.push_back({variable, fraction});
   }
   std::stable_sort(result.begin(), result.end(),
                    [](const auto& a, const auto& b) { return a.strength > b.strength; });

@@ -1,4 +1,5 @@
-// Where recording and belief part: channels, intervals, band, and the variables it depends on.
+// Where recording and nominal model part: channels, intervals, band, and the variables it depends
+// on.
 #pragma once
 
 #include "diagnosis/attitude/trial.h"
@@ -6,12 +7,12 @@
 
 namespace photorque {
 
-// `residuals` are those of the belief. `depends_on` is left empty.
+// `residuals` are those of the nominal model. `depends_on` is left empty.
 Where locate(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs);
 
-// From trials with one candidate: by each variable, the share of the misfit of the first trial (the
-// belief) that an empirical law in it explains, largest first. Variables that explain less than a
-// tenth are left out.
+// From trials with one candidate: by each variable, the fraction of the misfit of the first trial
+// (the nominal model) that an empirical law in it explains, largest first. Variables that explain
+// less than a tenth are left out.
 std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
                                            const std::vector<Candidate>& all);
 

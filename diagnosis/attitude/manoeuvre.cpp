@@ -73,20 +73,21 @@ bool is_told_by_charge(const std::string& kind, const std::string& rival) {
          (kind == "battery_discharge" || rival == "battery_discharge");
 }
 
-// The first run from another start as the trial foretells it, without noise.
-Observation flown_from(const Trial& truth, const PlatformState& start, const Observation& like) {
+// The first run from another start as the trial predicts it, without noise.
+Observation propagated_from(const Trial& truth, const PlatformState& start,
+                            const Observation& like) {
   PredictionOptions options;
   options.keep_residuals = true;
   const Dynamics dynamics(truth.fit.best.model_of(0, like));
-  const Prediction flown = predict(dynamics, start, like, {}, options);
+  const Prediction propagated = predict(dynamics, start, like, {}, options);
   Observation seen = like;
   for (size_t i = 0; i < seen.blocks(); ++i) {
-    const Vec3& offset = flown.camera_offset_lab_rad[i];
-    seen.attitude[i] = flown.states[i].lab_from_body;
+    const Vec3& offset = propagated.camera_offset_lab_rad[i];
+    seen.attitude[i] = propagated.states[i].lab_from_body;
     if (const double angle = offset.norm(); angle > 0.0) {
       seen.attitude[i] = Quat(Eigen::AngleAxisd(angle, offset / angle)) * seen.attitude[i];
     }
-    seen.gyro_rad_s[i] = flown.gyro_rad_s[i];
+    seen.gyro_rad_s[i] = propagated.gyro_rad_s[i];
   }
   return seen;
 }
@@ -113,7 +114,7 @@ double expected_lead(const Trial& truth, const Rival& rival, const std::vector<C
     PlatformState start = truth.fit.best.runs.front().initial;
     change(start);
     std::vector<Observation> runs = rival.runs;
-    runs.push_back(flown_from(truth, start, rival.runs.front()));
+    runs.push_back(propagated_from(truth, start, rival.runs.front()));
     std::vector<RunStart> starts = rival.fitted.fit.best.runs;
     starts.push_back(starts.front());
     starts.back().initial = start;
@@ -121,14 +122,14 @@ double expected_lead(const Trial& truth, const Rival& rival, const std::vector<C
     growing.windows = {0.1, 0.4, 1.0};
     const Trial both = refit(rival.fitted, all, runs, starts, growing);
     if (!both.fit.converged) return not_known;
-    const double more = both.fit.chi2 - rival.fitted.fit.chi2;  // bent beliefs count
+    const double more = both.fit.chi2 - rival.fitted.fit.chi2;  // bent priors count
     return std::isfinite(more) ? std::max(0.0, 0.5 * more) : not_known;
   } catch (const NumericalError&) {
     return not_known;
   }
 }
 
-// The start that promises most.
+// The start that predicts most.
 Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival,
                      const std::vector<Candidate>& all, const std::vector<Observation>& recorded,
                      int threads) {

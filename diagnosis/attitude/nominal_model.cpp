@@ -2,10 +2,9 @@
 
 namespace photorque {
 
-Hypothesis believed_hypothesis(const BelievedModel& believed,
-                               const std::vector<Observation>& runs) {
+Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs) {
   Hypothesis h;
-  h.model = believed.model;
+  h.model = nominal.model;
   std::vector<double> own;
   for (size_t d = 0; d < h.model.disturbances.size(); ++d) {
     const Disturbance& disturbance = h.model.disturbances[d];
@@ -32,10 +31,10 @@ size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance) {
   return hypothesis.model.disturbances.size() - 1;
 }
 
-Fit fit_belief(const BelievedModel& believed, const std::vector<Observation>& runs) {
+Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs) {
   FitSettings settings;
   settings.windows = {0.05, 0.2, 1.0};
-  return fit(believed_hypothesis(believed, runs), runs, settings);
+  return fit(nominal_hypothesis(nominal, runs), runs, settings);
 }
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// What is believed about the platform, ready to be fitted.
+// the nominal model of the platform, ready to be fitted.
 #pragma once
 
 #include <vector>
@@ -8,14 +8,14 @@
 
 namespace photorque {
 
-// Every parameter with a sigma is free about its believed value; gyro biases are free for each run.
+// Every parameter with a sigma is free about its nominal value; gyro biases are free for each run.
 // The runs start from what was seen at their beginning.
-Hypothesis believed_hypothesis(const BelievedModel& believed, const std::vector<Observation>& runs);
+Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs);
 
 // Appends a disturbance: its own states begin at rest in every run. Returns its index.
 size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance);
 
-// The believed model fitted to the runs, over windows that grow.
-Fit fit_belief(const BelievedModel& believed, const std::vector<Observation>& runs);
+// The nominal model fitted to the runs, over windows that grow.
+Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs);
 
 }  // namespace photorque

@@ -163,7 +163,7 @@ Vec3 rotation_vector(const Quat& rotation) {
   return 2.0 * side * std::atan2(sine, std::abs(rotation.w())) / sine * rotation.vec();
 }
 
-Observation observe(const Recording& recording, const std::string& name, size_t most_blocks) {
+Observation observe(const Recording& recording, const std::string& name, size_t max_blocks) {
   const Columns columns(recording, name);
   Observation seen;
   seen.name = name;
@@ -187,18 +187,18 @@ Observation observe(const Recording& recording, const std::string& name, size_t 
     throw InputError({name, 0}, "q_w", std::to_string(attitudes) + " complete attitudes",
                      "at least " + std::to_string(fewest_attitudes));
   }
-  return seen.averaged(most_blocks);
+  return seen.averaged(max_blocks);
 }
 
-Observation Observation::averaged(size_t most_blocks) const {
-  if (blocks() <= most_blocks) return *this;
+Observation Observation::averaged(size_t max_blocks) const {
+  if (blocks() <= max_blocks) return *this;
   Observation result = *this;
   result.time_s.clear();
   result.attitude.clear();
   result.attitude_rows.clear();
   result.gyro_rad_s.clear();
   result.gyro_rows.clear();
-  const double block_s = duration_s() / static_cast<double>(most_blocks);
+  const double block_s = duration_s() / static_cast<double>(max_blocks);
   for (size_t first = 0, last = 0; first < blocks(); first = last) {
     // Half a row of slack, so that rounding of the times does not make uneven blocks.
     const double end_s = time_s[first] + block_s - 0.5 * row_interval_s;

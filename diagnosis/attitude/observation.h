@@ -37,13 +37,13 @@ struct Observation {
   double duration_s() const { return time_s.back() - time_s.front(); }
   // The blocks [first, last) alone, the charge drawn before them counted.
   Observation part(size_t first, size_t last) const;
-  // Neighbours averaged until about `most_blocks` are left: as good for what is slow against them.
-  Observation averaged(size_t most_blocks) const;
+  // Neighbours averaged until about `max_blocks` are left: as good for what is slow against them.
+  Observation averaged(size_t max_blocks) const;
 };
 
-// About `most_blocks` blocks at most; a recording with fewer rows keeps them all. InputError when
+// About `max_blocks` blocks at most; a recording with fewer rows keeps them all. InputError when
 // the recording has no attitude or fewer than 20 complete ones.
-Observation observe(const Recording& recording, const std::string& name, size_t most_blocks = 6000);
+Observation observe(const Recording& recording, const std::string& name, size_t max_blocks = 6000);
 
 // The rotation vector of a rotation, at most π long [rad].
 Vec3 rotation_vector(const Quat& rotation);

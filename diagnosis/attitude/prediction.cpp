@@ -161,7 +161,7 @@ Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const
   PropagationOptions propagation = options.propagation;
   // A trial of parameters that make the motion run away is not worth its steps.
   constexpr double steps_per_second = 40.0;
-  propagation.most_steps =
+  propagation.max_steps =
       2000 + static_cast<int64_t>(steps_per_second * (seen.time_s[blocks - 1] - initial.time_s));
   Propagator propagator(dynamics, initial, seen.time_s[blocks - 1], propagation, variables);
   sample(

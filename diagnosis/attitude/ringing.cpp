@@ -15,24 +15,24 @@ struct Swing {
 
 // φ'' + 2 ζ ω φ' + ω² φ = −dω_body/dt, from rest beside the body, the acceleration constant between
 // readings: exact for uneven times.
-std::vector<Swing> swings(const FlownRun& run, double frequency_Hz, double damping) {
-  const double pulsation = 2.0 * pi * frequency_Hz;
-  const double decay = damping * pulsation;
-  const double swing_pulsation = pulsation * std::sqrt(1.0 - damping * damping);
-  const std::vector<PlatformState>& states = run.flown.states;
+std::vector<Swing> swings(const PropagatedRun& run, double frequency_Hz, double damping) {
+  const double angular_frequency = 2.0 * pi * frequency_Hz;
+  const double decay = damping * angular_frequency;
+  const double swing_angular_frequency = angular_frequency * std::sqrt(1.0 - damping * damping);
+  const std::vector<PlatformState>& states = run.propagated.states;
   std::vector<Swing> result(states.size());
   for (size_t i = 1; i < states.size(); ++i) {
     const double h_s = run.seen.time_s[i] - run.seen.time_s[i - 1];
     const Vec3 push = (states[i - 1].rate_body_rad_s - states[i].rate_body_rad_s) / h_s;
-    const Vec3 rest = push / (pulsation * pulsation);
+    const Vec3 rest = push / (angular_frequency * angular_frequency);
     const Vec3 off = result[i - 1].angle_rad - rest;
-    const Vec3 sine = (result[i - 1].rate_rad_s + decay * off) / swing_pulsation;
+    const Vec3 sine = (result[i - 1].rate_rad_s + decay * off) / swing_angular_frequency;
     const double shrunk = std::exp(-decay * h_s);
-    const double c = shrunk * std::cos(swing_pulsation * h_s);
-    const double s = shrunk * std::sin(swing_pulsation * h_s);
+    const double c = shrunk * std::cos(swing_angular_frequency * h_s);
+    const double s = shrunk * std::sin(swing_angular_frequency * h_s);
     const Vec3 angle = c * off + s * sine;
     result[i].angle_rad = rest + angle;
-    result[i].rate_rad_s = swing_pulsation * (c * sine - s * off) - decay * angle;
+    result[i].rate_rad_s = swing_angular_frequency * (c * sine - s * off) - decay * angle;
   }
   return result;
 }
@@ -51,7 +51,7 @@ void take_out_slow(Eigen::MatrixXd& rows, Eigen::Index window) {
 }
 
 // Of one channel, where it was read: the whitened answer to each appendage, then the residual.
-Eigen::MatrixXd answers(const FlownRun& run, const std::vector<Swing>& swing,
+Eigen::MatrixXd answers(const PropagatedRun& run, const std::vector<Swing>& swing,
                         const std::vector<Vec3>& axes, const std::vector<Vec3>& answer_body,
                         Eigen::Index channel) {
   const auto count = static_cast<Eigen::Index>(axes.size());
@@ -67,25 +67,26 @@ Eigen::MatrixXd answers(const FlownRun& run, const std::vector<Swing>& swing,
     const double weight = std::sqrt(readings) / noise;
     const Vec3& moved = camera ? swing[i].angle_rad : swing[i].rate_rad_s;
     const Vec3 unit = Vec3::Unit(k);
-    const Vec3 along = camera ? Vec3(run.flown.states[i].lab_from_body.conjugate() * unit) : unit;
+    const Vec3 along =
+        camera ? Vec3(run.propagated.states[i].lab_from_body.conjugate() * unit) : unit;
     for (Eigen::Index a = 0; a < count; ++a) {
       const auto at = static_cast<size_t>(a);
       rows(used, a) = weight * along.dot(answer_body[at]) * axes[at].dot(moved);
     }
-    rows(used++, count) = run.flown.residual[i][channel];
+    rows(used++, count) = run.propagated.residual[i][channel];
   }
   return rows.topRows(used);
 }
 
 }  // namespace
 
-Score score_of_ringing(const std::vector<FlownRun>& runs, const Mat3& inertia_kg_m2,
+Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
                        const std::vector<Vec3>& axes, double frequency_Hz, double damping) {
   const auto count = static_cast<Eigen::Index>(axes.size());
   std::vector<Vec3> answer_body;
   for (const Vec3& axis : axes) answer_body.push_back(-inertia_kg_m2.inverse() * axis);
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count + 1, count + 1);
-  for (const FlownRun& run : runs) {
+  for (const PropagatedRun& run : runs) {
     const std::vector<Swing> swing = swings(run, frequency_Hz, damping);
     for (Eigen::Index channel = 0; channel < 6; ++channel) {
       Eigen::MatrixXd rows = answers(run, swing, axes, answer_body, channel);

@@ -1,4 +1,5 @@
-// Screening for appendages that swing fast, without flying the platform again for each frequency.
+// Screening for appendages that swing fast, without propagating the platform again for each
+// frequency.
 #pragma once
 
 #include "diagnosis/attitude/prediction.h"
@@ -6,18 +7,18 @@
 
 namespace photorque {
 
-// One run flown along a fit.
-struct FlownRun {
+// One run propagated along a fit.
+struct PropagatedRun {
   const Observation& seen;
-  const Prediction& flown;  // with residuals
+  const Prediction& propagated;  // with residuals
 };
 
 // The score of light appendages about these axes [body, unit vectors], one strength J [kg m²] each,
-// all of one frequency and damping (share of critical). What the fitted motion makes each of them
-// do is exact; how the platform answers holds where nothing else turns it within a swing: it is
-// free there, δω = −J I⁻¹ a φ'. What is slower than a swing is taken out of the readings and the
+// all of one frequency and damping (fraction of critical). What the fitted motion makes each of
+// them do is exact; how the platform answers holds where nothing else turns it within a swing: it
+// is free there, δω = −J I⁻¹ a φ'. What is slower than a swing is taken out of the readings and the
 // answers alike, which stands for projecting out what the fit could still take up.
-Score score_of_ringing(const std::vector<FlownRun>& runs, const Mat3& inertia_kg_m2,
+Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
                        const std::vector<Vec3>& axes, double frequency_Hz, double damping);
 
 }  // namespace photorque

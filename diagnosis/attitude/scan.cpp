@@ -82,7 +82,7 @@ std::vector<Start> mass_shift_starts(const Candidate& c, const Trial& parent,
   for (const Score& s : scores) gain.push_back(s.gain);
   std::vector<Start> starts;
   for (const size_t i : peaks(gain, 2)) {
-    if (gain[i] < least_scan_gain) continue;
+    if (gain[i] < min_scan_gain) continue;
     Disturbance d = groups[i].disturbances.front();
     for (Eigen::Index k = 0; k < scores[i].estimate.size() && k < 3; ++k) {
       d.parameters[static_cast<size_t>(1 + k)].value = scores[i].estimate[k];
@@ -114,7 +114,7 @@ std::vector<double> slow_frequencies_Hz(const Disturbance& tone, const Fit& at,
   for (const Score& s : score(at, runs, groups)) gain.push_back(s.gain);
   std::vector<double> result;
   for (const size_t i : peaks(gain, most)) {
-    if (gain[i] > least_scan_gain) result.push_back(frequency_Hz[i]);
+    if (gain[i] > min_scan_gain) result.push_back(frequency_Hz[i]);
   }
   return result;
 }
@@ -139,9 +139,9 @@ std::vector<Start> sinusoid_starts(const Candidate& c, const Trial& parent,
   for (const Score& s : scores) best = std::max(best, s.gain);
   std::vector<Start> starts;
   for (size_t i = 0; i < groups.size(); ++i) {
-    constexpr double least_share = 0.1;
+    constexpr double min_fraction = 0.1;
     if (scores[i].estimate.size() != 6) continue;
-    if (scores[i].gain < std::max(least_scan_gain, least_share * best)) continue;
+    if (scores[i].gain < std::max(min_scan_gain, min_fraction * best)) continue;
     Eigen::Matrix<double, 3, 2> amplitude;
     amplitude.col(0) = scores[i].estimate.head<3>();
     amplitude.col(1) = scores[i].estimate.tail<3>();

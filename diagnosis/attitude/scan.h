@@ -16,7 +16,7 @@ std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observa
 
 struct Start {
   Disturbance disturbance;
-  // Fall of χ² that a scan promises; infinite where nothing was scanned.
+  // Fall of χ² that a scan predicts; infinite where nothing was scanned.
   double gain = std::numeric_limits<double>::infinity();
 };
 

@@ -19,7 +19,7 @@ struct Task {
 };
 
 // Of a fit, beyond which its slopes say little: the trajectory is elsewhere.
-constexpr double astray_chi2_per_sample = 20.0;
+constexpr double diverged_chi2_per_sample = 20.0;
 
 // The runs, or what each was cut into.
 struct Runs {
@@ -51,20 +51,20 @@ Runs cut(const std::vector<Observation>& runs, size_t pieces) {
 }
 
 // Of the best candidate's gain, to be worth a fit.
-constexpr double least_share = 0.02;
+constexpr double min_fraction = 0.02;
 
 struct Promising {
   std::vector<size_t> candidates;
-  double least_gain;  // that a scan's start must promise, to be worth a fit beside these
+  double min_gain;  // that a scan's start must predict, to be worth a fit beside these
 };
 
-// Where the trajectory is near the readings, the score test foretells what each candidate would
+// Where the trajectory is near the readings, the score test predicts what each candidate would
 // gain: those that would gain hardly anything against the best need no fit of their own.
 Promising promising(const Trial& parent, const std::vector<Candidate>& all,
                     const std::vector<size_t>& candidates,
                     const std::vector<Observation>& slow_runs) {
-  constexpr double least_gain = 5.0;
-  if (parent.fit.chi2_per_sample() > astray_chi2_per_sample) return {candidates, 0.0};
+  constexpr double min_gain = 5.0;
+  if (parent.fit.chi2_per_sample() > diverged_chi2_per_sample) return {candidates, 0.0};
   std::vector<ScoreGroup> groups;
   for (const size_t c : candidates) {
     groups.push_back(
@@ -73,11 +73,11 @@ Promising promising(const Trial& parent, const std::vector<Candidate>& all,
   const std::vector<Score> scores = score(parent.fit, slow_runs, groups);
   double best = 0.0;
   for (const Score& s : scores) best = std::max(best, s.gain);
-  Promising result{{}, least_share * best};
+  Promising result{{}, min_fraction * best};
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& c = all[candidates[i]];
     const double parameters = static_cast<double>(c.start.parameters.size());
-    const bool worth_it = scores[i].gain > std::max(least_gain + parameters, result.least_gain);
+    const bool worth_it = scores[i].gain > std::max(min_gain + parameters, result.min_gain);
     if (!c.is_linear() || worth_it) result.candidates.push_back(candidates[i]);
   }
   return result;
@@ -100,7 +100,7 @@ std::vector<Trial> extend_by_tasks(const Trial& parent, const std::vector<Candid
   std::vector<Trial> trials(tasks.size());
   parallel_for(tasks.size(), threads, [&](size_t i) {
     FitSettings settings;
-    settings.most_iterations = 12;
+    settings.max_iterations = 12;
     trials[i] = extend(parent, all, tasks[i].candidate, tasks[i].start, runs, settings);
   });
   std::vector<Trial> best;
@@ -119,7 +119,7 @@ std::vector<Trial> extend_by_tasks(const Trial& parent, const std::vector<Candid
 std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>& all,
                                const std::vector<size_t>& candidates, const Runs& run_set,
                                int threads) {
-  constexpr size_t most_refits = 4;
+  constexpr size_t max_refits = 4;
   const std::vector<Observation>& runs = run_set.all;
   const std::vector<Observation> slow_runs = run_set.averaged(parent.fit);
   std::vector<double> lines_Hz;
@@ -139,7 +139,7 @@ std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>
     const bool is_fast =
         kind == "periodic_torque" || kind == "floor_vibration" || kind == "flexible_mode";
     for (const Start& start : starts[i]) {
-      if (start.gain < hopeful.least_gain) continue;
+      if (start.gain < hopeful.min_gain) continue;
       (is_fast ? fast : slow).push_back({worth_it[i], start.disturbance});
     }
   }
@@ -150,7 +150,7 @@ std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>
   for (Trial& t : rough) t.log_evidence += parent.log_evidence - rough_parent;
   std::stable_sort(rough.begin(), rough.end(),
                    [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
-  const size_t refits = std::min(most_refits, rough.size());
+  const size_t refits = std::min(max_refits, rough.size());
   parallel_for(refits, threads,
                [&](size_t i) { rough[i] = refit(rough[i], all, runs, rough[i].fit.best.runs); });
   keep_below(rough, refits);
@@ -158,13 +158,13 @@ std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>
   return found;
 }
 
-// Every candidate added to a parent that has gone astray. A trajectory far from the readings says
+// Every candidate added to a parent that has diverged. A trajectory far from the readings says
 // little about why, so the runs are cut into pieces, each with a start of its own, in which it
 // stays near them; what explains the pieces best is then fitted to the whole (multiple shooting).
 std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candidate>& all,
                                     const std::vector<size_t>& candidates,
                                     const std::vector<Observation>& runs, int threads) {
-  constexpr size_t most_refits = 6;
+  constexpr size_t max_refits = 6;
   Runs pieces{runs};
   Trial near = parent;
   for (const size_t count : {6u, 20u}) {
@@ -173,7 +173,7 @@ std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candi
     if (shorter.all.empty()) break;
     pieces = std::move(shorter);
     near = refit(parent, all, pieces.all, seen_starts(parent.fit.best, pieces.all));
-    if (near.fit.chi2_per_sample() < astray_chi2_per_sample) break;
+    if (near.fit.chi2_per_sample() < diverged_chi2_per_sample) break;
   }
   std::vector<Trial> found = extend_near(near, all, candidates, pieces, threads);
   std::stable_sort(found.begin(), found.end(),
@@ -181,7 +181,7 @@ std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candi
   FitSettings growing;
   growing.windows = {0.06, 0.25, 1.0};
   size_t refits = 0;
-  while (refits < std::min(most_refits, found.size()) && is_near(found[refits], found.front())) {
+  while (refits < std::min(max_refits, found.size()) && is_near(found[refits], found.front())) {
     ++refits;
   }
   parallel_for(found.size(), threads, [&](size_t i) {
@@ -201,7 +201,7 @@ std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candi
 std::vector<Trial> extend_by_each(const Trial& parent, const std::vector<Candidate>& all,
                                   const std::vector<size_t>& candidates,
                                   const std::vector<Observation>& runs, int threads) {
-  if (parent.fit.chi2_per_sample() > astray_chi2_per_sample) {
+  if (parent.fit.chi2_per_sample() > diverged_chi2_per_sample) {
     return extend_by_pieces(parent, all, candidates, runs, threads);
   }
   return extend_near(parent, all, candidates, {runs}, threads);
@@ -257,15 +257,15 @@ std::vector<Trial> other_halves(const Trial& pair, const std::vector<Trial>& par
 }
 
 // Two effects that hide each other: alone neither may be what explains most. Near the readings the
-// score test foretells what every pair would gain; the best are fitted.
-std::vector<Trial> best_pairs(const Trial& belief, const std::vector<Candidate>& all,
+// score test predicts what every pair would gain; the best are fitted.
+std::vector<Trial> best_pairs(const Trial& nominal, const std::vector<Candidate>& all,
                               const std::vector<Observation>& runs, const std::vector<Trial>& known,
                               int threads) {
-  constexpr size_t most_pairs = 4;
+  constexpr size_t max_pairs = 4;
   // Over the better of the two alone, to be worth a fit.
-  constexpr double least_gain = 16.0;
-  if (belief.fit.chi2_per_sample() > astray_chi2_per_sample) return {};
-  const std::vector<Observation> slow_runs = Runs{runs}.averaged(belief.fit);
+  constexpr double min_gain = 16.0;
+  if (nominal.fit.chi2_per_sample() > diverged_chi2_per_sample) return {};
+  const std::vector<Observation> slow_runs = Runs{runs}.averaged(nominal.fit);
   std::vector<size_t> linear;
   std::vector<ScoreGroup> groups;
   for (size_t c = 0; c < all.size(); ++c) {
@@ -273,7 +273,7 @@ std::vector<Trial> best_pairs(const Trial& belief, const std::vector<Candidate>&
     linear.push_back(c);
     groups.push_back({{all[c].start}});
   }
-  const Eigen::MatrixXd gains = score_pairs(belief.fit, slow_runs, groups);
+  const Eigen::MatrixXd gains = score_pairs(nominal.fit, slow_runs, groups);
   struct Pair {
     size_t first, second;
     double gain;
@@ -285,7 +285,7 @@ std::vector<Trial> best_pairs(const Trial& belief, const std::vector<Candidate>&
       const auto [a, b] = gains(i, i) > gains(j, j) ? std::pair(i, j) : std::pair(j, i);
       const Pair pair{linear[static_cast<size_t>(a)], linear[static_cast<size_t>(b)], gains(i, j)};
       if (all[pair.first].label == all[pair.second].label) continue;
-      if (gains(i, j) < gains(a, a) + least_gain) continue;
+      if (gains(i, j) < gains(a, a) + min_gain) continue;
       const bool tried = std::any_of(known.begin(), known.end(), [&](const Trial& t) {
         return t.candidates == std::vector<size_t>{pair.first, pair.second} ||
                t.candidates == std::vector<size_t>{pair.second, pair.first};
@@ -301,11 +301,11 @@ std::vector<Trial> best_pairs(const Trial& belief, const std::vector<Candidate>&
     };
     return worth(a) > worth(b);
   });
-  if (pairs.size() > most_pairs) pairs.resize(most_pairs);
+  if (pairs.size() > max_pairs) pairs.resize(max_pairs);
   std::vector<Trial> found(pairs.size());
   parallel_for(pairs.size(), threads, [&](size_t i) {
     const Pair& p = pairs[i];
-    const Trial one = extend(belief, all, p.first, all[p.first].start, slow_runs);
+    const Trial one = extend(nominal, all, p.first, all[p.first].start, slow_runs);
     const Trial two = extend(one, all, p.second, all[p.second].start, slow_runs);
     found[i] = refit(two, all, runs, two.fit.best.runs);
   });
@@ -314,11 +314,11 @@ std::vector<Trial> best_pairs(const Trial& belief, const std::vector<Candidate>&
 
 }  // namespace
 
-std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
+std::vector<Trial> search(const Fit& nominal, const std::vector<Candidate>& all,
                           const std::vector<Observation>& runs, const SearchOptions& options) {
-  std::vector<Trial> trials = {believed_trial(belief)};
+  std::vector<Trial> trials = {nominal_trial(nominal)};
   std::vector<Trial> parents = trials;
-  for (int effects = 1; effects <= options.most_effects; ++effects) {
+  for (int effects = 1; effects <= options.max_effects; ++effects) {
     std::vector<Trial> found;
     const auto extend_all = [&](const Trial& parent, bool with_empirical) {
       std::vector<size_t> others;
@@ -350,18 +350,18 @@ std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
     settle_leaders(found, parents, trials, all, runs, options.threads);
     // The best physics goes on, and the next best while the best leaves structure behind; when
     // nothing gained, nothing more will.
-    const size_t most_parents = effects == 1 ? 2 : 1;
+    const size_t max_parents = effects == 1 ? 2 : 1;
     constexpr double explained_sigma = 5.0;
     std::vector<Trial> next;
     for (const size_t i : by_evidence(found)) {
       const bool gained = found[i].log_evidence > parents.front().log_evidence + 3.0;
-      if (!gained || next.size() == most_parents) break;
+      if (!gained || next.size() == max_parents) break;
       if (!is_physics(found[i], all)) {
         continue;
       }
       if (!found[i].objection.empty()) continue;
       // Two effects that leave the trajectory elsewhere: no third will bring it back.
-      if (effects >= 2 && found[i].fit.chi2_per_sample() > astray_chi2_per_sample) break;
+      if (effects >= 2 && found[i].fit.chi2_per_sample() > diverged_chi2_per_sample) break;
       next.push_back(found[i]);
       if (excess_sigma(found[i].fit, runs) < explained_sigma) break;
     }

@@ -6,12 +6,12 @@
 namespace photorque {
 
 struct SearchOptions {
-  int threads = 0;       // 0: all
-  int most_effects = 3;  // together
+  int threads = 0;      // 0: all
+  int max_effects = 3;  // together
 };
 
-// All trials that were fitted, the believed model first.
-std::vector<Trial> search(const Fit& belief, const std::vector<Candidate>& all,
+// All trials that were fitted, the nominal model first.
+std::vector<Trial> search(const Fit& nominal, const std::vector<Candidate>& all,
                           const std::vector<Observation>& runs, const SearchOptions& options = {});
 
 }  // namespace photorque

@@ -118,7 +118,7 @@ double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covarian
   return result + at();
 }
 
-// Laplace's approximation of the evidence. The fit's own prior is far wider than what is believed
+// Laplace's approximation of the evidence. The fit's own prior is far wider than the nominal model
 // of an effect; here it is replaced.
 double log_evidence(const Trial& trial, const std::vector<Candidate>& all) {
   const Fit& fit = trial.fit;
@@ -157,23 +157,23 @@ double log_evidence(const Trial& trial, const std::vector<Candidate>& all) {
          log_strength_evidence(strengths, fit.shared_covariance(), trial.candidates.size());
 }
 
-// The largest change of a principal moment by a fitted error of the inertia, as a share of the
-// believed one. The torque equation is homogeneous: hardly any inertia at all explains nearly
+// The largest change of a principal moment by a fitted error of the inertia, as a fraction of the
+// nominal one. The torque equation is homogeneous: hardly any inertia at all explains nearly
 // everything, but nobody weighs a platform that badly.
 double inertia_change(const Trial& trial, const std::vector<Candidate>& all) {
-  const Mat3& believed_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
-  const Vec3 believed = believed_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
+  const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
+  const Vec3 nominal = nominal_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
   double largest = 0.0;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     if (all[trial.candidates[i]].effect.kind != "inertia_error") continue;
     const auto& delta = trial.fit.best.model.disturbances[trial.disturbances[i]].parameters;
-    Mat3 found = believed_kg_m2;
+    Mat3 found = nominal_kg_m2;
     for (Eigen::Index k = 0; k < 3; ++k) found(k, k) += delta[static_cast<size_t>(k)].value;
     found(1, 0) += delta[3].value;
     found(2, 0) += delta[4].value;
     found(2, 1) += delta[5].value;
     const Vec3 moments = found.selfadjointView<Eigen::Lower>().eigenvalues();
-    largest = std::max(largest, (moments - believed).cwiseQuotient(believed).cwiseAbs().maxCoeff());
+    largest = std::max(largest, (moments - nominal).cwiseQuotient(nominal).cwiseAbs().maxCoeff());
   }
   return largest;
 }
@@ -196,8 +196,8 @@ std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) 
       }
     }
   }
-  constexpr double most_inertia_change = 0.4;
-  if (const double change = inertia_change(trial, all); change > most_inertia_change) {
+  constexpr double max_inertia_change = 0.4;
+  if (const double change = inertia_change(trial, all); change > max_inertia_change) {
     return "a principal moment of inertia would change by " +
            std::to_string(static_cast<int>(std::lround(100.0 * change))) + " %";
   }
@@ -253,27 +253,27 @@ void judge(Trial& trial, const std::vector<Candidate>& all) {
 
 }  // namespace
 
-std::vector<Candidate> all_candidates(const BelievedModel& believed,
+std::vector<Candidate> all_candidates(const NominalModel& nominal,
                                       const std::vector<Observation>& runs) {
-  const DisturbanceContext context{believed.model.platform, believed.model.environment};
+  const DisturbanceContext context{nominal.model.platform, nominal.model.environment};
   double duration_s = 0.0, charge_C = 0.0;
   bool has_commands = false;
   for (const Observation& seen : runs) {
     duration_s = std::max(duration_s, seen.time_s.back());
     const Observation last = seen.part(seen.blocks() - 1, seen.blocks());
     charge_C = std::max(charge_C, std::abs(last.initial_charge_C));
-    for (const Held& held : seen.schedule.held) {
+    for (const ZeroOrderHold& held : seen.schedule.held) {
       has_commands = has_commands || held.command_body_N_m.norm() > 0.0;
     }
   }
   std::vector<Candidate> all;
-  for (const Effect& effect : catalogue(believed.model.platform)) {
+  for (const Effect& effect : catalogue(nominal.model.platform)) {
     if (effect.needs == "command" && !has_commands) continue;
     if (effect.needs == "charge" && charge_C == 0.0) continue;
-    const bool field = believed.model.environment.magnetic_field_lab_T.norm() > 0.0;
+    const bool field = nominal.model.environment.magnetic_field_lab_T.norm() > 0.0;
     if (!field && (effect.kind == "magnetic_dipole" || effect.kind == "eddy_damping")) continue;
     // A law without parameters acts already or not.
-    const auto& acting = believed.model.disturbances;
+    const auto& acting = nominal.model.disturbances;
     const bool acts = std::any_of(acting.begin(), acting.end(),
                                   [&](const Disturbance& d) { return d.kind == effect.kind; });
     if (effect.keys.empty() && acts) continue;
@@ -299,7 +299,7 @@ std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which) {
 
 namespace {
 
-// Where a fit went astray, its parameters are no start: back to what is believed and to what was
+// Where a fit diverged, its parameters are no start: back to the nominal model and to what was
 // seen at the beginning of each run.
 void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observation>& runs) {
   const auto& found = parent.disturbances;
@@ -312,9 +312,9 @@ void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observati
 
 }  // namespace
 
-Trial believed_trial(const Fit& belief) {
+Trial nominal_trial(const Fit& nominal) {
   Trial trial;
-  trial.fit = belief;
+  trial.fit = nominal;
   trial.log_evidence = log_evidence(trial, {});
   return trial;
 }
@@ -328,8 +328,8 @@ Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t cand
   trial.disturbances = parent.disturbances;
   Hypothesis h = parent.fit.best;
   FitSettings how = settings;
-  constexpr double astray_chi2_per_sample = 20.0;
-  if (parent.fit.chi2_per_sample() > astray_chi2_per_sample) {
+  constexpr double diverged_chi2_per_sample = 20.0;
+  if (parent.fit.chi2_per_sample() > diverged_chi2_per_sample) {
     start_again(h, parent, runs);
     how.windows = {0.06, 0.25, 1.0};
   }
@@ -368,8 +368,8 @@ Trial refit_near(const Trial& trial, const Trial& other, const std::vector<Candi
   Trial from = trial;
   std::vector<Disturbance>& to = from.fit.best.model.disturbances;
   const std::vector<Disturbance>& source = other.fit.best.model.disturbances;
-  const size_t believed = to.size() - trial.candidates.size();
-  for (size_t d = 0; d < believed; ++d) to[d].parameters = source[d].parameters;
+  const size_t nominal = to.size() - trial.candidates.size();
+  for (size_t d = 0; d < nominal; ++d) to[d].parameters = source[d].parameters;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const auto twin =
         std::find(other.candidates.begin(), other.candidates.end(), trial.candidates[i]);

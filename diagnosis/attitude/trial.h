@@ -13,7 +13,7 @@
 namespace photorque {
 
 // An effect of the catalogue, or an empirical law.
-struct BelievedModel;  // attitude/propagation/run.h
+struct NominalModel;  // attitude/propagation/run.h
 
 struct Candidate {
   std::string label;     // "magnetic_dipole", "unknown in heading: 3 periods a turn"
@@ -25,16 +25,16 @@ struct Candidate {
   std::vector<bool> searched;
 
   bool empirical() const { return !variable.empty(); }
-  // Whether a score test can foretell what its fit gains.
+  // Whether a score test can predict what its fit gains.
   bool is_linear() const {
     return !start.parameters.empty() &&
            std::none_of(searched.begin(), searched.end(), [](bool b) { return b; });
   }
 };
-std::vector<Candidate> all_candidates(const BelievedModel& believed,
+std::vector<Candidate> all_candidates(const NominalModel& nominal,
                                       const std::vector<Observation>& runs);
 
-// The believed model and some candidates.
+// The nominal model and some candidates.
 struct Trial {
   std::vector<size_t> candidates;    // in the order in which they were added
   std::vector<size_t> disturbances;  // where each stands in the model
@@ -45,12 +45,12 @@ struct Trial {
   double log_evidence = 0.0;
   // Of each candidate: the square root of θᵀ C⁻¹ θ over its parameters that are not searched.
   std::vector<double> significance;
-  std::vector<double> joint_significance = {};  // with what was held back, where that was weighed
+  std::vector<double> joint_significance = {};  // with what was held out, where that was weighed
   std::string objection;                        // why physics forbids it; empty: nothing
-  std::optional<double> holdout_chi2_per_sample = {};  // where it flew what was held back
+  std::optional<double> holdout_chi2_per_sample = {};  // where it flew what was held out
 };
 
-Trial believed_trial(const Fit& belief);
+Trial nominal_trial(const Fit& nominal);
 
 // Adds a candidate, its parameters starting from `start`, and fits.
 Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t candidate,

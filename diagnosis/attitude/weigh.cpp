@@ -19,14 +19,14 @@ struct Leader {
   Trial joint;
 };
 
-// Trials within reach of the best by their evidence, and the belief.
+// Trials within reach of the best by their evidence, and the nominal model.
 std::vector<size_t> leaders_among(const std::vector<Trial>& trials) {
-  constexpr size_t most_leaders = 12;
+  constexpr size_t max_leaders = 12;
   constexpr double within = 15.0;
   const std::vector<size_t> order = by_evidence(trials);
   std::vector<size_t> leaders;
   for (const size_t i : order) {
-    if (!trials[i].objection.empty() || leaders.size() == most_leaders) continue;
+    if (!trials[i].objection.empty() || leaders.size() == max_leaders) continue;
     if (trials[i].log_evidence < trials[order.front()].log_evidence - within) break;
     leaders.push_back(i);
   }
@@ -36,7 +36,7 @@ std::vector<size_t> leaders_among(const std::vector<Trial>& trials) {
 
 class Weighing {
  public:
-  Weighing(std::vector<Trial>& trials, const std::vector<Candidate>& all, const HeldBack& data,
+  Weighing(std::vector<Trial>& trials, const std::vector<Candidate>& all, const HeldOut& data,
            int threads)
       : trials_(trials), all_(all), data_(data), threads_(threads), joint_(data.train) {
     joint_.insert(joint_.end(), data.held.begin(), data.held.end());
@@ -44,8 +44,8 @@ class Weighing {
 
   void run() {
     const std::vector<size_t> places = leaders_among(trials_);
-    const double belief = trials_.front().log_evidence;
-    const double gain = trials_[places.front()].log_evidence - belief;
+    const double nominal = trials_.front().log_evidence;
+    const double gain = trials_[places.front()].log_evidence - nominal;
     add_leaders(places);
     const size_t found = trials_.size();
     add_what_only_all_show(trials_.front().candidates);
@@ -57,7 +57,7 @@ class Weighing {
       trial.joint_significance = leader.joint.significance;
       if (trial.objection.empty()) trial.objection = leader.joint.objection;
     }
-    keep_below(found, belief, gain);
+    keep_below(found, nominal, gain);
   }
 
  private:
@@ -74,7 +74,7 @@ class Weighing {
   }
 
   Trial fit_together(Trial& t) const {
-    const Fit held = fly(t.fit, data_.held);
+    const Fit held = propagate_model(t.fit, data_.held);
     if (std::isfinite(held.chi2)) t.holdout_chi2_per_sample = held.chi2_per_sample();
     std::vector<RunStart> starts = t.fit.best.runs;
     starts.insert(starts.end(), held.best.runs.begin(), held.best.runs.end());
@@ -99,12 +99,12 @@ class Weighing {
   // Candidates that would gain beside `parent` (one of the leaders) on all runs, and were not tried
   // or not among the leaders.
   void add_what_only_all_show(const std::vector<size_t>& parent) {
-    constexpr double astray_chi2_per_sample = 20.0;
+    constexpr double diverged_chi2_per_sample = 20.0;
     constexpr size_t blocks = 1000;
     const auto is_parent = [&](const Leader& l) { return trials_[l.at].candidates == parent; };
     const auto at = std::find_if(leaders_.begin(), leaders_.end(), is_parent);
     const Trial joint = at->joint, train = trials_[at->at];
-    if (!(joint.fit.chi2_per_sample() < astray_chi2_per_sample)) return;
+    if (!(joint.fit.chi2_per_sample() < diverged_chi2_per_sample)) return;
     std::vector<size_t> untried;
     std::vector<ScoreGroup> groups;
     for (size_t c = 0; c < all_.size(); ++c) {
@@ -122,7 +122,7 @@ class Weighing {
       const size_t c = untried[worth_it[k]];
       on_train[k] = extend(train, all_, c, all_[c].start, data_.train);
       on_all[k] = extend(joint, all_, c, all_[c].start, joint_, patient_fit());
-      const Fit held = fly(on_train[k].fit, data_.held);
+      const Fit held = propagate_model(on_train[k].fit, data_.held);
       if (std::isfinite(held.chi2)) on_train[k].holdout_chi2_per_sample = held.chi2_per_sample();
     });
     for (size_t k = 0; k < worth_it.size(); ++k) {
@@ -130,17 +130,18 @@ class Weighing {
     }
   }
 
-  // Places of the few candidates with the largest promises, of the catalogue and of empirical laws.
+  // Places of the few candidates with the largest predicted gains, of the catalogue and of
+  // empirical laws.
   std::vector<size_t> best_of(const std::vector<size_t>& candidates,
                               const std::vector<Score>& scores) const {
-    constexpr double least_gain = 14.0;
-    constexpr size_t most_effects = 4, most_laws = 2;
+    constexpr double min_gain = 14.0;
+    constexpr size_t max_effects = 4, max_laws = 2;
     const auto beyond_chance = [&](size_t i) {
       return scores[i].gain - static_cast<double>(all_[candidates[i]].start.parameters.size());
     };
     std::vector<size_t> order;
     for (size_t i = 0; i < candidates.size(); ++i) {
-      if (beyond_chance(i) > least_gain) order.push_back(i);
+      if (beyond_chance(i) > min_gain) order.push_back(i);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](size_t a, size_t b) { return beyond_chance(a) > beyond_chance(b); });
@@ -148,7 +149,7 @@ class Weighing {
     size_t effects = 0, laws = 0;
     for (const size_t i : order) {
       const bool law = all_[candidates[i]].empirical();
-      if (law ? laws++ < most_laws : effects++ < most_effects) best.push_back(i);
+      if (law ? laws++ < max_laws : effects++ < max_effects) best.push_back(i);
     }
     return best;
   }
@@ -180,36 +181,36 @@ class Weighing {
   }
 
   // Of the first `found` trials those that are no leaders.
-  void keep_below(size_t found, double belief, double gain) {
-    // Of the leaders, but for the belief. One may go astray on what it never saw.
-    const double belief_now = trials_.front().log_evidence;
-    double lowest = std::numeric_limits<double>::infinity(), highest = belief_now;
+  void keep_below(size_t found, double nominal, double gain) {
+    // Of the leaders, but for the nominal model. One may diverge on what it never saw.
+    const double nominal_now = trials_.front().log_evidence;
+    double lowest = std::numeric_limits<double>::infinity(), highest = nominal_now;
     std::vector<bool> is_leader(trials_.size(), false);
     for (const Leader& leader : leaders_) {
       is_leader[leader.at] = true;
       if (leader.at != 0) lowest = std::min(lowest, trials_[leader.at].log_evidence);
       highest = std::max(highest, trials_[leader.at].log_evidence);
     }
-    const double ratio = gain > 0.0 ? (highest - belief_now) / gain : 1.0;
+    const double ratio = gain > 0.0 ? (highest - nominal_now) / gain : 1.0;
     for (size_t i = 0; i < found; ++i) {
       if (is_leader[i]) continue;
       double& evidence = trials_[i].log_evidence;
-      evidence = std::min(lowest, belief_now + ratio * (evidence - belief));
+      evidence = std::min(lowest, nominal_now + ratio * (evidence - nominal));
     }
   }
 
   std::vector<Trial>& trials_;
   const std::vector<Candidate>& all_;
-  const HeldBack& data_;
+  const HeldOut& data_;
   int threads_;
-  std::vector<Observation> joint_;  // the train runs, then those held back
+  std::vector<Observation> joint_;  // the train runs, then those held out
   std::vector<Leader> leaders_;
 };
 
 }  // namespace
 
 void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>& all,
-                        const HeldBack& data, int threads) {
+                        const HeldOut& data, int threads) {
   Weighing(trials, all, data, threads).run();
 }
 

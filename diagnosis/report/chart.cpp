@@ -283,11 +283,11 @@ std::string bar_chart_svg(const std::vector<Bar>& bars, const std::string& x_lab
                           const std::string& title) {
   constexpr double row = 27.0, notes = 275.0;
   // As wide as the longest label needs, which is cut where the bars would have no room.
-  constexpr size_t most_letters = 62;
-  constexpr double letter = 6.6, least_names = 150.0;
+  constexpr size_t max_letters = 62;
+  constexpr double letter = 6.6, min_names = 150.0;
   size_t letters = 0;
-  for (const Bar& bar : bars) letters = std::max(letters, std::min(most_letters, bar.label.size()));
-  const double names = std::max(least_names, 14.0 + letter * static_cast<double>(letters));
+  for (const Bar& bar : bars) letters = std::max(letters, std::min(max_letters, bar.label.size()));
+  const double names = std::max(min_names, 14.0 + letter * static_cast<double>(letters));
   Range range{0.0, 0.0};
   for (const Bar& bar : bars) widen(range, std::isfinite(bar.value) ? bar.value : 0.0);
   if (range.low == range.high) range.high = 1.0;
@@ -302,8 +302,8 @@ std::string bar_chart_svg(const std::vector<Bar>& bars, const std::string& x_lab
     const Bar& bar = bars[i];
     const double y = 4.0 + row * static_cast<double>(i), end = range.at(bar.value, from, to);
     const std::string weight = bar.chosen ? " class=\"chosen\"" : "";
-    const bool fits = bar.label.size() <= most_letters;
-    const std::string label = fits ? bar.label : bar.label.substr(0, most_letters - 1) + "…";
+    const bool fits = bar.label.size() <= max_letters;
+    const std::string label = fits ? bar.label : bar.label.substr(0, max_letters - 1) + "…";
     svg += text_at(names - 10.0, y + 17.0, label, "end", weight);
     svg += "<rect x=\"" + number(std::min(zero, end)) + "\" y=\"" + number(y + 4.0) +
            "\" width=\"" + number(std::abs(end - zero)) + "\" height=\"18\" fill=\"" +

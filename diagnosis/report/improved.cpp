@@ -91,10 +91,10 @@ std::string improved_experiment(const std::string& text, const Diagnosis& diagno
   improved += "\n" + comment("---- Added by the diagnosis: " + diagnosis.sentence);
   for (const FoundEffect& effect : diagnosis.effects) improved += effect_text(effect);
   for (const EmpiricalTorque& torque : diagnosis.empirical) improved += empirical_text(torque);
-  if (!diagnosis.beliefs_refined.empty()) {
+  if (!diagnosis.priors_refined.empty()) {
     improved += "\n" + comment("The same recordings narrow what was believed to:");
   }
-  for (const FittedParameter& p : diagnosis.beliefs_refined) {
+  for (const FittedParameter& p : diagnosis.priors_refined) {
     improved += comment("  " + p.key + " = " + value_text(p));
   }
   static const std::regex propagates(R"((^|\n)\s*\[\s*propagate\s*[\].])");

@@ -137,15 +137,15 @@ std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
   json["alternatives"] = list(d.alternatives, alternative_json);
   json["empirical_torque"] = list(d.empirical, empirical_json);
   json["manoeuvres"] = list(d.manoeuvres, manoeuvre_json);
-  json["beliefs_refined"] = parameters_json(d.beliefs_refined);
+  json["beliefs_refined"] = parameters_json(d.priors_refined);
   json["warnings"] = d.warnings;
   json["data"] = {{"rows", d.data.rows},
                   {"used", d.data.used},
                   {"rejected", object(d.data.rejected)},
-                  {"mended", object(d.data.mended)},
+                  {"mended", object(d.data.repaired)},
                   {"median_interval_s", number(d.data.median_interval_s)},
                   {"jitter_s", number(d.data.jitter_s)},
-                  {"longest_gap_s", number(d.data.longest_gap_s)}};
+                  {"longest_gap_s", number(d.data.max_gap_s)}};
   json["provenance"] = provenance_json(provenance);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -299,10 +299,10 @@ std::string overlays(const Diagnosis& d) {
   return tag("section", section);
 }
 
-std::string beliefs(const Diagnosis& d) {
-  if (d.beliefs_refined.empty()) return "";
+std::string priors(const Diagnosis& d) {
+  if (d.priors_refined.empty()) return "";
   return tag("section", tag("h2", "What was believed, after these recordings") +
-                            parameter_table(d.beliefs_refined));
+                            parameter_table(d.priors_refined));
 }
 
 std::string holdout_table(const Holdout& holdout) {
@@ -326,12 +326,12 @@ std::string data_section(const DataQuality& data) {
   for (const auto& [reason, n] : data.rejected) {
     rows += row({"Left out: " + html(spoken(reason)), count(n)});
   }
-  for (const auto& [reason, n] : data.mended) {
+  for (const auto& [reason, n] : data.repaired) {
     rows += row({"Mended: " + html(spoken(reason)), count(n)});
   }
   rows += row({"Median interval", html_number(data.median_interval_s) + " s"});
   rows += row({"Jitter (1 σ)", html_number(data.jitter_s, 2) + " s"});
-  rows += row({"Longest gap", html_number(data.longest_gap_s, 2) + " s"});
+  rows += row({"Longest gap", html_number(data.max_gap_s, 2) + " s"});
   return tag("section", tag("h2", "Data quality") + tag("table", rows, "numbers"));
 }
 
@@ -345,7 +345,7 @@ std::string report_html(const Diagnosis& d, const std::string& title,
           "</style>\n</head>\n<body>\n<main>\n";
   page += head(d, title) + effects(d) + empirical(d) + where_section(d.where) + ranking(d);
   if (d.holdout) page += holdout_table(*d.holdout);
-  page += overlays(d) + beliefs(d) + data_section(d.data);
+  page += overlays(d) + priors(d) + data_section(d.data);
   page += tag("footer", html(provenance.one_line()));
   return page + "</main>\n</body>\n</html>\n";
 }

@@ -9,7 +9,7 @@
 namespace photorque {
 
 // One page that needs nothing else (pictures are inline SVG, no scripts): the finding in one
-// sentence, what acts with its numbers, where recording and belief part, the ranking of the
+// sentence, what acts with its numbers, where recording and nominal model part, the ranking of the
 // alternatives, readings beside predictions with the part that was never fitted shaded, and the
 // quality of the data. `title` names the experiment. Long series are thinned so that what is drawn
 // differs by less than a pixel.

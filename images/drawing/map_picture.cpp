@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-constexpr double longest_side = 440.0;
+constexpr double max_side = 440.0;
 constexpr double tallest = 400.0;
 constexpr double largest_ratio = 8.0;
 constexpr double shortest_colour_bar = 150.0;
@@ -33,7 +33,7 @@ PageBox grid_size(const Map& map) {
     ratio = std::abs((map.x_high - map.x_low) / (map.y_high - map.y_low));
     ratio = std::isfinite(ratio) ? std::clamp(ratio, 1.0 / largest_ratio, largest_ratio) : 1.0;
   }
-  const double width = std::min(longest_side, tallest * ratio);
+  const double width = std::min(max_side, tallest * ratio);
   return {0.0, 0.0, std::round(width), std::round(width / ratio)};
 }
 

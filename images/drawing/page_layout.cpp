@@ -65,10 +65,10 @@ std::string ended_by_ellipsis(std::string line, double width, const TextStyle& s
 }  // namespace
 
 TextBlock fitted_text(const std::string& text, double width, TextStyle style, double smallest_size,
-                      int most_lines) {
+                      int max_lines) {
   const std::string clean = clean_text(text);
   std::vector<std::string> lines = broken_lines(clean, width, style);
-  const auto most = static_cast<size_t>(most_lines);
+  const auto most = static_cast<size_t>(max_lines);
   while (lines.size() > most && style.size > smallest_size) {
     style.size = std::max(smallest_size, style.size - 0.5);
     lines = broken_lines(clean, width, style);

@@ -22,10 +22,10 @@ struct TextBlock {
   double height() const { return line_height() * static_cast<double>(lines.size()); }
 };
 
-// `text` broken at spaces into at most `most_lines` lines of at most `width` points. If it does not
+// `text` broken at spaces into at most `max_lines` lines of at most `width` points. If it does not
 // fit, the letters shrink down to `smallest_size`; if it still does not, it ends in "…".
 TextBlock fitted_text(const std::string& text, double width, TextStyle style, double smallest_size,
-                      int most_lines);
+                      int max_lines);
 void draw_text(Canvas& canvas, const TextBlock& block, const PagePoint& top_left);
 
 // The texts of a page; the body stands between title and caption.

@@ -7,7 +7,7 @@
 namespace photorque {
 namespace {
 
-constexpr double narrowest_page = 400.0;
+constexpr double narrowest_scene_page = 400.0;
 constexpr double triad_length = 30.0;
 
 void require_consistent(const SceneView& view) {
@@ -92,7 +92,7 @@ Picture scene_picture(const SceneView& view, const SceneLabels& labels,
   const ColourBar bar = colour_bar(scale, labels.unit, bar_height);
   const double bar_room = largest ? 18.0 + bar.width() : 0.0;
   const double page_width =
-      std::ceil(std::max(narrowest_page, image.right() + bar_room + page_margin));
+      std::ceil(std::max(narrowest_scene_page, image.right() + bar_room + page_margin));
   const PageText text = page_text(labels.title, labels.caption, provenance.one_line(), page_width);
   image.y = std::ceil(text.body_top()) + 2.0;
   const double body_height =

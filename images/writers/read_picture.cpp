@@ -19,7 +19,7 @@ float linear_from_srgb(float value) {
 
 LinearPicture read_picture(const std::string& bytes) {
   const InputError wrong({"picture"}, "", "bytes that are no picture", "a PNG or JPEG");
-  constexpr int64_t most_texels = int64_t{1} << 28;
+  constexpr int64_t max_texels = int64_t{1} << 28;
   const bool is_png = bytes.starts_with("\x89PNG");
   if (!is_png && !bytes.starts_with("\xFF\xD8")) throw wrong;
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
@@ -32,7 +32,7 @@ LinearPicture read_picture(const std::string& bytes) {
   const OIIO::ImageSpec& spec = input->spec();
   const int channels = spec.nchannels;
   if (spec.width < 1 || spec.height < 1 || channels < 1 ||
-      int64_t{spec.width} * spec.height > most_texels) {
+      int64_t{spec.width} * spec.height > max_texels) {
     throw wrong;
   }
   const size_t texels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);

@@ -42,12 +42,12 @@ struct PreparedArray {
   CellLight light(const LightBins& bins) const;
 };
 
-// Per cell and band, the share of the light that enters; of the whole array where the rays that
+// Per cell and band, the fraction of the light that enters; of the whole array where the rays that
 // tell it missed a cell.
-std::vector<double> entering_share(const CellCover& cover, size_t bands,
-                                   std::span<const double> entry_W) {
-  std::vector<double> share(cover.cells() * bands, 1.0);
-  if (entry_W.empty()) return share;
+std::vector<double> entering_fraction(const CellCover& cover, size_t bands,
+                                      std::span<const double> entry_W) {
+  std::vector<double> fraction(cover.cells() * bands, 1.0);
+  if (entry_W.empty()) return fraction;
   const std::vector<double> all = cover.gather(entry_W.first(entry_W.size() / 2));
   const std::vector<double> entering = cover.gather(entry_W.subspan(entry_W.size() / 2));
   for (size_t band = 0; band < bands; ++band) {
@@ -58,21 +58,21 @@ std::vector<double> entering_share(const CellCover& cover, size_t bands,
     }
     const double mean = all_W > 0.0 ? entering_W / all_W : 1.0;
     for (size_t i = band; i < all.size(); i += bands) {
-      share[i] = all[i] > 0.0 ? entering[i] / all[i] : mean;
+      fraction[i] = all[i] > 0.0 ? entering[i] / all[i] : mean;
     }
   }
-  return share;
+  return fraction;
 }
 
 CellLight PreparedArray::light(const LightBins& bins) const {
   const size_t cells = cover.cells(), bands = factor_A_W.size();
   const std::vector<double> power_W = cover.gather(bins.power_W);
-  const std::vector<double> share = entering_share(cover, bands, bins.entry_W);
+  const std::vector<double> fraction = entering_fraction(cover, bands, bins.entry_W);
   CellLight light{std::vector<double>(cells, 0.0), std::vector<double>(cells, 0.0),
                   std::vector<double>(cells, 0.0)};
   for (size_t i = 0; i < power_W.size(); ++i) {
     const size_t cell = i / bands;
-    const double entering_W = power_W[i] * share[i];
+    const double entering_W = power_W[i] * fraction[i];
     light.incident_W[cell] += power_W[i];
     light.entering_W[cell] += entering_W;
     light.current_A[cell] += entering_W * factor_A_W[i % bands];

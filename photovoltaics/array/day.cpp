@@ -11,15 +11,15 @@ namespace {
 class PowerSurface {
  public:
   PowerSurface(const ArrayDesign& design, const ArrayResult& array, double low_K, double high_K,
-               double least_light)
-      : low_K_(low_K), high_K_(high_K), least_light_(least_light) {
+               double min_light)
+      : low_K_(low_K), high_K_(high_K), min_light_(min_light) {
     const double reference = photocurrent_factor(design.cell, design.temperature_K);
     for (size_t t = 0; t < temperatures; ++t) {
       ArrayDesign warm = design;
       warm.temperature_K = std::lerp(low_K, high_K, static_cast<double>(t) / (temperatures - 1));
       const double warmth = photocurrent_factor(design.cell, warm.temperature_K) / reference;
       for (size_t l = 0; l < lights; ++l) {
-        const double light = std::lerp(least_light, 1.0, static_cast<double>(l) / (lights - 1));
+        const double light = std::lerp(min_light, 1.0, static_cast<double>(l) / (lights - 1));
         power_W_[t][l] = array_power_W(warm, array, light * warmth);
       }
     }
@@ -27,7 +27,7 @@ class PowerSurface {
 
   double at(double temperature_K, double light) const {
     const auto [t, tf] = place(temperature_K, low_K_, high_K_, temperatures);
-    const auto [l, lf] = place(light, least_light_, 1.0, lights);
+    const auto [l, lf] = place(light, min_light_, 1.0, lights);
     return std::lerp(std::lerp(power_W_[t][l], power_W_[t][l + 1], lf),
                      std::lerp(power_W_[t + 1][l], power_W_[t + 1][l + 1], lf), tf);
   }
@@ -46,7 +46,7 @@ class PowerSurface {
     return {i, s - static_cast<double>(i)};
   }
 
-  double low_K_, high_K_, least_light_;
+  double low_K_, high_K_, min_light_;
   std::array<std::array<double, lights>, temperatures> power_W_{};
 };
 
@@ -78,7 +78,7 @@ DayResult run_day(const ArrayDesign& design, const ArrayResult& array, const Day
   const double hottest_K =
       s.heat ? temperature_K + s.heat->absorptance * light_W_m2 / s.heat->convection_W_m2_K
              : temperature_K;
-  const PowerSurface surface(design, array, temperature_K, hottest_K, s.droop.least_light());
+  const PowerSurface surface(design, array, temperature_K, hottest_K, s.droop.min_light());
   DayResult day;
   double charge_J = s.battery.capacity_J * s.battery.charge;
   const auto steps = static_cast<int64_t>(std::ceil(s.duration_s / s.step_s));

@@ -28,7 +28,7 @@ struct LampDroop {
   double rise_time_constant_s = 300.0;
 
   double light_at(double time_s) const;
-  double least_light() const { return (1.0 - depth) * (1.0 - roll_off_1_K * rise_K); }
+  double min_light() const { return (1.0 - depth) * (1.0 - roll_off_1_K * rise_K); }
 };
 
 struct Battery {

@@ -6,7 +6,7 @@
 namespace photorque {
 namespace {
 
-constexpr int most_cells = 100000;
+constexpr int max_cells = 100000;
 
 // Cells in the order in which they are joined.
 std::vector<int> serpentine(int columns, int rows, bool along_columns) {
@@ -106,9 +106,9 @@ class WiringReader {
 };
 
 void read_size(const Settings& array, ArrayDesign& design) {
-  const std::vector<double> size = array.numbers("cells", {1.0, most_cells});
+  const std::vector<double> size = array.numbers("cells", {1.0, max_cells});
   if (size.size() != 2 || size[0] != std::floor(size[0]) || size[1] != std::floor(size[1]) ||
-      size[0] * size[1] > most_cells) {
+      size[0] * size[1] > max_cells) {
     throw array.error("cells", "an array of " + std::to_string(size.size()) + " numbers",
                       "two whole numbers, at most 100000 cells");
   }
@@ -218,7 +218,7 @@ ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> p
   ArrayDesign design;
   if (places) {
     const size_t count = places->parts.size();
-    if (count == 0 || count > most_cells) {
+    if (count == 0 || count > max_cells) {
       throw array.error(array.has("rectangle") ? "rectangle" : "cells",
                         std::to_string(count) + " separate cells", "1 to 100000");
     }

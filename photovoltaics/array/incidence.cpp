@@ -11,7 +11,7 @@ namespace {
 
 // Straight lines between so many steps are off by 1e-7 where K bends most (grazing, index 1.5).
 constexpr size_t cosine_steps = 4096;
-constexpr double least_cosine = 1e-9;
+constexpr double min_cosine = 1e-9;
 
 const OpticalSurface& side_of(const Scene& scene, uint32_t instance, bool front) {
   const Instance& of = scene.instances[instance];
@@ -19,7 +19,7 @@ const OpticalSurface& side_of(const Scene& scene, uint32_t instance, bool front)
 }
 
 bool depends_on_angle(const OpticalSurface& surface) {
-  return surface.finish != nullptr && surface.finish->law != nullptr;
+  return surface.bsdf != nullptr && surface.bsdf->law != nullptr;
 }
 
 std::array<bool, 2> sides_of(Side side) {
@@ -60,9 +60,9 @@ IncidenceReceiver::IncidenceReceiver(const Scene& scene, const SurfaceGrid& grid
       if (!counts[side] || !depends_on_angle(surface)) continue;
       table_of_[2 * instance + side] = static_cast<uint32_t>(tables_.size());
       add_table([&](double cosine, size_t b) {
-        const double upright = shares_of(surface, 1.0, b).absorbed;
+        const double upright = fractions_of(surface, 1.0, b).absorbed;
         return upright > 0.0
-                   ? shares_of(surface, std::max(cosine, least_cosine), b).absorbed / upright
+                   ? fractions_of(surface, std::max(cosine, min_cosine), b).absorbed / upright
                    : 1.0;
       });
     }

@@ -42,11 +42,11 @@ std::vector<int> cells_of(const ArrayWiring& wiring) {
 class Search {
  public:
   Search(const ArrayWiring& start, const CellTables& tables, const AttitudeLights& lights,
-         int64_t most_tried)
+         int64_t max_tried)
       : shape_(start),
         tables_(tables),
         lights_(lights),
-        most_tried_(most_tried),
+        max_tried_(max_tried),
         places_(places_of(start)),
         cells_(cells_of(start)) {}
 
@@ -56,7 +56,7 @@ class Search {
     bound_W_ = result.bound_W = layout_bound_W(shape_, tables_, lights_);
     best_ = cells_;
     best_W_ = result.start_power_W;
-    result.exact = count_assignments() <= most_tried_;
+    result.exact = count_assignments() <= max_tried_;
     if (result.exact) {
       try_all();
     } else {
@@ -122,7 +122,7 @@ class Search {
       for (size_t i = 0; i < cells.size(); ++i) {
         for (size_t j = i + 1; j < cells.size(); ++j) {
           if (together(i, j)) continue;
-          if (tried_ >= most_tried_ || bound_reached()) return;
+          if (tried_ >= max_tried_ || bound_reached()) return;
           std::swap(cells[i], cells[j]);
           const double trial = power_W(cells);
           if (trial > power * (1.0 + 1e-12)) {
@@ -193,7 +193,7 @@ class Search {
   int64_t count_assignments() {
     int64_t count = 0;
     Filled filled = nothing_filled();
-    visit_assignments(filled, 0, [&](const Filled&) { return ++count <= most_tried_; });
+    visit_assignments(filled, 0, [&](const Filled&) { return ++count <= max_tried_; });
     return count;
   }
 
@@ -213,7 +213,7 @@ class Search {
   ArrayWiring shape_;
   const CellTables& tables_;
   const AttitudeLights& lights_;
-  int64_t most_tried_, tried_ = 0;
+  int64_t max_tried_, tried_ = 0;
   std::vector<Place> places_;
   std::vector<int> cells_, best_;
   double best_W_ = 0.0, bound_W_ = 0.0;
@@ -222,9 +222,9 @@ class Search {
 }  // namespace
 
 LayoutResult search_layout(const ArrayWiring& start, const CellTables& tables,
-                           const AttitudeLights& lights, int64_t most_tried) {
+                           const AttitudeLights& lights, int64_t max_tried) {
   if (lights.empty()) throw InputError({}, "array.layout", "no light", "at least one attitude");
-  return Search(start, tables, lights, most_tried).run();
+  return Search(start, tables, lights, max_tried).run();
 }
 
 }  // namespace photorque

@@ -23,10 +23,10 @@ struct LayoutResult {
 // Keeps the shape of `start` (numbers and sizes of its substrings and strings, its diodes) and
 // looks for better places for its cells; only substrings without cross-tied rows are supported
 // (InputError). Assignments that differ by order alone count once. If there are at most
-// `most_tried`, all are tried; else pairs of cells are exchanged while that helps, from the given
-// wiring and from one with cells of like light joined, within `most_tried` trials.
+// `max_tried`, all are tried; else pairs of cells are exchanged while that helps, from the given
+// wiring and from one with cells of like light joined, within `max_tried` trials.
 // See photovoltaic_layout_bound.h for the bound.
 LayoutResult search_layout(const ArrayWiring& start, const CellTables& tables,
-                           const AttitudeLights& lights, int64_t most_tried);
+                           const AttitudeLights& lights, int64_t max_tried);
 
 }  // namespace photorque

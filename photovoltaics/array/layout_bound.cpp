@@ -8,7 +8,7 @@
 namespace photorque {
 namespace {
 
-constexpr double least_drop_V = 1e-9;  // stands for none
+constexpr double min_drop_V = 1e-9;  // stands for none
 
 std::vector<int> all_cells(const ArrayWiring& shape) {
   std::vector<int> cells;
@@ -55,7 +55,7 @@ PieceShape pieces_of(const ArrayWiring& shape) {
       if (substring.bypass.kind == Diode::Kind::clamp) {
         drop_V = std::min(drop_V, substring.bypass.drop_V / count);
       } else if (substring.bypass.kind == Diode::Kind::junction) {
-        drop_V = least_drop_V;
+        drop_V = min_drop_V;
       }
     }
   }
@@ -111,9 +111,9 @@ class SumOfCurrents {
     return sum_A;
   }
 
-  double most_power_W() const {
+  double max_power_W() const {
     constexpr double tolerance = 1e-5;
-    constexpr int most_splits = 20000, first_intervals = 64;
+    constexpr int max_splits = 20000, first_intervals = 64;
     struct Interval {
       double low_V, high_V, low_A;  // A at low_V
       double bound_W() const { return high_V * low_A; }
@@ -132,7 +132,7 @@ class SumOfCurrents {
       const double low_V = end_V * i / first_intervals;
       add(low_V, end_V * (i + 1) / first_intervals, at(low_V));
     }
-    for (int split = 0; split < most_splits; ++split) {
+    for (int split = 0; split < max_splits; ++split) {
       const Interval top = open.top();
       if (top.bound_W() <= found_W * (1.0 + tolerance)) break;
       open.pop();
@@ -153,13 +153,13 @@ double sorted_bound_W(const ArrayWiring& shape, const CellTables& tables,
   std::vector<ArrayCurve> curves = brightest_in_series(shape, tables, light_A);
   // What the drop that stands for none takes from the voltage.
   const auto pieces = static_cast<double>(all_cells(shape).size() / piece.size);
-  const double missing_V = piece.bypass.drop_V == least_drop_V ? pieces * least_drop_V : 0.0;
+  const double missing_V = piece.bypass.drop_V == min_drop_V ? pieces * min_drop_V : 0.0;
   if (curves.size() == 1) {
     const ArrayPoint best = curves[0].maximum_power();
     return best.power_W() + missing_V * best.current_A;
   }
   const SumOfCurrents sum(std::move(curves));
-  return sum.most_power_W() + missing_V * sum.at(0.0);
+  return sum.max_power_W() + missing_V * sum.at(0.0);
 }
 
 }  // namespace

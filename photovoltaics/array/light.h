@@ -42,7 +42,7 @@ struct CellRectangle {
 std::vector<CellRectangle> cell_rectangles(const ArrayLight& light, int columns, int rows,
                                            double gap, double margin);
 
-// A share of a bin's surface.
+// A fraction of a bin's surface.
 struct BinPart {
   uint32_t bin = 0;
   double fraction = 0.0;

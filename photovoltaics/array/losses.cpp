@@ -129,8 +129,8 @@ Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring) {
 double array_power_W(const ArrayDesign& design, const ArrayResult& array, double light_factor) {
   std::vector<double> light_A = array.cell_photocurrent_A;
   for (double& i : light_A) i *= light_factor;
-  const double most_A = *std::ranges::max_element(light_A);
-  const CellTables tables = cell_tables(design, array.cell_area_m2, most_A);
+  const double max_A = *std::ranges::max_element(light_A);
+  const CellTables tables = cell_tables(design, array.cell_area_m2, max_A);
   return ArrayCurve(design.wiring, tables, light_A).maximum_power().power_W();
 }
 

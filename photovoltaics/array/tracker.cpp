@@ -82,12 +82,12 @@ class Controller {
   // It is compared with what it was just after the last sweep.
   bool light_changed(double power_W) {
     recent_W_[settled_ % 3] = power_W;
-    const double most_W = *std::ranges::max_element(recent_W_);
+    const double max_W = *std::ranges::max_element(recent_W_);
     if (++settled_ <= 3) {
-      reference_W_ = most_W;
+      reference_W_ = max_W;
       return false;
     }
-    return std::abs(most_W - reference_W_) > tracker_.rescan_fraction * reference_W_;
+    return std::abs(max_W - reference_W_) > tracker_.rescan_fraction * reference_W_;
   }
 
   void incremental_conductance(const Sample& now) {
@@ -176,10 +176,10 @@ std::vector<double> LightHistory::at(double t) const {
   if (after == time_s.begin()) return photocurrents_A.front();
   if (after == time_s.end()) return photocurrents_A.back();
   const auto i = static_cast<size_t>(after - time_s.begin());
-  const double share = (t - time_s[i - 1]) / (time_s[i] - time_s[i - 1]);
+  const double fraction = (t - time_s[i - 1]) / (time_s[i] - time_s[i - 1]);
   std::vector<double> between(photocurrents_A[i].size());
   for (size_t c = 0; c < between.size(); ++c) {
-    between[c] = std::lerp(photocurrents_A[i - 1][c], photocurrents_A[i][c], share);
+    between[c] = std::lerp(photocurrents_A[i - 1][c], photocurrents_A[i][c], fraction);
   }
   return between;
 }
@@ -200,8 +200,8 @@ std::vector<TrackerRun> run_trackers(const std::vector<Tracker>& trackers,
   if (trackers.empty() || range == 0.0) return runs;
   const double period_s = trackers.front().period_s;
   const double duration_s = light.time_s.back() - light.time_s.front();
-  constexpr double most_steps = 1e7;
-  if (duration_s / period_s > most_steps) {
+  constexpr double max_steps = 1e7;
+  if (duration_s / period_s > max_steps) {
     throw InputError({}, "array.tracker.period_s", std::to_string(period_s) + " s",
                      "at most ten million periods in the motion");
   }

@@ -58,7 +58,7 @@ class CellCurve {
   const CellParameters& parameters() const { return parameters_; }
   double thermal_V() const { return thermal_V_; }
   // The lesser n V_t.
-  double least_scale_V() const { return scale_1_V_ < scale_2_V_ ? scale_1_V_ : scale_2_V_; }
+  double min_scale_V() const { return scale_1_V_ < scale_2_V_ ? scale_1_V_ : scale_2_V_; }
 
   // D at a diode voltage > V_br.
   DarkCurrent dark(double diode_V) const;

@@ -11,26 +11,26 @@ namespace {
 constexpr double step_m = 0.5e-9;
 
 // Power fraction and photocurrent of one spectrum in one band.
-struct BandShare {
+struct BandFraction {
   double power = 0.0;
   double current_A_W = 0.0;
 };
 
 // Of a line so narrow that all of its light counts as of one wavelength.
-BandShare line_share(const QuantumEfficiency& efficiency, const Spectrum& spectrum, double low_m,
-                     double high_m) {
+BandFraction line_fraction(const QuantumEfficiency& efficiency, const Spectrum& spectrum,
+                           double low_m, double high_m) {
   const double power = band_fractions(spectrum, Bands{{low_m, high_m}})[0];
   return {power, power * responsivity_A_W(efficiency, spectrum.centre_m)};
 }
 
-BandShare smooth_share(const QuantumEfficiency& efficiency, const Spectrum& spectrum, double low_m,
-                       double high_m) {
-  BandShare share;
-  share.power = band_fractions(spectrum, Bands{{low_m, high_m}})[0];
+BandFraction smooth_fraction(const QuantumEfficiency& efficiency, const Spectrum& spectrum,
+                             double low_m, double high_m) {
+  BandFraction fraction;
+  fraction.power = band_fractions(spectrum, Bands{{low_m, high_m}})[0];
   // Outside the table nothing is converted.
   const double from_m = std::max(low_m, efficiency.wavelength_m.front());
   const double to_m = std::min(high_m, efficiency.wavelength_m.back());
-  if (!(to_m > from_m)) return share;
+  if (!(to_m > from_m)) return fraction;
   const int steps = static_cast<int>(std::ceil((to_m - from_m) / step_m));
   const double width_m = (to_m - from_m) / steps;
   for (int i = 0; i < steps; i += max_bands) {
@@ -39,18 +39,18 @@ BandShare smooth_share(const QuantumEfficiency& efficiency, const Spectrum& spec
     for (int k = 0; k <= count; ++k) fine.edges_m.push_back(from_m + (i + k) * width_m);
     const BandValues parts = band_fractions(spectrum, fine);
     for (int k = 0; k < count; ++k) {
-      share.current_A_W += parts[static_cast<size_t>(k)] *
-                           responsivity_A_W(efficiency, from_m + (i + k + 0.5) * width_m);
+      fraction.current_A_W += parts[static_cast<size_t>(k)] *
+                              responsivity_A_W(efficiency, from_m + (i + k + 0.5) * width_m);
     }
   }
-  return share;
+  return fraction;
 }
 
-BandShare share_of(const QuantumEfficiency& efficiency, const Spectrum& spectrum, double low_m,
-                   double high_m) {
+BandFraction fraction_of(const QuantumEfficiency& efficiency, const Spectrum& spectrum,
+                         double low_m, double high_m) {
   const bool line = spectrum.shape == Spectrum::Shape::gaussian && spectrum.fwhm_m < 2 * step_m;
-  return line ? line_share(efficiency, spectrum, low_m, high_m)
-              : smooth_share(efficiency, spectrum, low_m, high_m);
+  return line ? line_fraction(efficiency, spectrum, low_m, high_m)
+              : smooth_fraction(efficiency, spectrum, low_m, high_m);
 }
 
 }  // namespace
@@ -92,10 +92,10 @@ BandValues band_responsivity_A_W(const QuantumEfficiency& efficiency, const Band
   for (size_t b = 0; b < static_cast<size_t>(bands.count()); ++b) {
     double power = 0.0, current = 0.0;
     for (const WeighedSpectrum& weighed : spectra) {
-      const BandShare share =
-          share_of(efficiency, weighed.spectrum, bands.edges_m[b], bands.edges_m[b + 1]);
-      power += weighed.power * share.power;
-      current += weighed.power * share.current_A_W;
+      const BandFraction fraction =
+          fraction_of(efficiency, weighed.spectrum, bands.edges_m[b], bands.edges_m[b + 1]);
+      power += weighed.power * fraction.power;
+      current += weighed.power * fraction.current_A_W;
     }
     responsivity[b] = power > 0 ? current / power : 0.0;
   }

@@ -41,9 +41,9 @@ DiodeVoltageTable::DiodeVoltageTable(const CellCurve& curve, double largest_A)
       origin_A_(scale_of(curve)),
       first_bin_(std::bit_cast<uint64_t>(origin_A_) >> bin_shift),
       largest_slope_ohm_(largest_slope(curve)) {
-  constexpr int most_octaves = 200;
+  constexpr int max_octaves = 200;
   const int octaves = std::min(
-      most_octaves, 1 + static_cast<int>(std::ceil(std::log2(largest_A / origin_A_ + 1.0))));
+      max_octaves, 1 + static_cast<int>(std::ceil(std::log2(largest_A / origin_A_ + 1.0))));
   tabulate(1.0, octaves);
   bins_ = piece_of_bin_.size();
   tabulate(-1.0, octaves);

@@ -8,8 +8,8 @@
 namespace photorque {
 namespace {
 
-constexpr int most_rounds = 300;
-constexpr double least_damping = 1e-14, most_damping = 1e10;
+constexpr int max_rounds = 300;
+constexpr double min_damping = 1e-14, max_damping = 1e10;
 
 struct Linearised {
   Eigen::VectorXd residuals;
@@ -74,7 +74,7 @@ LeastSquaresFit least_squares(const Eigen::VectorXd& start, const ResidualFuncti
   Linearised at = linearise(function, parameters);
   Eigen::VectorXd scale = Eigen::VectorXd::Constant(start.size(), 1e-300);
   double damping = 1e-3;
-  for (int round = 0; round < most_rounds && damping < most_damping && at.squares > 0; ++round) {
+  for (int round = 0; round < max_rounds && damping < max_damping && at.squares > 0; ++round) {
     scale = scale.cwiseMax(at.jacobian.colwise().norm().transpose());
     const Eigen::VectorXd step = damped_step(at, scale, damping);
     const Eigen::VectorXd trial = parameters + step;
@@ -86,7 +86,7 @@ LeastSquaresFit least_squares(const Eigen::VectorXd& start, const ResidualFuncti
     const bool still = at.squares - next.squares <= 1e-14 * at.squares;
     parameters = trial;
     at = std::move(next);
-    damping = std::max(0.1 * damping, least_damping);
+    damping = std::max(0.1 * damping, min_damping);
     if (still) break;
   }
   return {parameters, pseudo_inverse(at.jacobian), at.squares, at.residuals.size()};

@@ -40,8 +40,8 @@ class ShadedString {
     return sum;
   }
   double current_A(double voltage_V, double guess_A) const {
-    const double most_A = 1.5 * *std::ranges::max_element(light_A_);
-    return falling_root(-most_A, most_A, guess_A, 1e-12, [&](double i) {
+    const double max_A = 1.5 * *std::ranges::max_element(light_A_);
+    return falling_root(-max_A, max_A, guess_A, 1e-12, [&](double i) {
       FunctionAt f = voltage(i);
       f.value -= voltage_V;
       if (f.slope == 0.0) f.slope = -1e-9;  // every substring bypassed
@@ -55,16 +55,17 @@ class ShadedString {
   std::vector<double> light_A_;
 };
 
-// The current in the middle of each substring's share of the voltage is about that substring's.
+// The current in the middle of each substring's fraction of the voltage is about that substring's.
 VectorXd first_guess(const IvSweep& sweep, int substrings, double knee) {
   const SweepEnds ends = sweep_ends(sweep);
-  const double share_V = ends.open_circuit_V / substrings, a = share_V / knee;
+  const double fraction_V = ends.open_circuit_V / substrings, a = fraction_V / knee;
   VectorXd x(Index{first_light} + substrings);
   x << std::log(ends.short_circuit_A) - knee, std::log(a),
-      std::log(0.02 * share_V / ends.short_circuit_A),
-      std::log(0.002 * ends.short_circuit_A / share_V), std::log(0.5), VectorXd::Zero(substrings);
+      std::log(0.02 * fraction_V / ends.short_circuit_A),
+      std::log(0.002 * ends.short_circuit_A / fraction_V), std::log(0.5),
+      VectorXd::Zero(substrings);
   for (int k = 0; k < substrings; ++k) {
-    const double middle_V = (k + 0.5) * share_V;
+    const double middle_V = (k + 0.5) * fraction_V;
     size_t nearest = 0;
     for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
       if (std::abs(sweep.voltage_V[i] - middle_V) < std::abs(sweep.voltage_V[nearest] - middle_V))
@@ -76,7 +77,7 @@ VectorXd first_guess(const IvSweep& sweep, int substrings, double knee) {
 }
 
 // Errors of the current over their standard deviations, the voltage's carried over by the slope.
-VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double most_A,
+VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double max_A,
                          const VectorXd& x) {
   const auto points = static_cast<Index>(sweep.voltage_V.size());
   VectorXd errors = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
@@ -88,7 +89,7 @@ VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double m
     const double current_A = string.current_A(v, measured_A);
     const double slope = string.voltage(current_A).slope;
     const double from_voltage_A = slope < 0 ? noise.voltage_fraction * std::abs(v) / -slope : 0.0;
-    const double from_light_A = noise.current_fraction * most_A;
+    const double from_light_A = noise.current_fraction * max_A;
     errors[i] = (current_A - measured_A) / std::hypot(from_voltage_A, from_light_A);
   }
   return errors;
@@ -103,12 +104,11 @@ ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoi
     throw InputError({}, "substrings", std::to_string(substrings),
                      "at least 1, and fewer parameters than points");
   }
-  const double most_A = sweep_ends(sweep).short_circuit_A;
+  const double max_A = sweep_ends(sweep).short_circuit_A;
   constexpr double knee = 20.0;  // open-circuit voltage over n V_t of silicon: 18 to 27
-  const LeastSquaresFit best =
-      least_squares(first_guess(sweep, substrings, knee), with_differences([&](const VectorXd& x) {
-                      return weighted_errors(sweep, noise, most_A, x);
-                    }));
+  const LeastSquaresFit best = least_squares(
+      first_guess(sweep, substrings, knee),
+      with_differences([&](const VectorXd& x) { return weighted_errors(sweep, noise, max_A, x); }));
   const VectorXd& x = best.parameters;
   const VectorXd error = (best.covariance.diagonal() * best.variance()).cwiseSqrt();
   ShadedFit fit;

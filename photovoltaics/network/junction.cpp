@@ -27,8 +27,8 @@ double DiodeJunction::junction_V(double forward_V) const {
   if (forward_V > 0.0 && series_ohm > 0.0) {
     u = std::min(u, scale_V * std::log1p(forward_V / (saturation_A * series_ohm)));
   }
-  constexpr int most_rounds = 60;
-  for (int round = 0; round < most_rounds; ++round) {
+  constexpr int max_rounds = 60;
+  for (int round = 0; round < max_rounds; ++round) {
     const double through_A = current_A(u);
     const double step =
         (u + through_A * series_ohm - forward_V) / (1.0 + conductance_S(through_A) * series_ohm);

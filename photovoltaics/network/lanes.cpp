@@ -73,7 +73,7 @@ void FourStrings::add(size_t index, const StringCurve& curve, const PlainString&
       copies_[c][lane] = there ? string.copies[c] : 0.0;
     }
     series_ohm_[l] = string.series_ohm;
-    most_A_[l] = curve.largest_photocurrent_A();
+    max_A_[l] = curve.largest_photocurrent_A();
     open_circuit_V_[l] = curve.open_circuit_V();
     bypass_saturation_A_[l] = bypass.saturation_A;
     bypass_scale_V_[l] = bypass.scale_V;
@@ -227,7 +227,7 @@ void FourStrings::write_diodes(const Point& at, double voltage_V, const Lanes& c
 
 bool FourStrings::solve(double voltage_V, const Lanes& low_A, const Lanes& high_A, double tolerance,
                         State& state, std::span<StringState> states) const {
-  constexpr int most_rounds = 30;
+  constexpr int max_rounds = 30;
   const Eigen::Array<bool, 4, 1> idle = open_circuit_V_ <= voltage_V;
   // What idle lanes had may be no number.
   Lanes low = idle.select(0.0, low_A), high = idle.select(0.0, high_A);
@@ -238,7 +238,7 @@ bool FourStrings::solve(double voltage_V, const Lanes& low_A, const Lanes& high_
     for (size_t lane = 0; lane < 4; ++lane) targets[lane] = states[member_[lane]].cells.data();
   }
   Point at;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     if (!at_currents(targets, current, leak, at)) return false;
     const Lanes excess = at.voltage_V - voltage_V;
     // As root_step() and falling_root().
@@ -279,7 +279,7 @@ bool FourStrings::advance(double voltage_V, State& state) const {
   State trial = state;
   trial.current_A -= h * (slope - h * curvature * bend);
   constexpr double any = std::numeric_limits<double>::infinity();
-  if (!solve(voltage_V, Lanes::Zero(), most_A_, any, trial, {})) return false;
+  if (!solve(voltage_V, Lanes::Zero(), max_A_, any, trial, {})) return false;
   state = trial;
   return true;
 }

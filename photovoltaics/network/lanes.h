@@ -75,7 +75,7 @@ class FourStrings {
   const DiodeVoltageTable* table_ = nullptr;
   bool bypass_junctions_ = false, blocking_junctions_ = false;
   std::vector<std::array<double, 4>> light_A_, copies_;  // cell by cell
-  Lanes series_ohm_, most_A_, open_circuit_V_;
+  Lanes series_ohm_, max_A_, open_circuit_V_;
   Lanes bypass_saturation_A_, bypass_scale_V_, bypass_ohm_;
   Lanes blocking_saturation_A_, blocking_scale_V_, blocking_ohm_, blocking_drop_V_;
   double close_V_ = 0.0;

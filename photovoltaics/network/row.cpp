@@ -20,19 +20,19 @@ struct RowSums {
   }
 };
 
-constexpr size_t most_tied_cells = 64;  // in a row that is solved for all currents at once
+constexpr size_t max_tied_cells = 64;  // in a row that is solved for all currents at once
 
 // Newton's method for all currents at once: each cell's curve is replaced by its tangent and the
 // tangents are made to meet at one voltage. Cells of one type without series resistance would all
 // have the same dark current; from there two or three rounds are enough. Empty if they are not.
 std::optional<ElementPoint> solve_together(std::span<const LitCell> cells, double current_A,
                                            std::span<JunctionState> states) {
-  if (cells.size() > most_tied_cells) return std::nullopt;
+  if (cells.size() > max_tied_cells) return std::nullopt;
   double all_A = 0.0;
   for (const LitCell& cell : cells) all_A += cell.photocurrent_A;
   const double dark_A = (all_A - current_A) / static_cast<double>(cells.size());
-  double cell_A[most_tied_cells];
-  ElementPoint points[most_tied_cells];
+  double cell_A[max_tied_cells];
+  ElementPoint points[max_tied_cells];
   for (size_t i = 0; i < cells.size(); ++i) cell_A[i] = cells[i].photocurrent_A - dark_A;
   for (int round = 0; round < 12; ++round) {
     RowSums sums;
@@ -59,11 +59,11 @@ std::optional<ElementPoint> solve_together(std::span<const LitCell> cells, doubl
 ElementPoint solve_nested(std::span<const LitCell> cells, double current_A,
                           std::span<JunctionState> states) {
   // Were the current shared equally, the row's voltage would lie between its cells'.
-  const double share_A = current_A / static_cast<double>(cells.size());
+  const double fraction_A = current_A / static_cast<double>(cells.size());
   double low_V = std::numeric_limits<double>::infinity(), high_V = -low_V;
   for (const LitCell& cell : cells) {
     JunctionState unused;
-    const double v = cell_at(cell, share_A, unused).voltage_V;
+    const double v = cell_at(cell, fraction_A, unused).voltage_V;
     low_V = std::min(low_V, v);
     high_V = std::max(high_V, v);
   }

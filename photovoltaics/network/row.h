@@ -53,11 +53,11 @@ inline SlopeRange cell_range(const LitCell& cell, const JunctionState& high_v,
   const double high = high_v.curvature_V_A2 < 0 && low_v.curvature_V_A2 > 0
                           ? cell.table->largest_slope_ohm()
                           : std::max(high_v.slope_ohm, low_v.slope_ohm);
-  const double least_r = (high_v.curvature_V_A2 < 0 ? high : low) / high_v.slope_ohm;
-  const double most_r = (low_v.curvature_V_A2 > 0 ? high : low) / low_v.slope_ohm;
+  const double min_r = (high_v.curvature_V_A2 < 0 ? high : low) / high_v.slope_ohm;
+  const double max_r = (low_v.curvature_V_A2 > 0 ? high : low) / low_v.slope_ohm;
   return {low + cell.series_ohm, high + cell.series_ohm,
-          high_v.curvature_V_A2 * least_r * least_r * least_r,
-          low_v.curvature_V_A2 * most_r * most_r * most_r};
+          high_v.curvature_V_A2 * min_r * min_r * min_r,
+          low_v.curvature_V_A2 * max_r * max_r * max_r};
 }
 
 // Cells tied in parallel at a total current; `states` has one entry per cell.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // Beyond this a junction carries nothing that double precision can see; keeps its cube finite.
-constexpr double most_ohm = 1e90;
+constexpr double max_ohm = 1e90;
 
 }  // namespace
 
@@ -180,7 +180,7 @@ void StringCurve::at_current(double current_A, const StringRegime& regime, doubl
 // The derivatives of a blocking junction, in series with what the state has.
 void StringCurve::add_blocking(StringState& state) const {
   const double junction_ohm =
-      std::min(blocking_.scale_V / (state.current_A + blocking_.saturation_A), most_ohm);
+      std::min(blocking_.scale_V / (state.current_A + blocking_.saturation_A), max_ohm);
   state.blocking_ohm = junction_ohm;
   state.slope_ohm += junction_ohm + blocking_.series_ohm;
   const double bend = junction_ohm * junction_ohm * blocking_.per_scale_1_V;
@@ -205,7 +205,7 @@ void StringCurve::reverse_at_voltage(double voltage_V, const StringRegime& regim
   };
   const double left_over_V = open_circuit_V_ - voltage_V;
   const double z = falling_root(left_over_V, 0.0, left_over_V, 1e-9, surplus_V);
-  const double junction_ohm = std::min(1.0 / junction_S, most_ohm);
+  const double junction_ohm = std::min(1.0 / junction_S, max_ohm);
   state.blocking_ohm = junction_ohm;
   state.current_A = blocking_.saturation_A * std::expm1(z * blocking_.per_scale_1_V);
   state.voltage_V = voltage_V;

@@ -54,7 +54,7 @@ void StringCurve::add_cell(int cell, const CellTables& tables,
   cells_.push_back(
       {tables[i].get(), photocurrents_A[i], tables[i]->curve().parameters().series_ohm});
   photocurrents_A_.push_back(photocurrents_A[i]);
-  close_V_ = std::min(close_V_, 0.1 * tables[i]->curve().least_scale_V());
+  close_V_ = std::min(close_V_, 0.1 * tables[i]->curve().min_scale_V());
   copies_.push_back(1.0);
   first_wired_.push_back(static_cast<uint32_t>(wired_.size()));
   wired_.push_back(cell);

@@ -27,7 +27,7 @@ double factor_b(const DiscLight& light, double distance_m, double height_m) {
 IrradianceTable::IrradianceTable(double low_m, double high_m, std::vector<Kink> kinks)
     : middle_m_(0.5 * (low_m + high_m)),
       half_range_m_(0.5 * (high_m - low_m)),
-      degrees_(half_range_m_ > 1e-9 * middle_m_ ? most_degrees : 1),
+      degrees_(half_range_m_ > 1e-9 * middle_m_ ? max_degrees : 1),
       kinks_(std::move(kinks)),
       nodes_(2 * (kinks_.size() - 1) * (steps + 1)) {}
 
@@ -49,8 +49,8 @@ std::optional<IrradianceTable> IrradianceTable::make(const DiscLight& light, dou
             [&](const Kink& a, const Kink& b) { return a.at(middle_m) < b.at(middle_m); });
   for (size_t k = 1; k < kinks.size(); ++k) {
     for (const double height_m : {low_m, high_m}) {
-      const double least_m = 1e-6 * kinks.back().at(height_m);
-      if (!(kinks[k].at(height_m) - kinks[k - 1].at(height_m) > least_m)) return std::nullopt;
+      const double min_m = 1e-6 * kinks.back().at(height_m);
+      if (!(kinks[k].at(height_m) - kinks[k - 1].at(height_m) > min_m)) return std::nullopt;
     }
   }
   IrradianceTable table(low_m, high_m, std::move(kinks));

@@ -29,15 +29,15 @@ class IrradianceTable {
   double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const;
 
  private:
-  static constexpr size_t steps = 64;     // per half of a piece
-  static constexpr int most_degrees = 8;  // of the series in h
+  static constexpr size_t steps = 64;    // per half of a piece
+  static constexpr int max_degrees = 8;  // of the series in h
 
   // A distance from the axis that moves with the height.
   struct Kink {
     double at_zero_m, slope;
     double at(double height_m) const { return at_zero_m + slope * height_m; }
   };
-  using Node = Eigen::Array<double, most_degrees, 2>;  // coefficients of A and of B
+  using Node = Eigen::Array<double, max_degrees, 2>;  // coefficients of A and of B
 
   IrradianceTable(double low_m, double high_m, std::vector<Kink> kinks);
   void fill(const DiscLight& light, int threads);

@@ -6,38 +6,37 @@
 
 namespace photorque {
 
-Shares shares_of(const OpticalSurface& surface, double cosine, size_t band) {
-  const Finish* finish = surface.finish.get();
-  if (finish != nullptr && finish->law) return finish->law->shares(cosine, band);
+PowerFractions fractions_of(const OpticalSurface& surface, double cosine, size_t band) {
+  const Bsdf* bsdf = surface.bsdf.get();
+  if (bsdf != nullptr && bsdf->law) return bsdf->law->fractions(cosine, band);
   return {surface.absorbed[band], surface.specular[band], surface.diffuse[band],
-          surface.transmitted[band], finish == nullptr ? 0.0 : finish->retroreflected[band]};
+          surface.transmitted[band], bsdf == nullptr ? 0.0 : bsdf->retroreflected[band]};
 }
 
 double scattering_1_sr(const OpticalSurface& surface, double cosine, const Vec3& out, size_t band) {
-  const Shares shares = shares_of(surface, cosine, band);
-  const Finish* finish = surface.finish.get();
+  const PowerFractions fractions = fractions_of(surface, cosine, band);
+  const Bsdf* bsdf = surface.bsdf.get();
   double f = 0.0;
-  if (finish != nullptr && finish->specular) {
-    f += shares.specular * finish->specular->density(cosine, out) / out.z();
+  if (bsdf != nullptr && bsdf->specular) {
+    f += fractions.specular * bsdf->specular->density(cosine, out) / out.z();
   }
-  f += shares.diffuse * (finish != nullptr && finish->diffuse
-                             ? finish->diffuse->density(cosine, out) / out.z()
-                             : 1.0 / pi);
+  f +=
+      fractions.diffuse *
+      (bsdf != nullptr && bsdf->diffuse ? bsdf->diffuse->density(cosine, out) / out.z() : 1.0 / pi);
   return f;
 }
 
-Vec3 mean_departure(const OpticalSurface& surface, double cosine, size_t band) {
-  const Shares shares = shares_of(surface, cosine, band);
-  const Finish* finish = surface.finish.get();
+Vec3 first_moment(const OpticalSurface& surface, double cosine, size_t band) {
+  const PowerFractions fractions = fractions_of(surface, cosine, band);
+  const Bsdf* bsdf = surface.bsdf.get();
   const Vec3 towards_light(std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), 0.0, cosine);
   const Vec3 mirrored(-towards_light.x(), 0.0, cosine);
-  Vec3 mean = (shares.retroreflected - shares.transmitted) * towards_light;
+  Vec3 mean = (fractions.retroreflected - fractions.transmitted) * towards_light;
+  mean += fractions.specular *
+          (bsdf != nullptr && bsdf->specular ? bsdf->specular->mean_direction(cosine) : mirrored);
   mean +=
-      shares.specular *
-      (finish != nullptr && finish->specular ? finish->specular->mean_direction(cosine) : mirrored);
-  mean += shares.diffuse * (finish != nullptr && finish->diffuse
-                                ? finish->diffuse->mean_direction(cosine)
-                                : Vec3(0.0, 0.0, 2.0 / 3.0));
+      fractions.diffuse * (bsdf != nullptr && bsdf->diffuse ? bsdf->diffuse->mean_direction(cosine)
+                                                            : Vec3(0.0, 0.0, 2.0 / 3.0));
   return mean;
 }
 

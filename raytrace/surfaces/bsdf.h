@@ -1,7 +1,7 @@
 // What a surface does with light where a mirror, Lambert's law and the same fractions at every
 // angle do not do.
 //
-// A ShareLaw says how much of the power goes where, a Lobe in which directions. Both see a hit in
+// An AlbedoLaw says how much of the power goes where, a Lobe in which directions. Both see a hit in
 // its own frame: z is the normal on the lit side and x lies in the plane of incidence, so that
 // light comes from (sin θ, 0, cos θ) =: i and leaves along o. The scattering function is then
 //   f(i, o) = Σ share(cos θ_i) · density(cos θ_i, o) / o_z        [1/sr]
@@ -45,39 +45,39 @@ class Lobe {
 };
 
 // Where the power of one band goes, in fractions that sum to 1.
-struct Shares {
+struct PowerFractions {
   double absorbed = 0.0, specular = 0.0, diffuse = 0.0, transmitted = 0.0, retroreflected = 0.0;
 };
 
-class ShareLaw {
+class AlbedoLaw {
  public:
-  virtual ~ShareLaw() = default;
+  virtual ~AlbedoLaw() = default;
   // `cosine` ∈ (0, 1] is cos θ_i.
-  virtual Shares shares(double cosine, size_t band) const = 0;
+  virtual PowerFractions fractions(double cosine, size_t band) const = 0;
 };
 
 // What a surface adds to the fractions of an OpticalSurface; what is null stays as it is there.
-struct Finish {
-  std::shared_ptr<const ShareLaw> law;   // null: the surface's fractions at every angle
+struct Bsdf {
+  std::shared_ptr<const AlbedoLaw> law;  // null: the surface's fractions at every angle
   std::shared_ptr<const Lobe> specular;  // null: a mirror
   std::shared_ptr<const Lobe> diffuse;   // null: Lambert's law
   // Goes back where it came from. With the surface's four fractions it sums to 1. Not with a law.
   BandValues retroreflected{};
-  // This share of the absorbed power leaves at once as heat radiation, by Lambert's law, of it
+  // This fraction of the absorbed power leaves at once as heat radiation, by Lambert's law, of it
   // `front_emission` on the front. In forces and torques only: the power stays booked as absorbed.
   double reemitted = 0.0;
   double front_emission = 0.5;
   std::string description = {};  // a few words for notices
 };
 
-Shares shares_of(const OpticalSurface& surface, double cosine, size_t band);
+PowerFractions fractions_of(const OpticalSurface& surface, double cosine, size_t band);
 
 // f(i, o) without delta functions (mirror, straight on, retroreflection).
 double scattering_1_sr(const OpticalSurface& surface, double cosine, const Vec3& out, size_t band);
 
-// The expected direction of everything that leaves, times its share of the power: for power P in
+// The expected direction of everything that leaves, times its fraction of the power: for power P in
 // `band` the momentum flow that leaves is P/c times this. Frame of the hit. Without heat radiation.
-Vec3 mean_departure(const OpticalSurface& surface, double cosine, size_t band);
+Vec3 first_moment(const OpticalSurface& surface, double cosine, size_t band);
 
 // Lambert's law about z: uniform in projected solid angle.
 Vec3 lambertian_direction(double u, double v);

@@ -13,11 +13,11 @@ namespace {
 
 using Reflectance = std::function<double(double cosine)>;
 
-class OverMatt final : public ShareLaw {
+class OverMatt final : public AlbedoLaw {
  public:
   OverMatt(const BandValues& diffuse, Reflectance front)
       : diffuse_(diffuse), front_(std::move(front)) {}
-  Shares shares(double cosine, size_t band) const override {
+  PowerFractions fractions(double cosine, size_t band) const override {
     const double reflected = front_(cosine), enters = 1.0 - reflected;
     return {.absorbed = enters * (1.0 - diffuse_[band]),
             .specular = reflected,
@@ -29,11 +29,11 @@ class OverMatt final : public ShareLaw {
   Reflectance front_;
 };
 
-class OverCell final : public ShareLaw {
+class OverCell final : public AlbedoLaw {
  public:
   OverCell(const BandValues& specular, Reflectance front)
       : specular_(specular), front_(std::move(front)) {}
-  Shares shares(double cosine, size_t band) const override {
+  PowerFractions fractions(double cosine, size_t band) const override {
     const double reflected = front_(cosine), enters = 1.0 - reflected;
     const double base = specular_[band];
     // Of what enters, this much gets to the base in the end; at grazing incidence nothing enters.
@@ -46,18 +46,18 @@ class OverCell final : public ShareLaw {
   Reflectance front_;
 };
 
-class Pane final : public ShareLaw {
+class Pane final : public AlbedoLaw {
  public:
   Pane(const BandValues& transmitted, double index) : transmitted_(transmitted), index_(index) {}
-  Shares shares(double cosine, size_t band) const override {
+  PowerFractions fractions(double cosine, size_t band) const override {
     const double face = fresnel_reflectance(cosine, index_), enters = 1.0 - face;
     const double once = std::pow(transmitted_[band], 1.0 / refracted_cosine(cosine, index_));
     const double there_and_back = face * once;
     const double leaves =
         enters > 0.0 ? enters * enters * once / (1.0 - there_and_back * there_and_back) : 0.0;
-    Shares shares{.specular = face + there_and_back * leaves, .transmitted = leaves};
-    shares.absorbed = std::max(0.0, 1.0 - shares.specular - shares.transmitted);
-    return shares;
+    PowerFractions fractions{.specular = face + there_and_back * leaves, .transmitted = leaves};
+    fractions.absorbed = std::max(0.0, 1.0 - fractions.specular - fractions.transmitted);
+    return fractions;
   }
 
  private:
@@ -116,38 +116,38 @@ GlassBase glass_base(const OpticalSurface& base) {
 }
 
 OpticalSurface behind_glass(const OpticalSurface& base, double index, double alpha) {
-  Finish finish = base.finish ? *base.finish : Finish{};
+  Bsdf bsdf = base.bsdf ? *base.bsdf : Bsdf{};
   Reflectance front = [index](double cosine) { return fresnel_reflectance(cosine, index); };
   if (alpha > 0.0) {
     const std::shared_ptr<const RoughGlass> rough = rough_glass(alpha, index);
     front = [rough](double cosine) { return rough->reflectance(cosine); };
-    finish.specular = rough;
+    bsdf.specular = rough;
   }
   switch (glass_base(base)) {
     case GlassBase::matt:
-      finish.law = std::make_shared<OverMatt>(base.diffuse, front);
-      finish.diffuse = std::make_shared<ThroughFront>(front);
+      bsdf.law = std::make_shared<OverMatt>(base.diffuse, front);
+      bsdf.diffuse = std::make_shared<ThroughFront>(front);
       break;
     case GlassBase::cell:
-      finish.law = std::make_shared<OverCell>(base.specular, front);
+      bsdf.law = std::make_shared<OverCell>(base.specular, front);
       break;
     case GlassBase::pane:
-      finish.law = std::make_shared<Pane>(base.transmitted, index);
+      bsdf.law = std::make_shared<Pane>(base.transmitted, index);
       break;
   }
-  finish.description = describe(index, alpha);
+  bsdf.description = describe(index, alpha);
   OpticalSurface surface = base;
   for (size_t band = 0; band < max_bands; ++band) {
     const double sum =
         base.absorbed[band] + base.specular[band] + base.diffuse[band] + base.transmitted[band];
     if (sum == 0.0) continue;  // beyond the bands in use
-    const Shares shares = finish.law->shares(1.0, band);
-    surface.absorbed[band] = shares.absorbed;
-    surface.specular[band] = shares.specular;
-    surface.diffuse[band] = shares.diffuse;
-    surface.transmitted[band] = shares.transmitted;
+    const PowerFractions fractions = bsdf.law->fractions(1.0, band);
+    surface.absorbed[band] = fractions.absorbed;
+    surface.specular[band] = fractions.specular;
+    surface.diffuse[band] = fractions.diffuse;
+    surface.transmitted[band] = fractions.transmitted;
   }
-  surface.finish = std::make_shared<const Finish>(std::move(finish));
+  surface.bsdf = std::make_shared<const Bsdf>(std::move(bsdf));
   return surface;
 }
 

@@ -31,7 +31,7 @@ GlassBase glass_base(const OpticalSurface& base);
 
 // `base` behind glass of `index` ∈ [1, 10]. With `alpha` > 0, matt only, the front is rough: GGX
 // facets with Fresnel's law on each (ggx.h), alpha the square of glTF's roughness; what they do not
-// reflect at once enters. Keeps the finish's retroreflection out: it must have none.
+// reflect at once enters. Keeps the BSDF's retroreflection out: it must have none.
 OpticalSurface behind_glass(const OpticalSurface& base, double index, double alpha = 0.0);
 
 }  // namespace photorque

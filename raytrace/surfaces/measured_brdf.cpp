@@ -175,11 +175,11 @@ class BrdfLobe final : public Lobe {
   std::vector<Vec3> momentum_;       // ∫ f cos θ_o o do, per node of incidence
 };
 
-class BrdfShares final : public ShareLaw {
+class BrdfFractions final : public AlbedoLaw {
  public:
-  BrdfShares(std::shared_ptr<const BrdfLobe> lobe, const BandValues& scale)
+  BrdfFractions(std::shared_ptr<const BrdfLobe> lobe, const BandValues& scale)
       : lobe_(std::move(lobe)), scale_(scale) {}
-  Shares shares(double cosine, size_t band) const override {
+  PowerFractions fractions(double cosine, size_t band) const override {
     // Rounding must not make a perfect reflector emit.
     const double reflected = std::min(1.0, scale_[band] * lobe_->reflectance(cosine));
     return {.absorbed = 1.0 - reflected, .diffuse = reflected};
@@ -195,19 +195,19 @@ class BrdfShares final : public ShareLaw {
 MeasuredSurface measured_surface(std::string name, const BrdfTable& table,
                                  const BandValues& scale) {
   const auto lobe = std::make_shared<const BrdfLobe>(table);
-  Finish finish;
-  finish.law = std::make_shared<BrdfShares>(lobe, scale);
-  finish.diffuse = lobe;
-  finish.description = "measured scattering";
+  Bsdf bsdf;
+  bsdf.law = std::make_shared<BrdfFractions>(lobe, scale);
+  bsdf.diffuse = lobe;
+  bsdf.description = "measured scattering";
   MeasuredSurface measured;
   measured.surface.name = std::move(name);
   for (size_t band = 0; band < max_bands; ++band) {
     if (!(scale[band] > 0.0)) continue;  // beyond the bands in use
-    const Shares shares = finish.law->shares(1.0, band);
-    measured.surface.absorbed[band] = shares.absorbed;
-    measured.surface.diffuse[band] = shares.diffuse;
+    const PowerFractions fractions = bsdf.law->fractions(1.0, band);
+    measured.surface.absorbed[band] = fractions.absorbed;
+    measured.surface.diffuse[band] = fractions.diffuse;
   }
-  measured.surface.finish = std::make_shared<const Finish>(std::move(finish));
+  measured.surface.bsdf = std::make_shared<const Bsdf>(std::move(bsdf));
   const size_t brightest = lobe->brightest_node();
   measured.largest_reflectance =
       lobe->node_reflectance(brightest) * *std::max_element(scale.begin(), scale.end());

@@ -1,6 +1,6 @@
 // A rough mirror: GGX microfacets that lose nothing.
 //
-// Light that one reflection does not bring away from the facets, a share 1 − E(μ) at cosine μ,
+// Light that one reflection does not bring away from the facets, a fraction 1 − E(μ) at cosine μ,
 // meets others until it leaves. It is given the only shape that is reciprocal, loses nothing and
 // needs no more than E: density (1 − E(μ_o)) μ_o/(π (1 − Ē)), with Ē = ∫ 2 μ E dμ. A surface's
 // specular fraction is therefore its reflectance at every angle, and absorptance + reflectance = 1.

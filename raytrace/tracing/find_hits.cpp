@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "raytrace/tracing/transpose.h"
+#include "core/numerics/transpose.h"
 
 namespace photorque {
 namespace {

@@ -25,14 +25,14 @@ Lobe choose_lobe(const OpticalSurface& surface, int bands, double u, BandValues&
   const Lobe lobe = at < specular             ? Lobe::specular
                     : at < specular + diffuse ? Lobe::diffuse
                                               : Lobe::transmitted;
-  const BandValues& fraction = lobe == Lobe::specular  ? surface.specular
-                               : lobe == Lobe::diffuse ? surface.diffuse
-                                                       : surface.transmitted;
-  const double share = lobe == Lobe::specular  ? specular
-                       : lobe == Lobe::diffuse ? diffuse
-                                               : transmitted;
-  const double scale = total / share;
-  for (int b = 0; b < bands; ++b) power_W[b] *= fraction[b] * scale;
+  const BandValues& of_band = lobe == Lobe::specular  ? surface.specular
+                              : lobe == Lobe::diffuse ? surface.diffuse
+                                                      : surface.transmitted;
+  const double fraction = lobe == Lobe::specular  ? specular
+                          : lobe == Lobe::diffuse ? diffuse
+                                                  : transmitted;
+  const double scale = total / fraction;
+  for (int b = 0; b < bands; ++b) power_W[b] *= of_band[b] * scale;
   return lobe;
 }
 
@@ -89,7 +89,7 @@ Vec3 expected_recoil(const Hits& hits, int i, const OpticalSurface& surface, con
 // Sends the rest of hit i on its way along one lobe.
 void send_on(const InteractionContext& context, const SobolSequence& sequence,
              const HitBuffer& buffer, int i, const OpticalSurface& surface, const Vec3& direction,
-             const Vec3& normal, LedgerSums& ledger, Continuation& next) {
+             const Vec3& normal, PowerBalanceSums& power_balance, Continuation& next) {
   const Hits& hits = buffer.hits;
   const auto point = sequence.point(buffer.sample[i]);
   BandValues power_W{};
@@ -97,12 +97,13 @@ void send_on(const InteractionContext& context, const SobolSequence& sequence,
   const Lobe lobe = choose_lobe(surface, hits.bands, point[0], power_W);
 
   const Vec3 position(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
-  const double lift = lobe == Lobe::transmitted ? -context.scene->lift_m : context.scene->lift_m;
+  const double ray_offset =
+      lobe == Lobe::transmitted ? -context.scene->ray_offset_m : context.scene->ray_offset_m;
   const Vec3 onward = lobe == Lobe::specular  ? mirrored(direction, normal)
                       : lobe == Lobe::diffuse ? lambertian_direction(normal, point[1], point[2])
                                               : direction;
-  go_on(context, hits.bands, {position, position + lift * normal, onward, buffer.sample[i]},
-        power_W, ledger, next);
+  go_on(context, hits.bands, {position, position + ray_offset * normal, onward, buffer.sample[i]},
+        power_W, power_balance, next);
 }
 
 // Four neighbours of a column.
@@ -158,13 +159,13 @@ bool any_left(const HitBuffer& buffer) {
   return bits != 0;
 }
 
-void book_absorbed(const HitBuffer& buffer, LedgerSums& ledger) {
+void book_absorbed(const HitBuffer& buffer, PowerBalanceSums& power_balance) {
   const Hits& hits = buffer.hits;
   for (int b = 0; b < hits.bands; ++b) {
     const double* absorbed = hits.absorbed_W[b].data();
     int i = 0;
     if (buffer.one_side) {
-      auto& sums = ledger.absorbed_lanes_W[hits.instance[0]];
+      auto& sums = power_balance.absorbed_lanes_W[hits.instance[0]];
       Quad even = Eigen::Map<Quad>(sums.data()), odd = Quad::Zero();
       for (; i + 8 <= hits.count; i += 8) {
         even += Eigen::Map<const Quad>(absorbed + i);
@@ -173,7 +174,7 @@ void book_absorbed(const HitBuffer& buffer, LedgerSums& ledger) {
       Eigen::Map<Quad>(sums.data()) = even + odd;
     }
     for (; i < hits.count; ++i) {
-      ledger.absorbed_lanes_W[hits.instance[i]][static_cast<size_t>(i & 3)] += absorbed[i];
+      power_balance.absorbed_lanes_W[hits.instance[i]][static_cast<size_t>(i & 3)] += absorbed[i];
     }
   }
 }
@@ -195,7 +196,7 @@ void take_momentum(HitBuffer& buffer) {
 }
 
 // The momentum of first hits, in four lanes, the same on every machine.
-void book_momentum(Hits& hits, LedgerSums& ledger) {
+void book_momentum(Hits& hits, PowerBalanceSums& power_balance) {
   pad_quad(hits);
   std::array<Quad, 6> intake;
   intake.fill(Quad::Zero());
@@ -212,13 +213,13 @@ void book_momentum(Hits& hits, LedgerSums& ledger) {
     }
   }
   for (size_t k = 0; k < 6; ++k) {
-    ledger.momentum_in[k] += (intake[k][0] + intake[k][1]) + (intake[k][2] + intake[k][3]);
+    power_balance.momentum_in[k] += (intake[k][0] + intake[k][1]) + (intake[k][2] + intake[k][3]);
   }
 }
 
 }  // namespace
 
-void LedgerSums::add(const LedgerSums& other) {
+void PowerBalanceSums::add(const PowerBalanceSums& other) {
   escaped_W += other.escaped_W;
   truncated_W += other.truncated_W;
   for (size_t k = 0; k < 6; ++k) {
@@ -231,11 +232,11 @@ void LedgerSums::add(const LedgerSums& other) {
   }
 }
 
-void LedgerSums::release(const Vec3& at_m, const Vec3& direction, double power_W) {
+void PowerBalanceSums::release(const Vec3& at_m, const Vec3& direction, double power_W) {
   release_momentum(at_m, direction * (power_W / speed_of_light_m_s));
 }
 
-void LedgerSums::release_momentum(const Vec3& at_m, const Vec3& force_N) {
+void PowerBalanceSums::release_momentum(const Vec3& at_m, const Vec3& force_N) {
   const Vec3 torque = at_m.cross(force_N);
   for (size_t k = 0; k < 3; ++k) {
     momentum_out[k] += force_N[static_cast<Eigen::Index>(k)];
@@ -243,45 +244,45 @@ void LedgerSums::release_momentum(const Vec3& at_m, const Vec3& force_N) {
   }
 }
 
-double LedgerSums::absorbed_W(size_t instance) const {
+double PowerBalanceSums::absorbed_W(size_t instance) const {
   const auto& lanes = absorbed_lanes_W[instance];
   return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
 void go_on(const InteractionContext& context, int bands, const Departure& departure,
-           const BandValues& power_W, LedgerSums& ledger, Continuation& next) {
+           const BandValues& power_W, PowerBalanceSums& power_balance, Continuation& next) {
   double total = 0.0;
   for (int b = 0; b < bands; ++b) total += power_W[b];
   if (total < context.cutoff_W) {
-    ledger.truncated_W += total;
-    ledger.release(departure.hit_m, departure.direction, total);
+    power_balance.truncated_W += total;
+    power_balance.release(departure.hit_m, departure.direction, total);
     return;
   }
   next.rays.push_back(make_ray(departure.origin_m, departure.direction, departure.sample));
   next.power_W.insert(next.power_W.end(), power_W.begin(), power_W.begin() + bands);
 }
 
-void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger,
+void interact(const InteractionContext& context, HitBuffer& buffer, PowerBalanceSums& power_balance,
               Continuation& next) {
   Hits& hits = buffer.hits;
   const Scene& scene = context.scene->scene;
-  const bool finishes = !context.scene->finish.empty();
+  const bool bsdfs = !context.scene->bsdf.empty();
   const bool black = all_black(*context.scene, buffer);
   if (black) {
     absorb_all(hits);
   } else {
     absorb(*context.scene, buffer);
-    if (finishes) absorb_by_angle(*context.scene, buffer);
+    if (bsdfs) absorb_by_angle(*context.scene, buffer);
   }
   take_momentum(buffer);
-  if (context.depth == 0) book_momentum(hits, ledger);
-  book_absorbed(buffer, ledger);
+  if (context.depth == 0) book_momentum(hits, power_balance);
+  book_absorbed(buffer, power_balance);
   if (black) return;
-  if (!finishes && !any_left(buffer)) return;
+  if (!bsdfs && !any_left(buffer)) return;
   SobolStream stream = context.stream;
   stream.group = static_cast<uint32_t>(context.depth) + 1u;
   const SobolSequence sequence(stream);
-  if (finishes) settle_finishes(context, sequence, buffer, ledger, next);
+  if (bsdfs) settle_finishes(context, sequence, buffer, power_balance, next);
   for (int i = 0; i < hits.count; ++i) {
     if (!(buffer.left_W[i] > 0.0)) continue;
     const Instance& instance = scene.instances[hits.instance[i]];
@@ -291,7 +292,7 @@ void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& 
     const Vec3 normal = lit_normal(context, hits, i);
     const Vec3 recoil = expected_recoil(hits, i, surface, direction, normal);
     for (int k = 0; k < 3; ++k) hits.force_N[k][i] -= recoil[k];
-    send_on(context, sequence, buffer, i, surface, direction, normal, ledger, next);
+    send_on(context, sequence, buffer, i, surface, direction, normal, power_balance, next);
   }
 }
 

@@ -24,7 +24,7 @@ struct Continuation {
 
 // Power [W] and momentum flow [N, N m about the body origin] of one part of the work; added up in a
 // fixed order.
-struct LedgerSums {
+struct PowerBalanceSums {
   double escaped_W = 0.0;
   double truncated_W = 0.0;
   std::array<double, 6> momentum_in{};   // of rays at their first hit
@@ -34,7 +34,7 @@ struct LedgerSums {
   std::vector<std::array<double, 4>> absorbed_lanes_W;
 
   double absorbed_W(size_t instance) const;
-  void add(const LedgerSums& other);
+  void add(const PowerBalanceSums& other);
   // A ray with this power leaves for good through `at_m`.
   void release(const Vec3& at_m, const Vec3& direction, double power_W);
   void release_momentum(const Vec3& at_m, const Vec3& force_N);
@@ -57,12 +57,12 @@ struct Departure {
 
 // Appends the ray to `next`, or ends it if it carries less than the cutoff.
 void go_on(const InteractionContext& context, int bands, const Departure& departure,
-           const BandValues& power_W, LedgerSums& ledger, Continuation& next);
+           const BandValues& power_W, PowerBalanceSums& power_balance, Continuation& next);
 
-// Settles all hits of the buffer: fills absorbed_W and force_N, adds to the ledger and appends the
-// rays that go on to `next`. The lobe and direction of a ray come from its own Sobol point of group
-// depth + 1.
-void interact(const InteractionContext& context, HitBuffer& buffer, LedgerSums& ledger,
+// Settles all hits of the buffer: fills absorbed_W and force_N, adds to the power balance and
+// appends the rays that go on to `next`. The lobe and direction of a ray come from its own Sobol
+// point of group depth + 1.
+void interact(const InteractionContext& context, HitBuffer& buffer, PowerBalanceSums& power_balance,
               Continuation& next);
 
 }  // namespace photorque

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "raytrace/tracing/transpose.h"
+#include "core/numerics/transpose.h"
 
 namespace photorque {
 namespace {

@@ -25,7 +25,7 @@ RayPlacement::RayPlacement(const RigidTransform& body_from_emitter,
 // What is written lies apart from what is read, which the compiler must know to vectorise.
 void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict placed,
                          Landing& __restrict landing) const {
-  constexpr float least_z = 1e-6f;  // of the directions of rays that may reach the plane
+  constexpr float min_z = 1e-6f;  // of the directions of rays that may reach the plane
   const float start_m = start_z_m_, landing_m = landing_z_m_;
   const float late = starts_late_ ? 1.0f : 0.0f;
   const float ahead = landing_m > 0.0f ? 1.0f : 0.0f;
@@ -34,12 +34,12 @@ void RayPlacement::place(const RayBlock& __restrict rays, RayColumns& __restrict
   for (int i = 0; i < ray_block; ++i) {
     const float fx = rays.direction[0][i], fy = rays.direction[1][i], fz = rays.direction[2][i];
     const float ex = rays.origin_m[0][i], ey = rays.origin_m[1][i], ez = rays.origin_m[2][i];
-    const float per_z = 1.0f / (fz > least_z ? fz : least_z);
+    const float per_z = 1.0f / (fz > min_z ? fz : min_z);
     const float gap_m = late * (start_m > ez ? start_m - ez : 0.0f);
     const float step = gap_m * per_z;
     const float sx = ex + step * fx, sy = ey + step * fy;
     // Rays that get there are on the plane without rounding.
-    const float on_plane = (fz > least_z ? 1.0f : 0.0f) * (gap_m > 0.0f ? 1.0f : 0.0f);
+    const float on_plane = (fz > min_z ? 1.0f : 0.0f) * (gap_m > 0.0f ? 1.0f : 0.0f);
     const float sz = (1.0f - on_plane) * (step * fz + (ez - start_m));
     for (size_t k = 0; k < 3; ++k) {
       placed[k][i] = r[k][0] * sx + r[k][1] * sy + r[k][2] * sz + offset_m[k];

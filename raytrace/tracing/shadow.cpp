@@ -80,7 +80,7 @@ void find_in_packets(const TraceableScene::Data& scene, std::span<const ShadowRa
 std::vector<TriangleCorners> triangles_above(const Scene& scene, const Vec3& plane_point_m,
                                              const Vec3& plane_normal) {
   // Below this height a triangle lies in the plane as far as single precision can tell.
-  const double least_m = 1e-6 * scene.radius_m();
+  const double min_m = 1e-6 * scene.radius_m();
   std::vector<TriangleCorners> above;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -89,7 +89,7 @@ std::vector<TriangleCorners> triangles_above(const Scene& scene, const Vec3& pla
       bool reaches = false;
       for (size_t k = 0; k < 3; ++k) {
         corners[k] = instance.body_from_mesh * mesh.vertices_m[triangle[k]];
-        reaches = reaches || plane_normal.dot(corners[k] - plane_point_m) > least_m;
+        reaches = reaches || plane_normal.dot(corners[k] - plane_point_m) > min_m;
       }
       if (reaches) above.push_back(corners);
     }
@@ -147,8 +147,8 @@ void find_shadows(const TraceableScene& scene, std::span<const ShadowRay> rays,
   }
 }
 
-double shadow_lift_m(const TraceableScene& scene) {
-  return scene.data().lift_m;
+double shadow_ray_offset_m(const TraceableScene& scene) {
+  return scene.data().ray_offset_m;
 }
 
 double scene_diameter_m(const TraceableScene& scene) {

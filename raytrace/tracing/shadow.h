@@ -54,7 +54,7 @@ void find_shadows(const TraceableScene& scene, std::span<const ShadowRay> rays,
 
 // How far above its surface a shadow ray must start, and a radius that holds the whole scene as
 // seen from any point of it.
-double shadow_lift_m(const TraceableScene& scene);
+double shadow_ray_offset_m(const TraceableScene& scene);
 double scene_diameter_m(const TraceableScene& scene);
 
 }  // namespace photorque

@@ -40,7 +40,7 @@ void check(const Scene& scene) {
 }
 
 bool is_black(const OpticalSurface& surface, int bands) {
-  return surface.finish == nullptr &&
+  return surface.bsdf == nullptr &&
          std::all_of(surface.absorbed.begin(), surface.absorbed.begin() + bands,
                      [](double fraction) { return fraction == 1.0; });
 }
@@ -93,15 +93,15 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   }
 }
 
-void gather_finishes(TraceableScene::Data& data) {
+void gather_bsdfs(TraceableScene::Data& data) {
   const Scene& scene = data.scene;
   if (std::none_of(scene.surfaces.begin(), scene.surfaces.end(),
-                   [](const OpticalSurface& surface) { return surface.finish != nullptr; })) {
+                   [](const OpticalSurface& surface) { return surface.bsdf != nullptr; })) {
     return;
   }
   for (const Instance& instance : scene.instances) {
-    data.finish.push_back(scene.surfaces[instance.back_surface].finish.get());
-    data.finish.push_back(scene.surfaces[instance.front_surface].finish.get());
+    data.bsdf.push_back(scene.surfaces[instance.back_surface].bsdf.get());
+    data.bsdf.push_back(scene.surfaces[instance.front_surface].bsdf.get());
   }
 }
 
@@ -116,7 +116,7 @@ void bound(TraceableScene::Data& data) {
   data.centre_m = box.center();
   data.radius_m = 0.5 * box.diagonal().norm();
   // Single precision rounds a coordinate x by up to 6e-8 |x|.
-  data.lift_m = 5e-7 * (data.centre_m.cwiseAbs().maxCoeff() + data.radius_m);
+  data.ray_offset_m = 5e-7 * (data.centre_m.cwiseAbs().maxCoeff() + data.radius_m);
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ TraceableScene::TraceableScene(Scene scene, bool leak_safe) : data_(std::make_un
   rtcSetSceneFlags(data_->embree, leak_safe ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   rtcSetSceneBuildQuality(data_->embree, RTC_BUILD_QUALITY_MEDIUM);
   for (const Instance& instance : data_->scene.instances) add_instance(*data_, instance);
-  gather_finishes(*data_);
+  gather_bsdfs(*data_);
   bound(*data_);
   rtcCommitScene(data_->embree);
   if (rtcGetDeviceError(data_->device) != RTC_ERROR_NONE) {

@@ -31,13 +31,13 @@ struct TraceableScene::Data {
   std::array<std::vector<double>, max_bands> absorbed_fraction;
   // Whether a side absorbs everything and does nothing else, numbered alike.
   std::vector<uint8_t> black;
-  // finish[2 · instance + (1 if hit from the front)], null for plain surfaces; empty if all are.
-  std::vector<const Finish*> finish;
+  // BSDF[2 · instance + (1 if hit from the front)], null for plain surfaces; empty if all are.
+  std::vector<const Bsdf*> bsdf;
   Vec3 centre_m = Vec3::Zero();  // of a sphere that holds the scene
   double radius_m = 0.0;
   // How far a ray that leaves a surface starts above it: beyond single-precision rounding of any
   // point of the scene, below any feature.
-  double lift_m = 0.0;
+  double ray_offset_m = 0.0;
 
   const TrianglePlane& plane(uint32_t instance, uint32_t triangle) const {
     return planes[first_triangle[instance] + triangle];

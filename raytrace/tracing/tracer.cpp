@@ -18,7 +18,7 @@
 namespace photorque {
 namespace {
 
-// The share of the work that belongs to one beam.
+// The fraction of the work that belongs to one beam.
 struct BeamPlan {
   const Beam* beam;
   LaunchPlan launch;           // of the rays of one replicate: a power of two, at least ray_block
@@ -47,32 +47,32 @@ Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from
     const uint64_t capped = static_cast<uint64_t>(std::min(wanted, 0x1p31));
     const uint32_t rays =
         std::bit_ceil(std::max<uint32_t>(static_cast<uint32_t>(capped), ray_block));
-    BeamPlan share{&beam,
-                   plan_launch(*beam.emitter, body_from_lab * beam.lab_from_emitter, scene,
-                               std::countr_zero(rays)),
-                   plan.batches, band_fractions(beam.spectrum, scene.scene.bands), power / rays};
-    double fraction = 0.0;
-    for (double& band : share.power_per_ray_W) fraction += band;
-    for (double& band : share.power_per_ray_W) band *= share.watt_per_ray / fraction;
-    plan.batches += share.launch.cells.cells();
+    BeamPlan planned{&beam,
+                     plan_launch(*beam.emitter, body_from_lab * beam.lab_from_emitter, scene,
+                                 std::countr_zero(rays)),
+                     plan.batches, band_fractions(beam.spectrum, scene.scene.bands), power / rays};
+    double all_bands_W = 0.0;
+    for (double& band : planned.power_per_ray_W) all_bands_W += band;
+    for (double& band : planned.power_per_ray_W) band *= planned.watt_per_ray / all_bands_W;
+    plan.batches += planned.launch.cells.cells();
     plan.rays += static_cast<uint64_t>(rays) * static_cast<uint64_t>(options.replicates);
-    plan.beams.push_back(std::move(share));
+    plan.beams.push_back(std::move(planned));
   }
   return plan;
 }
 
 // Everything that one part of the work adds up.
 struct Sums {
-  LedgerSums ledger;
+  PowerBalanceSums power_balance;
   std::vector<std::vector<double>> receivers;
   uint64_t segments = 0;
 
   Sums(size_t instances, std::span<const Receiver* const> all) {
-    ledger.absorbed_lanes_W.assign(instances, {});
+    power_balance.absorbed_lanes_W.assign(instances, {});
     for (const Receiver* receiver : all) receivers.emplace_back(receiver->bins(), 0.0);
   }
   void add(const Sums& other) {
-    ledger.add(other.ledger);
+    power_balance.add(other.power_balance);
     for (size_t r = 0; r < receivers.size(); ++r) {
       for (size_t i = 0; i < receivers[r].size(); ++i) receivers[r][i] += other.receivers[r][i];
     }
@@ -100,13 +100,13 @@ class BatchTracer {
     context_ = {&scene_, stream, 0, options_.cutoff * plan.watt_per_ray};
     launch(*plan.beam->emitter, plan.launch, stream, batch, launched_);
     next_.clear();
-    trace_wave({launched_.rays, launched_.order}, plan.power_per_ray_W.data(), 0,
-               Coherence::coherent);
+    trace_bounce({launched_.rays, launched_.order}, plan.power_per_ray_W.data(), 0,
+                 Coherence::coherent);
     for (context_.depth = 1; !next_.rays.empty() && context_.depth < options_.max_depth;
          ++context_.depth) {
       std::swap(current_, next_);
       next_.clear();
-      trace_wave({current_.rays, {}}, current_.power_W.data(), bands(), Coherence::incoherent);
+      trace_bounce({current_.rays, {}}, current_.power_W.data(), bands(), Coherence::incoherent);
     }
     truncate();
   }
@@ -115,7 +115,7 @@ class BatchTracer {
   int bands() const { return hits_->hits.bands; }
 
   // Ray i has the powers power_W[i · stride …].
-  void trace_wave(const RayList& rays, const double* power_W, int stride, Coherence coherence) {
+  void trace_bounce(const RayList& rays, const double* power_W, int stride, Coherence coherence) {
     sums_->segments += rays.size();
     for (size_t begin = 0; begin < rays.size(); begin += Hits::capacity) {
       const RayList some = rays.part(begin, Hits::capacity);
@@ -124,7 +124,7 @@ class BatchTracer {
       drop_misses(some, power, stride);
       if (hits_->hits.count == 0) continue;
       locate_hits(scene_, context_.depth, *hits_);
-      interact(context_, *hits_, sums_->ledger, next_);
+      interact(context_, *hits_, sums_->power_balance, next_);
       for (size_t r = 0; r < receivers_.size(); ++r) {
         receivers_[r]->score(hits_->hits, sums_->receivers[r]);
       }
@@ -167,21 +167,21 @@ class BatchTracer {
 
   void escape(const Ray& ray, const double* power_W) {
     const double power = total(power_W);
-    sums_->ledger.escaped_W += power;
+    sums_->power_balance.escaped_W += power;
     if (context_.depth > 0) leave(ray, power);
   }
 
   void leave(const Ray& ray, double power) {
     const Vec3 direction(ray.direction[0], ray.direction[1], ray.direction[2]);
     const Vec3 origin(ray.origin_m[0], ray.origin_m[1], ray.origin_m[2]);
-    sums_->ledger.release(origin, direction, power);
+    sums_->power_balance.release(origin, direction, power);
   }
 
   // What is still under way at the depth limit.
   void truncate() {
     for (size_t i = 0; i < next_.rays.size(); ++i) {
       const double power = total(&next_.power_W[i * static_cast<size_t>(bands())]);
-      sums_->ledger.truncated_W += power;
+      sums_->power_balance.truncated_W += power;
       leave(next_.rays[i], power);
     }
   }
@@ -200,7 +200,7 @@ class BatchTracer {
 
 // Parts that the batches of one replicate are cut into; fixed, so that sums do not depend on
 // threads.
-constexpr uint64_t most_parts = 4;
+constexpr uint64_t max_parts = 4;
 
 // Batch tracers between two parts of the work: their memory is made once per thread.
 class TracerPool {
@@ -248,38 +248,38 @@ Sums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
   return sums;
 }
 
-Ledger make_ledger(const std::vector<Sums>& replicates, const Plan& plan) {
+PowerBalance make_power_balance(const std::vector<Sums>& replicates, const Plan& plan) {
   std::vector<double> values(replicates.size());
-  const auto estimate = [&](const std::function<double(const LedgerSums&)>& pick) {
-    for (size_t r = 0; r < values.size(); ++r) values[r] = pick(replicates[r].ledger);
+  const auto estimate = [&](const std::function<double(const PowerBalanceSums&)>& pick) {
+    for (size_t r = 0; r < values.size(); ++r) values[r] = pick(replicates[r].power_balance);
     return estimate_from_replicates(values);
   };
-  const auto absorbed = [](const LedgerSums& s) {
+  const auto absorbed = [](const PowerBalanceSums& s) {
     double sum = 0.0;
     for (size_t i = 0; i < s.absorbed_lanes_W.size(); ++i) sum += s.absorbed_W(i);
     return sum;
   };
-  Ledger ledger;
-  ledger.emitted_W = plan.emitted_W;
-  ledger.absorbed_W = estimate(absorbed);
-  ledger.escaped_W = estimate([](const LedgerSums& s) { return s.escaped_W; });
-  ledger.truncated_W = estimate([](const LedgerSums& s) { return s.truncated_W; });
-  for (size_t i = 0; i < replicates[0].ledger.absorbed_lanes_W.size(); ++i) {
-    ledger.absorbed_by_instance_W.push_back(
-        estimate([i](const LedgerSums& s) { return s.absorbed_W(i); }));
+  PowerBalance power_balance;
+  power_balance.emitted_W = plan.emitted_W;
+  power_balance.absorbed_W = estimate(absorbed);
+  power_balance.escaped_W = estimate([](const PowerBalanceSums& s) { return s.escaped_W; });
+  power_balance.truncated_W = estimate([](const PowerBalanceSums& s) { return s.truncated_W; });
+  for (size_t i = 0; i < replicates[0].power_balance.absorbed_lanes_W.size(); ++i) {
+    power_balance.absorbed_by_instance_W.push_back(
+        estimate([i](const PowerBalanceSums& s) { return s.absorbed_W(i); }));
   }
   for (size_t k = 0; k < 3; ++k) {
-    ledger.force_N[k] =
-        estimate([k](const LedgerSums& s) { return s.momentum_in[k] - s.momentum_out[k]; });
-    ledger.torque_N_m[k] =
-        estimate([k](const LedgerSums& s) { return s.momentum_in[3 + k] - s.momentum_out[3 + k]; });
+    power_balance.force_N[k] =
+        estimate([k](const PowerBalanceSums& s) { return s.momentum_in[k] - s.momentum_out[k]; });
+    power_balance.torque_N_m[k] = estimate(
+        [k](const PowerBalanceSums& s) { return s.momentum_in[3 + k] - s.momentum_out[3 + k]; });
   }
   for (const Sums& replicate : replicates) {
-    const LedgerSums& s = replicate.ledger;
+    const PowerBalanceSums& s = replicate.power_balance;
     const double gap = std::abs(plan.emitted_W - absorbed(s) - s.escaped_W - s.truncated_W);
-    ledger.closure = std::max(ledger.closure, gap / plan.emitted_W);
+    power_balance.closure = std::max(power_balance.closure, gap / plan.emitted_W);
   }
-  return ledger;
+  return power_balance;
 }
 
 void check(const TraceOptions& options, std::span<const Beam> beams) {
@@ -291,10 +291,10 @@ void check(const TraceOptions& options, std::span<const Beam> beams) {
     refuse("replicates", options.replicates, "8 to 1024");
   }
   // A sequence has at most 2^31 points.
-  const uint64_t most_rays = static_cast<uint64_t>(options.replicates) << 31;
-  if (options.rays < 1 || options.rays > most_rays) {
+  const uint64_t max_rays = static_cast<uint64_t>(options.replicates) << 31;
+  if (options.rays < 1 || options.rays > max_rays) {
     refuse("rays", static_cast<double>(options.rays),
-           "1 to 2^31 for each of the replicates, " + std::to_string(most_rays));
+           "1 to 2^31 for each of the replicates, " + std::to_string(max_rays));
   }
   if (options.max_depth < 1 || options.max_depth > 65535) {
     refuse("max_depth", options.max_depth, "1 to 65535");
@@ -310,7 +310,7 @@ void check(const TraceOptions& options, std::span<const Beam> beams) {
 }  // namespace
 
 size_t trace_parts(const TraceOptions& options) {
-  return most_parts * static_cast<size_t>(options.replicates);
+  return max_parts * static_cast<size_t>(options.replicates);
 }
 
 TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_body,
@@ -321,7 +321,7 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   const TraceableScene::Data& data = scene.data();
   const Plan plan = make_plan(data, lab_from_body, beams, options);
 
-  const uint64_t parts = std::min(most_parts, plan.batches);
+  const uint64_t parts = std::min(max_parts, plan.batches);
   const size_t replicates = static_cast<size_t>(options.replicates);
   std::vector<Sums> done(replicates * parts, Sums(0, {}));
   TracerPool pool(data, receivers, options);
@@ -351,7 +351,7 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
     }
     result.sums.push_back(std::move(sums));
   }
-  result.ledger = make_ledger(by_replicate, plan);
+  result.power_balance = make_power_balance(by_replicate, plan);
   result.rays = plan.rays;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -62,7 +62,7 @@ struct TraceOptions {
 
 // Where the power went. Sums over bands; emitted − absorbed − escaped − truncated is zero to 1e-12
 // of emitted, and `closure` says how well.
-struct Ledger {
+struct PowerBalance {
   double emitted_W = 0.0;
   Estimate absorbed_W;
   Estimate escaped_W;
@@ -77,7 +77,7 @@ struct Ledger {
 };
 
 struct TraceResult {
-  Ledger ledger;
+  PowerBalance power_balance;
   std::vector<BinSums> sums;  // one per receiver, in their order
   uint64_t rays = 0;          // emitted
   uint64_t segments = 0;      // traced, bounces included

@@ -73,10 +73,13 @@ bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin,
   const double u = grid.u_low + du * static_cast<double>(bin % width);
   const double v = grid.v_low + dv * static_cast<double>(bin / width);
   const Vec3 flat = u * grid.u_axis_body + v * grid.v_axis_body;
-  const double lift = plane.normal.dot(plane.point_m - flat) / lean;
-  whole = {flat + lift * grid.normal_body, du * along(grid.u_axis_body),
-           dv * along(grid.v_axis_body),   full_m2,
-           pieces[0].patch.instance,       false};
+  const double ray_offset = plane.normal.dot(plane.point_m - flat) / lean;
+  whole = {flat + ray_offset * grid.normal_body,
+           du * along(grid.u_axis_body),
+           dv * along(grid.v_axis_body),
+           full_m2,
+           pieces[0].patch.instance,
+           false};
   return true;
 }
 

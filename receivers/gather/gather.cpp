@@ -55,30 +55,30 @@ class Gather {
       result.direct = sample(points, result.shadow_rays);
       result.worst_error = worst_error(result.direct);
       const bool enough = result.worst_error <= options_.target_error;
-      if (options_.target_error <= 0.0 || enough || 2 * points > most_points) break;
+      if (options_.target_error <= 0.0 || enough || 2 * points > max_points) break;
     }
     return result;
   }
 
  private:
-  static constexpr int most_points = 1 << 14;
+  static constexpr int max_points = 1 << 14;
   static constexpr size_t tile_side = 16;  // bins
   // Chebyshev points a side, where they replace Gauss points in every bin.
-  static constexpr size_t least_nodes = 4, most_nodes = 20;
+  static constexpr size_t min_nodes = 4, max_nodes = 20;
 
   // A table of a light for all its lamps above the plane, where it pays.
   void make_table(const DiscLight& light) {
-    constexpr size_t least_pairs = 5000;  // of a bin and a lamp
+    constexpr size_t min_pairs = 5000;  // of a bin and a lamp
     double low_m = INFINITY, high_m = 0.0;
     std::vector<GatherLamp*> served;
     for (GatherLamp& lamp : lamps_) {
-      const auto [least_m, most_m] = lamp.heights_m(plane_);
-      if (&lamp.light() != &light || !(least_m > 0.0)) continue;
-      low_m = std::min(low_m, least_m);
-      high_m = std::max(high_m, most_m);
+      const auto [min_m, max_m] = lamp.heights_m(plane_);
+      if (&lamp.light() != &light || !(min_m > 0.0)) continue;
+      low_m = std::min(low_m, min_m);
+      high_m = std::max(high_m, max_m);
       served.push_back(&lamp);
     }
-    if (served.size() * plane_.map().grid().bins() < least_pairs) return;
+    if (served.size() * plane_.map().grid().bins() < min_pairs) return;
     auto table = IrradianceTable::make(light, low_m, high_m, options_.threads);
     if (!table) return;
     const auto shared = std::make_shared<const IrradianceTable>(*std::move(table));
@@ -156,9 +156,9 @@ class Gather {
   size_t add_open(const BinTile& tile, const Ball& ball, const GatherLamp& lamp) {
     // Fewer points than two Gauss points a side of every bin, where the irradiance is smooth.
     const double turns = 2.0 * ball.radius_m / lamp.scale_m(ball);
-    const auto nodes = least_nodes + static_cast<size_t>(std::min(4.0 * turns, 100.0));
+    const auto nodes = min_nodes + static_cast<size_t>(std::min(4.0 * turns, 100.0));
     const auto count = static_cast<size_t>(tile.count());
-    const bool smooth = nodes <= most_nodes && nodes * nodes < 4 * count && lamp.smooth_over(ball);
+    const bool smooth = nodes <= max_nodes && nodes * nodes < 4 * count && lamp.smooth_over(ball);
     std::vector<double> mean_W_m2;
     if (smooth) mean_W_m2 = interpolate(tile, nodes, lamp);
     size_t open = 0, at = 0;
@@ -168,7 +168,7 @@ class Gather {
         for (const SurfacePatch& patch : plane_.patches().of(bin)) {
           const double mean =
               smooth && plane_.whole(bin) ? mean_W_m2[at] : mean_irradiance_W_m2(patch, lamp);
-          plane_.add_power(patch.area_m2 * mean, lamp.share(), bin, patch.instance, open_W_);
+          plane_.add_power(patch.area_m2 * mean, lamp.fraction(), bin, patch.instance, open_W_);
         }
         open += plane_.patches().of(bin).empty() ? 0 : 1;
       }
@@ -189,7 +189,7 @@ class Gather {
       halve(tile.rows);
     }
     for (const int cells : sizes) {
-      for (size_t nodes = least_nodes; nodes <= most_nodes; ++nodes) {
+      for (size_t nodes = min_nodes; nodes <= max_nodes; ++nodes) {
         if (nodes * nodes >= 4 * tile_side * tile_side) break;
         cell_means_[{nodes, static_cast<size_t>(cells)}] =
             chebyshev_cell_means(nodes, static_cast<size_t>(cells));
@@ -303,8 +303,8 @@ bool absorbs_by_angle(const Scene& scene, const SurfaceGrid& grid) {
   return std::any_of(grid.instances.begin(), grid.instances.end(), [&](uint32_t instance) {
     const Instance& of = scene.instances[instance];
     const uint32_t surface = grid.side == Side::back ? of.back_surface : of.front_surface;
-    const Finish* finish = scene.surfaces[surface].finish.get();
-    return finish != nullptr && finish->law != nullptr;
+    const Bsdf* bsdf = scene.surfaces[surface].bsdf.get();
+    return bsdf != nullptr && bsdf->law != nullptr;
   });
 }
 

@@ -27,16 +27,16 @@ Ball GatherPlane::ball_of(const BinTile& tile) const {
   return {point_m(tile.column + 0.5 * tile.columns, tile.row + 0.5 * tile.rows), radius};
 }
 
-void GatherPlane::add_power(double power_W, const BandValues& share, size_t bin, uint32_t instance,
-                            std::span<double> entries) const {
+void GatherPlane::add_power(double power_W, const BandValues& fraction, size_t bin,
+                            uint32_t instance, std::span<double> entries) const {
   const Instance& of = scene_.scene().instances[instance];
   const bool back = map_.grid().side == Side::back;
   const OpticalSurface& surface =
       scene_.scene().surfaces[back ? of.back_surface : of.front_surface];
   for (size_t band = 0; band < static_cast<size_t>(map_.bands().count()); ++band) {
     const size_t at = map_.entry(bin, band);
-    entries[at] += power_W * share[band];
-    entries[at + 1] += power_W * share[band] * surface.absorbed[band];
+    entries[at] += power_W * fraction[band];
+    entries[at + 1] += power_W * fraction[band] * surface.absorbed[band];
   }
 }
 
@@ -46,15 +46,15 @@ GatherLamp::GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
       body_from_emitter_(body_from_lab * beam.lab_from_emitter),
       emitter_from_body_(body_from_emitter_.inverse()),
       normal_emitter_(emitter_from_body_.direction(plane.normal())),
-      share_(band_fractions(beam.spectrum, plane.map().bands())),
+      fraction_(band_fractions(beam.spectrum, plane.map().bands())),
       lights_front_(light_->lights_front(normal_emitter_)),
       scene_diameter_m_(scene_diameter_m(plane.scene())),
       lean_rad_(std::acos(std::clamp(-normal_emitter_.z(), -1.0, 1.0))),
       reach_slope_(std::tan(std::min(light_->reach_rad(), 1.5))),
       wide_(light_->reach_rad() > 1.5) {
   double total = 0.0;
-  for (const double share : share_) total += share;
-  for (double& share : share_) share /= total;
+  for (const double fraction : fraction_) total += fraction;
+  for (double& fraction : fraction_) fraction /= total;
 }
 
 std::pair<double, double> GatherLamp::heights_m(const GatherPlane& plane) const {

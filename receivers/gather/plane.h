@@ -45,7 +45,7 @@ class GatherPlane {
 
   // Adds a power with its shares per band, and what an instance's surface absorbs of it, to the
   // direct entries of a bin.
-  void add_power(double power_W, const BandValues& share, size_t bin, uint32_t instance,
+  void add_power(double power_W, const BandValues& fraction, size_t bin, uint32_t instance,
                  std::span<double> entries) const;
 
  private:
@@ -66,7 +66,7 @@ class GatherLamp {
   const RigidTransform& body_from_emitter() const { return body_from_emitter_; }
   const RigidTransform& emitter_from_body() const { return emitter_from_body_; }
   const Vec3& normal_emitter() const { return normal_emitter_; }  // of the lit side
-  const BandValues& share() const { return share_; }              // of its power per band
+  const BandValues& fraction() const { return fraction_; }        // of its power per band
   // Irradiance without shadow at a point of the plane.
   double irradiance_W_m2(const Vec3& at_body_m) const {
     const Vec3 at = emitter_from_body_.point(at_body_m);
@@ -94,7 +94,7 @@ class GatherLamp {
   std::shared_ptr<const IrradianceTable> table_;  // may be null
   RigidTransform body_from_emitter_, emitter_from_body_;
   Vec3 normal_emitter_;
-  BandValues share_{};
+  BandValues fraction_{};
   bool lights_front_ = false;
   double scene_diameter_m_ = 0.0;
   double lean_rad_ = 0.0;     // between the axis and the way into the plane

@@ -12,7 +12,7 @@ namespace {
 struct PlacedPatch {
   const SurfacePatch* patch;
   Vec3 origin_m, edge1_m, edge2_m;
-  double share;  // of the bin's area
+  double fraction;  // of the bin's area
 };
 
 class ShadedSampler {
@@ -23,7 +23,7 @@ class ShadedSampler {
         lamp_(lamp),
         points_(points),
         entries_(entries),
-        lift_m_(shadow_lift_m(plane.scene())),
+        ray_offset_m_(shadow_ray_offset_m(plane.scene())),
         far_m_(scene_diameter_m(plane.scene())),
         body_from_emitter_(lamp.body_from_emitter().rotation.toRotationMatrix()) {}
 
@@ -69,11 +69,11 @@ class ShadedSampler {
 
   const PlacedPatch& pick(double& s) const {
     for (const PlacedPatch& placed : placed_) {
-      if (s < placed.share || &placed == &placed_.back()) {
-        s = std::min(s / placed.share, 1.0);
+      if (s < placed.fraction || &placed == &placed_.back()) {
+        s = std::min(s / placed.fraction, 1.0);
         return placed;
       }
-      s -= placed.share;
+      s -= placed.fraction;
     }
     return placed_.back();
   }
@@ -135,7 +135,7 @@ class ShadedSampler {
   }
 
   void add_ray(const Vec3& at, const Vec3& from) {
-    const Vec3 start = at + lift_m_ * lamp_.normal_emitter();
+    const Vec3 start = at + ray_offset_m_ * lamp_.normal_emitter();
     const Vec3 between = from - start;
     const double length = between.norm();
     const Vec3 origin = body_from_emitter_ * start + lamp_.body_from_emitter().translation_m;
@@ -145,7 +145,7 @@ class ShadedSampler {
       ray.origin_m[k] = static_cast<float>(origin[k]);
       ray.direction[k] = static_cast<float>(direction[k]);
     }
-    ray.length_m = static_cast<float>(length - lift_m_);
+    ray.length_m = static_cast<float>(length - ray_offset_m_);
   }
 
   // Traces the lines; the power of neighbours on the same bin is added at once.
@@ -158,7 +158,7 @@ class ShadedSampler {
         power_W += lit_[i] ? power_W_[i] : 0.0;
       }
       if (power_W > 0.0) {
-        plane_.add_power(power_W, lamp_.share(), bin_[begin], instance_[begin], entries_);
+        plane_.add_power(power_W, lamp_.fraction(), bin_[begin], instance_[begin], entries_);
       }
     }
   }
@@ -167,7 +167,7 @@ class ShadedSampler {
   const GatherLamp& lamp_;
   size_t points_;
   std::span<double> entries_;
-  double lift_m_, far_m_;
+  double ray_offset_m_, far_m_;
   Mat3 body_from_emitter_;
   std::vector<PlacedPatch> placed_;
   SampleBlock samples_;

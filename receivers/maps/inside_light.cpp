@@ -72,21 +72,21 @@ std::string describe_inside_light(const Scene& scene,
                                   double emitted_W) {
   // Of ten million rays, the few that meet an edge exactly may pass it.
   constexpr double rounding = 1e-6;
-  constexpr size_t most_named = 3;
+  constexpr size_t max_named = 3;
   std::ostringstream line;
   line.precision(2);
   double inside_W = 0.0;
   for (const auto& part : lit) inside_W += part.inside_W.value;
   if (inside_W <= rounding * emitted_W) return "";
   line << 100.0 * inside_W / emitted_W << " % of the light falls on the inside of closed parts: ";
-  for (size_t i = 0; i < std::min(lit.size(), most_named); ++i) {
+  for (size_t i = 0; i < std::min(lit.size(), max_named); ++i) {
     const bool turned = lit[i].inside_W.value > lit[i].outside_W.value;
     line << (i > 0 ? ", " : "") << scene.instances[lit[i].instance].path << " ("
          << 100.0 * lit[i].inside_W.value / emitted_W << " %, "
          << (turned ? "its triangles are turned inside out or a lamp stands in it" : "by cracks")
          << ")";
   }
-  if (lit.size() > most_named) line << " and " << lit.size() - most_named << " more";
+  if (lit.size() > max_named) line << " and " << lit.size() - max_named << " more";
   return line.str();
 }
 

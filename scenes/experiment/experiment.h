@@ -1,4 +1,4 @@
-// One experiment file: what is believed about the laboratory, ready to trace.
+// One experiment file: the nominal model of the laboratory, ready to trace.
 //
 // The file is read in two steps. ExperimentFile is what the text says, checked as far as it can be
 // without the scene; Experiment is the scene, beams and receivers that it names.

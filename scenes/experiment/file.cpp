@@ -75,8 +75,8 @@ TraceEffort read_effort(const Settings& root) {
   }
   if (table.has("max_time_s")) effort.max_time_s = table.number("max_time_s", Range::positive());
   if (table.has("arriving_rays")) {
-    constexpr int64_t most_rays = 10'000'000;  // they are kept in memory
-    effort.arriving_rays = static_cast<uint64_t>(table.integer("arriving_rays", 1, most_rays));
+    constexpr int64_t max_rays = 10'000'000;  // they are kept in memory
+    effort.arriving_rays = static_cast<uint64_t>(table.integer("arriving_rays", 1, max_rays));
   }
   if (effort.max_time_s && !effort.target_error) {
     throw table.error("max_time_s", "a limit without a target",

@@ -79,7 +79,7 @@ size_t count_t_junctions(const Mesh& mesh, const std::vector<Edge>& open) {
 }
 
 void add(const Mesh& mesh, MeshClosure& closure) {
-  constexpr size_t most_open_edges = 100'000;
+  constexpr size_t max_open_edges = 100'000;
   const std::vector<Edge> edges = edges_of(mesh, welded(mesh.vertices_m));
   std::vector<Edge> open;
   size_t distinct = 0;
@@ -97,7 +97,7 @@ void add(const Mesh& mesh, MeshClosure& closure) {
   if (!open.empty() && few_open) ++closure.almost_closed;
   closure.encloses.push_back(closed || few_open ? 1 : 0);
   closure.open_edges += open.size();
-  if (open.size() <= most_open_edges) closure.t_junctions += count_t_junctions(mesh, open);
+  if (open.size() <= max_open_edges) closure.t_junctions += count_t_junctions(mesh, open);
 }
 
 }  // namespace

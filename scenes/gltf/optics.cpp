@@ -202,10 +202,11 @@ MaterialOverrides read_overrides(const Document& document, const GltfOptions& op
   for (const Settings& material : options.materials) {
     const std::string name = material.text("name");
     if (!name.empty() && !names.contains(name)) {
-      const std::string hint = nearest(name, names);
+      const std::string weak_evidence = nearest(name, names);
       throw material.error(
           "name", "\"" + name + "\"",
-          "a material of " + document.file + (hint.empty() ? "" : ", perhaps \"" + hint + "\""));
+          "a material of " + document.file +
+              (weak_evidence.empty() ? "" : ", perhaps \"" + weak_evidence + "\""));
     }
     if (!overrides.emplace(name, read_sheet(material, options.bands.count(), name, files)).second) {
       throw material.error("name", "\"" + name + "\" a second time", "each material once");
@@ -244,13 +245,13 @@ bool has_ignored_texture(const json& material) {
 std::string describe_surface(const OpticalSurface& surface) {
   std::ostringstream text;
   text.precision(3);
-  const auto share = [](double value) { return std::abs(value) < 1e-12 ? 0.0 : value; };
-  text << "absorptance " << share(surface.absorbed[0]) << ", specular "
-       << share(surface.specular[0]) << ", diffuse " << share(surface.diffuse[0])
-       << ", transmittance " << share(surface.transmitted[0]);
-  if (surface.finish) {
-    if (surface.finish->law) text << " at normal incidence";
-    if (!surface.finish->description.empty()) text << "; " << surface.finish->description;
+  const auto fraction = [](double value) { return std::abs(value) < 1e-12 ? 0.0 : value; };
+  text << "absorptance " << fraction(surface.absorbed[0]) << ", specular "
+       << fraction(surface.specular[0]) << ", diffuse " << fraction(surface.diffuse[0])
+       << ", transmittance " << fraction(surface.transmitted[0]);
+  if (surface.bsdf) {
+    if (surface.bsdf->law) text << " at normal incidence";
+    if (!surface.bsdf->description.empty()) text << "; " << surface.bsdf->description;
   }
   return text.str();
 }

@@ -41,7 +41,7 @@ MaterialOptics material_optics(const Document& document, int index, int bands,
 // Y the luminance of the base colour (0.2126 R + 0.7152 G + 0.0722 B of its linear factors, IEC
 // 61966-2-1), m metallic, r roughness, t transmission factor (KHR_materials_transmission) and
 // F0 = ((n − 1)/(n + 1))² with n = 1.5 or from KHR_materials_ior (appendix B of the specification):
-//   reflected at the surface   R = (1 − m) F0 + m Y,   a share 1 − r of it specular, r diffuse
+//   reflected at the surface   R = (1 − m) F0 + m Y,   a fraction 1 − r of it specular, r diffuse
 //   reflected from below       D = (1 − m)(1 − F0)(1 − t) Y, diffuse
 //   transmitted                T = (1 − m)(1 − F0) t Y
 //   absorbed                   the rest
@@ -72,7 +72,7 @@ bool has_ignored_texture(const nlohmann::json& material);
 SettingsNode settings_from_json(const nlohmann::json& value, const InputLocation& where);
 
 // "absorptance 0.83, specular 0.01, diffuse 0.16, transmittance 0" of the first band; then the
-// finish in a few words.
+// BSDF in a few words.
 std::string describe_surface(const OpticalSurface& surface);
 
 }  // namespace photorque::gltf

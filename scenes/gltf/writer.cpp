@@ -125,8 +125,8 @@ size_t add_indices(Buffer& buffer, const Mesh& mesh) {
   std::vector<uint32_t> wide;
   for (const auto& triangle : mesh.triangles)
     wide.insert(wide.end(), triangle.begin(), triangle.end());
-  constexpr size_t most_for_short = 65535;  // 65535 itself restarts a primitive
-  if (mesh.vertices_m.size() > most_for_short) {
+  constexpr size_t max_for_short = 65535;  // 65535 itself restarts a primitive
+  if (mesh.vertices_m.size() > max_for_short) {
     return buffer.add(wide, type_unsigned_int, 1, target_indices);
   }
   const std::vector<uint16_t> narrow(wide.begin(), wide.end());

@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<std::string_view, 4> brdf_columns = {"incidence_deg", "scatter_deg",
                                                           "azimuth_deg", "brdf_1_sr"};
 constexpr std::array<double, 4> brdf_column_limits = {90.0, 90.0, 180.0, 1e9};
-constexpr size_t most_brdf_rows = 1'000'000;
+constexpr size_t max_brdf_rows = 1'000'000;
 
 struct BrdfRow {
   std::array<double, 4> values;  // in the order of brdf_columns
@@ -71,7 +71,7 @@ std::vector<BrdfRow> read_rows(const std::string& text, const std::string& name)
       throw InputError(where, "", std::to_string(fields.size()) + " fields",
                        std::to_string(width) + ", as in the header");
     }
-    if (rows.size() == most_brdf_rows) {
+    if (rows.size() == max_brdf_rows) {
       throw InputError(where, "", "more than a million rows", "a smaller table");
     }
     BrdfRow row{{}, where.line};
@@ -123,7 +123,7 @@ BrdfTable read_brdf(const std::string& text, const std::string& name) {
                                                    distinct(rows, 2)};
   const size_t entries = axes[0].size() * axes[1].size() * axes[2].size();
   // A table that is whole has as many rows; checked first, so that scattered angles cost nothing.
-  if (entries > 2 * most_brdf_rows) {
+  if (entries > 2 * max_brdf_rows) {
     throw InputError({name}, "",
                      std::to_string(rows.size()) + " rows of " + std::to_string(entries) +
                          " combinations of their angles",

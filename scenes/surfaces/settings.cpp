@@ -19,14 +19,14 @@ namespace {
 constexpr double sum_tolerance = 1e-9;
 
 // One of the fractions: its key, and where it goes.
-struct Share {
+struct Fraction {
   const char* key;
   BandValues OpticalSurface::*values;
 };
-constexpr std::array<Share, 4> shares = {{{"absorptance", &OpticalSurface::absorbed},
-                                          {"specular", &OpticalSurface::specular},
-                                          {"diffuse", &OpticalSurface::diffuse},
-                                          {"transmittance", &OpticalSurface::transmitted}}};
+constexpr std::array<Fraction, 4> fractions = {{{"absorptance", &OpticalSurface::absorbed},
+                                                {"specular", &OpticalSurface::specular},
+                                                {"diffuse", &OpticalSurface::diffuse},
+                                                {"transmittance", &OpticalSurface::transmitted}}};
 
 // One number for all bands, or an array with one per band.
 BandValues read_band_values(const Settings& table, const char* key, int bands, Range range) {
@@ -44,14 +44,14 @@ BandValues read_band_values(const Settings& table, const char* key, int bands, R
   return values;
 }
 
-BandValues read_share(const Settings& table, const char* key, int bands) {
+BandValues read_fraction(const Settings& table, const char* key, int bands) {
   return read_band_values(table, key, bands, Range::fraction());
 }
 
-// The share that goes back where it came from, and the surface for it, if the user has one.
+// The fraction that goes back where it came from, and the surface for it, if the user has one.
 BandValues read_retroreflected(const Settings& table, int bands) {
   constexpr const char* key = "retroreflectance";
-  return table.has(key) ? read_share(table, key, bands) : BandValues{};
+  return table.has(key) ? read_fraction(table, key, bands) : BandValues{};
 }
 
 // glTF's roughness as the facets' alpha. Below a thousandth it is a mirror.
@@ -71,9 +71,10 @@ std::string sum_text(double sum, size_t band) {
   return text.str();
 }
 
-std::string list(const std::vector<const Share*>& some) {
+std::string list(const std::vector<const Fraction*>& some) {
   std::string text;
-  for (const Share* share : some) text += (text.empty() ? "" : ", ") + std::string(share->key);
+  for (const Fraction* fraction : some)
+    text += (text.empty() ? "" : ", ") + std::string(fraction->key);
   return text;
 }
 
@@ -104,8 +105,8 @@ OpticalSurface read_glass(const Settings& table, const OpticalSurface& base) {
   return behind_glass(base, index, read_alpha(table));
 }
 
-// The lobe of the specular share, if it is none of a mirror.
-void read_lobe(const Settings& table, const OpticalSurface& surface, Finish& finish) {
+// The lobe of the specular fraction, if it is none of a mirror.
+void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf) {
   for (const char* key : {"roughness", "slope_error_mrad"}) {
     if (table.has(key) && !any(surface.specular)) {
       throw table.error(key, "no specular share", "specular above 0, or refractive_index");
@@ -116,12 +117,12 @@ void read_lobe(const Settings& table, const OpticalSurface& surface, Finish& fin
       throw table.error("slope_error_mrad", "roughness too", "one of the two");
     }
     const double alpha = read_alpha(table);
-    finish.specular = rough_mirror(alpha);
-    finish.description = words("roughness", std::sqrt(alpha));
+    bsdf.specular = rough_mirror(alpha);
+    bsdf.description = words("roughness", std::sqrt(alpha));
   } else if (table.has("slope_error_mrad")) {
     const double slope_rad = table.number("slope_error_mrad", {1e-6, 0.2});
-    finish.specular = slope_error(slope_rad);
-    finish.description = words("slope error in mrad", 1e3 * slope_rad);
+    bsdf.specular = slope_error(slope_rad);
+    bsdf.description = words("slope error in mrad", 1e3 * slope_rad);
   }
 }
 
@@ -135,11 +136,11 @@ void read_heat(const Settings& table, SheetOptics& sheet) {
     throw table.error("emissivity_front", "0 on both sides", "a side that heat can leave from");
   }
   const auto heat = [&](OpticalSurface& surface) {
-    Finish finish = surface.finish ? *surface.finish : Finish{};
-    finish.reemitted = reemitted;
-    finish.front_emission = front / (front + back);
-    finish.description += (finish.description.empty() ? "" : ", ") + words("reemitted", reemitted);
-    surface.finish = std::make_shared<const Finish>(std::move(finish));
+    Bsdf bsdf = surface.bsdf ? *surface.bsdf : Bsdf{};
+    bsdf.reemitted = reemitted;
+    bsdf.front_emission = front / (front + back);
+    bsdf.description += (bsdf.description.empty() ? "" : ", ") + words("reemitted", reemitted);
+    surface.bsdf = std::make_shared<const Bsdf>(std::move(bsdf));
   };
   heat(sheet.front);
   if (sheet.back) heat(*sheet.back);
@@ -182,22 +183,22 @@ OpticalSurface read_measured(const Settings& table, int bands, const std::string
 OpticalSurface read_surface(const Settings& table, int bands, std::string name) {
   OpticalSurface surface;
   surface.name = std::move(name);
-  Finish finish;
-  std::vector<const Share*> missing;
-  for (const Share& share : shares) {
-    if (table.has(share.key)) {
-      surface.*share.values = read_share(table, share.key, bands);
+  Bsdf bsdf;
+  std::vector<const Fraction*> missing;
+  for (const Fraction& fraction : fractions) {
+    if (table.has(fraction.key)) {
+      surface.*fraction.values = read_fraction(table, fraction.key, bands);
     } else {
-      missing.push_back(&share);
+      missing.push_back(&fraction);
     }
   }
   const BandValues retroreflected = read_retroreflected(table, bands);
-  if (missing.size() == shares.size() && !any(retroreflected)) {
+  if (missing.size() == fractions.size() && !any(retroreflected)) {
     throw table.error("", "no optical property", list(missing));
   }
   for (size_t band = 0; band < static_cast<size_t>(bands); ++band) {
     double sum = retroreflected[band];
-    for (const Share& share : shares) sum += (surface.*share.values)[band];
+    for (const Fraction& fraction : fractions) sum += (surface.*fraction.values)[band];
     const bool is_one = std::abs(sum - 1.0) <= sum_tolerance;
     if (missing.size() == 1 && sum < 1.0) {
       (surface.*missing[0]->values)[band] = 1.0 - sum;
@@ -208,17 +209,17 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name) 
                             ? "a sum of 1"
                             : "a sum of 1, or all but one of " + list(missing) + " too");
     }
-    for (const Share& share : shares) (surface.*share.values)[band] /= sum;
-    finish.retroreflected[band] = retroreflected[band] / sum;
+    for (const Fraction& fraction : fractions) (surface.*fraction.values)[band] /= sum;
+    bsdf.retroreflected[band] = retroreflected[band] / sum;
   }
   if (table.has("refractive_index")) return read_glass(table, surface);
-  read_lobe(table, surface, finish);
-  if (any(finish.retroreflected)) {
-    finish.description += (finish.description.empty() ? "" : ", ") +
-                          words("retroreflectance", finish.retroreflected[0]);
+  read_lobe(table, surface, bsdf);
+  if (any(bsdf.retroreflected)) {
+    bsdf.description +=
+        (bsdf.description.empty() ? "" : ", ") + words("retroreflectance", bsdf.retroreflected[0]);
   }
-  if (!finish.description.empty()) {
-    surface.finish = std::make_shared<const Finish>(std::move(finish));
+  if (!bsdf.description.empty()) {
+    surface.bsdf = std::make_shared<const Bsdf>(std::move(bsdf));
   }
   return surface;
 }

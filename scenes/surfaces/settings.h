@@ -29,7 +29,7 @@ using SurfaceFiles = std::function<std::optional<std::string>(const std::string&
 //   one left out                  it is what remains;
 //   more left out                 they are zero, if the others sum to 1; else an error.
 // The fractions returned sum to 1 to rounding. Further keys, all optional:
-//   roughness            (0, 1], as in glTF: the specular share leaves by rough_mirror.h
+//   roughness            (0, 1], as in glTF: the specular fraction leaves by rough_mirror.h
 //   slope_error_mrad     (0, 200]: … by slope_error.h
 //   refractive_index     [1, 10]: glass in front, glass.h; the fractions are those behind it.
 //   Beneath
@@ -39,9 +39,9 @@ using SurfaceFiles = std::function<std::optional<std::string>(const std::string&
 OpticalSurface read_surface(const Settings& table, int bands, std::string name);
 
 // The same with an optional sub-table `back` for the side from which the corners of a triangle run
-// clockwise, and heat radiation of both sides together: `reemitted` (0), the share of the absorbed
-// power that leaves at once, and `emissivity_front` and `emissivity_back` (1, 1), in proportion to
-// which it leaves the sides. Instead of fractions a side may have
+// clockwise, and heat radiation of both sides together: `reemitted` (0), the fraction of the
+// absorbed power that leaves at once, and `emissivity_front` and `emissivity_back` (1, 1), in
+// proportion to which it leaves the sides. Instead of fractions a side may have
 //   brdf_file            a table of measured scattering, brdf_file.h, from `files`
 //   brdf_scale           (1) a factor on it, > 0, one number or one per band
 // InputError if the file is missing or wrong, or if the surface would reflect more than falls on

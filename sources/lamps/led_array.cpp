@@ -30,7 +30,7 @@
 namespace photorque {
 namespace {
 
-constexpr int64_t most_leds = 100000;
+constexpr int64_t max_leds = 100000;
 
 enum class Layout : size_t { grid, ring, hexagonal, positions };
 
@@ -82,13 +82,13 @@ std::vector<Vec3> hexagonal(int64_t count, double pitch_m) {
 }
 
 std::vector<Vec3> read_grid(const Settings& settings) {
-  const std::vector<double> count = settings.numbers("count", {1.0, most_leds, false, false});
+  const std::vector<double> count = settings.numbers("count", {1.0, max_leds, false, false});
   const bool whole =
       std::all_of(count.begin(), count.end(), [](double n) { return n == std::floor(n); });
-  if (count.size() != 2 || !whole || count[0] * count[1] > most_leds) {
+  if (count.size() != 2 || !whole || count[0] * count[1] > max_leds) {
     throw settings.error(
         "count", describe(settings.raw("count")),
-        "two whole numbers [columns, rows], at most " + std::to_string(most_leds) + " LEDs");
+        "two whole numbers [columns, rows], at most " + std::to_string(max_leds) + " LEDs");
   }
   Vec2 pitch_m;
   if (settings.raw("pitch_m").is_array()) {
@@ -106,7 +106,7 @@ std::vector<Vec3> read_grid(const Settings& settings) {
 // Where the LEDs stand in the array's frame (its plane is z = 0), for every layout but `positions`.
 std::vector<Vec3> read_layout(const Settings& settings, Layout layout) {
   if (layout == Layout::grid) return read_grid(settings);
-  const int64_t count = settings.integer("count", 1, most_leds);
+  const int64_t count = settings.integer("count", 1, max_leds);
   if (layout == Layout::ring) {
     return ring(count, settings.number("ring_radius_m", Range::positive()));
   }

@@ -29,7 +29,7 @@ LimbDarkening::LimbDarkening(double angular_radius_rad, double u1, double u2)
     const double wanted = within.back() * static_cast<double>(k) / steps;
     while (at < steps && within[at] < wanted) ++at;
     const double place = (wanted - within[at - 1]) / (within[at] - within[at - 1]);
-    cosine_of_share_.push_back(1.0 - (static_cast<double>(at - 1) + place) / steps);
+    cosine_of_fraction_.push_back(1.0 - (static_cast<double>(at - 1) + place) / steps);
   }
 }
 
@@ -48,12 +48,12 @@ double LimbDarkening::rise_at(double cosine) const {
   return sine2 / (1.0 + std::sqrt(1.0 - sine2));
 }
 
-double LimbDarkening::rise_within(double share) const {
-  const double place = share * steps;
+double LimbDarkening::rise_within(double fraction) const {
+  const double place = fraction * steps;
   const size_t i = std::min(static_cast<size_t>(place), steps - 1);
   const double t = place - static_cast<double>(i);
-  // Linear in the rise, which goes like the share itself near the middle.
-  return (1.0 - t) * rise_at(cosine_of_share_[i]) + t * rise_at(cosine_of_share_[i + 1]);
+  // Linear in the rise, which goes like the fraction itself near the middle.
+  return (1.0 - t) * rise_at(cosine_of_fraction_[i]) + t * rise_at(cosine_of_fraction_[i + 1]);
 }
 
 std::vector<double> LimbDarkening::edges_rad() const {

@@ -24,7 +24,7 @@ class LimbDarkening {
   double mean_cosine() const { return mean_cosine_; }
   // 1 − cos θ of the cone about the middle that holds `share` ∈ [0, 1] of the light. To 1e-6 of the
   // disc's.
-  double rise_within(double share) const;
+  double rise_within(double fraction) const;
 
   // Circles about the middle, rising to the disc's edge, between which L is a smooth function of
   // 1 − cos θ: at the edge its slope is infinite, so they crowd there.
@@ -36,7 +36,7 @@ class LimbDarkening {
   double sine2_;  // sin²α
   double u1_, u2_;
   double mean_cosine_ = 1.0;
-  std::vector<double> cosine_of_share_;  // μ at even steps of the share
+  std::vector<double> cosine_of_fraction_;  // μ at even steps of the fraction
 };
 
 }  // namespace photorque

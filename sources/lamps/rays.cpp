@@ -72,8 +72,8 @@ RayLamp::RayLamp(double power_W, const RaySet& set) : power_W_(power_W) {
   first_entry_.resize(entries_.size());
   uint32_t entry = 0;
   for (size_t k = 0; k < first_entry_.size(); ++k) {
-    const double share = static_cast<double>(k) / static_cast<double>(first_entry_.size());
-    while (entry + 1 < entries_.size() && entries_[entry + 1].before <= share) ++entry;
+    const double fraction = static_cast<double>(k) / static_cast<double>(first_entry_.size());
+    while (entry + 1 < entries_.size() && entries_[entry + 1].before <= fraction) ++entry;
     first_entry_[k] = entry;
   }
   tabulate_intensity(set);
@@ -112,9 +112,10 @@ void RayLamp::tabulate_intensity(const RaySet& set) {
 
 void RayLamp::emit(const SampleBlock& samples, RayBlock& rays) const {
   for (int i = 0; i < ray_block; ++i) {
-    const double share = fraction_of(samples.bits[2][i]);
-    size_t k = first_entry_[static_cast<size_t>(share * static_cast<double>(first_entry_.size()))];
-    while (k + 1 < entries_.size() && entries_[k + 1].before <= share) ++k;
+    const double fraction = fraction_of(samples.bits[2][i]);
+    size_t k =
+        first_entry_[static_cast<size_t>(fraction * static_cast<double>(first_entry_.size()))];
+    while (k + 1 < entries_.size() && entries_[k + 1].before <= fraction) ++k;
     for (size_t axis = 0; axis < 3; ++axis) {
       rays.origin_m[axis][i] = entries_[k].origin_m[axis];
       rays.direction[axis][i] = entries_[k].direction[axis];

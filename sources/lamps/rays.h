@@ -28,7 +28,7 @@ class RayLamp : public Emitter {
 
  private:
   struct Entry {
-    double before;  // share of the flux in the rays before this one
+    double before;  // fraction of the flux in the rays before this one
     std::array<double, 3> origin_m;
     std::array<double, 3> direction;
   };

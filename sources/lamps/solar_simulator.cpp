@@ -51,9 +51,9 @@ class SolarSimulator : public Emitter {
     }
     fill_directions(rise, samples.bits[3], rays.direction);
     for (int i = 0; i < ray_block; ++i) {
-      // The share of the power within r: (s − k s²/2)/(1 − k/2) with s = r²/R².
-      const double share = whole * fraction_of(samples.bits[0][i]);
-      const double s = 2.0 * share / (1.0 + std::sqrt(1.0 - 2.0 * field_.fall * share));
+      // The fraction of the power within r: (s − k s²/2)/(1 − k/2) with s = r²/R².
+      const double fraction = whole * fraction_of(samples.bits[0][i]);
+      const double s = 2.0 * fraction / (1.0 + std::sqrt(1.0 - 2.0 * field_.fall * fraction));
       const double r_m = field_.radius_m * std::sqrt(s);
       const CirclePoint turn = circle_point(samples.bits[1][i]);
       const double back = field_.distance_m / rays.direction[2][i];

@@ -4,19 +4,19 @@
 #include <cmath>
 #include <utility>
 
+#include "core/numerics/transpose.h"
 #include "core/numerics/vector_math.h"
-#include "raytrace/tracing/transpose.h"
 #include "sources/profiles/inverse_flux.h"
 
 namespace photorque {
 
 AngularDistribution::AngularDistribution(AngularProfile core, std::optional<Halo> halo) {
   halo_fraction_ = halo ? halo->fraction : 0.0;
-  const auto add = [this](AngularProfile profile, double share) {
+  const auto add = [this](AngularProfile profile, double fraction) {
     const InverseFlux inverse(profile);
     const auto& table = inverse.coefficients();
     coefficients_.insert(coefficients_.end(), table.begin(), table.end());
-    parts_.push_back({std::move(profile), share / inverse.flux()});
+    parts_.push_back({std::move(profile), fraction / inverse.flux()});
   };
   add(std::move(core), 1.0 - halo_fraction_);
   if (halo_fraction_ > 0.0) add(std::move(halo->profile), halo_fraction_);
@@ -55,19 +55,19 @@ void AngularDistribution::rises(const std::array<uint32_t, ray_block>& bits,
   const auto halo = static_cast<uint32_t>(std::min(std::ldexp(halo_fraction_, 32), 0x1p32 - 1.0));
   const auto per_halo = halo > 0 ? static_cast<float>(0x1p-32 / halo_fraction_) : 0.0f;
   const auto per_core = static_cast<float>(0x1p-32 / (1.0 - halo_fraction_));
-  constexpr auto smallest_share = static_cast<float>(InverseFlux::smallest_share);
-  constexpr float largest_share = 1.0f - 0x1p-24f;
+  constexpr auto smallest_fraction = static_cast<float>(InverseFlux::smallest_fraction);
+  constexpr float largest_fraction = 1.0f - 0x1p-24f;
   std::array<uint32_t, ray_block> interval;
   std::array<float, ray_block> t;
   for (int i = 0; i < ray_block; ++i) {
     const uint32_t outside = ~bits[i];
     const bool in_halo = outside < halo;
-    // Each part stretched to the whole interval again; the bounds only mend rounding.
+    // Each part stretched to the whole interval again; the bounds only repair rounding.
     const float part = single_of(in_halo ? outside : outside - halo) + 0.5f;
-    float share = part * (in_halo ? per_halo : per_core);
-    share = share < smallest_share ? smallest_share : share;
-    share = share > largest_share ? largest_share : share;
-    const InverseFlux::SinglePlace place = InverseFlux::place(share);
+    float fraction = part * (in_halo ? per_halo : per_core);
+    fraction = fraction < smallest_fraction ? smallest_fraction : fraction;
+    fraction = fraction > largest_fraction ? largest_fraction : fraction;
+    const InverseFlux::SinglePlace place = InverseFlux::place(fraction);
     constexpr auto intervals = static_cast<uint32_t>(InverseFlux::intervals);
     interval[i] = place.interval + (in_halo ? intervals : 0);
     t[i] = place.t;

@@ -40,7 +40,7 @@ class AngularDistribution {
 
   struct Part {
     AngularProfile profile;
-    double intensity_factor;  // makes the flux of the profile its share of the whole
+    double intensity_factor;  // makes the flux of the profile its fraction of the whole
   };
   std::vector<Part> parts_;
   double halo_fraction_ = 0.0;

@@ -13,8 +13,8 @@ using ValueBlock = std::array<float, ray_block>;
 using VectorBlock = std::array<ValueBlock, 3>;
 
 // Points evenly over a disc about the z axis at z = 0: radius from the square root of the first
-// fraction, azimuth from the second. Polar rather than concentric: every ring then holds its share
-// of a stratified set exactly.
+// fraction, azimuth from the second. Polar rather than concentric: every ring then holds its
+// fraction of a stratified set exactly.
 void fill_disc(double radius_m, const FractionBlock& radial, const FractionBlock& turn,
                VectorBlock& point_m);
 

@@ -1,8 +1,8 @@
-// From a share of the flux to the cone that holds it: the inverse of the encircled flux of a
+// From a fraction of the flux to the cone that holds it: the inverse of the encircled flux of a
 // profile.
 //
 // Method. With the rise h = 1 − cos θ the element of solid angle is 2π dh, so that the flux outside
-// a cone is G(h) = ∫_h^end I dh and its share is v = G/G(0). The inverse h(v) is smooth but for
+// a cone is G(h) = ∫_h^end I dh and its fraction is v = G/G(0). The inverse h(v) is smooth but for
 // v → 0, where profiles without an edge grow like ln 1/v. It is tabulated on knots that divide
 // every octave of v evenly, with cubic Hermite polynomials through the exact values and slopes
 // dh/dv = −G(0)/I between them. The rise carries its relative precision down to the narrowest
@@ -33,13 +33,13 @@ class InverseFlux {
   // The table: four polynomial coefficients for each interval, lowest power first.
   const std::vector<double>& coefficients() const { return coefficients_; }
 
-  // Where a share of flux lies in the table. For shares in [smallest_share, 1).
+  // Where a fraction of flux lies in the table. For fractions in [smallest_fraction, 1).
   struct Place {
     uint64_t interval;
     double t;  // ∈ [0, 1) along the interval
   };
-  static Place place(double share_outside) {
-    const auto bits = std::bit_cast<uint64_t>(share_outside);
+  static Place place(double fraction_outside) {
+    const auto bits = std::bit_cast<uint64_t>(fraction_outside);
     const uint64_t rest = (bits << interval_bits) & mantissa;
     return {(bits >> shift) - first_knot, std::bit_cast<double>(rest | one) - 1.0};
   }
@@ -47,22 +47,22 @@ class InverseFlux {
     uint32_t interval;
     float t;  // ∈ [0, 1) along the interval
   };
-  static SinglePlace place(float share_outside) {
-    const auto bits = std::bit_cast<uint32_t>(share_outside);
+  static SinglePlace place(float fraction_outside) {
+    const auto bits = std::bit_cast<uint32_t>(fraction_outside);
     const uint32_t rest = (bits << interval_bits) & 0x007fffffu;
     constexpr int single_shift = 23 - interval_bits;
     constexpr uint32_t first =
-        std::bit_cast<uint32_t>(static_cast<float>(smallest_share)) >> single_shift;
+        std::bit_cast<uint32_t>(static_cast<float>(smallest_fraction)) >> single_shift;
     return {(bits >> single_shift) - first, std::bit_cast<float>(rest | 0x3f800000u) - 1.0f};
   }
-  static constexpr double smallest_share = 0x1p-33;  // half a step of a 32-bit fraction
+  static constexpr double smallest_fraction = 0x1p-33;  // half a step of a 32-bit fraction
   static constexpr int octaves = 33;
   static constexpr int interval_bits = 5;  // 32 intervals in each octave
   static constexpr uint64_t intervals = static_cast<uint64_t>(octaves) << interval_bits;
 
-  // The rise of the cone outside which this share of the flux, in [smallest_share, 1), lies.
-  double rise(double share_outside) const {
-    const Place p = place(share_outside);
+  // The rise of the cone outside which this fraction of the flux, in [smallest_fraction, 1), lies.
+  double rise(double fraction_outside) const {
+    const Place p = place(fraction_outside);
     const double* c = &coefficients_[4 * p.interval];
     return c[0] + p.t * (c[1] + p.t * (c[2] + p.t * c[3]));
   }
@@ -71,7 +71,7 @@ class InverseFlux {
   static constexpr uint64_t mantissa = 0x000fffffffffffffull;
   static constexpr uint64_t one = 0x3ff0000000000000ull;
   static constexpr int shift = 52 - interval_bits;
-  static constexpr uint64_t first_knot = std::bit_cast<uint64_t>(smallest_share) >> shift;
+  static constexpr uint64_t first_knot = std::bit_cast<uint64_t>(smallest_fraction) >> shift;
   static double knot(uint64_t k) { return std::bit_cast<double>((first_knot + k) << shift); }
 
   std::vector<double> coefficients_;

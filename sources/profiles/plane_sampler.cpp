@@ -36,18 +36,18 @@ PlaneSampler::PlaneSampler(const std::vector<double>& polar_rad, const double* i
   }
   double before = 0.0;
   for (Cell& cell : cells_) {
-    const double share = cell.before / flux_;  // add() leaves the cell's own flux there
+    const double fraction = cell.before / flux_;  // add() leaves the cell's own flux there
     cell.before = before;
-    const double scale = share / (0.5 * (cell.low + cell.high) * cell.width);
+    const double scale = fraction / (0.5 * (cell.low + cell.high) * cell.width);
     cell.low *= scale;
     cell.high *= scale;
-    before += share;
+    before += fraction;
   }
   first_cell_.resize(2 * cells_.size());
   uint32_t cell = 0;
   for (size_t k = 0; k < first_cell_.size(); ++k) {
-    const double share = static_cast<double>(k) / static_cast<double>(first_cell_.size());
-    while (cell + 1 < cells_.size() && cells_[cell + 1].before <= share) ++cell;
+    const double fraction = static_cast<double>(k) / static_cast<double>(first_cell_.size());
+    while (cell + 1 < cells_.size() && cells_[cell + 1].before <= fraction) ++cell;
     first_cell_[k] = cell;
   }
 }
@@ -59,8 +59,8 @@ void PlaneSampler::add(const Curve& curve, double low_rad, double high_rad, doub
   const double rise = rise_at(low_rad), width = rise_at(high_rad) - rise;
   const double low = curve(low_rad), high = curve(high_rad);
   const double trapezium = 0.5 * (low + high) * width;
-  // The cell's share below a point, as it is and as the linear density has it. Two points, because
-  // a cubic may agree with a straight line in the middle.
+  // The cell's fraction below a point, as it is and as the linear density has it. Two points,
+  // because a cubic may agree with a straight line in the middle.
   const auto error = [&](double part) {
     const double at_rad = low_rad + part * (high_rad - low_rad);
     const double t = (rise_at(at_rad) - rise) / width;
@@ -76,12 +76,12 @@ void PlaneSampler::add(const Curve& curve, double low_rad, double high_rad, doub
   if (trapezium > 0.0) cells_.push_back({flux, rise, width, low, high});
 }
 
-double PlaneSampler::rise(double share) const {
-  size_t k = first_cell_[static_cast<size_t>(share * static_cast<double>(first_cell_.size()))];
-  while (k + 1 < cells_.size() && cells_[k + 1].before <= share) ++k;
+double PlaneSampler::rise(double fraction) const {
+  size_t k = first_cell_[static_cast<size_t>(fraction * static_cast<double>(first_cell_.size()))];
+  while (k + 1 < cells_.size() && cells_[k + 1].before <= fraction) ++k;
   const Cell& cell = cells_[k];
   // share − before = width (low t + (high − low) t²/2), in the form that does not cancel.
-  const double a = std::max(0.0, (share - cell.before) / cell.width);
+  const double a = std::max(0.0, (fraction - cell.before) / cell.width);
   const double root =
       std::sqrt(std::max(0.0, cell.low * cell.low + 2.0 * (cell.high - cell.low) * a));
   const double sum = cell.low + root;

@@ -18,7 +18,7 @@ inline double rise_at(double polar_rad) {
   return 2.0 * sine * sine;
 }
 
-// The distribution of the polar angle in one plane, for equal-share sampling.
+// The distribution of the polar angle in one plane, for equal-fraction sampling.
 class PlaneSampler {
  public:
   static constexpr double cell_error = 1e-8;
@@ -28,12 +28,12 @@ class PlaneSampler {
 
   // ∫ I sin θ dθ over the plane, ≥ 0.
   double flux() const { return flux_; }
-  // 1 − cos θ below which a share ∈ (0, 1) of the flux lies. Only where flux() > 0.
-  double rise(double share) const;
+  // 1 − cos θ below which a fraction ∈ (0, 1) of the flux lies. Only where flux() > 0.
+  double rise(double fraction) const;
 
  private:
   struct Cell {
-    double before;     // share of the flux below the cell
+    double before;     // fraction of the flux below the cell
     double rise;       // of its lower edge
     double width;      // in rise
     double low, high;  // share per rise at its edges

@@ -91,8 +91,8 @@ void TabulatedIntensity::find_hats() {
       if (last && table_.closed) hat.above_rad = across;
     }
     const double area_rad = 0.5 * (hat.below_rad + hat.above_rad);
-    hat.share = area_rad * samplers_[j].flux();
-    flux_ += hat.share;
+    hat.fraction = area_rad * samplers_[j].flux();
+    flux_ += hat.fraction;
     for (size_t k = 0; k < knots; ++k) {
       mean_[k] += area_rad / (2.0 * pi) * value_[j * knots + k];
       mean_slope_[k] += area_rad / (2.0 * pi) * slope_[j * knots + k];
@@ -102,8 +102,8 @@ void TabulatedIntensity::find_hats() {
   double before = 0.0;
   for (Hat& hat : hats_) {
     hat.before = before;
-    hat.share /= flux_;
-    before += hat.share;
+    hat.fraction /= flux_;
+    before += hat.fraction;
   }
 }
 
@@ -149,11 +149,11 @@ void TabulatedIntensity::directions(const FractionBlock& polar, const FractionBl
     if (hats_.size() > 1) {
       const auto after =
           std::upper_bound(hats_.begin() + 1, hats_.end(), turn,
-                           [](double share, const Hat& hat) { return share < hat.before; });
+                           [](double fraction, const Hat& hat) { return fraction < hat.before; });
       j = static_cast<size_t>(after - hats_.begin()) - 1;
       while (samplers_[j].flux() <= 0.0) j = j > 0 ? j - 1 : hats_.size() - 1;
       const Hat& hat = hats_[j];
-      const double part = std::clamp((turn - hat.before) / hat.share, 0.0, 1.0);
+      const double part = std::clamp((turn - hat.before) / hat.fraction, 0.0, 1.0);
       const double below = hat.below_rad / (hat.below_rad + hat.above_rad);
       azimuth_rad =
           part < below

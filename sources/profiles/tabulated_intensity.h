@@ -3,8 +3,8 @@
 // Method. Every plane gets a knot half-way between any two of its angles (monotone_middle()) and is
 // then a monotone cubic between knots. The table is a sum of planes, I = Σ_j hat_j(azimuth)
 // I_j(polar), with hats that fall linearly to the neighbouring planes. A ray chooses a plane by its
-// share of the flux, an azimuth within the hat by inverting its quadratic, and a polar angle by the
-// plane's PlaneSampler.
+// fraction of the flux, an azimuth within the hat by inverting its quadratic, and a polar angle by
+// the plane's PlaneSampler.
 #pragma once
 
 #include <vector>
@@ -52,8 +52,8 @@ class TabulatedIntensity {
   void find_hats();
 
   struct Hat {
-    double before;                // share of the flux in the planes before this one
-    double share;                 // of this one
+    double before;                // fraction of the flux in the planes before this one
+    double fraction;              // of this one
     double centre_rad;            // azimuth of the plane
     double below_rad, above_rad;  // distance to its neighbours; 0 at an open end
   };

@@ -138,7 +138,7 @@ TEST(AirBearing, WholeSphereDragsAsConcentricSpheresDo) {
 TEST(AirBearing, GroovesTakeTheirShareOfTheDrag) {
   const SphericalSocket plain{0.03, 0.8, 5e-6};
   SphericalSocket grooved = plain;
-  grooved.sheared_share = 0.4;
+  grooved.sheared_fraction = 0.4;
   EXPECT_DOUBLE_EQ(film_drag(grooved, 1.8e-5).axial_N_m_s,
                    0.4 * film_drag(plain, 1.8e-5).axial_N_m_s);
 }

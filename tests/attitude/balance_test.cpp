@@ -28,7 +28,7 @@ AttitudeModel draining(const AttitudeModel& model) {
 }
 
 // Ten minutes of an unbalanced tabletop with drag and a biased gyro, as the contract's sensors see
-// it, and what is believed of it: no unbalance, drag and bias within their uncertainty.
+// it, and the nominal model of it: no unbalance, drag and bias within their uncertainty.
 BalanceRun unbalanced(bool with_gyro, uint64_t seed, bool drains = false) {
   const SettingsNode offset = numbers({true_offset_m[0], true_offset_m[1], true_offset_m[2]});
   PropagationRun truth;

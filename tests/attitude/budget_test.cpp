@@ -256,7 +256,7 @@ TEST(Budget, ProductHoldsTheTablesAndPlots) {
   const Table& ranked = table_named(product, "budget");
   EXPECT_EQ(column(ranked, "disturbance").texts.size(), 5u);
   double sum = 0;
-  for (const double share : column(ranked, "share_of_sum").values) sum += share;
+  for (const double fraction : column(ranked, "share_of_sum").values) sum += fraction;
   EXPECT_NEAR(sum, 1.0, 1e-12);
   for (const Table& t : product.tables) {
     size_t rows = 0;

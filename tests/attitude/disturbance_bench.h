@@ -60,8 +60,8 @@ inline Vec3 torque_body_N_m(const AttitudeModel& model, const PlatformState& sta
   return disturbance_torques_body_N_m(model, state).back();
 }
 
-inline PlatformState flown(const AttitudeModel& model, const PlatformState& start, double end_s,
-                           double tolerance = 1e-12) {
+inline PlatformState propagated(const AttitudeModel& model, const PlatformState& start,
+                                double end_s, double tolerance = 1e-12) {
   const Dynamics dynamics(model);
   const double times_s[] = {end_s};
   PropagationOptions options;

@@ -16,7 +16,7 @@ namespace {
 constexpr double J = 0.19;  // of the bench platform about z
 
 double rate_after(const AttitudeModel& model, double start_rad_s, double time_s) {
-  return flown(model, state_of(model, Quat::Identity(), {0, 0, start_rad_s}), time_s)
+  return propagated(model, state_of(model, Quat::Identity(), {0, 0, start_rad_s}), time_s)
       .rate_body_rad_s.z();
 }
 

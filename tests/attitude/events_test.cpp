@@ -16,7 +16,8 @@ AttitudeModel commanded(double inertia_kg_m2, const Vec3& torque_N_m, double cur
   return model;
 }
 
-Trajectory fly(const AttitudeModel& model, double end_s, const std::vector<EventFunction>& events) {
+Trajectory propagate_model(const AttitudeModel& model, double end_s,
+                           const std::vector<EventFunction>& events) {
   const Dynamics dynamics(model);
   std::vector<double> times_s;
   for (int i = 0; i <= 100; ++i) times_s.push_back(end_s * i / 100);
@@ -28,7 +29,7 @@ TEST(TiltStop, IsReachedWhenTheParabolaSaysAndEndsTheRun) {
   const double tilt_rad = 0.5, inertia = 0.12, torque = 3e-5;
   const double expected_s = std::sqrt(2 * tilt_rad * inertia / torque);
   const Trajectory t =
-      fly(commanded(inertia, {torque, 0, 0}), 2 * expected_s, {tilt_event(tilt_rad)});
+      propagate_model(commanded(inertia, {torque, 0, 0}), 2 * expected_s, {tilt_event(tilt_rad)});
   ASSERT_EQ(t.events.size(), 1u);
   EXPECT_EQ(t.events[0].name, "tilt_stop");
   EXPECT_NEAR(t.events[0].time_s, expected_s, 1e-9);
@@ -39,7 +40,7 @@ TEST(TiltStop, IsReachedWhenTheParabolaSaysAndEndsTheRun) {
 
 TEST(BatteryEmpty, IsWhenTheChargeIsGone) {
   const Trajectory t =
-      fly(commanded(1.0, Vec3::Zero(), 2.5), 2000.0, {battery_empty_event(3600.0)});
+      propagate_model(commanded(1.0, Vec3::Zero(), 2.5), 2000.0, {battery_empty_event(3600.0)});
   ASSERT_EQ(t.events.size(), 1u);
   EXPECT_NEAR(t.events[0].time_s, 3600.0 / 2.5, 1e-9);
 }
@@ -103,16 +104,16 @@ TEST(Propagation, FallsByTheToleranceAsked) {
   AttitudeModel model =
       with(bench_model(), "static_unbalance", {{"offset_m", numbers({1e-5, 0, -3e-4})}});
   const PlatformState start = state_of(model, turned(0.5, {1, 2, 0}), {0.02, 0.01, 0.1});
-  const PlatformState best = flown(model, start, 600.0, 1e-13);
+  const PlatformState best = propagated(model, start, 600.0, 1e-13);
   for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
-    const PlatformState end = flown(model, start, 600.0, tolerance);
+    const PlatformState end = propagated(model, start, 600.0, tolerance);
     EXPECT_LT(end.lab_from_body.angularDistance(best.lab_from_body), 10 * tolerance);
   }
 }
 
 struct RunAway final : TorqueLaw<RunAway> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>&, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>&, const EvaluationContext<T>& now) const {
     return length(now.rate_body_rad_s) * now.rate_body_rad_s;
   }
 };
@@ -147,20 +148,21 @@ TEST(Propagation, RefusesStatesThatAreNone) {
 
 // Shares of a disc: two unit discs a radius apart share 2π/3 − √3/2.
 TEST(Eclipse, UncoveredShareMatchesClosedForms) {
-  EXPECT_EQ(uncovered_share(1.0, 2.0, 3.0), 1.0);
-  EXPECT_EQ(uncovered_share(1.0, 2.0, 0.9), 0.0);
-  EXPECT_DOUBLE_EQ(uncovered_share(2.0, 1.0, 0.5), 0.75);
-  EXPECT_NEAR(uncovered_share(1.0, 1.0, 1.0), 1.0 - (2 * pi / 3 - std::sqrt(3.0) / 2) / pi, 1e-14);
-  EXPECT_NEAR(uncovered_share(1e-9, 1.0, 1.0), 0.5, 1e-9);
+  EXPECT_EQ(uncovered_fraction(1.0, 2.0, 3.0), 1.0);
+  EXPECT_EQ(uncovered_fraction(1.0, 2.0, 0.9), 0.0);
+  EXPECT_DOUBLE_EQ(uncovered_fraction(2.0, 1.0, 0.5), 0.75);
+  EXPECT_NEAR(uncovered_fraction(1.0, 1.0, 1.0), 1.0 - (2 * pi / 3 - std::sqrt(3.0) / 2) / pi,
+              1e-14);
+  EXPECT_NEAR(uncovered_fraction(1e-9, 1.0, 1.0), 0.5, 1e-9);
 }
 
 // Tudat's case of a partial eclipse, computed exactly (shared reference attitude.md, section 4),
 // and its annular one with flat discs.
-TEST(Eclipse, SunlitShareMatchesTheReferenceCases) {
+TEST(Eclipse, SunlitFractionMatchesTheReferenceCases) {
   const Vec3 satellite_m = (6378.137e3 + 1e3) * Vec3(0.018, 1, 0).normalized();
-  EXPECT_NEAR(sunlit_share(satellite_m, {-149598000e3, 0, 0}, 6378.137e3, 6.96e8),
+  EXPECT_NEAR(sunlit_fraction(satellite_m, {-149598000e3, 0, 0}, 6378.137e3, 6.96e8),
               0.454664774714140599, 1e-9);
-  EXPECT_NEAR(sunlit_share({2, 0, 0}, {-1, 0, 0}, 1.0, 2.0), 0.485156027651699, 1e-12);
+  EXPECT_NEAR(sunlit_fraction({2, 0, 0}, {-1, 0, 0}, 1.0, 2.0), 0.485156027651699, 1e-12);
 }
 
 // With the Sun in the plane of a circular orbit the light goes and comes on half an orbit's turn

@@ -129,11 +129,11 @@ TEST(ExternalAir, FlagsWhereALawEnds) {
 }
 
 TEST(ExternalAir, ExposedShareWeighsBySpeed) {
-  EXPECT_DOUBLE_EQ(exposed_share(0.0), 1.0);
-  EXPECT_NEAR(exposed_share(pi / 2), 0.5, 1e-15);
-  EXPECT_NEAR(exposed_share(pi), 0.0, 1e-15);
-  EXPECT_GT(exposed_share(0.5), 0.95);  // what lies near the pole hardly moves
-  EXPECT_DOUBLE_EQ(exposed_share_as_published(pi / 2), 0.5);
+  EXPECT_DOUBLE_EQ(exposed_fraction(0.0), 1.0);
+  EXPECT_NEAR(exposed_fraction(pi / 2), 0.5, 1e-15);
+  EXPECT_NEAR(exposed_fraction(pi), 0.0, 1e-15);
+  EXPECT_GT(exposed_fraction(0.5), 0.95);  // what lies near the pole hardly moves
+  EXPECT_DOUBLE_EQ(exposed_fraction_as_published(pi / 2), 0.5);
 }
 
 TEST(ExternalAir, TopologiesAssembleAsThePaperDraws) {

@@ -33,7 +33,7 @@ TEST(MagneticDipole, SwingsLikeACompass) {
                                       {"area_m2", numbers({0, 0.01, 0})}})})}});
   const double half_period_s = pi * std::sqrt(0.19 / (0.1 * 2e-5));
   const PlatformState start = state_of(model, turned(1e-4, Vec3::UnitZ()));
-  const PlatformState half = flown(model, start, half_period_s);
+  const PlatformState half = propagated(model, start, half_period_s);
   EXPECT_LT(half.lab_from_body.angularDistance(turned(-1e-4, Vec3::UnitZ())), 1e-11);
 }
 
@@ -99,7 +99,7 @@ TEST(GravityGradient, LibratesWithTheClosedFormPeriod) {
   const double period_s = 3762.291311808465;
   const double amplitude_rad = 1e-4;
   const PlatformState start = state_of(model, turned(amplitude_rad, Vec3::UnitZ()));
-  const PlatformState quarter = flown(model, start, period_s / 4);
+  const PlatformState quarter = propagated(model, start, period_s / 4);
   EXPECT_LT(quarter.lab_from_body.angularDistance(Quat::Identity()), 1e-10);
   EXPECT_NEAR(quarter.rate_body_rad_s.z() / (-0.001670042212696011 * amplitude_rad), 1.0, 1e-7);
 }
@@ -120,7 +120,7 @@ TEST(EarthRotation, BodyAtRestAmongTheStarsTurnsBackward) {
   const Quat start = turned(0.7, {1, 2, -1});
   const double time_s = 30000;
   const PlatformState end =
-      flown(model, state_of(model, start, start.conjugate() * -earth), time_s);
+      propagated(model, state_of(model, start, start.conjugate() * -earth), time_s);
   const Quat expected = turned(-earth.norm() * time_s, earth) * start;
   EXPECT_LT(end.lab_from_body.angularDistance(expected), 1e-9);
 }
@@ -135,7 +135,7 @@ TEST(EarthRotation, KeepsMomentumAmongTheStars) {
     return turned(earth.norm() * s.time_s, earth) * (s.lab_from_body * (I * inertial_body));
   };
   const PlatformState start = state_of(model, turned(0.4, {1, 0, 1}), {0.05, -0.02, 0.04});
-  const PlatformState end = flown(model, start, 5000);
+  const PlatformState end = propagated(model, start, 5000);
   EXPECT_LT((momentum(end) - momentum(start)).norm(), 1e-11 * momentum(start).norm());
 }
 
@@ -153,7 +153,7 @@ TEST(EarthRotation, IsFeltByRotors) {
            (s.lab_from_body * (I * inertial_body + spin_body_N_m_s));
   };
   const PlatformState start = state_of(model, turned(0.4, {1, 0, 1}), {0.05, -0.02, 0.04});
-  const PlatformState end = flown(model, start, 5000);
+  const PlatformState end = propagated(model, start, 5000);
   EXPECT_LT((momentum(end) - momentum(start)).norm(), 1e-11 * momentum(start).norm());
 }
 

@@ -16,7 +16,8 @@ TEST(RotorMomentum, GyrostatPrecessesAtTheClosedFormRate) {
   AttitudeModel model;
   model.platform.inertia_kg_m2 = Vec3(0.12, 0.12, 0.19).asDiagonal();
   model = with(model, "rotor_momentum", {{"momentum_N_m_s", numbers({0, 0, 0.05})}});
-  const PlatformState end = flown(model, state_of(model, Quat::Identity(), {0.02, 0, 0.1}), 7.0);
+  const PlatformState end =
+      propagated(model, state_of(model, Quat::Identity(), {0.02, 0, 0.1}), 7.0);
   const double angle = ((0.19 - 0.12) * 0.1 + 0.05) / 0.12 * 7.0;
   EXPECT_NEAR(end.rate_body_rad_s.x(), 0.02 * std::cos(angle), 1e-12);
   EXPECT_NEAR(end.rate_body_rad_s.y(), 0.02 * std::sin(angle), 1e-12);
@@ -29,7 +30,7 @@ TEST(Tether, TwistsWithThePeriodOfATorsionSpring) {
   // About a principal axis the law is linear at any angle below half a turn.
   const double half_period_s = pi * std::sqrt(0.19 / 2e-4);
   const PlatformState end =
-      flown(model, state_of(model, turned(2.5, Vec3::UnitZ())), half_period_s);
+      propagated(model, state_of(model, turned(2.5, Vec3::UnitZ())), half_period_s);
   EXPECT_LT(end.lab_from_body.angularDistance(turned(-2.5, Vec3::UnitZ())), 1e-8);
 }
 
@@ -52,7 +53,7 @@ TEST(PeriodicTorque, IntegratesToTheClosedFormRate) {
       {{"torque_N_m", numbers({0, 0, 5e-5})}, {"frequency_Hz", node(1.179)}, {"phase", node(2.6)}});
   const double w = 2 * pi * 1.179, t = 33.3;
   const double expected = 5e-5 / (0.19 * w) * (std::cos(2.6) - std::cos(w * t + 2.6));
-  EXPECT_NEAR(flown(model, state_of(model, Quat::Identity()), t).rate_body_rad_s.z(), expected,
+  EXPECT_NEAR(propagated(model, state_of(model, Quat::Identity()), t).rate_body_rad_s.z(), expected,
               1e-13);
 }
 
@@ -74,7 +75,7 @@ TEST(FlexibleMode, FreeBodySwingsAtTheCoupledFrequency) {
   PlatformState start = state_of(model, Quat::Identity());
   start.extra[0] = 0.01;  // let go with the appendage bent
   const double coupled = 2 * pi * f * std::sqrt(I / (I - appendage));
-  const PlatformState half = flown(model, start, pi / coupled);
+  const PlatformState half = propagated(model, start, pi / coupled);
   EXPECT_NEAR(half.extra[0], -0.01, 1e-10);
   // Momentum stays zero, so the body has turned by 2 · 0.01 J/I the other way.
   EXPECT_NEAR(2 * std::asin(half.lab_from_body.z()), 2 * 0.01 * appendage / I, 1e-10);
@@ -94,14 +95,14 @@ TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
     return s.lab_from_body * body;
   };
   const auto energy = [&](const PlatformState& s) {
-    const double along = axis.dot(s.rate_body_rad_s), pulsation = 2 * pi * 0.5;
+    const double along = axis.dot(s.rate_body_rad_s), angular_frequency = 2 * pi * 0.5;
     return 0.5 * s.rate_body_rad_s.dot(I * s.rate_body_rad_s) +
            0.5 * 0.03 * (s.extra[1] * s.extra[1] - along * along) +
-           0.5 * 0.03 * pulsation * pulsation * s.extra[0] * s.extra[0];
+           0.5 * 0.03 * angular_frequency * angular_frequency * s.extra[0] * s.extra[0];
   };
   const PlatformState start = state_of(model, Quat::Identity(), {0.3, -0.1, 0.2});
   EXPECT_NEAR(start.extra[1], axis.dot(Vec3(0.3, -0.1, 0.2)), 1e-16);  // begins unbent and at rest
-  const PlatformState middle = flown(model, start, 20), end = flown(model, start, 40);
+  const PlatformState middle = propagated(model, start, 20), end = propagated(model, start, 40);
   EXPECT_LT((momentum_lab(end) - momentum_lab(start)).norm(), 1e-11);
   EXPECT_LT(energy(middle), energy(start));
   EXPECT_LT(energy(end), energy(middle));
@@ -118,10 +119,10 @@ TEST(FlexibleMode, OfAnAppendageAtRestTheDerivativeIsTheSwing) {
   const double period_s = std::sqrt((I - appendage) / I) / f;
   const double times_s[] = {40.5 * period_s};
   const Dynamics dynamics(model);
-  const Trajectory flown = propagate(dynamics, state_of(model, Quat::Identity()), times_s, {},
-                                     {Variable::initial_extra(0)});
-  EXPECT_NEAR(flown.derivatives[7], -1.0, 1e-6);
-  EXPECT_NEAR(flown.derivatives[2], 2 * appendage / I, 1e-6);
+  const Trajectory propagated = propagate(dynamics, state_of(model, Quat::Identity()), times_s, {},
+                                          {Variable::initial_extra(0)});
+  EXPECT_NEAR(propagated.derivatives[7], -1.0, 1e-6);
+  EXPECT_NEAR(propagated.derivatives[2], 2 * appendage / I, 1e-6);
 }
 
 TEST(FlexibleMode, RefusesMoreInertiaThanThePlatformHas) {

@@ -26,7 +26,7 @@ TEST(StaticUnbalance, SwingsWithThePeriodOfAPendulum) {
   for (const double amplitude_rad : {1e-3, 0.5, 1.4}) {
     const double period_s = small_s * 2 / pi * std::comp_ellint_1(std::sin(amplitude_rad / 2));
     const PlatformState start = state_of(model, turned(amplitude_rad, Vec3::UnitX()));
-    const PlatformState half = flown(model, start, period_s / 2);
+    const PlatformState half = propagated(model, start, period_s / 2);
     EXPECT_LT(half.lab_from_body.angularDistance(turned(-amplitude_rad, Vec3::UnitX())), 1e-8);
     EXPECT_LT(half.rate_body_rad_s.norm(), 1e-9);
   }
@@ -36,9 +36,9 @@ TEST(MassShift, ActsFromItsInstantOn) {
   const AttitudeModel model = with(bench_model(), "mass_shift",
                                    {{"time_s", node(100)}, {"offset_m", numbers({1e-6, 0, 0})}});
   const PlatformState start = state_of(model, Quat::Identity());
-  EXPECT_LT(flown(model, start, 100.0).rate_body_rad_s.norm(), 1e-15);
+  EXPECT_LT(propagated(model, start, 100.0).rate_body_rad_s.norm(), 1e-15);
   // Then a constant torque m r g about −y … for a moment: θ = ½ α t².
-  const PlatformState later = flown(model, start, 101.0);
+  const PlatformState later = propagated(model, start, 101.0);
   const double acceleration = 7.0 * g * 1e-6 / 0.12;
   EXPECT_NEAR(later.rate_body_rad_s.y() / acceleration, 1.0, 1e-6);
   EXPECT_NEAR(2 * later.lab_from_body.y() / (0.5 * acceleration), 1.0, 1e-6);

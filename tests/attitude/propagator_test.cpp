@@ -16,11 +16,15 @@ namespace {
 // T = m r × g from a start time on; parameters r (3), time.
 struct Offset final : LawOf<Offset> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     now.move_mass(active_from(now.time_s, values_of_start(own)) * own.vector(0));
   }
-  static double values_of_start(const Own<Lanes>& own) { return own.parameter(3)[0]; }
-  static double values_of_start(const Own<DualLanes>& own) { return own.parameter(3).value[0]; }
+  static double values_of_start(const ParametersAndStates<Lanes>& own) {
+    return own.parameter(3)[0];
+  }
+  static double values_of_start(const ParametersAndStates<DualLanes>& own) {
+    return own.parameter(3).value[0];
+  }
   std::vector<Switch> switches(std::span<const Parameter> p, double, double) const override {
     return {{p[3].value, 3}};
   }
@@ -29,7 +33,7 @@ struct Offset final : LawOf<Offset> {
 // T = −c ω − k |ω|^½ ω; parameters c, k.
 struct Drag final : TorqueLaw<Drag> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T>& w = now.rate_body_rad_s;
     return -(own.parameter(0) + own.parameter(1) * pow(length(w), 0.5)) * w;
   }
@@ -39,7 +43,7 @@ struct Drag final : TorqueLaw<Drag> {
 // against the body.
 struct SprungWheel final : LawOf<SprungWheel> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const T &inertia = own.parameter(0), &stiffness = own.parameter(1);
     const Vec3Of<T> axis(T(1.0), T(0.0), T(0.0));
     now.detach_inertia(inertia * (axis * axis.transpose()));

@@ -219,7 +219,7 @@ TEST(Recording, HopelessFilesAreRefusedInOneLine) {
   EXPECT_THAT(complaint("t_s,,a\n1,2,3\n2,3,4\n"), HasSubstr("without a name"));
   EXPECT_THAT(complaint("t_s,a\n5,1\n4,1\n3,1\n2,1\n"), HasSubstr("times that fall in 3 rows"));
   RecordingOptions small;
-  small.most_cells = 10;
+  small.max_cells = 10;
   std::string long_file = "t_s,a\n";
   for (int i = 0; i < 6; ++i) long_file += std::to_string(i) + ",1\n";
   EXPECT_THAT(complaint(long_file, small), HasSubstr("more than 10 numbers"));

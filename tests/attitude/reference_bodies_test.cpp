@@ -1,5 +1,5 @@
-// Free and librating bodies that the tests of other programs fly (shared reference attitude.md,
-// sections 5 and 6).
+// Free and librating bodies that the tests of other programs propagate (shared reference
+// attitude.md, sections 5 and 6).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ AttitudeModel body(const Vec3& moments_kg_m2) {
 TEST(ReferenceBody, AgreesWithBasiliskAfterTenSeconds) {
   const AttitudeModel model = body({500, 200, 300});
   const PlatformState start = state_of(model, Quat::Identity(), {0.5, -0.4, 0.7});
-  Quat q = flown(model, start, 10.0).lab_from_body;
+  Quat q = propagated(model, start, 10.0).lab_from_body;
   if (q.w() < 0.0) q.coeffs() *= -1.0;
   const Vec3 sigma = q.vec() / (1.0 + q.w());
   EXPECT_LT((sigma - Vec3(3.73034285e-01, -2.39564413e-03, 2.08570797e-01)).norm(), 2e-9);
@@ -36,7 +36,8 @@ TEST(ReferenceBody, MomentumKeepsItsDirectionForAllOrdersOfTheMoments) {
     const AttitudeModel model = body(moments_kg_m2);
     for (const double sense : {1.0, -1.0}) {
       const Vec3 rate_rad_s = sense * Vec3(0.05, 0.0, 0.04);
-      const PlatformState end = flown(model, state_of(model, Quat::Identity(), rate_rad_s), 40.0);
+      const PlatformState end =
+          propagated(model, state_of(model, Quat::Identity(), rate_rad_s), 40.0);
       const Vec3 before = moments_kg_m2.cwiseProduct(rate_rad_s);
       const Vec3 after = end.lab_from_body * moments_kg_m2.cwiseProduct(end.rate_body_rad_s);
       EXPECT_LT(before.normalized().cross(after.normalized()).norm(), 1.6e-15);
@@ -48,7 +49,7 @@ TEST(ReferenceBody, MomentumKeepsItsDirectionForAllOrdersOfTheMoments) {
 TEST(ReferenceBody, KeepsEnergyAndMomentumOverHundredSeconds) {
   const Vec3 moments_kg_m2(10, 20, 30), rate_rad_s(0.5, 0.3, 0.1);
   const AttitudeModel model = body(moments_kg_m2);
-  const PlatformState end = flown(model, state_of(model, Quat::Identity(), rate_rad_s), 100.0);
+  const PlatformState end = propagated(model, state_of(model, Quat::Identity(), rate_rad_s), 100.0);
   const auto energy = [&](const Vec3& w) { return w.dot(moments_kg_m2.cwiseProduct(w)); };
   EXPECT_NEAR(energy(end.rate_body_rad_s) / energy(rate_rad_s), 1.0, 1e-14);
   const Vec3 momentum = end.lab_from_body * moments_kg_m2.cwiseProduct(end.rate_body_rad_s);
@@ -63,7 +64,7 @@ TEST(ReferenceBody, SymmetricTopFollowsItsClosedForm) {
   const PlatformState start = state_of(model, Quat::Identity(), {0.1, 0, 1});
   const Vec3 momentum = moments_kg_m2.cwiseProduct(start.rate_body_rad_s);
   for (const double t_s : {1.0, 10.0, 1000.0}) {
-    const PlatformState end = flown(model, start, t_s);
+    const PlatformState end = propagated(model, start, t_s);
     const Vec3 rate(0.1 * std::cos(0.5 * t_s), 0.1 * std::sin(0.5 * t_s), 1.0);
     EXPECT_LT((end.rate_body_rad_s - rate).norm(), 1e-13);
     const Vec3 axis =
@@ -82,7 +83,7 @@ TEST(ReferenceBody, PhobosLibratesAsTudatSays) {
   const double omega_rad_s = std::sqrt(3.0 * gradient_1_s2 * (0.4265 - 0.3615) / 0.5024);
   const double amplitude_rad = 1e-5;
   const PlatformState start = state_of(model, turned(amplitude_rad, Vec3::UnitZ()));
-  const PlatformState quarter = flown(model, start, pi / 2 / omega_rad_s);
+  const PlatformState quarter = propagated(model, start, pi / 2 / omega_rad_s);
   EXPECT_NEAR(quarter.rate_body_rad_s.z() / (-omega_rad_s * amplitude_rad), 1.0, 1e-9);
   EXPECT_LT(quarter.lab_from_body.angularDistance(Quat::Identity()), 1e-9 * amplitude_rad + 1e-13);
 }

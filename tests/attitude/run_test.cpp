@@ -198,7 +198,8 @@ TEST(Power, ChargeIsTheIntegralOfTheBalance) {
   model.platform.battery_voltage_V = 20.0;
   model = with(model, "power_balance", {{"load_W", node(15.0)}, {"array_power_W", node(30.0)}});
   // A steady tilting at 0.01 rad/s: ∫ 30 cos(0.01 t) dt = 3000 sin(0.01 t).
-  const PlatformState end = flown(model, state_of(model, Quat::Identity(), {0.01, 0, 0}), 100.0);
+  const PlatformState end =
+      propagated(model, state_of(model, Quat::Identity(), {0.01, 0, 0}), 100.0);
   EXPECT_NEAR(end.charge_drawn_C, (15.0 * 100.0 - 3000.0 * std::sin(1.0)) / 20.0, 1e-9);
 }
 
@@ -214,11 +215,11 @@ TEST(Power, FullBatteryTakesNoMore) {
   for (const double time_s : {10.0, 18.0, 25.0}) {
     const double expected_C =
         taper_C * std::log1p(std::expm1(60.0 / taper_C) * std::exp(-3.0 * time_s / taper_C));
-    EXPECT_NEAR(flown(model, start, time_s).charge_drawn_C, expected_C, 1e-7) << time_s;
+    EXPECT_NEAR(propagated(model, start, time_s).charge_drawn_C, expected_C, 1e-7) << time_s;
   }
   start.charge_drawn_C = 3600.0;
   model = with(model, "power_balance", {{"load_W", node(90.0)}});
-  EXPECT_LE(flown(model, start, 1000.0).charge_drawn_C, 3600.0 + 1e-6);
+  EXPECT_LE(propagated(model, start, 1000.0).charge_drawn_C, 3600.0 + 1e-6);
 }
 
 TEST(Power, TableIsMetAtItsPointsAndStaysBetweenThem) {
@@ -267,7 +268,7 @@ TEST(Wheels, TurnThePlatformToItsTargetAndKeepTheMomentum) {
       wheeled({{"target_axis", numbers({1, 2, 3})}, {"target_angle_deg", node(40.0)}});
   const PlatformState start = state_of(model, turned(-1.0, {3, 1, 0}), {0.01, -0.02, 0.03});
   const Vec3 momentum = whole_momentum_lab(model, start);
-  const PlatformState end = flown(model, start, 600.0, 1e-10);
+  const PlatformState end = propagated(model, start, 600.0, 1e-10);
   EXPECT_LT(end.lab_from_body.angularDistance(turned(40 * degree_rad, {1, 2, 3})), 1e-6);
   EXPECT_LT(end.rate_body_rad_s.norm(), 1e-7);
   EXPECT_LT((whole_momentum_lab(model, end) - momentum).norm(), 1e-12 * momentum.norm());
@@ -278,7 +279,7 @@ TEST(Wheels, TurnThePlatformToItsTargetAndKeepTheMomentum) {
 TEST(Wheels, FrictionLeavesTheErrorThatItsTorqueNeeds) {
   const AttitudeModel model = wheeled({{"viscous_N_m_s", node(1e-6)}, {"dry_N_m", node(2e-6)}});
   const PlatformState start = state_of(model, Quat::Identity(), {0, 0, 0.03});
-  const PlatformState end = flown(model, start, 300.0, 1e-10);
+  const PlatformState end = propagated(model, start, 300.0, 1e-10);
   const double friction_N_m = 1e-6 * end.extra[2] + 2e-6;
   const double error_rad = 2.0 * std::asin(friction_N_m / (2.0 * 2e-3));
   EXPECT_GT(end.extra[2], 40.0);

@@ -27,7 +27,7 @@ class SeriesFile {
   std::filesystem::path path_;
 };
 
-Vec3 wave(double t) {
+Vec3 bounce(double t) {
   return {std::sin(t), std::cos(0.7 * t), t * std::exp(-t)};
 }
 
@@ -36,16 +36,16 @@ TimeSeries sampled_wave(double step) {
   std::vector<Vec3> values;
   for (double t = 0; t < 6.0 + 0.5 * step; t += step) {
     times.push_back(t);
-    values.push_back(wave(t));
+    values.push_back(bounce(t));
   }
   return TimeSeries(times, values);
 }
 
 TEST(TimeSeries, PassesThroughItsSamplesAndConvergesBetweenThem) {
   const TimeSeries coarse = sampled_wave(0.2), fine = sampled_wave(0.1);
-  EXPECT_LT((coarse.at(1.2) - wave(1.2)).norm(), 1e-14);
-  const double coarse_error = (coarse.at(3.1) - wave(3.1)).norm();
-  const double fine_error = (fine.at(3.05) - wave(3.05)).norm();
+  EXPECT_LT((coarse.at(1.2) - bounce(1.2)).norm(), 1e-14);
+  const double coarse_error = (coarse.at(3.1) - bounce(3.1)).norm();
+  const double fine_error = (fine.at(3.05) - bounce(3.05)).norm();
   EXPECT_LT(coarse_error, 1e-4);
   EXPECT_NEAR(coarse_error / fine_error, 16.0, 2.0);  // fourth order, both at midpoints
 }

@@ -14,14 +14,16 @@ struct PublishedBand {
   double begin_nm, end_nm, percent;
 };
 
-double share(SolarStandard standard, double begin_nm, double end_nm) {
-  return solar_share_below(standard, end_nm * 1e-9) - solar_share_below(standard, begin_nm * 1e-9);
+double fraction(SolarStandard standard, double begin_nm, double end_nm) {
+  return solar_fraction_below(standard, end_nm * 1e-9) -
+         solar_fraction_below(standard, begin_nm * 1e-9);
 }
 
 void expect_bands(SolarStandard standard, std::span<const PublishedBand> bands, double tolerance) {
-  const double all = share(standard, bands.front().begin_nm, bands.back().end_nm);
+  const double all = fraction(standard, bands.front().begin_nm, bands.back().end_nm);
   for (const PublishedBand& band : bands) {
-    EXPECT_NEAR(100.0 * share(standard, band.begin_nm, band.end_nm) / all, band.percent, tolerance)
+    EXPECT_NEAR(100.0 * fraction(standard, band.begin_nm, band.end_nm) / all, band.percent,
+                tolerance)
         << band.begin_nm << " nm";
   }
 }
@@ -46,8 +48,8 @@ TEST(SolarSpectra, SpaceMatchesTheBandsOfSimulatorClasses) {
 // clear sky near 1.23 µm: + 0.2 %.
 TEST(SolarSpectra, AirTakesLightInEveryBand) {
   for (double nm = 280; nm < 1300; nm += 20) {
-    EXPECT_LE(1000.37 * share(SolarStandard::am15g, nm, nm + 20),
-              1.005 * 1347.9 * share(SolarStandard::am0, nm, nm + 20))
+    EXPECT_LE(1000.37 * fraction(SolarStandard::am15g, nm, nm + 20),
+              1.005 * 1347.9 * fraction(SolarStandard::am0, nm, nm + 20))
         << nm;
   }
 }

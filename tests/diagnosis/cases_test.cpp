@@ -1,4 +1,4 @@
-// Recordings with a concealed effect, made by an independent simulator (../shared/cases): the
+// Recordings with an injected effect, made by an independent simulator (../shared/cases): the
 // verdict and the names must be right.
 #include <gtest/gtest.h>
 
@@ -26,9 +26,9 @@ Diagnosis diagnose_case(const fs::path& folder) {
                   recording("run2.csv.gz"));
 }
 
-class ConcealedCase : public testing::TestWithParam<const char*> {};
+class InjectedCase : public testing::TestWithParam<const char*> {};
 
-TEST_P(ConcealedCase, IsNamedRightly) {
+TEST_P(InjectedCase, IsNamedRightly) {
   const fs::path folder = cases / GetParam();
   if (!fs::exists(folder / "truth.json")) GTEST_SKIP() << "no " << folder;
   const nlohmann::json truth = nlohmann::json::parse(read_file(folder / "truth.json"));
@@ -48,9 +48,9 @@ TEST_P(ConcealedCase, IsNamedRightly) {
 }
 
 // Three here; the others are seconds each too: --gtest_also_run_disabled_tests.
-INSTANTIATE_TEST_SUITE_P(Shared, ConcealedCase, testing::Values("01", "02", "08"),
+INSTANTIATE_TEST_SUITE_P(Shared, InjectedCase, testing::Values("01", "02", "08"),
                          [](const auto& one) { return std::string(one.param); });
-INSTANTIATE_TEST_SUITE_P(DISABLED_Shared, ConcealedCase,
+INSTANTIATE_TEST_SUITE_P(DISABLED_Shared, InjectedCase,
                          testing::Values("03", "04", "05", "06", "07", "09", "10", "11", "12"),
                          [](const auto& one) { return std::string(one.param); });
 

@@ -21,8 +21,8 @@ using namespace rigid_body;
 
 Diagnosis diagnosed(const Extra& extra, double gyro_unit = 1.0) {
   DiagnoseOptions options;
-  options.most_effects = 1;
-  return diagnose(belief(), {recorded(1, extra, gyro_unit)}, {recorded(2, extra, gyro_unit)},
+  options.max_effects = 1;
+  return diagnose(nominal_model(), {recorded(1, extra, gyro_unit)}, {recorded(2, extra, gyro_unit)},
                   options);
 }
 
@@ -56,21 +56,22 @@ TEST(Diagnose, NamesADipoleAndMeasuresIt) {
   ASSERT_TRUE(d.holdout.has_value());
   EXPECT_LT(d.holdout->chi2_per_sample_after, 1.15);
   EXPECT_GT(d.holdout->chi2_per_sample_before, 1.5);
-  // The best explanation flew what was held back.
+  // The best explanation flew what was held out.
   ASSERT_TRUE(d.alternatives.front().holdout_chi2_per_sample.has_value());
   EXPECT_NEAR(*d.alternatives.front().holdout_chi2_per_sample, 1.0, 0.15);
 }
 
-// A dipole and a draught together: what the slopes at the belief foretell is what the fit gains.
-TEST(Score, ForetellsWhatTwoEffectsGainTogether) {
+// A dipole and a draught together: what the slopes at the nominal model predict is what the fit
+// gains.
+TEST(Score, PredictsWhatTwoEffectsGainTogether) {
   const Vec3 dipole_A_m2(0.01, -0.02, 0.01), draught_lab_N_m(4e-7, -3e-7, 0.0);
   const NamedRecording seen = recorded(3, [&](const State& s) {
     const Quat body_from_lab = s.lab_from_body.conjugate();
     return Vec3(dipole_A_m2.cross(body_from_lab * field_lab_T) + body_from_lab * draught_lab_N_m);
   });
   const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
-  const Fit believed = fit_belief(belief(), runs);
-  const std::vector<Candidate> all = all_candidates(belief(), runs);
+  const Fit nominal = fit_nominal(nominal_model(), runs);
+  const std::vector<Candidate> all = all_candidates(nominal_model(), runs);
   const auto named = [&](const std::string& label) {
     const auto at =
         std::find_if(all.begin(), all.end(), [&](const Candidate& c) { return c.label == label; });
@@ -78,17 +79,17 @@ TEST(Score, ForetellsWhatTwoEffectsGainTogether) {
   };
   const size_t dipole = named("magnetic_dipole"), draught = named("room_draft");
   const std::vector<ScoreGroup> groups = {{{all[dipole].start}}, {{all[draught].start}}};
-  const Eigen::MatrixXd gains = score_pairs(believed, runs, groups);
-  const std::vector<Score> alone = score(believed, runs, groups);
+  const Eigen::MatrixXd gains = score_pairs(nominal, runs, groups);
+  const std::vector<Score> alone = score(nominal, runs, groups);
   EXPECT_NEAR(gains(0, 0), alone[0].gain, 1e-6 * alone[0].gain);
   EXPECT_NEAR(gains(1, 1), alone[1].gain, 1e-6 * alone[1].gain);
   EXPECT_EQ(gains(0, 1), gains(1, 0));
 
-  const Trial one = extend(believed_trial(believed), all, dipole, all[dipole].start, runs);
+  const Trial one = extend(nominal_trial(nominal), all, dipole, all[dipole].start, runs);
   const Trial both = extend(one, all, draught, all[draught].start, runs);
-  const double gained = believed.chi2 - both.fit.chi2;
+  const double gained = nominal.chi2 - both.fit.chi2;
   EXPECT_NEAR(gains(0, 1), gained, 0.05 * gained);
-  EXPECT_GT(gained, believed.chi2 - one.fit.chi2 + 20.0);
+  EXPECT_GT(gained, nominal.chi2 - one.fit.chi2 + 20.0);
 }
 
 // A camera that sees every second row: what is slow has a mirror image at half the rate of the
@@ -100,7 +101,7 @@ TEST(Scan, TakesNoMirrorImageForALine) {
     for (size_t row = 1; row < values.size(); row += 2) values[row] = NAN;
   }
   const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
-  const Fit fit = fit_belief(belief(), runs);
+  const Fit fit = fit_nominal(nominal_model(), runs);
   EXPECT_GT(fit.chi2_per_sample(), 1.5);  // there is something slow
   for (const double line_Hz : line_frequencies_Hz(fit, runs)) EXPECT_LT(line_Hz, 2.0);
 }
@@ -114,15 +115,15 @@ TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
   };
   const NamedRecording seen = recorded(6, thrice);
   const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
-  const BelievedModel believed = belief();
-  const std::vector<Candidate> all = all_candidates(believed, runs);
+  const NominalModel nominal = nominal_model();
+  const std::vector<Candidate> all = all_candidates(nominal, runs);
   const auto error = std::find_if(
       all.begin(), all.end(), [](const Candidate& c) { return c.effect.kind == "inertia_error"; });
   ASSERT_NE(error, all.end());
   FitSettings settings;
-  settings.most_iterations = 60;
+  settings.max_iterations = 60;
   const Trial trial =
-      extend(believed_trial(fit_belief(believed, runs)), all,
+      extend(nominal_trial(fit_nominal(nominal, runs)), all,
              static_cast<size_t>(error - all.begin()), error->start, runs, settings);
   EXPECT_NE(trial.objection.find("inertia would change by"), std::string::npos) << trial.objection;
 }
@@ -151,9 +152,9 @@ TEST(Diagnose, CallsCoggingUnexplainedAndMeasuresItsTorque) {
   }
 }
 
-// A strong torque over few readings: the belief goes astray, and the pieces into which the run
+// A strong torque over few readings: the nominal model diverges, and the pieces into which the run
 // would be cut have too few attitudes to start from.
-TEST(Diagnose, AShortRunThatGoesAstrayIsStillAnswered) {
+TEST(Diagnose, AShortRunThatDivergesIsStillAnswered) {
   const auto pull = [](const State&) { return Vec3(3e-3, 0, 0); };
   NamedRecording brief = recorded(4, pull);
   constexpr size_t rows = 40;
@@ -161,8 +162,8 @@ TEST(Diagnose, AShortRunThatGoesAstrayIsStillAnswered) {
   for (Channel& channel : brief.recording.channels) channel.values.resize(rows);
   brief.recording.report.rows_read = brief.recording.report.rows_kept = rows;
   DiagnoseOptions options;
-  options.most_effects = 1;
-  const Diagnosis d = diagnose(belief(), {brief}, {}, options);
+  options.max_effects = 1;
+  const Diagnosis d = diagnose(nominal_model(), {brief}, {}, options);
   EXPECT_GT(d.chi2_per_sample_before, 20.0);
   EXPECT_NE(d.verdict, Verdict::consistent);
 }

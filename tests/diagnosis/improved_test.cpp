@@ -57,7 +57,7 @@ TEST(Improved, ActsWithTheFittedNumbersAndTheirErrors) {
   EXPECT_DOUBLE_EQ(latency.parameters[0].value, 0.08);
 }
 
-TEST(Improved, FliesTheFirstRecordingAgain) {
+TEST(Improved, PropagatesTheFirstRecordingAgain) {
   const std::string text = improved_experiment(written, sample_diagnosis(), ".");
   const PropagationRun run = read_propagation(read(text));
   EXPECT_DOUBLE_EQ(run.duration_s, 200.0);

@@ -1,4 +1,4 @@
-// A manoeuvre that is proposed, done: it separates what it should, by as much as was foretold.
+// A manoeuvre that is proposed, done: it separates what it should, by as much as was predicted.
 #include <gmock/gmock.h>
 
 #include "tests/diagnosis/rigid_body_recording.h"
@@ -17,16 +17,16 @@ double log_evidence_of(const Diagnosis& d, const std::string& kind) {
 }
 
 // Drag with the square of the rate, over 1 % of run-down: friction with the power 1.5 fits as well.
-TEST(Manoeuvre, SeparatesTwoLawsOfDragAsForetold) {
+TEST(Manoeuvre, SeparatesTwoLawsOfDragAsPredicted) {
   const auto drag = [](const State& s) { return Vec3(-1e-4 * s.rate_rad_s.norm() * s.rate_rad_s); };
-  BelievedModel believed = belief();
-  Parameter& coefficient = believed.model.disturbances[1].parameters[0];
+  NominalModel nominal = nominal_model();
+  Parameter& coefficient = nominal.model.disturbances[1].parameters[0];
   coefficient.value = drag_N_m_s;
   coefficient.sigma = 2e-7;
   DiagnoseOptions options;
-  options.most_effects = 1;
+  options.max_effects = 1;
   const NamedRecording usual = recorded(1, drag);
-  const Diagnosis before = diagnose(believed, {usual}, {}, options);
+  const Diagnosis before = diagnose(nominal, {usual}, {}, options);
   ASSERT_EQ(before.verdict, Verdict::missing_physics);
   ASSERT_EQ(before.effects.size(), 1u);
   ASSERT_FALSE(before.manoeuvres.empty());
@@ -37,19 +37,19 @@ TEST(Manoeuvre, SeparatesTwoLawsOfDragAsForetold) {
       });
   ASSERT_NE(proposed, before.manoeuvres.end());
   ASSERT_THAT(proposed->text, testing::HasSubstr("three times its present rate"));
-  const double foretold = proposed->log_evidence_expected;
+  const double predicted = proposed->log_evidence_expected;
 
   NamedRecording faster = recorded(1, drag, 1.0, 3.0);
   faster.name = "faster.csv";
-  const Diagnosis after = diagnose(believed, {usual, faster}, {}, options);
+  const Diagnosis after = diagnose(nominal, {usual, faster}, {}, options);
   ASSERT_EQ(after.effects.size(), 1u);
   EXPECT_EQ(after.effects[0].kind, "air_pressure_drag");
   EXPECT_TRUE(after.effects[0].indistinguishable_from.empty());
   const double lead =
       log_evidence_of(after, "air_pressure_drag") - log_evidence_of(after, "air_friction");
   // The lead scatters by √(2 · lead) or so, the coefficient that the first run gave by 2 %.
-  EXPECT_NEAR(lead, foretold, 5.0 * std::sqrt(2.0 * foretold) + 0.1 * foretold);
-  EXPECT_GT(foretold, 100.0);
+  EXPECT_NEAR(lead, predicted, 5.0 * std::sqrt(2.0 * predicted) + 0.1 * predicted);
+  EXPECT_GT(predicted, 100.0);
 }
 
 }  // namespace

@@ -89,10 +89,10 @@ TEST_F(ProofScore, ANamedEffectWhereNothingIsMissingIsAFalseAlarm) {
 }
 
 // The closed form of Wilson's paper with z = 1.959964, evaluated by hand for 8 of 10.
-TEST(Share, HasWilsonsInterval) {
-  const Share share{8, 10};
-  EXPECT_NEAR(share.low(), 0.4901625, 1e-4);
-  EXPECT_NEAR(share.high(), 0.9433178, 1e-4);
+TEST(Fraction, HasWilsonsInterval) {
+  const Fraction fraction{8, 10};
+  EXPECT_NEAR(fraction.low(), 0.4901625, 1e-4);
+  EXPECT_NEAR(fraction.high(), 0.9433178, 1e-4);
 }
 
 }  // namespace

@@ -61,28 +61,28 @@ std::vector<KindCase> kind_cases() {
 
 constexpr double duration_s = 60.0, rate_Hz = 5.0;
 
-ConcealedWorld world_of(const KindCase& c) {
-  ConcealedWorld world;
+InjectedWorld world_of(const KindCase& c) {
+  InjectedWorld world;
   world.mass_kg = 7.5;
   world.inertia_kg_m2 = {{{0.11, 0, 0}, {0, 0.125, 0}, {0, 0, 0.19}}};
   world.magnetic_field_T = {1e-6, 2.2e-5, -4.1e-5};
   world.latitude_rad = 0.8;
   world.offset_m = {1e-6, -2e-6, -4e-5};
   world.drag_N_m_s = 1.3e-5;
-  ConcealedEffect effect{c.kind, {}};
+  InjectedEffect effect{c.kind, {}};
   for (const auto& [key, numbers] : c.values) effect.parameters[key] = numbers;
   world.effects = {effect};
   return world;
 }
 
-ConcealedStart start() {
-  ConcealedStart s;
-  s.attitude = concealed::quaternion_of({0.08, -0.05, 0.3});
+InjectedStart start() {
+  InjectedStart s;
+  s.attitude = injected::quaternion_of({0.08, -0.05, 0.3});
   s.rate_rad_s = {0.013, -0.02, 0.021};
   return s;
 }
 
-std::vector<ConcealedCommand> commands() {
+std::vector<InjectedCommand> commands() {
   return {{0.0, {}, 3.0},
           {10.0, {3e-4, -2e-4, 1e-4}, 3.0},
           {16.0, {}, 6.0},
@@ -92,7 +92,7 @@ std::vector<ConcealedCommand> commands() {
 
 // The same in folder attitude.
 PropagationRun run_of(const KindCase& c) {
-  const ConcealedWorld world = world_of(c);
+  const InjectedWorld world = world_of(c);
   PropagationRun run;
   Platform& platform = run.model.platform;
   platform.mass_kg = world.mass_kg;
@@ -112,7 +112,7 @@ PropagationRun run_of(const KindCase& c) {
       make_disturbance_of("static_unbalance", {{"offset_m", {r[0], r[1], r[2]}}}, context),
       make_disturbance_of("bearing_drag", {{"coefficient_N_m_s", {world.drag_N_m_s}}}, context),
       make_disturbance_of(c.kind, c.values, context)};
-  for (const ConcealedCommand& command : commands()) {
+  for (const InjectedCommand& command : commands()) {
     const auto& t = command.torque_N_m;
     run.model.schedule.append(command.time_s, {Vec3(t[0], t[1], t[2]), command.battery_current_A});
   }
@@ -136,11 +136,11 @@ class ProveSimulator : public testing::TestWithParam<KindCase> {};
 
 TEST_P(ProveSimulator, ReadsWhatThePropagatorReads) {
   const Recording recording = propagate(run_of(GetParam())).recording;
-  const ConcealedWorld world = world_of(GetParam());
+  const InjectedWorld world = world_of(GetParam());
   std::vector<double> seen_s = recording.time_s;
-  for (double& t_s : seen_s) t_s = std::max(0.0, t_s - concealed_latency_s(world));
-  const auto moments = concealed_motion(world, commands(), start(), 0.0, recording.time_s, 0.01);
-  const auto seen = concealed_motion(world, commands(), start(), 0.0, seen_s, 0.01);
+  for (double& t_s : seen_s) t_s = std::max(0.0, t_s - injected_latency_s(world));
+  const auto moments = injected_motion(world, commands(), start(), 0.0, recording.time_s, 0.01);
+  const auto seen = injected_motion(world, commands(), start(), 0.0, seen_s, 0.01);
   ASSERT_EQ(moments.size(), static_cast<size_t>(duration_s * rate_Hz) + 1);
   const char* const rates[] = {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
   const char* const attitude[] = {"q_w", "q_x", "q_y", "q_z"};
@@ -150,12 +150,12 @@ TEST_P(ProveSimulator, ReadsWhatThePropagatorReads) {
       const double miss = recording.find(rates[k])->values[i] - moments[i].gyro_rad_s[k];
       worst_rad_s = std::max(worst_rad_s, std::abs(miss));
     }
-    concealed::Quaternion q;
+    injected::Quaternion q;
     for (size_t k = 0; k < 4; ++k) q[k] = recording.find(attitude[k])->values[i];
-    const auto turn = concealed::product(q, concealed::conjugate(seen[i].camera));
+    const auto turn = injected::product(q, injected::conjugate(seen[i].camera));
     // What a late camera sees first lies before the start, which either continues in its own way.
-    if (recording.time_s[i] < concealed_latency_s(world)) continue;
-    worst_rad = std::max(worst_rad, concealed::length(concealed::turn_of(turn)));
+    if (recording.time_s[i] < injected_latency_s(world)) continue;
+    worst_rad = std::max(worst_rad, injected::length(injected::turn_of(turn)));
   }
   // A thousandth of the camera's and the gyro's noise.
   EXPECT_LT(worst_rad, 6e-8);
@@ -164,21 +164,20 @@ TEST_P(ProveSimulator, ReadsWhatThePropagatorReads) {
 
 // The comparison above means something only where the effect moves the readings far beyond it.
 TEST_P(ProveSimulator, EffectShows) {
-  ConcealedWorld without = world_of(GetParam());
+  InjectedWorld without = world_of(GetParam());
   without.effects.clear();
   std::vector<double> times_s;
   for (double t = 1.0; t < duration_s; t += 1.0) times_s.push_back(t);
   std::vector<double> seen_s = times_s;
-  for (double& t_s : seen_s) t_s -= concealed_latency_s(world_of(GetParam()));
-  const auto acting =
-      concealed_motion(world_of(GetParam()), commands(), start(), 0.0, seen_s, 0.01);
-  const auto free = concealed_motion(without, commands(), start(), 0.0, times_s, 0.01);
+  for (double& t_s : seen_s) t_s -= injected_latency_s(world_of(GetParam()));
+  const auto acting = injected_motion(world_of(GetParam()), commands(), start(), 0.0, seen_s, 0.01);
+  const auto free = injected_motion(without, commands(), start(), 0.0, times_s, 0.01);
   double most = 0.0;
   for (size_t i = 0; i < times_s.size(); ++i) {
-    const auto turn = concealed::product(acting[i].camera, concealed::conjugate(free[i].camera));
-    most = std::max(most, concealed::length(concealed::turn_of(turn)));
-    most = std::max(most,
-                    concealed::length(concealed::minus(acting[i].gyro_rad_s, free[i].gyro_rad_s)));
+    const auto turn = injected::product(acting[i].camera, injected::conjugate(free[i].camera));
+    most = std::max(most, injected::length(injected::turn_of(turn)));
+    most =
+        std::max(most, injected::length(injected::minus(acting[i].gyro_rad_s, free[i].gyro_rad_s)));
   }
   EXPECT_GT(most, 1e-4 * (GetParam().kind == "gravity_gradient" ? 0.01 : 1.0));
 }
@@ -189,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ProveSimulator, testing::ValuesIn(kind_cases()),
 TEST(ProveSimulator, CoversTheCatalogue) {
   std::vector<std::string> tested;
   for (const KindCase& c : kind_cases()) tested.push_back(c.kind);
-  for (const std::string& kind : concealed_kinds()) {
+  for (const std::string& kind : injected_kinds()) {
     if (is_outside_catalogue(kind)) continue;
     EXPECT_NE(std::ranges::find(tested, kind), tested.end()) << kind;
   }
@@ -197,12 +196,12 @@ TEST(ProveSimulator, CoversTheCatalogue) {
 
 // Kutta's method is of fourth order: half the step, a sixteenth of the error.
 TEST(ProveSimulator, ErrorFallsWithTheFourthPowerOfTheStep) {
-  const ConcealedWorld world = world_of(kind_cases()[17]);
+  const InjectedWorld world = world_of(kind_cases()[17]);
   const auto end = [&](double step_s) {
-    return concealed_motion(world, {}, start(), 0.0, {40.0}, step_s)[0];
+    return injected_motion(world, {}, start(), 0.0, {40.0}, step_s)[0];
   };
   const auto error = [&](double step_s) {
-    return concealed::length(concealed::minus(end(step_s).rate_rad_s, end(0.003125).rate_rad_s));
+    return injected::length(injected::minus(end(step_s).rate_rad_s, end(0.003125).rate_rad_s));
   };
   const double ratio = error(0.1) / error(0.05);
   EXPECT_GT(ratio, 12.0);
@@ -211,17 +210,17 @@ TEST(ProveSimulator, ErrorFallsWithTheFourthPowerOfTheStep) {
 
 // A torque about the vertical that repeats three times a turn does no work over a turn.
 TEST(ProveSimulator, CoggingRepeatsWithHeading) {
-  ConcealedWorld world = world_of({"heading_cogging", {}});
+  InjectedWorld world = world_of({"heading_cogging", {}});
   world.offset_m = {};
   world.drag_N_m_s = 0.0;
   world.effects = {
       {"heading_cogging", {{"torque_N_m", {2e-5}}, {"periods", {3.0}}, {"phase", {0.0}}}}};
-  ConcealedStart level;
+  InjectedStart level;
   level.rate_rad_s = {0, 0, 0.2};
   std::vector<double> times_s;
   for (int i = 0; i <= 4000; ++i) times_s.push_back(0.01 * i);
-  const auto moments = concealed_motion(world, {}, level, 0.0, times_s, 0.01);
-  for (const ConcealedMoment& m : moments) {
+  const auto moments = injected_motion(world, {}, level, 0.0, times_s, 0.01);
+  for (const InjectedContext& m : moments) {
     // Energy: ½ I ω² = ½ I ω₀² + T/3 (1 − cos 3ψ).
     const auto& q = m.attitude;
     const double heading = 2.0 * std::atan2(q[3], q[0]);

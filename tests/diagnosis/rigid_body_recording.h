@@ -88,22 +88,22 @@ inline NamedRecording recorded(unsigned seed, const Extra& extra, double gyro_un
 }
 
 // Gravity and drag with the uncertainty of a careful user.
-inline BelievedModel belief() {
-  BelievedModel believed;
-  Platform& platform = believed.model.platform;
+inline NominalModel nominal_model() {
+  NominalModel nominal;
+  Platform& platform = nominal.model.platform;
   platform.topology = Topology::tabletop;
   platform.mass_kg = mass_kg;
   platform.inertia_kg_m2 = inertia_kg_m2();
-  believed.model.environment.magnetic_field_lab_T = field_lab_T;
-  const DisturbanceContext context{platform, believed.model.environment};
+  nominal.model.environment.magnetic_field_lab_T = field_lab_T;
+  const DisturbanceContext context{platform, nominal.model.environment};
   Disturbance unbalance =
       make_disturbance_of("static_unbalance", {{"offset_m", {2.3e-6, -1.2e-6, -3.1e-5}}}, context);
   for (Parameter& p : unbalance.parameters) p.sigma = 1e-6;
   Disturbance drag =
       make_disturbance_of("bearing_drag", {{"coefficient_N_m_s", {1.8e-5}}}, context);
   drag.parameters[0].sigma = 4e-6;
-  believed.model.disturbances = {unbalance, drag};
-  return believed;
+  nominal.model.disturbances = {unbalance, drag};
+  return nominal;
 }
 
 }  // namespace photorque::rigid_body

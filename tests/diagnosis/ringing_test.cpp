@@ -28,7 +28,7 @@ std::array<double, 2> step_response(double t_s) {
 // not know. `slow_arcsec` adds a residual that nothing swinging explains.
 struct PushedTurn {
   Observation seen;
-  Prediction flown;
+  Prediction propagated;
 
   explicit PushedTurn(double slow_arcsec) {
     for (int i = 0; i < 800; ++i) {
@@ -41,20 +41,21 @@ struct PushedTurn {
       state.rate_body_rad_s = {0.0, 0.0, acceleration_rad_s2 * (pushed - let_go)};
       const double turn = 0.5 * acceleration_rad_s2 * (pushed * pushed - let_go * let_go);
       state.lab_from_body = Eigen::AngleAxisd(turn, Vec3::UnitZ());
-      flown.states.push_back(state);
+      propagated.states.push_back(state);
       const auto begin = step_response(t - from_s), end = step_response(t - until_s);
-      const double share = appendage_kg_m2 / inertia_kg_m2.z() * acceleration_rad_s2;
+      const double fraction = appendage_kg_m2 / inertia_kg_m2.z() * acceleration_rad_s2;
       WhiteRow white = WhiteRow::Zero();
-      white[2] = (share * (begin[0] - end[0]) + slow_arcsec * arcsecond_rad * std::sin(0.1 * t)) /
-                 seen.noise.camera_rad.z();
-      white[5] = share * (begin[1] - end[1]) / seen.noise.gyro_rad_s.z();
+      white[2] =
+          (fraction * (begin[0] - end[0]) + slow_arcsec * arcsecond_rad * std::sin(0.1 * t)) /
+          seen.noise.camera_rad.z();
+      white[5] = fraction * (begin[1] - end[1]) / seen.noise.gyro_rad_s.z();
       if (i % 2 == 0) white.head<3>().setConstant(NAN);
-      flown.residual.push_back(white);
+      propagated.residual.push_back(white);
     }
   }
 
   Score score(double at_Hz) const {
-    return score_of_ringing({{seen, flown}}, inertia_kg_m2.asDiagonal(),
+    return score_of_ringing({{seen, propagated}}, inertia_kg_m2.asDiagonal(),
                             {Vec3::UnitX(), Vec3::UnitZ()}, at_Hz, damping);
   }
 };

@@ -52,7 +52,7 @@ inline Diagnosis sample_diagnosis() {
                     {{"eddy_damping"}, "", 20.0, {}, "would feed energy"},
                     {{}, "", 0.0, 4.1, ""}};
   d.manoeuvres = {{{"magnetic_dipole", "room_draft"}, "Turn the coils off.", 40.0}};
-  d.beliefs_refined = {{"disturbance[0].offset_m", {1e-6, 2e-6, -3e-5}, {1e-8, 1e-8, 1e-8}}};
+  d.priors_refined = {{"disturbance[0].offset_m", {1e-6, 2e-6, -3e-5}, {1e-8, 1e-8, 1e-8}}};
   d.warnings = {"the clock jumps at 12 s"};
   d.data = {7000, 6957, {{"outlier", 31}, {"gap", 12}}, {{"flipped_quaternion", 4}}, 0.1,
             4e-4, 2.4};

@@ -157,11 +157,11 @@ TEST(PhotovoltaicArray, DarkArrayGivesNothingAndDoesNotFail) {
   EXPECT_TRUE(result.maxima.empty());
 }
 
-// The spread of results over many independent data sets is what the standard error promises.
+// The spread of results over many independent data sets is what the standard error predicts.
 TEST(PhotovoltaicArray, StandardErrorIsTheSpreadOverIndependentRuns) {
   constexpr int runs = 50, replicates = 8;
   const ArrayDesign array = design();
-  double sum = 0.0, squares = 0.0, promised = 0.0;
+  double sum = 0.0, squares = 0.0, predicted_gain = 0.0;
   for (uint64_t run = 0; run < runs; ++run) {
     ArrayLight light = array_light(10, 10, 0.2, 0.2, std::vector<double>(100, 500.0));
     light.power_W = {100, replicates, {}};
@@ -176,11 +176,11 @@ TEST(PhotovoltaicArray, StandardErrorIsTheSpreadOverIndependentRuns) {
     const Estimate power = evaluate(array, light).power_W;
     sum += power.value / runs;
     squares += power.value * power.value / runs;
-    promised += power.standard_error * power.standard_error / runs;
+    predicted_gain += power.standard_error * power.standard_error / runs;
   }
   const double spread2 = (squares - sum * sum) * runs / (runs - 1.0);
   // A variance from 50 runs is uncertain by 20 %.
-  EXPECT_NEAR(spread2 / promised, 1.0, 0.6);
+  EXPECT_NEAR(spread2 / predicted_gain, 1.0, 0.6);
 }
 
 TEST(PhotovoltaicArray, WrongDesignsNameTheirKey) {

@@ -33,13 +33,13 @@ Real root(Real low, Real high, Function&& f) {
     a = x;
     fa = fx;
     const Real best = std::abs(fa) < std::abs(fb) ? a : b;
-    const Real share = 2e-19L * std::abs(best) / std::abs(b - c);
-    if (fa == 0 || share > 0.5L) return best;
+    const Real fraction = 2e-19L * std::abs(best) / std::abs(b - c);
+    if (fa == 0 || fraction > 0.5L) return best;
     const Real xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
     t = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi
             ? fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
             : 0.5L;
-    t = std::clamp(t, share, 1 - share);
+    t = std::clamp(t, fraction, 1 - fraction);
   }
   return b;
 }

@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "bisection.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/random.h"
 #include "core/parallel.h"
-#include "photovoltaic_bisection.h"
-#include "photovoltaic_ivcurves.h"
-#include "photovoltaic_reference.h"
+#include "ivcurves.h"
 #include "photovoltaics/cell/batch.h"
 #include "photovoltaics/cell/table.h"
+#include "reference.h"
 
 namespace photorque {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "core/errors.h"
 #include "core/numerics/random.h"
-#include "photovoltaic_ivcurves.h"
+#include "ivcurves.h"
 
 namespace photorque {
 namespace {
@@ -99,7 +99,7 @@ TEST(PhotovoltaicFit, StandardErrorsAreTheScatterOfFits) {
   ivcurves::Truth truth{2.0, 1e-9, 0.2, 200.0, 1.2, 20};
   const CellCurve cell(truth.parameters());
   const double open_V = cell.open_circuit_V(2.0);
-  double squares = 0.0, promised = 0.0;
+  double squares = 0.0, predicted_gain = 0.0;
   for (uint64_t run = 0; run < runs; ++run) {
     IvSweep sweep;
     for (uint64_t i = 0; i < 60; ++i) {
@@ -112,10 +112,10 @@ TEST(PhotovoltaicFit, StandardErrorsAreTheScatterOfFits) {
     }
     const Estimate fitted = fit_sweeps(std::array{sweep}, {}).diode.series_ohm;
     squares += (fitted.value - 0.2) * (fitted.value - 0.2) / runs;
-    promised += fitted.standard_error * fitted.standard_error / runs;
+    predicted_gain += fitted.standard_error * fitted.standard_error / runs;
   }
   // A variance from 60 runs is uncertain by 18 %.
-  EXPECT_NEAR(squares / promised, 1.0, 0.55);
+  EXPECT_NEAR(squares / predicted_gain, 1.0, 0.55);
 }
 
 const ivcurves::Truth rated_truth{8.0, 5e-10, 0.3, 400.0, 1.1, 60};
@@ -144,8 +144,8 @@ TEST(PhotovoltaicFit, DatasheetErrorsAreTheScatterOfRoundedFigures) {
   const std::vector<RatedPoint> exact = rated_points();
   const RatedTolerance tolerance{1e-3, 1e-2, 0.0};
   const double guess_V = 60 * 1.2 * 0.0257;
-  const auto promised = fitted_figures(fit_rated_points(exact, {}, guess_V, tolerance));
-  std::array<double, promised.size()> sum{}, squares{};
+  const auto predicted_gain = fitted_figures(fit_rated_points(exact, {}, guess_V, tolerance));
+  std::array<double, predicted_gain.size()> sum{}, squares{};
   for (uint64_t draw = 0; draw < draws; ++draw) {
     std::vector<RatedPoint> rounded = exact;
     for (uint64_t p = 0; p < rounded.size(); ++p) {
@@ -159,15 +159,15 @@ TEST(PhotovoltaicFit, DatasheetErrorsAreTheScatterOfRoundedFigures) {
     }
     const auto found = fitted_figures(fit_rated_points(rounded, {}, guess_V));
     for (size_t k = 0; k < found.size(); ++k) {
-      sum[k] += found[k].value - promised[k].value;
-      squares[k] += std::pow(found[k].value - promised[k].value, 2);
+      sum[k] += found[k].value - predicted_gain[k].value;
+      squares[k] += std::pow(found[k].value - predicted_gain[k].value, 2);
     }
   }
-  for (size_t k = 0; k < promised.size(); ++k) {
+  for (size_t k = 0; k < predicted_gain.size(); ++k) {
     const double scatter = std::sqrt((squares[k] - sum[k] * sum[k] / draws) / (draws - 1));
     // A scatter of 60 is known to 9 %.
-    EXPECT_NEAR(promised[k].standard_error / scatter, 1.0, 0.35) << k;
-    EXPECT_GT(promised[k].standard_error, 0.0) << k;
+    EXPECT_NEAR(predicted_gain[k].standard_error / scatter, 1.0, 0.35) << k;
+    EXPECT_GT(predicted_gain[k].standard_error, 0.0) << k;
   }
 }
 

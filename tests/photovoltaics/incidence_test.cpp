@@ -102,8 +102,8 @@ Lit lit_plate(const OpticalSurface& surface) {
   return lit;
 }
 
-// The share that enters, over all bins, of parallel light at an angle.
-double traced_share(const Lit& lit, const std::optional<CellFront>& front, double angle) {
+// The fraction that enters, over all bins, of parallel light at an angle.
+double traced_fraction(const Lit& lit, const std::optional<CellFront>& front, double angle) {
   const IncidenceReceiver receiver(lit.scene, lit.grid, front, std::array{any_m});
   const Vec3 direction(std::sin(angle), 0, -std::cos(angle));
   const std::vector<Beam> beams = {testing::beam(std::make_shared<testing::ParallelBeam>(1.0, 0.2),
@@ -133,10 +133,10 @@ double brewster_modifier(double n) {
 TEST(IncidenceReceiver, RaysAtBrewstersAngleLoseTheClosedForm) {
   const Lit lit = lit_plate(black());
   for (const double n : {1.33, 1.5, 2.0}) {
-    EXPECT_NEAR(traced_share(lit, clear_glass(n), std::atan(n)), brewster_modifier(n), 1e-6);
-    EXPECT_NEAR(traced_share(lit, clear_glass(n), 0.0), 1.0, 1e-7);
+    EXPECT_NEAR(traced_fraction(lit, clear_glass(n), std::atan(n)), brewster_modifier(n), 1e-6);
+    EXPECT_NEAR(traced_fraction(lit, clear_glass(n), 0.0), 1.0, 1e-7);
   }
-  EXPECT_EQ(traced_share(lit, std::nullopt, std::atan(1.5)), 1.0);
+  EXPECT_EQ(traced_fraction(lit, std::nullopt, std::atan(1.5)), 1.0);
 }
 
 // A surface that is glass itself has lost its reflection already: the receiver takes the angle from
@@ -144,7 +144,7 @@ TEST(IncidenceReceiver, RaysAtBrewstersAngleLoseTheClosedForm) {
 TEST(IncidenceReceiver, GlassOfTheSurfaceItselfIsNotCountedTwice) {
   const Lit lit = lit_plate(behind_glass(black(), 1.5));
   ASSERT_TRUE(has_own_front(lit.scene, lit.grid));
-  EXPECT_NEAR(traced_share(lit, std::nullopt, std::atan(1.5)), brewster_modifier(1.5), 1e-6);
+  EXPECT_NEAR(traced_fraction(lit, std::nullopt, std::atan(1.5)), brewster_modifier(1.5), 1e-6);
   EXPECT_NE(testing::input_error_of([&] {
               IncidenceReceiver(lit.scene, lit.grid, clear_glass(1.5), std::array{any_m},
                                 {"array.toml", 5});

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/constants.h"
-#include "photovoltaic_reference.h"
+#include "reference.h"
 
 namespace photorque::ivcurves {
 

@@ -1,5 +1,5 @@
 // The exact powers of the reference maps and the ngspice curves.
-#include "photovoltaic_reference.h"
+#include "reference.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <map>
 #include <tuple>
 
-#include "photovoltaic_bisection.h"
+#include "bisection.h"
 
 namespace photorque {
 namespace {

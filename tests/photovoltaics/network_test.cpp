@@ -4,10 +4,10 @@
 #include <limits>
 #include <map>
 
+#include "bisection.h"
 #include "core/errors.h"
 #include "core/numerics/random.h"
-#include "photovoltaic_bisection.h"
-#include "photovoltaic_reference.h"
+#include "reference.h"
 
 namespace photorque {
 namespace {

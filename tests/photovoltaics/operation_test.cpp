@@ -7,11 +7,11 @@
 
 #include "core/errors.h"
 #include "core/numerics/random.h"
-#include "photovoltaic_reference.h"
 #include "photovoltaics/array/day.h"
 #include "photovoltaics/array/layout.h"
 #include "photovoltaics/array/losses.h"
 #include "photovoltaics/array/tracker.h"
+#include "reference.h"
 
 namespace photorque {
 namespace {
@@ -214,7 +214,7 @@ TEST(PhotovoltaicDay, WarmLampsGiveLessByTheirRollOff) {
   EXPECT_EQ(lamp.light_at(0.0), 1.0);
   EXPECT_NEAR(lamp.light_at(100.0 * std::log(2.0)), 0.9, 1e-15);
   EXPECT_NEAR(lamp.light_at(1e6), 0.8, 1e-15);
-  EXPECT_NEAR(lamp.least_light(), 0.8, 1e-15);
+  EXPECT_NEAR(lamp.min_light(), 0.8, 1e-15);
   lamp.depth = 0.1;
   EXPECT_NEAR(lamp.light_at(1e6), 0.72, 1e-15);
 }

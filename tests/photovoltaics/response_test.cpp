@@ -20,9 +20,9 @@ TEST(BandResponsivity, LineOnAnEdgeGivesItsCurrentInBothBands) {
     const Bands bands{{600e-9, 730e-9, 860e-9}};
     const WeighedSpectrum spectra[] = {{line, 3.0}};
     const BandValues responsivity = band_responsivity_A_W(all, bands, spectra);
-    const BandValues share = band_fractions(line, bands);
-    EXPECT_NEAR(share[0], 0.5, 1e-9);
-    EXPECT_NEAR(share[0] * responsivity[0] + share[1] * responsivity[1], at_730_nm_A_W, 1e-6);
+    const BandValues fraction = band_fractions(line, bands);
+    EXPECT_NEAR(fraction[0], 0.5, 1e-9);
+    EXPECT_NEAR(fraction[0] * responsivity[0] + fraction[1] * responsivity[1], at_730_nm_A_W, 1e-6);
     EXPECT_NEAR(responsivity[0], at_730_nm_A_W, 2e-3);
     EXPECT_NEAR(responsivity[1], at_730_nm_A_W, 2e-3);
   }

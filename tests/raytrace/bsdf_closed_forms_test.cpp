@@ -63,13 +63,13 @@ TEST(Fresnel, MeanOverTheHemisphere) {
 TEST(Glass, PanePassesWhatTheTextbookSays) {
   for (const double n : {1.33, 1.5, 2.0}) {
     const OpticalSurface pane = behind_glass(grey_surface("s", 0, 0, 1), n);
-    EXPECT_NEAR(shares_of(pane, 1.0, 0).transmitted, 2 * n / (n * n + 1), 1e-14);
+    EXPECT_NEAR(fractions_of(pane, 1.0, 0).transmitted, 2 * n / (n * n + 1), 1e-14);
     EXPECT_NEAR(pane.transmitted[0], 2 * n / (n * n + 1), 1e-14);
   }
   // Brewster's angle: (1 − r)/(1 + r) of one polarisation would pass and all of the other; the sum
   // of intensities without polarisation is what is modelled.
   const double r = fresnel_reflectance(0.5, 1.5);
-  EXPECT_NEAR(shares_of(behind_glass(grey_surface("s", 0, 0, 1), 1.5), 0.5, 0).transmitted,
+  EXPECT_NEAR(fractions_of(behind_glass(grey_surface("s", 0, 0, 1), 1.5), 0.5, 0).transmitted,
               (1 - r) / (1 + r), 1e-14);
 }
 
@@ -85,7 +85,7 @@ TEST(Glass, InnerReflectionsAreAGeometricSeries) {
       reflected += inside * base * (1 - r);
       inside *= base * r;
     }
-    EXPECT_NEAR(shares_of(cell, cosine, 0).specular, reflected, 1e-13);
+    EXPECT_NEAR(fractions_of(cell, cosine, 0).specular, reflected, 1e-13);
     const double sine = std::sqrt(1 - cosine * cosine) / index;
     const double once = std::pow(tau, 1 / std::sqrt(1 - sine * sine));
     double up = r, down = 0, beam = 1 - r;
@@ -95,8 +95,8 @@ TEST(Glass, InnerReflectionsAreAGeometricSeries) {
       up += beam * once * (1 - r);
       beam *= once * r;
     }
-    EXPECT_NEAR(shares_of(pane, cosine, 0).specular, up, 1e-13);
-    EXPECT_NEAR(shares_of(pane, cosine, 0).transmitted, down, 1e-13);
+    EXPECT_NEAR(fractions_of(pane, cosine, 0).specular, up, 1e-13);
+    EXPECT_NEAR(fractions_of(pane, cosine, 0).transmitted, down, 1e-13);
   }
 }
 
@@ -104,7 +104,7 @@ TEST(Glass, BlackCellBehindItReflectsByFresnelAlone) {
   const OpticalSurface cell = behind_glass(grey_surface("s", 0, 0), 1.5);
   for (const double degrees : {0.5, 45.0, 60.0, 80.0}) {
     const double angle = degrees * degree_rad;
-    EXPECT_NEAR(shares_of(cell, std::cos(angle), 0).absorbed,
+    EXPECT_NEAR(fractions_of(cell, std::cos(angle), 0).absorbed,
                 1 - sine_tangent_reflectance(angle, 1.5), 1e-12);
   }
 }
@@ -203,8 +203,8 @@ Vec3 force_of(Scene scene, const Vec3& light) {
   Vec3 force;
   for (size_t k = 0; k < 3; ++k) {
     force[static_cast<Eigen::Index>(k)] = result.sums[0].estimate(k).value;
-    EXPECT_NEAR(result.sums[0].estimate(k).value, result.ledger.force_N[k].value,
-                5 * result.ledger.force_N[k].standard_error + 1e-6 * size * size);
+    EXPECT_NEAR(result.sums[0].estimate(k).value, result.power_balance.force_N[k].value,
+                5 * result.power_balance.force_N[k].standard_error + 1e-6 * size * size);
   }
   return force;
 }
@@ -246,10 +246,10 @@ TEST(FacetSphere, GlassOverBlack) {
 }
 
 OpticalSurface hot(OpticalSurface surface, double reemitted, double front_emission) {
-  Finish finish = surface.finish ? *surface.finish : Finish{};
-  finish.reemitted = reemitted;
-  finish.front_emission = front_emission;
-  surface.finish = std::make_shared<const Finish>(finish);
+  Bsdf bsdf = surface.bsdf ? *surface.bsdf : Bsdf{};
+  bsdf.reemitted = reemitted;
+  bsdf.front_emission = front_emission;
+  surface.bsdf = std::make_shared<const Bsdf>(bsdf);
   return surface;
 }
 
@@ -266,12 +266,13 @@ TEST(Heat, PushesByLambertsLawFromEachSide) {
   const double angle = 30 * degree_rad, c = std::cos(angle);
   for (const double side : {1.0, -1.0}) {
     const Vec3 light(-std::sin(angle), 0, -side * c);
-    for (const auto& [share, front] : {std::pair{1.0, 1.0}, {0.6, 0.75}, {1.0, 0.5}, {1.0, 0.0}}) {
-      const double net = share * (2 * front - 1);
+    for (const auto& [fraction, front] :
+         {std::pair{1.0, 1.0}, {0.6, 0.75}, {1.0, 0.5}, {1.0, 0.0}}) {
+      const double net = fraction * (2 * front - 1);
       const Vec3 exact = 2 * c * (light - 2.0 / 3.0 * net * Vec3::UnitZ());
-      const Vec3 black = force_of(plate_of(hot(grey_surface("s", 0, 0), share, front)), light);
-      EXPECT_LT((black - exact).norm(), 1e-3) << side << " " << share << " " << front;
-      const Vec3 mixed = force_of(plate_of(hot(grey_surface("s", 0.4, 0), share, front)), light);
+      const Vec3 black = force_of(plate_of(hot(grey_surface("s", 0, 0), fraction, front)), light);
+      EXPECT_LT((black - exact).norm(), 1e-3) << side << " " << fraction << " " << front;
+      const Vec3 mixed = force_of(plate_of(hot(grey_surface("s", 0.4, 0), fraction, front)), light);
       const Vec3 mirrored(light.x(), 0, -light.z());
       EXPECT_LT((mixed - (exact - 2 * c * (0.4 * mirrored - 0.4 * 2.0 / 3.0 * net * Vec3::UnitZ())))
                     .norm(),

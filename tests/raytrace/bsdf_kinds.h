@@ -23,17 +23,17 @@ struct SurfaceKind {
 
 inline OpticalSurface with_lobe(double specular, double diffuse, std::shared_ptr<const Lobe> lobe) {
   OpticalSurface surface = grey_surface("s", specular, diffuse);
-  surface.finish = std::make_shared<const Finish>(
-      Finish{.law = nullptr, .specular = std::move(lobe), .diffuse = nullptr});
+  surface.bsdf = std::make_shared<const Bsdf>(
+      Bsdf{.law = nullptr, .specular = std::move(lobe), .diffuse = nullptr});
   return surface;
 }
 
 inline OpticalSurface retroreflector(double retroreflected, double diffuse) {
   OpticalSurface surface = grey_surface("s", 0.0, diffuse);
-  Finish finish;
-  finish.retroreflected.fill(retroreflected);
+  Bsdf bsdf;
+  bsdf.retroreflected.fill(retroreflected);
   for (double& absorbed : surface.absorbed) absorbed -= retroreflected;
-  surface.finish = std::make_shared<const Finish>(finish);
+  surface.bsdf = std::make_shared<const Bsdf>(bsdf);
   return surface;
 }
 
@@ -72,7 +72,7 @@ inline OpticalSurface measured(const BrdfTable& table) {
   return measured_surface("s", table, scale).surface;
 }
 
-// All kinds; of what meets them (or gets through the glass) a share `kept` is not absorbed.
+// All kinds; of what meets them (or gets through the glass) a fraction `kept` is not absorbed.
 inline std::vector<SurfaceKind> surface_kinds(double kept) {
   return {{"mirror", grey_surface("s", kept, 0.0), false},
           {"matt", grey_surface("s", 0.0, kept), true},
@@ -93,19 +93,19 @@ inline std::vector<SurfaceKind> surface_kinds(double kept) {
 // Where one ray goes, in the frame of the hit; zero if it is absorbed. Transmitted light counts as
 // going up: as much comes from below.
 inline Vec3 send_ray(const OpticalSurface& surface, double cosine, const Draw& draw) {
-  const Shares shares = shares_of(surface, cosine, 0);
-  const Finish* finish = surface.finish.get();
+  const PowerFractions fractions = fractions_of(surface, cosine, 0);
+  const Bsdf* bsdf = surface.bsdf.get();
   const Vec3 in = direction_at(cosine);
   double at = draw.extra(1u << 30);
-  if ((at -= shares.specular) < 0) {
-    return finish && finish->specular ? finish->specular->direction(cosine, draw)
-                                      : Vec3(-in.x(), 0, in.z());
+  if ((at -= fractions.specular) < 0) {
+    return bsdf && bsdf->specular ? bsdf->specular->direction(cosine, draw)
+                                  : Vec3(-in.x(), 0, in.z());
   }
-  if ((at -= shares.diffuse) < 0) {
-    return finish && finish->diffuse ? finish->diffuse->direction(cosine, draw)
-                                     : lambertian_direction(draw.u, draw.v);
+  if ((at -= fractions.diffuse) < 0) {
+    return bsdf && bsdf->diffuse ? bsdf->diffuse->direction(cosine, draw)
+                                 : lambertian_direction(draw.u, draw.v);
   }
-  if ((at -= shares.retroreflected + shares.transmitted) < 0) return in;
+  if ((at -= fractions.retroreflected + fractions.transmitted) < 0) return in;
   return Vec3::Zero();
 }
 

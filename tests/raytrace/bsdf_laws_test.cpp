@@ -20,7 +20,7 @@ TEST(SurfaceLaws, AbsorptancePlusReflectanceIsOneAtEveryAngle) {
   for (const double kept : {0.0, 0.3, 1.0}) {
     for (const SurfaceKind& kind : surface_kinds(kept)) {
       for (const double cosine : {1e-9, 1e-3, 0.1, 0.37, 0.9, 1.0}) {
-        const Shares s = shares_of(kind.surface, cosine, 0);
+        const PowerFractions s = fractions_of(kind.surface, cosine, 0);
         EXPECT_NEAR(s.absorbed + s.specular + s.diffuse + s.transmitted + s.retroreflected, 1.0,
                     1e-12)
             << kind.name << " " << cosine;
@@ -119,9 +119,9 @@ TEST(SurfaceLaws, ScatteringIsReciprocal) {
   }
 }
 
-// ∫ f cos do over the hemisphere, the directional reflectance, and the mean departure, by a
+// ∫ f cos do over the hemisphere, the directional reflectance, and the first moment, by a
 // quadrature that knows nothing of the surface.
-TEST(SurfaceLaws, ScatteringSumsToTheSharesAndTheMeanDeparture) {
+TEST(SurfaceLaws, ScatteringSumsToTheFractionsAndTheFirstMoment) {
   for (const SurfaceKind& kind : surface_kinds(0.6)) {
     if (!kind.smooth) continue;
     for (const double cosine : cosines) {
@@ -135,22 +135,22 @@ TEST(SurfaceLaws, ScatteringSumsToTheSharesAndTheMeanDeparture) {
           for (int k = 0; k < around; ++k) {
             const double angle = 2 * pi * (k + 0.5) / around;
             const Vec3 out(sine * std::cos(angle), sine * std::sin(angle), z);
-            const double share = scattering_1_sr(kind.surface, cosine, out, 0) * z * 2 * root *
-                                 weight / (2 * panels) * 2 * pi / around;
-            power += share;
-            mean += share * out;
+            const double fraction = scattering_1_sr(kind.surface, cosine, out, 0) * z * 2 * root *
+                                    weight / (2 * panels) * 2 * pi / around;
+            power += fraction;
+            mean += fraction * out;
           }
         }
       }
-      const Shares shares = shares_of(kind.surface, cosine, 0);
-      const Finish* finish = kind.surface.finish.get();
-      const bool lobe = finish != nullptr && finish->specular;
-      const double scattered = shares.diffuse + (lobe ? shares.specular : 0.0);
+      const PowerFractions fractions = fractions_of(kind.surface, cosine, 0);
+      const Bsdf* bsdf = kind.surface.bsdf.get();
+      const bool lobe = bsdf != nullptr && bsdf->specular;
+      const double scattered = fractions.diffuse + (lobe ? fractions.specular : 0.0);
       EXPECT_NEAR(power, scattered, 2e-4) << kind.name << " " << cosine;
       const Vec3 in = direction_at(cosine), mirrored(-in.x(), 0, in.z());
-      const Vec3 expected = mean + (lobe ? 0.0 : shares.specular) * mirrored +
-                            (shares.retroreflected - shares.transmitted) * in;
-      EXPECT_LT((mean_departure(kind.surface, cosine, 0) - expected).norm(), 2e-4)
+      const Vec3 expected = mean + (lobe ? 0.0 : fractions.specular) * mirrored +
+                            (fractions.retroreflected - fractions.transmitted) * in;
+      EXPECT_LT((first_moment(kind.surface, cosine, 0) - expected).norm(), 2e-4)
           << kind.name << " " << cosine;
     }
   }
@@ -160,7 +160,7 @@ TEST(SurfaceLaws, RaysCarryTheMeanDepartureAway) {
   constexpr int rays = 1 << 16;
   for (const SurfaceKind& kind : surface_kinds(0.8)) {
     for (const double cosine : cosines) {
-      const Shares shares = shares_of(kind.surface, cosine, 0);
+      const PowerFractions fractions = fractions_of(kind.surface, cosine, 0);
       Vec3 sum = Vec3::Zero(), squares = Vec3::Zero();
       for (uint64_t i = 0; i < rays; ++i) {
         const Vec3 out = send_ray(kind.surface, cosine, random_draw(i));
@@ -173,7 +173,7 @@ TEST(SurfaceLaws, RaysCarryTheMeanDepartureAway) {
           ((squares / rays - mean.cwiseProduct(mean)) / rays).cwiseMax(0).cwiseSqrt();
       // send_ray() lets transmitted light go up.
       const Vec3 exact =
-          mean_departure(kind.surface, cosine, 0) + 2 * shares.transmitted * direction_at(cosine);
+          first_moment(kind.surface, cosine, 0) + 2 * fractions.transmitted * direction_at(cosine);
       for (int k = 0; k < 3; ++k) {
         EXPECT_LT(std::abs(mean[k] - exact[k]), 4.5 * error[k] + 5e-5)
             << kind.name << " " << cosine << " axis " << k;
@@ -182,8 +182,8 @@ TEST(SurfaceLaws, RaysCarryTheMeanDepartureAway) {
   }
 }
 
-// A slanted plate of every kind in parallel light: what it absorbs is its share at that angle, what
-// was emitted is all found again, and the force on the surface is what the rays lost.
+// A slanted plate of every kind in parallel light: what it absorbs is its fraction at that angle,
+// what was emitted is all found again, and the force on the surface is what the rays lost.
 TEST(SurfaceLaws, PowerAndMomentumBalanceAtEveryBounce) {
   for (const SurfaceKind& kind : surface_kinds(0.7)) {
     for (const double cosine : {1.0, 0.3}) {
@@ -200,14 +200,15 @@ TEST(SurfaceLaws, PowerAndMomentumBalanceAtEveryBounce) {
       TraceOptions options;
       options.rays = 1 << 16;
       const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
-      const Ledger& ledger = result.ledger;
-      EXPECT_LE(ledger.closure, 1e-12) << kind.name;
-      EXPECT_NEAR(ledger.absorbed_W.value, 2 * shares_of(kind.surface, cosine, 0).absorbed, 1e-6)
+      const PowerBalance& power_balance = result.power_balance;
+      EXPECT_LE(power_balance.closure, 1e-12) << kind.name;
+      EXPECT_NEAR(power_balance.absorbed_W.value,
+                  2 * fractions_of(kind.surface, cosine, 0).absorbed, 1e-6)
           << kind.name << " " << cosine;
-      const Vec3 exact = 2 / speed_of_light_m_s * (light - mean_departure(kind.surface, cosine, 0));
+      const Vec3 exact = 2 / speed_of_light_m_s * (light - first_moment(kind.surface, cosine, 0));
       for (size_t k = 0; k < 3; ++k) {
         const Estimate force = result.sums[0].estimate(k);
-        const Estimate& by_rays = ledger.force_N[k];
+        const Estimate& by_rays = power_balance.force_N[k];
         const double newton = 2 / speed_of_light_m_s;
         EXPECT_NEAR(force.value, exact[static_cast<Eigen::Index>(k)], 3e-7 * newton)
             << kind.name << " " << cosine;

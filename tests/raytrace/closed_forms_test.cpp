@@ -17,7 +17,7 @@ using testing::ParallelBeam;
 
 struct Outcome {
   std::array<Estimate, 3> force, torque;  // per unit pressure: m², m³
-  Ledger ledger;
+  PowerBalance power_balance;
 };
 
 // Uniform parallel light of pressure 1 Pa along `direction`, wide enough for the whole scene.
@@ -35,12 +35,12 @@ Outcome illuminate(Scene scene, const Vec3& direction, uint64_t rays = 1 << 20, 
   const testing::TotalWrench wrench;
   const Receiver* const receivers[] = {&wrench};
   const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
-  Outcome outcome{{}, {}, result.ledger};
+  Outcome outcome{{}, {}, result.power_balance};
   for (size_t k = 0; k < 3; ++k) {
     outcome.force[k] = result.sums[0].estimate(k);
     outcome.torque[k] = result.sums[0].estimate(3 + k);
     // The same momentum by another route: what the rays lost.
-    const Estimate& by_rays = result.ledger.force_N[k];
+    const Estimate& by_rays = result.power_balance.force_N[k];
     EXPECT_NEAR(outcome.force[k].value, by_rays.value,
                 4 * std::hypot(by_rays.standard_error, outcome.force[k].standard_error) +
                     1e-6 * side * side);
@@ -149,8 +149,8 @@ TEST(CornerCube, ReturnsLightAlongItself) {
   options.rays = 1 << 18;
   const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
   const Vec3 exact = 2 * power / speed_of_light_m_s * d;
-  expect_vector(result.ledger.force_N, exact, power / speed_of_light_m_s);
-  EXPECT_NEAR(result.ledger.escaped_W.value, power, 1e-9);
+  expect_vector(result.power_balance.force_N, exact, power / speed_of_light_m_s);
+  EXPECT_NEAR(result.power_balance.escaped_W.value, power, 1e-9);
 }
 
 // L-shape: a wall of unit height beside a unit floor, light (−sin t, 0, −cos t): the lit fraction
@@ -165,7 +165,7 @@ TEST(SelfShadowing, LitFractionAndCentroidOfTheFloor) {
     const Vec3 d(-std::sin(t), 0, -std::cos(t));
     const Outcome got = illuminate(std::move(scene), d, 1 << 22);
     const double scale = 1.0, lit = 1 - std::tan(t);
-    const Estimate power = got.ledger.absorbed_by_instance_W[floor];
+    const Estimate power = got.power_balance.absorbed_by_instance_W[floor];
     const Estimate fraction{power.value / speed_of_light_m_s / std::cos(t),
                             power.standard_error / speed_of_light_m_s / std::cos(t)};
     EXPECT_TRUE(within(fraction, lit, scale))
@@ -205,7 +205,7 @@ TEST(LambertianCavity, EffectiveReflectance) {
     const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
     const double f = (1 + mouth_z) / 2;  // wall fraction of the sphere
     const double exact = reflectance * (1 - f) / (1 - reflectance * f);
-    const Estimate escaped = result.ledger.escaped_W;
+    const Estimate escaped = result.power_balance.escaped_W;
     // The polyhedron of 96 rings shifts view factors by about (π/96)²/4 = 3e-4 of the mouth's.
     EXPECT_NEAR(escaped.value, exact, 3 * escaped.standard_error + 3e-4 * exact);
     EXPECT_GT(std::abs(escaped.value - reflectance * (1 - f)),
@@ -251,10 +251,10 @@ TEST(PointSource, SquareCatchesItsSolidAngle) {
     const TraceResult result = trace(traceable, {}, std::span(&beam, 1), {}, options);
     const double solid_angle = 4 * std::asin(side * side / (side * side + 4 * height * height));
     const double exact = solid_angle / (2 * pi * (1 - std::cos(half_angle)));
-    EXPECT_TRUE(within(result.ledger.absorbed_W, exact, exact))
-        << result.ledger.absorbed_W.value << " ± " << result.ledger.absorbed_W.standard_error
-        << " exact " << exact;
-    EXPECT_FALSE(within(result.ledger.absorbed_W,
+    EXPECT_TRUE(within(result.power_balance.absorbed_W, exact, exact))
+        << result.power_balance.absorbed_W.value << " ± "
+        << result.power_balance.absorbed_W.standard_error << " exact " << exact;
+    EXPECT_FALSE(within(result.power_balance.absorbed_W,
                         side * side / (height * height) / (2 * pi * (1 - std::cos(half_angle))),
                         exact));
   }

@@ -54,7 +54,7 @@ class ShadowBins final : public Receiver {
 
 // Shares of the beam between two lines, and their first moment about the axis: marginals of the
 // beam are Gaussian with standard deviation w/2.
-double share(double low, double high) {
+double fraction(double low, double high) {
   const double unit = beam_radius_m / std::sqrt(2.0);
   return 0.5 * (std::erf(high / unit) - std::erf(low / unit));
 }
@@ -77,20 +77,20 @@ Scene tilted_rectangle(const OpticalSurface& surface) {
   return scene;
 }
 
-// Power, force along x and z (along y there is none), torque, bins; where a share `s` is mirrored,
-// `d` scattered by Lambert's law and the rest absorbed.
+// Power, force along x and z (along y there is none), torque, bins; where a fraction `s` is
+// mirrored, `d` scattered by Lambert's law and the rest absorbed.
 std::vector<double> exact_figures(double s, double d) {
   const double power_W =
-      beam_power_W * share(shadow_x_low, shadow_x_high) * share(shadow_y_low, shadow_y_high);
+      beam_power_W * fraction(shadow_x_low, shadow_x_high) * fraction(shadow_y_low, shadow_y_high);
   const Vec3 light = -Vec3::UnitZ(), normal = Vec3(-plate_slope, 0, 1).normalized();
   const Vec3 mirrored = light - 2 * light.dot(normal) * normal;
   const Vec3 push = (light - s * mirrored - d * 2 / 3 * normal) / speed_of_light_m_s;
   const Vec3 moment_W_m =
       beam_power_W *
-          Vec3(moment_m(shadow_x_low, shadow_x_high) * share(shadow_y_low, shadow_y_high),
-               share(shadow_x_low, shadow_x_high) * moment_m(shadow_y_low, shadow_y_high),
+          Vec3(moment_m(shadow_x_low, shadow_x_high) * fraction(shadow_y_low, shadow_y_high),
+               fraction(shadow_x_low, shadow_x_high) * moment_m(shadow_y_low, shadow_y_high),
                plate_slope * moment_m(shadow_x_low, shadow_x_high) *
-                   share(shadow_y_low, shadow_y_high)) +
+                   fraction(shadow_y_low, shadow_y_high)) +
       Vec3(0, 0, plate_height_m * power_W);
   const Vec3 torque = moment_W_m.cross(push);
   std::vector<double> exact = {power_W,    power_W * push.x(), power_W * push.z(),
@@ -100,8 +100,8 @@ std::vector<double> exact_figures(double s, double d) {
       const double dx = (shadow_x_high - shadow_x_low) / shadow_columns,
                    dy = (shadow_y_high - shadow_y_low) / shadow_rows;
       exact.push_back(beam_power_W *
-                      share(shadow_x_low + column * dx, shadow_x_low + (column + 1) * dx) *
-                      share(shadow_y_low + row * dy, shadow_y_low + (row + 1) * dy));
+                      fraction(shadow_x_low + column * dx, shadow_x_low + (column + 1) * dx) *
+                      fraction(shadow_y_low + row * dy, shadow_y_low + (row + 1) * dy));
     }
   }
   return exact;
@@ -123,7 +123,7 @@ std::vector<Estimate> estimated_figures(const TraceResult& result) {
   return all;
 }
 
-// The shares of 1000 seeds whose intervals hold the truth, figure by figure.
+// The fractions of 1000 seeds whose intervals hold the truth, figure by figure.
 struct Coverage {
   std::vector<double> held;
   std::vector<double> held_by_less;  // with standard errors a fifth smaller than they are
@@ -161,7 +161,7 @@ Coverage coverage_with(int replicates) {
 constexpr const char* figure_names[] = {"power",    "force x",  "force z",
                                         "torque x", "torque y", "torque z"};
 
-// 1000 seeds tell a share of 95 % to 0.7 %, and errors that are a fifth too small are found out.
+// 1000 seeds tell a fraction of 95 % to 0.7 %, and errors that are a fifth too small are found out.
 TEST(Coverage, IntervalsHoldPowerForceTorqueAndBinsNinetyFivePercentOfTheTime) {
   for (const int replicates : {8, 16}) {
     const Coverage coverage = coverage_with(replicates);

@@ -18,9 +18,9 @@ TEST(MeasuredBrdf, AConstantIsLambertsLaw) {
   const OpticalSurface surface =
       measured(tabulated(30.0, [](double, double, double) { return 0.7 / pi; }));
   for (const double cosine : cosines_of_incidence) {
-    EXPECT_NEAR(shares_of(surface, cosine, 0).diffuse, 0.7, 1e-12);
-    EXPECT_NEAR(mean_departure(surface, cosine, 0).z(), 0.7 * 2 / 3, 1e-12);
-    EXPECT_NEAR(mean_departure(surface, cosine, 0).x(), 0.0, 1e-12);
+    EXPECT_NEAR(fractions_of(surface, cosine, 0).diffuse, 0.7, 1e-12);
+    EXPECT_NEAR(first_moment(surface, cosine, 0).z(), 0.7 * 2 / 3, 1e-12);
+    EXPECT_NEAR(first_moment(surface, cosine, 0).x(), 0.0, 1e-12);
   }
 }
 
@@ -32,8 +32,8 @@ TEST(MeasuredBrdf, ForwardScatterCarriesItsMomentumForward) {
   }));
   for (const double cosine : cosines_of_incidence) {
     const double sine = std::sqrt(1.0 - cosine * cosine);
-    EXPECT_NEAR(mean_departure(surface, cosine, 0).x(), -0.9 * 0.8 * sine / 4, 1e-3);
-    EXPECT_NEAR(mean_departure(surface, cosine, 0).z(), 0.9 * 2 / 3, 1e-3);
+    EXPECT_NEAR(first_moment(surface, cosine, 0).x(), -0.9 * 0.8 * sine / 4, 1e-3);
+    EXPECT_NEAR(first_moment(surface, cosine, 0).z(), 0.9 * 2 / 3, 1e-3);
   }
 }
 
@@ -48,8 +48,8 @@ TEST(MeasuredBrdf, ATableOfARoughMirrorActsAsTheRoughMirror) {
     return scattering_1_sr(mirror, std::cos(std::min(in, 89.9 * degree_rad)), towards, 0);
   }));
   for (const double cosine : {0.5, 0.866, 1.0}) {
-    EXPECT_NEAR(shares_of(table, cosine, 0).diffuse, 0.95, 0.005) << cosine;
-    EXPECT_LT((mean_departure(table, cosine, 0) - mean_departure(mirror, cosine, 0)).norm(), 0.01)
+    EXPECT_NEAR(fractions_of(table, cosine, 0).diffuse, 0.95, 0.005) << cosine;
+    EXPECT_LT((first_moment(table, cosine, 0) - first_moment(mirror, cosine, 0)).norm(), 0.01)
         << cosine;
   }
 }
@@ -95,7 +95,7 @@ TEST(MeasuredBrdf, ScalesPerBandAndNamesWhereItIsBrightest) {
   const MeasuredSurface bright = measured_surface("s", table, scale);
   EXPECT_NEAR(bright.at_incidence_rad, 0.5 * pi, 1e-12);
   EXPECT_NEAR(bright.surface.diffuse[1], 1.2 * bright.surface.diffuse[0], 1e-12);
-  EXPECT_NEAR(shares_of(bright.surface, 1e-9, 1).diffuse, bright.largest_reflectance, 1e-6);
+  EXPECT_NEAR(fractions_of(bright.surface, 1e-9, 1).diffuse, bright.largest_reflectance, 1e-6);
 }
 
 }  // namespace

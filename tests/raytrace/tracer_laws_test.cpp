@@ -35,7 +35,7 @@ Beam wide_cone(double height_m) {
   return testing::beam(emitter, Vec3(0.1, -0.2, height_m), Vec3(-0.05, 0.1, -1));
 }
 
-TEST(Ledger, ClosesForEveryReplicate) {
+TEST(PowerBalance, ClosesForEveryReplicate) {
   const TraceableScene scene(busy_scene());
   const Beam beam = wide_cone(2.0);
   for (const int depth : {1, 2, 5, 64}) {
@@ -43,23 +43,25 @@ TEST(Ledger, ClosesForEveryReplicate) {
     options.rays = 1 << 17;
     options.max_depth = depth;
     options.cutoff = depth == 5 ? 1e-3 : 1e-9;
-    const Ledger ledger = trace(scene, {}, std::span(&beam, 1), {}, options).ledger;
-    EXPECT_LE(ledger.closure, 1e-12);
-    EXPECT_NEAR(ledger.absorbed_W.value + ledger.escaped_W.value + ledger.truncated_W.value, 2.5,
-                1e-11);
+    const PowerBalance power_balance =
+        trace(scene, {}, std::span(&beam, 1), {}, options).power_balance;
+    EXPECT_LE(power_balance.closure, 1e-12);
+    EXPECT_NEAR(power_balance.absorbed_W.value + power_balance.escaped_W.value +
+                    power_balance.truncated_W.value,
+                2.5, 1e-11);
     double by_instance = 0.0;
-    for (const Estimate& part : ledger.absorbed_by_instance_W) by_instance += part.value;
-    EXPECT_NEAR(by_instance, ledger.absorbed_W.value, 1e-12);
+    for (const Estimate& part : power_balance.absorbed_by_instance_W) by_instance += part.value;
+    EXPECT_NEAR(by_instance, power_balance.absorbed_W.value, 1e-12);
     if (depth == 1) {  // one interaction only: much is cut off
-      EXPECT_GT(ledger.truncated_W.value, 0.1);
+      EXPECT_GT(power_balance.truncated_W.value, 0.1);
     }
     if (depth == 64) {
-      EXPECT_LT(ledger.truncated_W.value, 1e-6);
+      EXPECT_LT(power_balance.truncated_W.value, 1e-6);
     }
   }
 }
 
-TEST(Ledger, SurfacesAndRaysAgreeOnForceAndTorque) {
+TEST(PowerBalance, SurfacesAndRaysAgreeOnForceAndTorque) {
   const TraceableScene scene(busy_scene());
   const Beam beam = wide_cone(2.0);
   const testing::TotalWrench wrench;
@@ -69,7 +71,8 @@ TEST(Ledger, SurfacesAndRaysAgreeOnForceAndTorque) {
   const TraceResult result = trace(scene, {}, std::span(&beam, 1), receivers, options);
   for (size_t k = 0; k < 6; ++k) {
     const Estimate surfaces = result.sums[0].estimate(k);
-    const Estimate rays = k < 3 ? result.ledger.force_N[k] : result.ledger.torque_N_m[k - 3];
+    const Estimate rays =
+        k < 3 ? result.power_balance.force_N[k] : result.power_balance.torque_N_m[k - 3];
     const double error = std::hypot(surfaces.standard_error, rays.standard_error);
     EXPECT_LT(std::abs(surfaces.value - rays.value), 4 * error) << k;
     EXPECT_LT(error, 1e-3 * 2.5 / speed_of_light_m_s);
@@ -107,7 +110,7 @@ TEST(Threads, SameBitsAtOneTwoAndSeven) {
     const TraceResult result = trace(scene, lab_from_body_at(0.3, 0.2), beams, receivers, options);
     std::vector<double> all = result.sums[0].sums;
     all.insert(all.end(), result.sums[1].sums.begin(), result.sums[1].sums.end());
-    all.push_back(result.ledger.escaped_W.value);
+    all.push_back(result.power_balance.escaped_W.value);
     results.push_back(all);
     // A test of threads that ran on one thread would prove nothing.
     EXPECT_LE(counter.count(), static_cast<size_t>(threads));
@@ -126,9 +129,9 @@ TEST(Seed, ChangesTheBitsAndNotTheMeaning) {
   const Beam beam = wide_cone(2.0);
   TraceOptions options;
   options.rays = 1 << 17;
-  const Estimate a = trace(scene, {}, std::span(&beam, 1), {}, options).ledger.absorbed_W;
+  const Estimate a = trace(scene, {}, std::span(&beam, 1), {}, options).power_balance.absorbed_W;
   options.seed = 2;
-  const Estimate b = trace(scene, {}, std::span(&beam, 1), {}, options).ledger.absorbed_W;
+  const Estimate b = trace(scene, {}, std::span(&beam, 1), {}, options).power_balance.absorbed_W;
   EXPECT_NE(a.value, b.value);
   EXPECT_LT(std::abs(a.value - b.value), 4 * std::hypot(a.standard_error, b.standard_error));
 }
@@ -150,7 +153,7 @@ TEST(StandardErrors, CoverTheTruthNinetyFivePercentOfTheTime) {
     TraceOptions options;
     options.rays = 16 * 1024;
     options.seed = static_cast<uint64_t>(run) + 100;
-    const Estimate e = trace(scene, {}, std::span(&beam, 1), {}, options).ledger.absorbed_W;
+    const Estimate e = trace(scene, {}, std::span(&beam, 1), {}, options).power_balance.absorbed_W;
     const double error = std::abs(e.value - area);
     covered += error <= student_t_975(options.replicates) * e.standard_error;
     covered_by_half += error <= 0.5 * student_t_975(options.replicates) * e.standard_error;
@@ -174,7 +177,7 @@ TEST(LowDiscrepancy, BeatsPseudoRandomErrorTenfold) {
   options.rays = 1 << 20;
   const TraceResult result = trace(scene, {}, std::span(&beam, 1), {}, options);
   const double p = 0.307;
-  EXPECT_LT(result.ledger.absorbed_W.standard_error,
+  EXPECT_LT(result.power_balance.absorbed_W.standard_error,
             0.1 * std::sqrt(p * (1 - p) / static_cast<double>(result.rays)));
 }
 
@@ -191,10 +194,11 @@ TEST(Bands, EachBandSeesItsOwnSurfaceAndTheSumIsConserved) {
   beam.spectrum = {Spectrum::Shape::gaussian, 600e-9, 20e-9, 0.0};  // half of it in each band
   TraceOptions options;
   options.rays = 1 << 14;
-  const Ledger ledger = trace(traceable, {}, std::span(&beam, 1), {}, options).ledger;
-  EXPECT_NEAR(ledger.absorbed_W.value, 1.5 * 0.25 + 1.5, 1e-12);
-  EXPECT_NEAR(ledger.escaped_W.value, 1.5 * 0.75, 1e-12);
-  EXPECT_LE(ledger.closure, 1e-12);
+  const PowerBalance power_balance =
+      trace(traceable, {}, std::span(&beam, 1), {}, options).power_balance;
+  EXPECT_NEAR(power_balance.absorbed_W.value, 1.5 * 0.25 + 1.5, 1e-12);
+  EXPECT_NEAR(power_balance.escaped_W.value, 1.5 * 0.75, 1e-12);
+  EXPECT_LE(power_balance.closure, 1e-12);
 }
 
 TEST(Transmission, GoesStraightOnThroughBothSides) {
@@ -210,8 +214,9 @@ TEST(Transmission, GoesStraightOnThroughBothSides) {
                                   Vec3(0, 0, -1));
   TraceOptions options;
   options.rays = 1 << 14;
-  const Ledger ledger = trace(traceable, {}, std::span(&beam, 1), {}, options).ledger;
-  EXPECT_NEAR(ledger.absorbed_by_instance_W[floor].value, 0.25, 1e-12);
+  const PowerBalance power_balance =
+      trace(traceable, {}, std::span(&beam, 1), {}, options).power_balance;
+  EXPECT_NEAR(power_balance.absorbed_by_instance_W[floor].value, 0.25, 1e-12);
 }
 
 // A source at 1e9 m must hit what it is aimed at: it is brought near in double precision.
@@ -227,7 +232,7 @@ TEST(FarSource, KeepsItsAim) {
   TraceOptions options;
   options.rays = 1 << 16;
   const TraceResult result = trace(traceable, {}, std::span(&beam, 1), receivers, options);
-  EXPECT_NEAR(result.ledger.absorbed_W.value, 1.0, 1e-12);
+  EXPECT_NEAR(result.power_balance.absorbed_W.value, 1.0, 1e-12);
   // Centred on the origin: no torque, to what a double resolves at 1e9 m (1e-7 m).
   for (size_t k = 3; k < 6; ++k) {
     EXPECT_LT(std::abs(result.sums[0].estimate(k).value) * speed_of_light_m_s, 5e-7);
@@ -246,8 +251,8 @@ TEST(MirroredInstance, KeepsItsFrontOutside) {
                                   Vec3(0, 0, -1));
   TraceOptions options;
   options.rays = 1 << 14;
-  EXPECT_NEAR(trace(traceable, {}, std::span(&beam, 1), {}, options).ledger.absorbed_W.value, 1.0,
-              1e-12);
+  EXPECT_NEAR(trace(traceable, {}, std::span(&beam, 1), {}, options).power_balance.absorbed_W.value,
+              1.0, 1e-12);
 }
 
 TEST(Options, OutOfRangeAreRefusedInOneLine) {

@@ -34,9 +34,9 @@ TEST(Gather, ErrorsOfHalfShadedBinsHoldTheTruthNinetyFivePercentOfTheTime) {
   std::vector<size_t> half, hardly;  // shaded bins, by entry
   for (size_t bin = 0; bin < map.grid().bins(); ++bin) {
     const size_t entry = map.entry(bin, 0);
-    const double share = truth.estimate(entry).value / open.estimate(entry).value;
-    if (share > 0.01 && share < 0.99) half.push_back(entry);
-    if (share >= 0.99 && share < 1.0 - 1e-4) hardly.push_back(entry);
+    const double fraction = truth.estimate(entry).value / open.estimate(entry).value;
+    if (fraction > 0.01 && fraction < 0.99) half.push_back(entry);
+    if (fraction >= 0.99 && fraction < 1.0 - 1e-4) hardly.push_back(entry);
   }
   ASSERT_GT(half.size(), 20u);
   ASSERT_GT(hardly.size(), 0u);

@@ -41,13 +41,13 @@ std::vector<HitMaker> even_light(int n, double z) {
 
 TEST(TorqueMap, EvenLightOnAPlateAboveThePivot) {
   // T = z·e_z × F in total: z cos 30° sin 30° about y, nothing about x and z.
-  const double z = 0.2, share = std::cos(30 * degree_rad) * std::sin(30 * degree_rad);
+  const double z = 0.2, fraction = std::cos(30 * degree_rad) * std::sin(30 * degree_rad);
   const Scene scene = scene_of(plate(-0.5, 0.5, -0.5, 0.5, z));
   const TorqueMapReceiver receiver = receiver_on(scene, 20);
   const auto hits = even_light(20, z);
   const TorqueMap map = receiver.torque_map(sums_of(receiver, {hits, hits}));
   EXPECT_NEAR(map.total_N_m[0].value, 0.0, 1e-15);
-  EXPECT_NEAR(map.total_N_m[1].value, z * share, 1e-15);
+  EXPECT_NEAR(map.total_N_m[1].value, z * fraction, 1e-15);
   EXPECT_NEAR(map.total_N_m[2].value, 0.0, 1e-15);
   // About y a bin at x adds z F_x − x F_z = (z sin 30° + x cos 30°) cos 30° / n², a plane in x that
   // is the same for every y.

@@ -95,7 +95,7 @@ TEST(MeasuredMaterial, ScattersByItsFileWhichIsAnInput) {
                    "incidence_deg,scatter_deg,azimuth_deg,brdf_1_sr\n0,0,0,0.25\n");
   const OpticalSurface& surface = model.scene.surfaces.at(0);
   EXPECT_NEAR(surface.diffuse[0], 0.5 * 0.25 * pi, 1e-12);
-  EXPECT_NEAR(shares_of(surface, 0.3, 0).absorbed, 1 - 0.5 * 0.25 * pi, 1e-12);
+  EXPECT_NEAR(fractions_of(surface, 0.3, 0).absorbed, 1 - 0.5 * 0.25 * pi, 1e-12);
   EXPECT_EQ(model.inputs.back().first, "scan.csv");
   EXPECT_TRUE(model.notices.empty()) << ::testing::PrintToString(model.notices);
 }

@@ -33,7 +33,7 @@ TEST(GaussianBeam, EncircledPowerOnASquareMatchesClosedForm) {
     const TraceableScene traceable(std::move(scene));
     TraceOptions options;
     options.rays = 1 << 21;
-    const Estimate power = trace(traceable, {}, beams, {}, options).ledger.absorbed_W;
+    const Estimate power = trace(traceable, {}, beams, {}, options).power_balance.absorbed_W;
     const double exact = 2.0 * std::pow(std::erf(side / (std::numbers::sqrt2 * w)), 2);
     EXPECT_LE(std::abs(power.value - exact), 3 * power.standard_error);
     EXPECT_LE(std::abs(power.value - exact), 1e-4 * 2.0);

@@ -118,17 +118,17 @@ TEST(SurfaceSettings, BackIsATableOfItsOwn) {
 TEST(SurfaceSettings, RetroreflectanceIsAFifthFraction) {
   const OpticalSurface sign = read_surface(
       settings_of({{"retroreflectance", node_of(0.6)}, {"absorptance", node_of(0.4)}}), 1, "sign");
-  ASSERT_TRUE(sign.finish);
-  EXPECT_NEAR(sign.finish->retroreflected[0], 0.6, 1e-15);
+  ASSERT_TRUE(sign.bsdf);
+  EXPECT_NEAR(sign.bsdf->retroreflected[0], 0.6, 1e-15);
   EXPECT_EQ(sign.specular[0] + sign.diffuse[0] + sign.transmitted[0], 0.0);
   EXPECT_EQ(read_surface(settings_of({{"retroreflectance", node_of(1.0)}}), 1, "x").absorbed[0], 0);
 }
 
-TEST(SurfaceSettings, PlainSurfacesHaveNoFinish) {
-  EXPECT_FALSE(read_surface(settings_of({{"absorptance", node_of(1.0)}}), 1, "b").finish);
+TEST(SurfaceSettings, PlainSurfacesHaveNoBsdf) {
+  EXPECT_FALSE(read_surface(settings_of({{"absorptance", node_of(1.0)}}), 1, "b").bsdf);
   EXPECT_FALSE(
       read_sheet(settings_of({{"absorptance", node_of(1.0)}, {"reemitted", node_of(0.0)}}), 1, "b")
-          .front.finish);
+          .front.bsdf);
 }
 
 TEST(SurfaceSettings, GlassRoughnessAndSlopesReachTheSurface) {
@@ -140,17 +140,17 @@ TEST(SurfaceSettings, GlassRoughnessAndSlopesReachTheSurface) {
   };
   const OpticalSurface cell =
       read({{"absorptance", node_of(1.0)}, {"refractive_index", node_of(1.5)}});
-  ASSERT_TRUE(cell.finish && cell.finish->law);
+  ASSERT_TRUE(cell.bsdf && cell.bsdf->law);
   EXPECT_NEAR(cell.absorbed[0], 0.96, 1e-14);  // 4 % by Fresnel
   const OpticalSurface satin = read(
       {{"specular", node_of(0.8)}, {"absorptance", node_of(0.2)}, {"roughness", node_of(0.5)}});
-  ASSERT_TRUE(satin.finish && satin.finish->specular);
+  ASSERT_TRUE(satin.bsdf && satin.bsdf->specular);
   EXPECT_EQ(satin.specular[0], 0.8);
   // The same lobe as of alpha = 0.25, which is wider than that of a wavy mirror.
   const OpticalSurface wavy =
       read({{"specular", node_of(1.0)}, {"slope_error_mrad", node_of(2.0)}});
-  EXPECT_LT(satin.finish->specular->mean_direction(1.0).z(), 0.9);
-  EXPECT_NEAR(1 - wavy.finish->specular->mean_direction(1.0).z(), 4 * 4e-6, 1e-7);
+  EXPECT_LT(satin.bsdf->specular->mean_direction(1.0).z(), 0.9);
+  EXPECT_NEAR(1 - wavy.bsdf->specular->mean_direction(1.0).z(), 4 * 4e-6, 1e-7);
 }
 
 TEST(SurfaceSettings, HeatIsOfTheWholeSheet) {
@@ -163,14 +163,14 @@ TEST(SurfaceSettings, HeatIsOfTheWholeSheet) {
   const SheetOptics sheet = read_sheet(settings, 1, "radiator");
   settings.finish();
   for (const OpticalSurface* side : {&sheet.front, &*sheet.back}) {
-    ASSERT_TRUE(side->finish);
-    EXPECT_EQ(side->finish->reemitted, 0.9);
-    EXPECT_NEAR(side->finish->front_emission, 0.8, 1e-15);
+    ASSERT_TRUE(side->bsdf);
+    EXPECT_EQ(side->bsdf->reemitted, 0.9);
+    EXPECT_NEAR(side->bsdf->front_emission, 0.8, 1e-15);
     EXPECT_EQ(side->absorbed[0], 1.0);
   }
 }
 
-TEST(SurfaceSettings, FinishesThatMakeNoSenseAreRefused) {
+TEST(SurfaceSettings, BsdfsThatMakeNoSenseAreRefused) {
   const auto error = [](SettingsNode::Table table) {
     return error_of([&] { read_sheet(settings_of(table), 1, "x"); });
   };
@@ -367,8 +367,8 @@ TEST(GltfOptics, IndexOfRefractionMakesGlass) {
   const OpticalSurface matt = read(0.0).scene.surfaces.at(0);
   EXPECT_NEAR(matt.specular[0], 1.0 / 9, 1e-14);
   EXPECT_NEAR(matt.diffuse[0], 8.0 / 9, 1e-14);
-  ASSERT_TRUE(matt.finish && matt.finish->law);
-  EXPECT_GT(matt.finish->law->shares(0.1, 0).specular, 0.5);
+  ASSERT_TRUE(matt.bsdf && matt.bsdf->law);
+  EXPECT_GT(matt.bsdf->law->fractions(0.1, 0).specular, 0.5);
   const GltfModel pane = read(1.0);
   EXPECT_NEAR(pane.scene.surfaces.at(0).transmitted[0], 0.8, 1e-14);
   EXPECT_THAT(pane.notices,

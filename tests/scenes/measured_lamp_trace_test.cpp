@@ -85,7 +85,7 @@ TEST(IesLamp, PowerOnASquareMatchesClosedForm) {
     const TraceableScene traceable(std::move(scene));
     TraceOptions options;
     options.rays = 1 << 21;
-    const Estimate power = trace(traceable, {}, beams, {}, options).ledger.absorbed_W;
+    const Estimate power = trace(traceable, {}, beams, {}, options).power_balance.absorbed_W;
     const double exact = 2.0 * lambert_on_square(half);
     EXPECT_LE(std::abs(power.value - exact), 4 * power.standard_error) << half;
     EXPECT_LE(std::abs(power.value - exact), 2e-4) << half;

@@ -101,8 +101,8 @@ TEST(EverySource, GivesTheSameBitsEveryTimeAndInAnyOrderOfBlocks) {
 TEST(EverySource, PutsAllItsPowerInTheSpectrum) {
   for (const SourceKind& kind : all_source_kinds()) {
     for (const Beam& beam : beams_of(kind)) {
-      const BandValues share = band_fractions(beam.spectrum, Bands{{0.0, 600e-9, 1e-3}});
-      EXPECT_NEAR(share[0] + share[1], 1.0, 1e-9) << beam.name;
+      const BandValues fraction = band_fractions(beam.spectrum, Bands{{0.0, 600e-9, 1e-3}});
+      EXPECT_NEAR(fraction[0] + fraction[1], 1.0, 1e-9) << beam.name;
     }
   }
 }

@@ -129,11 +129,11 @@ TEST(Etendue, BareMillimetreDieNeeds43MillimetresForAThreeDegreeCone) {
 
 TEST(Etendue, GrowsWithTheDieAndTheIndexSquared) {
   const double cone_sr = 1e-3, aperture_m = 0.01;
-  const double most_m2 = 0.25 * aperture_m * aperture_m * cone_sr;  // A_die at n = 1
-  EXPECT_FALSE(etendue_notice("a", {0.999 * most_m2, 1.0}, aperture_m, cone_sr));
-  EXPECT_TRUE(etendue_notice("a", {1.001 * most_m2, 1.0}, aperture_m, cone_sr));
-  EXPECT_FALSE(etendue_notice("a", {0.999 * most_m2 / 2.25, 1.5}, aperture_m, cone_sr));
-  EXPECT_TRUE(etendue_notice("a", {1.001 * most_m2 / 2.25, 1.5}, aperture_m, cone_sr));
+  const double max_m2 = 0.25 * aperture_m * aperture_m * cone_sr;  // A_die at n = 1
+  EXPECT_FALSE(etendue_notice("a", {0.999 * max_m2, 1.0}, aperture_m, cone_sr));
+  EXPECT_TRUE(etendue_notice("a", {1.001 * max_m2, 1.0}, aperture_m, cone_sr));
+  EXPECT_FALSE(etendue_notice("a", {0.999 * max_m2 / 2.25, 1.5}, aperture_m, cone_sr));
+  EXPECT_TRUE(etendue_notice("a", {1.001 * max_m2 / 2.25, 1.5}, aperture_m, cone_sr));
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST(InverseFlux, MatchesClosedFormsToAMillionthOfTheFlux) {
     const InverseFlux inverse(c.profile);
     EXPECT_LT(inverse.largest_error(), 1e-6) << c.name;
     for (uint64_t i = 0; i < 20000; ++i) {
-      const double outside = std::max(unit_interval(mix_bits(i)), InverseFlux::smallest_share);
+      const double outside = std::max(unit_interval(mix_bits(i)), InverseFlux::smallest_fraction);
       EXPECT_NEAR(c.flux_within(angle_of(inverse.rise(outside))), 1.0 - outside,
                   1e-6 + c.closed_form_error)
           << c.name;
@@ -91,7 +91,8 @@ TEST(InverseFlux, RisesFromTheAxisToTheEdge) {
     const double first = inverse.rise(1.0 - 0x1p-33);
     EXPECT_GE(first, 0.0) << c.name;
     EXPECT_LT(angle_of(first), 2e-4 * c.profile.end_rad) << c.name;
-    EXPECT_LE(angle_of(inverse.rise(InverseFlux::smallest_share)), c.profile.end_rad * (1 + 1e-15))
+    EXPECT_LE(angle_of(inverse.rise(InverseFlux::smallest_fraction)),
+              c.profile.end_rad * (1 + 1e-15))
         << c.name;
     double before = first;
     for (double outside = 1.0 - 1e-4; outside > 1e-9; outside *= 0.999) {
@@ -164,10 +165,10 @@ TEST(AngularProfile, QuadratureOfTheIntensityGivesTheClosedForm) {
   for (const Case& c : cases()) {
     const DiscLamp lamp(1.0, 0.01, AngularDistribution(c.profile));
     const EncircledFlux flux(lamp);
-    for (const double share : {0.03, 0.2, 0.5, 0.77, 0.93, 0.999}) {
-      const double angle_rad = flux.half_angle_rad(share);
-      EXPECT_NEAR(c.flux_within(angle_rad), share, 1e-8 + c.closed_form_error) << c.name;
-      EXPECT_NEAR(flux.within(angle_rad), share, 1e-10) << c.name;
+    for (const double fraction : {0.03, 0.2, 0.5, 0.77, 0.93, 0.999}) {
+      const double angle_rad = flux.half_angle_rad(fraction);
+      EXPECT_NEAR(c.flux_within(angle_rad), fraction, 1e-8 + c.closed_form_error) << c.name;
+      EXPECT_NEAR(flux.within(angle_rad), fraction, 1e-10) << c.name;
     }
   }
 }
@@ -213,19 +214,19 @@ TEST(AngularDistribution, ThinHalosAndEdgesStayInRange) {
 TEST(DiscLamp, FillsItsApertureEvenly) {
   const double diameter_m = 0.4;
   const DiscLamp lamp(1.0, diameter_m, AngularDistribution(gaussian_profile(0.05)));
-  std::vector<double> area_shares, turns;
+  std::vector<double> area_fractions, turns;
   double xx = 0.0, xy = 0.0;
   for (const auto& ray : rays_of(lamp, 65536)) {
     const double radius_m = std::hypot(ray.origin_m.x(), ray.origin_m.y());
-    area_shares.push_back(std::pow(radius_m / (0.5 * diameter_m), 2));
+    area_fractions.push_back(std::pow(radius_m / (0.5 * diameter_m), 2));
     turns.push_back(std::atan2(ray.origin_m.y(), ray.origin_m.x()) / (2.0 * pi) + 0.5);
     xx += ray.origin_m.x() * ray.direction.x();
     xy += ray.origin_m.x() * ray.direction.y();
   }
-  std::sort(area_shares.begin(), area_shares.end());
+  std::sort(area_fractions.begin(), area_fractions.end());
   std::sort(turns.begin(), turns.end());
   const auto uniform = [](double x) { return x; };
-  EXPECT_LT(largest_deviation(area_shares, uniform), 2e-5);
+  EXPECT_LT(largest_deviation(area_fractions, uniform), 2e-5);
   EXPECT_LT(largest_deviation(turns, uniform), 2e-5);
   // Position and direction are independent: correlations vanish against 0.1 m × 0.02.
   EXPECT_LT(std::abs(xx / 65536), 2e-6);

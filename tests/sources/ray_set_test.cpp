@@ -80,13 +80,13 @@ TEST(RaySamples, ComeBackAsWritten) {
   }
 }
 
-// answers.txt, as far as 20,000 rays can tell: a share p of them errs by √(p(1 − p)/n).
+// answers.txt, as far as 20,000 rays can tell: a fraction p of them errs by √(p(1 − p)/n).
 TEST(RaySamples, HoldTheEncircledFluxOfTheirBeam) {
   if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
-  const auto check = [&](const char* file, double half_angle_rad, double share) {
+  const auto check = [&](const char* file, double half_angle_rad, double fraction) {
     const RayLamp lamp(1.0, read_sample_rays(samples() / file));
-    const double sigma = std::sqrt(share * (1.0 - share) / 20000.0);
-    EXPECT_NEAR(EncircledFlux(lamp).within(half_angle_rad), share, 3.5 * sigma) << file;
+    const double sigma = std::sqrt(fraction * (1.0 - fraction) / 20000.0);
+    EXPECT_NEAR(EncircledFlux(lamp).within(half_angle_rad), fraction, 3.5 * sigma) << file;
   };
   for (const char* file : {"synthetic/gauss3.tm25ray", "synthetic/gauss3.dat"}) {
     check(file, 1.5 * deg, 0.50006);

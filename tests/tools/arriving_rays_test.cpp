@@ -27,15 +27,15 @@ TEST_F(ArrivingRaysCommand, CarryThePowerOnTheSurface) {
   EXPECT_GT(rays.rays.size(), 80'000u);
   EXPECT_NEAR(rays.ray_flux(), 0.9015 * 88.0, 0.005 * 88.0);
   EXPECT_NEAR(rays.stated_radiant_flux_W.value(), rays.ray_flux(), 1e-4);
-  double least_m = 1.0, most_m = -1.0;
+  double min_m = 1.0, max_m = -1.0;
   for (const RaySet::Ray& ray : rays.rays) {
     EXPECT_NEAR(ray.direction.norm(), 1.0, 1e-6);
     EXPECT_LT(ray.direction.z(), -0.9);
     EXPECT_NEAR(ray.wavelength_m, 730e-9, 1e-13);
-    least_m = std::min(least_m, ray.origin_m.z());
-    most_m = std::max(most_m, ray.origin_m.z());
+    min_m = std::min(min_m, ray.origin_m.z());
+    max_m = std::max(max_m, ray.origin_m.z());
   }
-  EXPECT_LT(most_m - least_m, 1e-6);  // a flat array
+  EXPECT_LT(max_m - min_m, 1e-6);  // a flat array
 }
 
 TEST_F(ArrivingRaysCommand, AreTheSameAtAnyNumberOfThreads) {

@@ -155,7 +155,7 @@ TEST_F(AttitudeCommands, WrongInputIsOneLineAndExitTwo) {
 }
 
 // Recordings that another program made, in another language, with another integrator: with the
-// concealed effect of each case put into the experiment, the whole trajectory fits to its noise.
+// injected effect of each case put into the experiment, the whole trajectory fits to its noise.
 TEST_F(AttitudeCommands, RecordingsOfAnotherSimulatorFitToTheirNoise) {
   const fs::path cases = source / "../shared/cases";
   if (!fs::exists(cases)) GTEST_SKIP() << cases << " is not at hand";

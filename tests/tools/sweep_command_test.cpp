@@ -73,8 +73,8 @@ TEST_F(Sweep, TakesEveryCombinationOfAGrid) {
     EXPECT_NEAR(std::stod(table[i + 1][2]), power_W, 1e-12 * power_W);
     EXPECT_NEAR(std::stod(table[i + 1][3]), power_W, 1e-12 * power_W);
     // A wide lamp loses light beside the array; light is linear in power, all else being equal.
-    const double share = std::stod(table[i + 1][5]) / power_W;
-    EXPECT_NEAR(share, std::stod(table[i < 3 ? 1 : 4][5]), 1e-9);
+    const double fraction = std::stod(table[i + 1][5]) / power_W;
+    EXPECT_NEAR(fraction, std::stod(table[i < 3 ? 1 : 4][5]), 1e-9);
   }
   EXPECT_LT(std::stod(table[4][5]), 0.5 * std::stod(table[1][5]));
   EXPECT_TRUE(fs::exists(folder_ / "out/sweep_power_on_solar_array_W.png"));

@@ -265,13 +265,13 @@ void shadow_rays(benchmark::State& state, const Case& which, double disc_radius_
   const TraceableScene scene(which.scene, false);
   constexpr size_t patches = 2048, rays = shadow_batch;
   std::vector<ShadowRay> all;
-  const double lift_m = shadow_lift_m(scene);
+  const double ray_offset_m = shadow_ray_offset_m(scene);
   for (size_t i = 0; i < patches * rays; ++i) {
     const auto golden = [](size_t n, double step) { return std::fmod(0.5 + step * n, 1.0); };
     const size_t patch = i / rays;
     const Vec3 from(0.498 * (golden(patch, 0.7548776662) - 0.5) + 1e-3 * golden(i, 0.8191725134),
                     0.498 * (golden(patch, 0.5698402910) - 0.5) + 1e-3 * golden(i, 0.6710436067),
-                    lift_m);
+                    ray_offset_m);
     const double radius_m = disc_radius_m * std::sqrt(golden(i, 0.5497004779));
     const double turn = 2.0 * pi * golden(i, 0.4503);
     const Vec3 to(radius_m * std::cos(turn), radius_m * std::sin(turn), 1.5);

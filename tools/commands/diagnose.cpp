@@ -54,7 +54,7 @@ void run_diagnose(const CommandLine& line) {
     throw InputError({line.experiment.string()}, "--recording", "nothing", "a recording (CSV)");
   }
   AttitudeExperiment experiment(line);
-  const BelievedModel believed = read_attitude_model(experiment.settings());
+  const NominalModel nominal = read_attitude_model(experiment.settings());
   const Settings recording = own_table(experiment.settings(), "recording", false);
   const RecordingOptions options = read_recording_options(recording);
   recording.finish();
@@ -64,7 +64,7 @@ void run_diagnose(const CommandLine& line) {
   DiagnoseOptions how;
   how.threads = line.threads;
   how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
-  const Diagnosis diagnosis = diagnose(believed, recordings, holdouts, how);
+  const Diagnosis diagnosis = diagnose(nominal, recordings, holdouts, how);
   print_diagnosis(console, diagnosis);
 
   const fs::path out = line.out_folder();

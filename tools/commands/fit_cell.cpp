@@ -173,7 +173,7 @@ double ideality_per_scale(const FitTask& task) {
 }
 
 // No diode of one kind of recombination is sharper than its thermal voltage.
-void print_ideality_hint(const Console& console, const SingleDiode& d, const FitTask& task) {
+void print_ideality_note(const Console& console, const SingleDiode& d, const FitTask& task) {
   const double ideality = d.scale_V.value * ideality_per_scale(task);
   if (ideality >= 0.9 && ideality <= 3.0) return;
   console.line("  note: an ideality of " + show(ideality) + " is unusual: are cells_in_series (" +
@@ -279,7 +279,7 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   const ArrayPoint best = best_point(cell, fit.diode.photocurrent_A.value);
   print_rows(console, rows);
   print_undetermined(console, rows);
-  print_ideality_hint(console, fit.diode, task);
+  print_ideality_note(console, fit.diode, task);
   console.line("  rms of current " + show(fit.rms_A) + " A over " + std::to_string(fit.points) +
                " points; scatter over that expected " + show(std::sqrt(fit.variance)));
   console.line("  maximum " + show(best.power_W()) + " W at " + show(best.voltage_V) + " V");

@@ -101,9 +101,9 @@ int run(int argc, char** argv) {
     std::set<std::string> known;
     for (const Verb& verb : verbs) known.insert(verb.name);
     if (!known.contains(argv[1])) {
-      const std::string hint = nearest(argv[1], known);
+      const std::string weak_evidence = nearest(argv[1], known);
       std::fprintf(stderr, "photorque: unknown command \"%s\"%s (see photorque --help)\n", argv[1],
-                   hint.empty() ? "" : (", perhaps \"" + hint + "\"").c_str());
+                   weak_evidence.empty() ? "" : (", perhaps \"" + weak_evidence + "\"").c_str());
       return 2;
     }
   }

@@ -1,4 +1,4 @@
-// photorque propagate: flies the platform through its disturbances.
+// photorque propagate: propagates the platform through its disturbances.
 #include <chrono>
 
 #include "attitude/ccsds/aem.h"
@@ -25,24 +25,24 @@ void print_run(const Console& console, const PropagationRun& run, const Propagat
   row("rate at the end", end.rate_body_rad_s.norm(), "rad/s");
   if (end.charge_drawn_C != 0.0) row("charge drawn", end.charge_drawn_C / 3600.0, "Ah");
   console.line("  in " + std::to_string(result.statistics.steps) + " steps");
-  constexpr size_t most_events = 12;
+  constexpr size_t max_events = 12;
   if (!result.events.empty()) console.heading("Events");
-  for (size_t i = 0; i < std::min(most_events, result.events.size()); ++i) {
+  for (size_t i = 0; i < std::min(max_events, result.events.size()); ++i) {
     const Event& event = result.events[i];
     console.line("  " + event.name + " at " + show(event.time_s) + " s");
   }
-  if (result.events.size() > most_events) {
-    console.line("  and " + std::to_string(result.events.size() - most_events) +
+  if (result.events.size() > max_events) {
+    console.line("  and " + std::to_string(result.events.size() - max_events) +
                  " more: events.csv");
   }
 }
 
 // The channels as a recording and the attitudes as CCSDS message.
-void write_flight(const std::filesystem::path& folder, const PropagationRun& run,
-                  const PropagationResult& result, const Provenance& provenance,
-                  const std::string& name) {
+void write_trajectory(const std::filesystem::path& folder, const PropagationRun& run,
+                      const PropagationResult& result, const Provenance& provenance,
+                      const std::string& name) {
   write_recording(folder / "recording.csv", result.recording, {provenance.one_line()});
-  // Dated by the flight, not by the clock: equal runs give equal files.
+  // Dated by the trajectory, not by the clock: equal runs give equal files.
   AttitudeEphemeris ephemeris = make_aem(result.states, run.epoch, name, run.epoch);
   ephemeris.comments = {provenance.one_line()};
   write_aem(folder / "attitude.aem", ephemeris);
@@ -58,7 +58,7 @@ void run_propagate(const CommandLine& line) {
   const PropagationResult result = propagate(run, console.progress("flying"));
   console.done();
   print_run(console, run, result);
-  write_flight(line.out_folder(), run, result, provenance, line.experiment.stem().string());
+  write_trajectory(line.out_folder(), run, result, provenance, line.experiment.stem().string());
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   write_results(line, console, result.product, provenance, {wall.count(), {}});
   console.line("  and recording.csv, attitude.aem");

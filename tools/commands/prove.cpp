@@ -1,4 +1,4 @@
-// photorque prove: conceals effects in recordings, diagnoses them blind, and scores the answers.
+// photorque prove: injects effects in recordings, diagnoses them blind, and scores the answers.
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -20,11 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ProveSettings {
-  ConcealedPlan plan;
-  bool oracle = true;        // also diagnose with the truth told, for the held-out error
-  int at_once = 1;           // diagnoses side by side
-  double longest_s = 900.0;  // for one diagnosis
-  size_t most_cases = 100000;
+  InjectedPlan plan;
+  bool oracle = true;         // also diagnose with the truth told, for the held-out error
+  int at_once = 1;            // diagnoses side by side
+  double max_time_s = 900.0;  // for one diagnosis
+  size_t max_cases = 100000;
   std::optional<fs::path> document;  // whose section is renewed
   std::string section = "prove";
   std::string hash;  // of the settings
@@ -37,7 +37,7 @@ ProveSettings read_settings(const CommandLine& line) {
   const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
   const Settings s = root.table("prove");
   ProveSettings settings;
-  ConcealedPlan& plan = settings.plan;
+  InjectedPlan& plan = settings.plan;
   constexpr int64_t most = 100000;
   plan.seed = static_cast<uint64_t>(s.integer_or("seed", 1, 0, INT64_MAX));
   if (line.seed) plan.seed = *line.seed;
@@ -50,11 +50,11 @@ ProveSettings read_settings(const CommandLine& line) {
   plan.holdout_s = s.number_or("holdout_s", plan.holdout_s, seconds);
   if (s.has("rates_Hz")) plan.rates_Hz = s.numbers("rates_Hz", rate);
   if (plan.rates_Hz.empty()) throw s.error("rates_Hz", "[]", "at least one rate");
-  plan.dirty_share = s.number_or("dirty_share", plan.dirty_share, Range::fraction());
+  plan.dirty_fraction = s.number_or("dirty_share", plan.dirty_fraction, Range::fraction());
   settings.oracle = s.flag_or("oracle", settings.oracle);
   settings.at_once = static_cast<int>(s.integer_or("at_once", 1, 1, 1024));
-  settings.longest_s = s.number_or("longest_s", settings.longest_s, Range::positive());
-  settings.most_cases = static_cast<size_t>(s.integer_or("most_cases", most, 1, most));
+  settings.max_time_s = s.number_or("longest_s", settings.max_time_s, Range::positive());
+  settings.max_cases = static_cast<size_t>(s.integer_or("most_cases", most, 1, most));
   settings.section = s.text_or("section", settings.section);
   if (s.has("document")) {
     settings.document = line.experiment.parent_path() / s.text("document");
@@ -74,7 +74,7 @@ bool is_case(const fs::path& folder) {
 // Makes the cases that are not there yet.
 std::vector<fs::path> make_cases(const ProveSettings& settings, const fs::path& folder, int threads,
                                  Console& console) {
-  const size_t count = std::min(case_count(settings.plan), settings.most_cases);
+  const size_t count = std::min(case_count(settings.plan), settings.max_cases);
   std::vector<fs::path> folders(count);
   std::atomic<size_t> done = 0;
   const auto progress = console.progress("concealing");
@@ -82,7 +82,7 @@ std::vector<fs::path> make_cases(const ProveSettings& settings, const fs::path& 
     char number[16];
     std::snprintf(number, sizeof number, "%04zu", i + 1);
     folders[i] = folder / number;
-    if (!is_case(folders[i])) write_concealed_case(draw_case(settings.plan, i), folders[i]);
+    if (!is_case(folders[i])) write_injected_case(draw_case(settings.plan, i), folders[i]);
     ++done;
     if (progress) progress(static_cast<double>(done) / static_cast<double>(count));
   });
@@ -127,7 +127,7 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
       own_program(),
       {"diagnose", "experiment.toml", "--recording", "run1.csv.gz", "--holdout", "run2.csv.gz",
        "--out", "diagnosis", "--quiet", "--threads", std::to_string(threads)},
-      blind, settings.longest_s);
+      blind, settings.max_time_s);
   fs::create_directories(out);
   write_file_whole(out / "wall_s.txt", std::to_string(result.wall_s) + "\n");
   if (result.status != 0 || !result.errors.empty()) {
@@ -188,9 +188,9 @@ void print_proof(const Console& console, const std::vector<CaseScore>& scores) {
   console.heading("Proof");
   for (const ProofRow& row : proof_rows(scores)) {
     char text[160];
-    std::snprintf(text, sizeof text, "%4d of %4d  %5.1f %%  (%.1f to %.1f)  ", row.share.hits,
-                  row.share.of, 100.0 * row.share.hits / row.share.of, 100.0 * row.share.low(),
-                  100.0 * row.share.high());
+    std::snprintf(text, sizeof text, "%4d of %4d  %5.1f %%  (%.1f to %.1f)  ", row.fraction.hits,
+                  row.fraction.of, 100.0 * row.fraction.hits / row.fraction.of,
+                  100.0 * row.fraction.low(), 100.0 * row.fraction.high());
     console.line("  " + (text + row.question));
   }
   for (const Quantity& q : proof_quantities(scores)) {
@@ -199,14 +199,14 @@ void print_proof(const Console& console, const std::vector<CaseScore>& scores) {
 }
 
 std::string plan_text(const ProveSettings& s) {
-  const ConcealedPlan& p = s.plan;
+  const InjectedPlan& p = s.plan;
   std::string rates;
   for (const double rate : p.rates_Hz) rates += (rates.empty() ? "" : ", ") + show(rate);
   return std::to_string(p.per_kind) + " of every kind, " + std::to_string(p.pairs) + " pairs, " +
          std::to_string(p.outside) + " of every law outside the catalogue, " +
          std::to_string(p.none) + " with nothing missing; recordings of " + show(p.duration_s) +
          " s and hold-outs of " + show(p.holdout_s) + " s at " + rates + " Hz, " +
-         show(100.0 * p.dirty_share) + " % of the files dirty; seed " + std::to_string(p.seed) +
+         show(100.0 * p.dirty_fraction) + " % of the files dirty; seed " + std::to_string(p.seed) +
          ".";
 }
 

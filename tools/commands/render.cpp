@@ -113,11 +113,12 @@ void run_render(const CommandLine& line) {
   const CameraFrame frame = camera_frame(experiment.camera);
   SceneLabels labels;
   labels.title = experiment.file.path.stem().string() + ": irradiance";
-  labels.caption = "tilt " + show(experiment.file.attitude.tilt_rad / degree_rad) +
-                   " deg, heading " + show(experiment.file.attitude.heading_rad / degree_rad) +
-                   " deg; " + show(result.ledger.emitted_W) + " W emitted, " +
-                   show(100 * result.ledger.absorbed_W.value / result.ledger.emitted_W) +
-                   " % absorbed";
+  labels.caption =
+      "tilt " + show(experiment.file.attitude.tilt_rad / degree_rad) + " deg, heading " +
+      show(experiment.file.attitude.heading_rad / degree_rad) + " deg; " +
+      show(result.power_balance.emitted_W) + " W emitted, " +
+      show(100 * result.power_balance.absorbed_W.value / result.power_balance.emitted_W) +
+      " % absorbed";
   std::array<Vec3, 3> axes;
   for (int k = 0; k < 3; ++k) {
     const Vec3 axis = experiment.lab_from_body.direction(Vec3::Unit(k));

@@ -106,10 +106,11 @@ std::vector<std::string> chosen_figures(const SweepPlan& plan, const std::vector
   if (plan.figures.empty()) return names;
   for (const std::string& name : plan.figures) {
     if (std::ranges::find(names, name) == names.end()) {
-      const std::string hint = nearest(name, {names.begin(), names.end()});
+      const std::string weak_evidence = nearest(name, {names.begin(), names.end()});
       throw InputError({}, "sweep.figures", '"' + name + '"',
-                       hint.empty() ? "a figure of the command's summary.json"
-                                    : "a figure of the summary, perhaps \"" + hint + '"');
+                       weak_evidence.empty()
+                           ? "a figure of the command's summary.json"
+                           : "a figure of the summary, perhaps \"" + weak_evidence + '"');
     }
   }
   return plan.figures;
@@ -161,9 +162,9 @@ Product sweep_product(const SweepPlan& plan, const std::vector<std::vector<Quant
   }
   Product product;
   const size_t first_figure = plan.axes.size() + 1;
-  constexpr size_t most_curves = 12;
+  constexpr size_t max_curves = 12;
   const size_t curves = plan.grid ? plan.designs() / plan.axes.back().values.size() : 1;
-  const bool plots = !plan.figures.empty() && curves <= most_curves &&
+  const bool plots = !plan.figures.empty() && curves <= max_curves &&
                      !table.columns[plan.axes.size()].values.empty();
   for (size_t k = 0; plots && k < names.size(); ++k) {
     product.plots.push_back(figure_plot(plan, table, first_figure + 2 * k));

@@ -1,4 +1,4 @@
-// photorque trace: irradiance on every receiver, power ledger, radiation wrench.
+// photorque trace: irradiance on every receiver, power balance, radiation wrench.
 #include "core/files.h"
 #include "tools/runs/arriving_rays.h"
 #include "tools/runs/optical_run.h"
@@ -28,10 +28,10 @@ void check_ray_files(const Experiment& experiment) {
     throw trace.error("arriving_rays", "no receiver of kind \"flux_map\"",
                       "one, on which the rays arrive");
   }
-  constexpr size_t most_beams = 4096;  // of at least 2048 rays each, which are kept in memory
-  if (experiment.beams.size() > most_beams) {
+  constexpr size_t max_beams = 4096;  // of at least 2048 rays each, which are kept in memory
+  if (experiment.beams.size() > max_beams) {
     throw trace.error("arriving_rays", std::to_string(experiment.beams.size()) + " lamps",
-                      "at most " + std::to_string(most_beams));
+                      "at most " + std::to_string(max_beams));
   }
 }
 

@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-using namespace concealed;
+using namespace injected;
 
 // Six significant digits, as the experiment file states it.
 double as_written(double value) {
@@ -21,7 +21,7 @@ double as_written(double value) {
   return std::round(value / unit) * unit;
 }
 
-void draw_platform(RandomDraw& draw, ConcealedCase& c) {
+void draw_platform(RandomDraw& draw, InjectedCase& c) {
   const std::array<std::string, 3> names = {"tabletop", "dumbbell", "hollow"};
   c.topology = names[static_cast<size_t>(draw.below(3))];
   Triple inertia;
@@ -45,31 +45,31 @@ void draw_platform(RandomDraw& draw, ConcealedCase& c) {
   c.world.latitude_rad = 45.5 * pi / 180.0;
 }
 
-// What is believed, and a truth within it.
-void draw_beliefs(RandomDraw& draw, ConcealedCase& c, const std::vector<Recipe>& recipes) {
-  const auto conceals = [&](const std::string& kind) {
+// The nominal model, and a truth within it.
+void draw_priors(RandomDraw& draw, InjectedCase& c, const std::vector<Recipe>& recipes) {
+  const auto injects = [&](const std::string& kind) {
     return std::ranges::any_of(recipes, [&](const Recipe& r) { return r.kind == kind; });
   };
-  ConcealedBeliefs& beliefs = c.beliefs;
-  beliefs.offset_m = {as_written(draw.uniform(-3e-6, 3e-6)), as_written(draw.uniform(-3e-6, 3e-6)),
-                      as_written(draw.uniform(-6e-5, -2e-5))};
-  beliefs.drag_N_m_s = as_written(draw.log_uniform(6e-6, 3e-5));
-  beliefs.offset_sigma_m = {5e-7, 5e-7, 3e-6};
-  beliefs.drag_sigma_N_m_s = as_written(draw.uniform(0.15, 0.3) * beliefs.drag_N_m_s);
-  beliefs.gyro_bias_sigma_rad_s = 1e-3;
-  // An effect that could hide in an uncertain belief is concealed where that belief is exact.
-  if (conceals("static_unbalance")) beliefs.offset_sigma_m = {};
-  if (conceals("bearing_drag")) beliefs.drag_sigma_N_m_s = 0.0;
-  if (conceals("gyro_bias")) beliefs.gyro_bias_sigma_rad_s = 0.0;
-  c.world.offset_m =
-      plus(beliefs.offset_m, by_component(beliefs.offset_sigma_m, draw.normals(1.0)));
-  c.world.drag_N_m_s = std::max(0.2 * beliefs.drag_N_m_s,
-                                beliefs.drag_N_m_s + beliefs.drag_sigma_N_m_s * draw.normal());
-  c.world.gyro_bias_rad_s = draw.normals(beliefs.gyro_bias_sigma_rad_s);
+  InjectedPriors& priors = c.priors;
+  priors.offset_m = {as_written(draw.uniform(-3e-6, 3e-6)), as_written(draw.uniform(-3e-6, 3e-6)),
+                     as_written(draw.uniform(-6e-5, -2e-5))};
+  priors.drag_N_m_s = as_written(draw.log_uniform(6e-6, 3e-5));
+  priors.offset_sigma_m = {5e-7, 5e-7, 3e-6};
+  priors.drag_sigma_N_m_s = as_written(draw.uniform(0.15, 0.3) * priors.drag_N_m_s);
+  priors.gyro_bias_sigma_rad_s = 1e-3;
+  // An effect that could hide in an uncertain nominal model is injected where that nominal model is
+  // exact.
+  if (injects("static_unbalance")) priors.offset_sigma_m = {};
+  if (injects("bearing_drag")) priors.drag_sigma_N_m_s = 0.0;
+  if (injects("gyro_bias")) priors.gyro_bias_sigma_rad_s = 0.0;
+  c.world.offset_m = plus(priors.offset_m, by_component(priors.offset_sigma_m, draw.normals(1.0)));
+  c.world.drag_N_m_s = std::max(0.2 * priors.drag_N_m_s,
+                                priors.drag_N_m_s + priors.drag_sigma_N_m_s * draw.normal());
+  c.world.gyro_bias_rad_s = draw.normals(priors.gyro_bias_sigma_rad_s);
 }
 
-std::vector<ConcealedCommand> draw_commands(RandomDraw& draw, double duration_s, double rate_Hz,
-                                            bool torques) {
+std::vector<InjectedCommand> draw_commands(RandomDraw& draw, double duration_s, double rate_Hz,
+                                           bool torques) {
   const auto on_row = [&](double t) { return std::round(t * rate_Hz) / rate_Hz; };
   const double current_A = std::round(draw.uniform(2.4, 6.0) * 100.0) / 100.0;
   const double half_period_s = on_row(draw.uniform(60.0, 140.0));
@@ -84,7 +84,7 @@ std::vector<ConcealedCommand> draw_commands(RandomDraw& draw, double duration_s,
   edges_s.insert(edges_s.end(), pulses.begin(), pulses.end());
   std::ranges::sort(edges_s);
   edges_s.erase(std::ranges::unique(edges_s).begin(), edges_s.end());
-  std::vector<ConcealedCommand> commands;
+  std::vector<InjectedCommand> commands;
   Triple torque = {};
   for (const double t : edges_s) {
     const auto edge = std::ranges::find(pulses, t);
@@ -98,14 +98,14 @@ std::vector<ConcealedCommand> draw_commands(RandomDraw& draw, double duration_s,
   return commands;
 }
 
-void draw_runs(RandomDraw& draw, ConcealedCase& c, const ConcealedPlan& plan,
+void draw_runs(RandomDraw& draw, InjectedCase& c, const InjectedPlan& plan,
                const std::vector<Recipe>& recipes) {
   const auto any = [&](auto member) { return std::ranges::any_of(recipes, member); };
   const bool torques = any([](const Recipe& r) { return r.needs_commands; }) || draw.chance(0.2);
   const bool still = any([](const Recipe& r) { return r.needs_small_turns; });
   const double durations_s[] = {plan.duration_s, plan.holdout_s};
   for (size_t i = 0; i < 2; ++i) {
-    ConcealedRun& run = c.runs[i];
+    InjectedRun& run = c.runs[i];
     run.duration_s = durations_s[i];
     const Triple lean = times(draw.uniform(0.05, 0.2), draw.direction());
     run.start.attitude = normalised(
@@ -119,13 +119,13 @@ void draw_runs(RandomDraw& draw, ConcealedCase& c, const ConcealedPlan& plan,
 }
 
 // Smaller where the effect is strong, so that the change is linear in it.
-double share_of(double gain) {
+double fraction_of(double gain) {
   return std::min(1.0, 3.0 / std::sqrt(std::max(gain, 1e-30)));
 }
 
 // The gain of effect `index`, with all numbers of the case's other effects free.
-double own_gain(const ConcealedCase& c, size_t index, bool against_catalogue) {
-  const ConcealedInformation information(c);
+double own_gain(const InjectedCase& c, size_t index, bool against_catalogue) {
+  const InjectedInformation information(c);
   std::vector<Eigen::MatrixXd> others;
   if (against_catalogue) {
     for (const std::string& kind : information.competitors()) {
@@ -143,7 +143,7 @@ double own_gain(const ConcealedCase& c, size_t index, bool against_catalogue) {
 }
 
 // Scales effect `index` until chi² gains about `wanted`, as far as its recipe allows.
-double fit_strength(ConcealedCase& c, size_t index, const Recipe& recipe, double wanted) {
+double fit_strength(InjectedCase& c, size_t index, const Recipe& recipe, double wanted) {
   double gain = 0.0, total = 1.0;
   for (int round = 0; round < 3; ++round) {
     gain = own_gain(c, index, recipe.outside);
@@ -157,12 +157,12 @@ double fit_strength(ConcealedCase& c, size_t index, const Recipe& recipe, double
 }
 
 // Kinds that could pass for one of the effects: what they leave of it is within the noise.
-void add_doubles(ConcealedCase& c, const std::vector<std::string>& names) {
-  const ConcealedInformation information(c);
+void add_doubles(InjectedCase& c, const std::vector<std::string>& names) {
+  const InjectedInformation information(c);
   constexpr double within_noise = 12.0;
   for (size_t i = 0; i < names.size(); ++i) {
-    const double share = std::min(1e-2, share_of(c.chi2_gain));
-    const Eigen::VectorXd change = information.change_by(i, share);
+    const double fraction = std::min(1e-2, fraction_of(c.chi2_gain));
+    const Eigen::VectorXd change = information.change_by(i, fraction);
     std::vector<Eigen::MatrixXd> others;  // free as well
     for (size_t k = 0; k < names.size(); ++k) {
       if (k != i) others.push_back(information.columns_of(names[k]));
@@ -190,7 +190,7 @@ bool is_part_of(const std::string& kind, const std::string& other) {
   return kind == "turbine_torque" && other == "room_draft";
 }
 
-Choice choose(const ConcealedPlan& plan, size_t index) {
+Choice choose(const InjectedPlan& plan, size_t index) {
   auto i = static_cast<int>(index);
   if (i < plan.none) return {"none", "none", {}, i};
   i -= plan.none;
@@ -234,7 +234,7 @@ double wanted_gain(RandomDraw& draw, const Choice& choice) {
   }
 }
 
-void judge(ConcealedCase& c, const Choice& choice) {
+void judge(InjectedCase& c, const Choice& choice) {
   constexpr double limit = 30.0, hopeless = 6.0;
   std::vector<std::string> names;
   for (const Recipe& r : choice.recipes) names.push_back(r.kind);
@@ -250,17 +250,17 @@ void judge(ConcealedCase& c, const Choice& choice) {
   if (c.chi2_gain < limit && !names.empty()) c.accept.push_back({});
 }
 
-bool attempt(ConcealedCase& c, const ConcealedPlan& plan, const Choice& choice, uint64_t stream) {
+bool attempt(InjectedCase& c, const InjectedPlan& plan, const Choice& choice, uint64_t stream) {
   RandomDraw draw(plan.seed, stream);
   c = {};
   c.family = choice.family;
   c.seed = hash_words(plan.seed, stream, 9);
   draw_platform(draw, c);
-  draw_beliefs(draw, c, choice.recipes);
+  draw_priors(draw, c, choice.recipes);
   c.sensors.rate_Hz =
       plan.rates_Hz[static_cast<size_t>(draw.below(static_cast<int>(plan.rates_Hz.size())))];
   c.sensors.camera_every = draw.chance(0.3) ? 2 : 1;
-  c.sensors.dirty = draw.chance(plan.dirty_share);
+  c.sensors.dirty = draw.chance(plan.dirty_fraction);
   draw_runs(draw, c, plan, choice.recipes);
   for (const Recipe& r : choice.recipes) c.world.effects.push_back(r.draw(draw, c));
   const double wanted = wanted_gain(draw, choice);
@@ -276,16 +276,16 @@ bool attempt(ConcealedCase& c, const ConcealedPlan& plan, const Choice& choice, 
 
 }  // namespace
 
-size_t case_count(const ConcealedPlan& plan) {
+size_t case_count(const InjectedPlan& plan) {
   size_t inside = 0, outside = 0;
   for (const Recipe& r : recipes()) ++(r.outside ? outside : inside);
   return static_cast<size_t>(plan.none + plan.pairs) + static_cast<size_t>(plan.per_kind) * inside +
          static_cast<size_t>(plan.outside) * outside;
 }
 
-ConcealedCase draw_case(const ConcealedPlan& plan, size_t index) {
+InjectedCase draw_case(const InjectedPlan& plan, size_t index) {
   const Choice choice = choose(plan, index);
-  ConcealedCase c;
+  InjectedCase c;
   for (uint64_t trial = 0; trial < 20; ++trial) {
     try {
       if (!attempt(c, plan, choice, index * 100 + trial)) continue;

@@ -1,4 +1,4 @@
-// Concealed cases: a platform, two runs, and what acts on it without being believed.
+// Injected cases: a platform, two runs, and what acts on it without being nominal.
 #pragma once
 
 #include <array>
@@ -10,14 +10,14 @@
 
 namespace photorque {
 
-struct ConcealedRun {
-  ConcealedStart start;
-  std::vector<ConcealedCommand> commands;
+struct InjectedRun {
+  InjectedStart start;
+  std::vector<InjectedCommand> commands;
   double duration_s = 0.0;
 };
 
 // Realistic instruments.
-struct ConcealedSensors {
+struct InjectedSensors {
   double rate_Hz = 10.0;  // rows, and the gyro
   int camera_every = 1;   // rows from one attitude to the next
   Triple camera_noise_arcsec = {37, 37, 12};
@@ -26,32 +26,32 @@ struct ConcealedSensors {
 };
 
 // What the experiment file says; sigma 0: stated as exact.
-struct ConcealedBeliefs {
+struct InjectedPriors {
   Triple offset_m = {}, offset_sigma_m = {};
   double drag_N_m_s = 0.0, drag_sigma_N_m_s = 0.0;
   double gyro_bias_sigma_rad_s = 0.0;
 };
 
-struct ConcealedCase {
+struct InjectedCase {
   std::string name;    // "magnetic_dipole_02"
   std::string family;  // none | single | pair | outside
   std::string topology;
   uint64_t seed = 0;
-  ConcealedWorld world;
-  ConcealedBeliefs beliefs;
-  ConcealedSensors sensors;
-  std::array<ConcealedRun, 2> runs;  // recording and hold-out
+  InjectedWorld world;
+  InjectedPriors priors;
+  InjectedSensors sensors;
+  std::array<InjectedRun, 2> runs;  // recording and hold-out
 
   // The truth, for scoring.
   std::string verdict;
   std::vector<std::vector<std::string>> accept;  // sets of names that count as right
   std::vector<std::string> depends_on;
-  // By how much the effects change chi² of the first run beyond all that the uncertain beliefs and
+  // By how much the effects change chi² of the first run beyond all that the uncertain priors and
   // the unknown start can take up; of the weaker one where there are two.
   double chi2_gain = 0.0;
 };
 
-struct ConcealedPlan {
+struct InjectedPlan {
   uint64_t seed = 1;
   int per_kind = 4;  // of every kind of the catalogue: strong, medium, weak, below the limit, …
   int none = 30;     // with nothing missing
@@ -60,12 +60,12 @@ struct ConcealedPlan {
   double duration_s = 400.0;
   double holdout_s = 300.0;
   std::vector<double> rates_Hz = {10.0, 20.0};
-  double dirty_share = 0.3;
+  double dirty_fraction = 0.3;
 };
 
 // How many cases a plan has, and the i-th of them: the same plan gives the same cases, in whatever
 // order they are drawn.
-size_t case_count(const ConcealedPlan& plan);
-ConcealedCase draw_case(const ConcealedPlan& plan, size_t index);
+size_t case_count(const InjectedPlan& plan);
+InjectedCase draw_case(const InjectedPlan& plan, size_t index);
 
 }  // namespace photorque

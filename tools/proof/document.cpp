@@ -15,8 +15,8 @@ std::string print(const char* format, double value) {
   return text;
 }
 
-std::string percent(double share) {
-  return print("%.1f %%", 100.0 * share);
+std::string percent(double fraction) {
+  return print("%.1f %%", 100.0 * fraction);
 }
 
 std::string row(const std::vector<std::string>& cells) {
@@ -34,10 +34,11 @@ std::string ruler(size_t columns) {
 std::string headline(const std::vector<CaseScore>& scores) {
   std::string text = row({"question", "right", "share", "95 % interval", "aim"}) + ruler(5);
   for (const ProofRow& r : proof_rows(scores)) {
-    const double share = static_cast<double>(r.share.hits) / r.share.of;
-    text += row({r.question, std::to_string(r.share.hits) + " of " + std::to_string(r.share.of),
-                 percent(share), percent(r.share.low()) + " to " + percent(r.share.high()),
-                 r.aim.empty() ? "" : r.aim});
+    const double fraction = static_cast<double>(r.fraction.hits) / r.fraction.of;
+    text +=
+        row({r.question, std::to_string(r.fraction.hits) + " of " + std::to_string(r.fraction.of),
+             percent(fraction), percent(r.fraction.low()) + " to " + percent(r.fraction.high()),
+             r.aim.empty() ? "" : r.aim});
   }
   return text;
 }

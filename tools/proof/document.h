@@ -11,7 +11,7 @@ namespace photorque {
 
 // A set of cases and how they were scored.
 struct ProofSet {
-  std::string title;        // "Concealed cases of prove"
+  std::string title;        // "Injected cases of prove"
   std::string description;  // one paragraph
   std::vector<CaseScore> scores;
 };

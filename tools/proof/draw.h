@@ -1,4 +1,4 @@
-// Random numbers of a concealed case.
+// Random numbers of an injected case.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "core/numerics/random.h"
 #include "tools/proof/vectors.h"
 
-namespace photorque::concealed {
+namespace photorque::injected {
 
 class RandomDraw {
  public:
@@ -37,4 +37,4 @@ class RandomDraw {
   uint64_t seed_, stream_, counter_ = 0;
 };
 
-}  // namespace photorque::concealed
+}  // namespace photorque::injected

@@ -13,7 +13,7 @@
 namespace photorque {
 namespace {
 
-using namespace concealed;
+using namespace injected;
 using Json = nlohmann::ordered_json;
 
 constexpr double start_s = -0.5;  // the motion starts before the clock, so that a camera may lag
@@ -40,7 +40,7 @@ std::string with_sigma(const std::string& value, const std::string& sigma, bool 
   return exact ? value : "{ value = " + value + ", sigma = " + sigma + " }";
 }
 
-std::string effect_text(const ConcealedEffect& effect) {
+std::string effect_text(const InjectedEffect& effect) {
   std::string text = "\n[[disturbance]]\nkind = \"" + effect.kind + "\"\n";
   for (const auto& [key, numbers] : effect.parameters) {
     text += key + " = " + array_text(numbers, "%.12g") + "\n";
@@ -54,7 +54,7 @@ struct Rows {
   std::vector<bool> lost;
 };
 
-Rows draw_rows(RandomDraw& draw, const ConcealedSensors& sensors, double duration_s) {
+Rows draw_rows(RandomDraw& draw, const InjectedSensors& sensors, double duration_s) {
   Rows rows;
   const double interval_s = 1.0 / sensors.rate_Hz;
   const auto count = static_cast<size_t>(std::llround(duration_s * sensors.rate_Hz));
@@ -77,8 +77,8 @@ Rows draw_rows(RandomDraw& draw, const ConcealedSensors& sensors, double duratio
 }
 
 // Commands begin with a row, and that row is never lost: what the log says is what was done.
-std::vector<ConcealedCommand> on_rows(std::vector<ConcealedCommand> commands, Rows& rows) {
-  for (ConcealedCommand& c : commands) {
+std::vector<InjectedCommand> on_rows(std::vector<InjectedCommand> commands, Rows& rows) {
+  for (InjectedCommand& c : commands) {
     const auto at = std::ranges::lower_bound(rows.time_s, c.time_s - 1e-9);
     if (at == rows.time_s.end()) continue;
     c.time_s = *at;
@@ -90,7 +90,7 @@ std::vector<ConcealedCommand> on_rows(std::vector<ConcealedCommand> commands, Ro
 // The readings of one row as cells.
 class Instruments {
  public:
-  Instruments(RandomDraw& draw, const ConcealedSensors& sensors) : draw_(draw), sensors_(sensors) {}
+  Instruments(RandomDraw& draw, const InjectedSensors& sensors) : draw_(draw), sensors_(sensors) {}
 
   std::string attitude(const Quaternion& seen, size_t row) {
     Triple noise;
@@ -121,7 +121,7 @@ class Instruments {
 
  private:
   RandomDraw& draw_;
-  ConcealedSensors sensors_;
+  InjectedSensors sensors_;
   double side_ = 1.0;
 };
 
@@ -131,8 +131,8 @@ Json number_or_array(const std::vector<double>& numbers) {
 
 }  // namespace
 
-std::string concealed_experiment(const ConcealedCase& c, bool told_truth) {
-  const ConcealedBeliefs& beliefs = c.beliefs;
+std::string injected_experiment(const InjectedCase& c, bool told_truth) {
+  const InjectedPriors& priors = c.priors;
   const auto& inertia = c.world.inertia_kg_m2;
   std::string text = "# What is believed about this platform and its laboratory.\n[platform]\n";
   text += "topology = \"" + c.topology + "\"\n";
@@ -144,36 +144,36 @@ std::string concealed_experiment(const ConcealedCase& c, bool told_truth) {
           "   # lab axes: east, north, up\n";
   text += print("latitude_deg = %.6g\n", c.world.latitude_rad * 180.0 / pi);
   text += "\n[[disturbance]]\nkind = \"static_unbalance\"\noffset_m = " +
-          with_sigma(array_text(beliefs.offset_m), array_text(beliefs.offset_sigma_m),
-                     beliefs.offset_sigma_m[0] == 0.0) +
+          with_sigma(array_text(priors.offset_m), array_text(priors.offset_sigma_m),
+                     priors.offset_sigma_m[0] == 0.0) +
           "\n";
   text += "\n[[disturbance]]\nkind = \"bearing_drag\"\ncoefficient_N_m_s = " +
-          with_sigma(print("%.6g", beliefs.drag_N_m_s), print("%.3g", beliefs.drag_sigma_N_m_s),
-                     beliefs.drag_sigma_N_m_s == 0.0) +
+          with_sigma(print("%.6g", priors.drag_N_m_s), print("%.3g", priors.drag_sigma_N_m_s),
+                     priors.drag_sigma_N_m_s == 0.0) +
           "\n";
   if (told_truth) {
-    for (const ConcealedEffect& effect : c.world.effects) text += effect_text(effect);
+    for (const InjectedEffect& effect : c.world.effects) text += effect_text(effect);
   }
   text += "\n[sensors.camera]\nnoise_arcsec = " + array_text(c.sensors.camera_noise_arcsec) +
           "   # about lab x, y (out of plane) and z (in plane)\n";
-  const std::string bias = print("%g", beliefs.gyro_bias_sigma_rad_s);
+  const std::string bias = print("%g", priors.gyro_bias_sigma_rad_s);
   text += print("\n[sensors.gyro]\nnoise_rad_s = %g\n", c.sensors.gyro_noise_rad_s);
   text += "bias_rad_s = " +
           with_sigma("[0, 0, 0]", "[" + bias + ", " + bias + ", " + bias + "]",
-                     beliefs.gyro_bias_sigma_rad_s == 0.0) +
+                     priors.gyro_bias_sigma_rad_s == 0.0) +
           "\n";
   return text;
 }
 
-std::string concealed_recording(const ConcealedCase& c, size_t run_index) {
+std::string injected_recording(const InjectedCase& c, size_t run_index) {
   RandomDraw draw(c.seed, 100 + run_index);
-  const ConcealedRun& run = c.runs[run_index];
+  const InjectedRun& run = c.runs[run_index];
   Rows rows = draw_rows(draw, c.sensors, run.duration_s);
   const auto commands = on_rows(run.commands, rows);
-  const auto moments = concealed_motion(c.world, commands, run.start, start_s, rows.time_s, step_s);
+  const auto moments = injected_motion(c.world, commands, run.start, start_s, rows.time_s, step_s);
   std::vector<double> seen_s = rows.time_s;
-  for (double& t_s : seen_s) t_s -= std::min(0.49, concealed_latency_s(c.world));
-  const auto seen = concealed_motion(c.world, commands, run.start, start_s, seen_s, step_s);
+  for (double& t_s : seen_s) t_s -= std::min(0.49, injected_latency_s(c.world));
+  const auto seen = injected_motion(c.world, commands, run.start, start_s, seen_s, step_s);
 
   std::string text = c.sensors.dirty ? "# exported log, tracker and gyro on one clock\n" : "";
   text +=
@@ -200,11 +200,11 @@ std::string concealed_recording(const ConcealedCase& c, size_t run_index) {
   return text;
 }
 
-std::string concealed_truth_json(const ConcealedCase& c) {
+std::string injected_truth_json(const InjectedCase& c) {
   Json json;
   json["verdict"] = c.verdict;
   Json effects = Json::array();
-  for (const ConcealedEffect& effect : c.world.effects) {
+  for (const InjectedEffect& effect : c.world.effects) {
     Json e = {{"kind", effect.kind}};
     for (const auto& [key, numbers] : effect.parameters) e[key] = number_or_array(numbers);
     effects.push_back(e);
@@ -223,20 +223,20 @@ std::string concealed_truth_json(const ConcealedCase& c) {
                       {"drag", c.world.drag_N_m_s},
                       {"gyro_bias", c.world.gyro_bias_rad_s}};
   Json runs = Json::array();
-  for (const ConcealedRun& run : c.runs) {
+  for (const InjectedRun& run : c.runs) {
     runs.push_back({{"t0", start_s}, {"q0", run.start.attitude}, {"w0", run.start.rate_rad_s}});
   }
   json["runs"] = runs;
   return json.dump(1) + "\n";
 }
 
-void write_concealed_case(const ConcealedCase& concealed, const std::filesystem::path& folder) {
+void write_injected_case(const InjectedCase& injected, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  write_file_whole(folder / "experiment.toml", concealed_experiment(concealed, false));
-  write_file_whole(folder / "oracle.toml", concealed_experiment(concealed, true));
-  write_file_whole(folder / "run1.csv.gz", gzip(concealed_recording(concealed, 0)));
-  write_file_whole(folder / "run2.csv.gz", gzip(concealed_recording(concealed, 1)));
-  write_file_whole(folder / "truth.json", concealed_truth_json(concealed));
+  write_file_whole(folder / "experiment.toml", injected_experiment(injected, false));
+  write_file_whole(folder / "oracle.toml", injected_experiment(injected, true));
+  write_file_whole(folder / "run1.csv.gz", gzip(injected_recording(injected, 0)));
+  write_file_whole(folder / "run2.csv.gz", gzip(injected_recording(injected, 1)));
+  write_file_whole(folder / "truth.json", injected_truth_json(injected));
 }
 
 }  // namespace photorque

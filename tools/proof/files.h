@@ -1,4 +1,4 @@
-// A concealed case as files: what the laboratory believes, what it recorded, and the truth.
+// An injected case as files: what the laboratory believes, what it recorded, and the truth.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +8,18 @@
 
 namespace photorque {
 
-// The experiment file. `told_truth` adds the concealed effects with their true numbers: the same
+// The experiment file. `told_truth` adds the injected effects with their true numbers: the same
 // program given that is the oracle that a diagnosis is measured against.
-std::string concealed_experiment(const ConcealedCase& concealed, bool told_truth);
+std::string injected_experiment(const InjectedCase& injected, bool told_truth);
 
 // The recording of run 0 or 1 as the contract's CSV, read by instruments with noise and, where the
 // case is dirty, faults.
-std::string concealed_recording(const ConcealedCase& concealed, size_t run);
+std::string injected_recording(const InjectedCase& injected, size_t run);
 
-std::string concealed_truth_json(const ConcealedCase& concealed);
+std::string injected_truth_json(const InjectedCase& injected);
 
 // Writes experiment.toml, run1.csv.gz, run2.csv.gz, oracle.toml and, last, truth.json: a folder
 // that has one is complete.
-void write_concealed_case(const ConcealedCase& concealed, const std::filesystem::path& folder);
+void write_injected_case(const InjectedCase& injected, const std::filesystem::path& folder);
 
 }  // namespace photorque

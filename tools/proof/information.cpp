@@ -10,9 +10,9 @@
 namespace photorque {
 namespace {
 
-using namespace concealed;
+using namespace injected;
 
-constexpr double start_s = -0.5;  // see concealed_files.cpp
+constexpr double start_s = -0.5;  // see files.cpp
 // Good to 1e-5 of an effect at up to 1 rad/s, to a per cent of the fastest tones.
 constexpr double step_s = 0.05;
 constexpr double arcsecond = pi / 180.0 / 3600.0;
@@ -54,7 +54,7 @@ const std::vector<Nudge>& nudges() {
 
 }  // namespace
 
-ConcealedInformation::ConcealedInformation(const ConcealedCase& concealed) : case_(concealed) {
+InjectedInformation::InjectedInformation(const InjectedCase& injected) : case_(injected) {
   // A reading every 0.7 s or so, at uneven times, stands for those around it.
   const double duration_s = case_.runs[0].duration_s;
   const auto count = static_cast<size_t>(duration_s / 0.7);
@@ -67,35 +67,35 @@ ConcealedInformation::ConcealedInformation(const ConcealedCase& concealed) : cas
   add_nuisances();
 }
 
-void ConcealedInformation::add_nuisances() {
+void InjectedInformation::add_nuisances() {
   std::vector<Eigen::VectorXd> columns;
   std::vector<double> prior_sigma;  // of each column; 0: free
-  const auto add = [&](const ConcealedWorld& world, const ConcealedStart& start, double by,
+  const auto add = [&](const InjectedWorld& world, const InjectedStart& start, double by,
                        double sigma) {
     columns.emplace_back(difference(sample(world, start)) / by);
     prior_sigma.push_back(sigma);
   };
-  const ConcealedBeliefs& beliefs = case_.beliefs;
-  const ConcealedStart& start = case_.runs[0].start;
+  const InjectedPriors& priors = case_.priors;
+  const InjectedStart& start = case_.runs[0].start;
   for (size_t k = 0; k < 3; ++k) {
     Triple turn = {};
     turn[k] = 1e-6;
-    ConcealedStart turned = start;
+    InjectedStart turned = start;
     turned.attitude = product(quaternion_of(turn), start.attitude);
     add(case_.world, turned, 1e-6, 0.0);
-    ConcealedStart faster = start;
+    InjectedStart faster = start;
     faster.rate_rad_s[k] += 1e-7;
     add(case_.world, faster, 1e-7, 0.0);
-    ConcealedWorld world = case_.world;
+    InjectedWorld world = case_.world;
     world.offset_m[k] += 1e-8;
-    if (beliefs.offset_sigma_m[k] > 0.0) add(world, start, 1e-8, beliefs.offset_sigma_m[k]);
+    if (priors.offset_sigma_m[k] > 0.0) add(world, start, 1e-8, priors.offset_sigma_m[k]);
     world = case_.world;
     world.gyro_bias_rad_s[k] += 1e-6;
-    if (beliefs.gyro_bias_sigma_rad_s > 0.0) add(world, start, 1e-6, beliefs.gyro_bias_sigma_rad_s);
+    if (priors.gyro_bias_sigma_rad_s > 0.0) add(world, start, 1e-6, priors.gyro_bias_sigma_rad_s);
   }
-  ConcealedWorld world = case_.world;
+  InjectedWorld world = case_.world;
   world.drag_N_m_s += 1e-8;
-  if (beliefs.drag_sigma_N_m_s > 0.0) add(world, start, 1e-8, beliefs.drag_sigma_N_m_s);
+  if (priors.drag_sigma_N_m_s > 0.0) add(world, start, 1e-8, priors.drag_sigma_N_m_s);
 
   const auto n = static_cast<Eigen::Index>(columns.size()), rows = columns[0].size();
   nuisance_ = Eigen::MatrixXd::Zero(rows + n, n);
@@ -106,26 +106,26 @@ void ConcealedInformation::add_nuisances() {
   }
 }
 
-ConcealedInformation::Sampled ConcealedInformation::sample(const ConcealedWorld& world,
-                                                           const ConcealedStart& start) const {
-  const double latency_s = concealed_latency_s(world);
+InjectedInformation::Sampled InjectedInformation::sample(const InjectedWorld& world,
+                                                         const InjectedStart& start) const {
+  const double latency_s = injected_latency_s(world);
   const auto& commands = case_.runs[0].commands;
-  const auto moments = concealed_motion(world, commands, start, start_s, times_s_, step_s);
+  const auto moments = injected_motion(world, commands, start, start_s, times_s_, step_s);
   Sampled sampled;
-  for (const ConcealedMoment& moment : moments) {
+  for (const InjectedContext& moment : moments) {
     sampled.gyro_rad_s.push_back(moment.gyro_rad_s);
     sampled.camera.push_back(moment.camera);
   }
   if (latency_s == 0.0) return sampled;
   std::vector<double> seen_s = times_s_;
   for (double& t : seen_s) t = std::max(start_s, t - latency_s);
-  const auto seen = concealed_motion(world, commands, start, start_s, seen_s, step_s);
+  const auto seen = injected_motion(world, commands, start, start_s, seen_s, step_s);
   for (size_t i = 0; i < seen.size(); ++i) sampled.camera[i] = seen[i].camera;
   return sampled;
 }
 
-Eigen::VectorXd ConcealedInformation::difference(const Sampled& sampled) const {
-  const ConcealedSensors& sensors = case_.sensors;
+Eigen::VectorXd InjectedInformation::difference(const Sampled& sampled) const {
+  const InjectedSensors& sensors = case_.sensors;
   const double camera_weight = weight_ / std::sqrt(sensors.camera_every);
   Eigen::VectorXd all(static_cast<Eigen::Index>(6 * times_s_.size()));
   for (size_t i = 0; i < times_s_.size(); ++i) {
@@ -140,29 +140,29 @@ Eigen::VectorXd ConcealedInformation::difference(const Sampled& sampled) const {
   return all;
 }
 
-Eigen::VectorXd ConcealedInformation::change_by(size_t index, double share) const {
-  ConcealedWorld world = case_.world;
-  ConcealedEffect& effect = world.effects[index];
+Eigen::VectorXd InjectedInformation::change_by(size_t index, double fraction) const {
+  InjectedWorld world = case_.world;
+  InjectedEffect& effect = world.effects[index];
   // What an appendage does is not in proportion to its inertia, which also moves its resonance.
   if (effect.parameters.empty() || effect.kind == "flexible_mode") {
     world.effects.erase(world.effects.begin() + static_cast<ptrdiff_t>(index));
-    share = 1.0;
+    fraction = 1.0;
   } else {
-    scale_effect(effect, 1.0 - share);
+    scale_effect(effect, 1.0 - fraction);
   }
-  return -difference(sample(world, case_.runs[0].start)) / share;
+  return -difference(sample(world, case_.runs[0].start)) / fraction;
 }
 
-Eigen::MatrixXd ConcealedInformation::columns_of(const std::string& kind) const {
+Eigen::MatrixXd InjectedInformation::columns_of(const std::string& kind) const {
   std::vector<Eigen::VectorXd> columns;
-  const ConcealedStart& start = case_.runs[0].start;
-  const auto add = [&](const ConcealedEffect& effect, double by) {
-    ConcealedWorld world = case_.world;
+  const InjectedStart& start = case_.runs[0].start;
+  const auto add = [&](const InjectedEffect& effect, double by) {
+    InjectedWorld world = case_.world;
     world.effects.push_back(effect);
     columns.emplace_back(difference(sample(world, start)) / by);
   };
   const auto add_tone = [&](const std::string& name, const std::string& key, double by,
-                            const ConcealedEffect& acting) {
+                            const InjectedEffect& acting) {
     for (size_t k = 0; k < 6; ++k) {
       std::vector<double> numbers(3, 0.0);
       numbers[k % 3] = by;
@@ -183,7 +183,7 @@ Eigen::MatrixXd ConcealedInformation::columns_of(const std::string& kind) const 
     }
   }
   // A tone is searched at the frequency of the one that acts.
-  for (const ConcealedEffect& acting : case_.world.effects) {
+  for (const InjectedEffect& acting : case_.world.effects) {
     if (kind == "periodic_torque" && acting.kind == "floor_vibration") {
       add_tone(kind, "torque_N_m", 1e-8, acting);
     } else if (kind == "floor_vibration" && acting.kind == "periodic_torque") {
@@ -196,8 +196,8 @@ Eigen::MatrixXd ConcealedInformation::columns_of(const std::string& kind) const 
   return matrix;
 }
 
-double ConcealedInformation::gain(const Eigen::VectorXd& change,
-                                  const std::vector<Eigen::MatrixXd>& others) const {
+double InjectedInformation::gain(const Eigen::VectorXd& change,
+                                 const std::vector<Eigen::MatrixXd>& others) const {
   Eigen::MatrixXd all = nuisance_;
   for (const Eigen::MatrixXd& columns : others) {
     const Eigen::Index at = all.cols();
@@ -212,29 +212,29 @@ double ConcealedInformation::gain(const Eigen::VectorXd& change,
   }
   Eigen::VectorXd left = Eigen::VectorXd::Zero(all.rows());
   left.head(change.size()) = change;
-  const Eigen::VectorXd share = all.colPivHouseholderQr().solve(left);
-  return (left - all * share).squaredNorm();
+  const Eigen::VectorXd fraction = all.colPivHouseholderQr().solve(left);
+  return (left - all * fraction).squaredNorm();
 }
 
-std::vector<std::string> ConcealedInformation::competitors() const {
+std::vector<std::string> InjectedInformation::competitors() const {
   bool turns = false, commanded = false;
   for (const auto& q : base_.camera) turns = turns || length(turn_of(q)) > 3.0;
-  for (const ConcealedCommand& c : case_.runs[0].commands) {
+  for (const InjectedCommand& c : case_.runs[0].commands) {
     commanded = commanded || length(c.torque_N_m) > 0.0;
   }
   std::vector<std::string> kinds;
   for (const Nudge& nudge : nudges()) {
     const std::string& kind = nudge.kind;
-    const ConcealedBeliefs& beliefs = case_.beliefs;
+    const InjectedPriors& priors = case_.priors;
     // A tether jumps where the shortest way back changes side.
     const bool cannot = (kind == "tether" && turns) || (kind == "actuator_gain" && !commanded) ||
-                        // Uncertain beliefs are nuisances already.
-                        (kind == "static_unbalance" && beliefs.offset_sigma_m[0] > 0.0) ||
-                        (kind == "bearing_drag" && beliefs.drag_sigma_N_m_s > 0.0) ||
-                        (kind == "gyro_bias" && beliefs.gyro_bias_sigma_rad_s > 0.0);
+                        // Uncertain priors are nuisances already.
+                        (kind == "static_unbalance" && priors.offset_sigma_m[0] > 0.0) ||
+                        (kind == "bearing_drag" && priors.drag_sigma_N_m_s > 0.0) ||
+                        (kind == "gyro_bias" && priors.gyro_bias_sigma_rad_s > 0.0);
     if (!cannot) kinds.push_back(kind);
   }
-  for (const ConcealedEffect& acting : case_.world.effects) {
+  for (const InjectedEffect& acting : case_.world.effects) {
     if (acting.kind == "floor_vibration") kinds.emplace_back("periodic_torque");
     if (acting.kind == "periodic_torque") kinds.emplace_back("floor_vibration");
   }

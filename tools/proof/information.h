@@ -1,7 +1,7 @@
-// What the readings of a concealed run can tell, to first order.
+// What the readings of an injected run can tell, to first order.
 //
 // Differences of simulated readings, in units of their noise, are the columns of a linear model.
-// The initial state and the uncertain beliefs (with their priors) may take up what they can; what
+// The initial state and the uncertain priors (with their priors) may take up what they can; what
 // is left of an effect's own difference is what can be seen of it.
 #pragma once
 
@@ -15,19 +15,19 @@
 namespace photorque {
 
 // Columns for the first run of a case, about its true motion.
-class ConcealedInformation {
+class InjectedInformation {
  public:
-  explicit ConcealedInformation(const ConcealedCase& concealed);
+  explicit InjectedInformation(const InjectedCase& injected);
 
   // How the readings change by effect `index` of the case's world: `share` of it taken away,
   // divided by `share`, which must be small where the effect is strong. What has no strength to
   // which it is proportional is taken away whole.
-  Eigen::VectorXd change_by(size_t index, double share) const;
+  Eigen::VectorXd change_by(size_t index, double fraction) const;
 
   // The columns of a kind's numbers, about the true motion.
   Eigen::MatrixXd columns_of(const std::string& kind) const;
 
-  // The part of `change`, squared, that neither the start, the uncertain beliefs nor the columns of
+  // The part of `change`, squared, that neither the start, the uncertain priors nor the columns of
   // `others` can take up: what chi² gains by knowing.
   double gain(const Eigen::VectorXd& change, const std::vector<Eigen::MatrixXd>& others = {}) const;
 
@@ -39,12 +39,12 @@ class ConcealedInformation {
     std::vector<std::array<double, 4>> camera;
     std::vector<Triple> gyro_rad_s;
   };
-  Sampled sample(const ConcealedWorld& world, const ConcealedStart& start) const;
+  Sampled sample(const InjectedWorld& world, const InjectedStart& start) const;
   // From the base, in units of the noise.
   Eigen::VectorXd difference(const Sampled& sampled) const;
   void add_nuisances();
 
-  ConcealedCase case_;
+  InjectedCase case_;
   std::vector<double> times_s_;
   double weight_ = 1.0;  // root of the readings that one of times_s_ stands for
   Sampled base_;

@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/numerics/random.h"
 
-namespace photorque::concealed {
+namespace photorque::injected {
 namespace {
 
 Triple triple(const Numbers& p, size_t first = 0) {
@@ -82,8 +82,8 @@ Triple tether(const Numbers& p, const Surroundings& s) {
 }
 
 Triple floor_vibration(const Numbers& p, const Surroundings& s) {
-  const double wave = std::sin(2.0 * pi * p[3] * s.time_s + p[4]);
-  return times(-s.mass_kg * wave, cross(s.offset_m, to_body(s.attitude, triple(p))));
+  const double bounce = std::sin(2.0 * pi * p[3] * s.time_s + p[4]);
+  return times(-s.mass_kg * bounce, cross(s.offset_m, to_body(s.attitude, triple(p))));
 }
 
 Triple periodic_torque(const Numbers& p, const Surroundings& s) {
@@ -116,13 +116,13 @@ Triple slow_random_torque(const Numbers& p, const Surroundings& s) {
   Triple sum = {};
   double power = 0.0;
   for (int i = 0; i < tones; ++i) {
-    const double pulsation = (0.04 + 0.24 * i) / p[3];
-    const double density = 1.0 / (1.0 + std::pow(pulsation * p[3], 2));
+    const double angular_frequency = (0.04 + 0.24 * i) / p[3];
+    const double density = 1.0 / (1.0 + std::pow(angular_frequency * p[3], 2));
     power += 0.5 * density;
     for (size_t k = 0; k < 3; ++k) {
       const double phase =
           2.0 * pi * unit_interval(hash_words(static_cast<uint64_t>(p[4]), 77, i, k));
-      sum[k] += std::sqrt(density) * std::sin(pulsation * s.time_s + phase);
+      sum[k] += std::sqrt(density) * std::sin(angular_frequency * s.time_s + phase);
     }
   }
   return to_body(s.attitude, times(1.0 / std::sqrt(power), by_component(triple(p), sum)));
@@ -184,7 +184,7 @@ const LawEntry& law_of(const std::string& kind) {
   return *found;
 }
 
-Numbers numbers_of(const ConcealedEffect& effect) {
+Numbers numbers_of(const InjectedEffect& effect) {
   Numbers numbers;
   for (const std::string& key : law_of(effect.kind).keys) {
     const auto found = effect.parameters.find(key);
@@ -196,4 +196,4 @@ Numbers numbers_of(const ConcealedEffect& effect) {
   return numbers;
 }
 
-}  // namespace photorque::concealed
+}  // namespace photorque::injected

@@ -1,4 +1,4 @@
-// The torque laws of the concealed motion, one function each.
+// The torque laws of the injected motion, one function each.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 #include "tools/proof/motion.h"
 #include "tools/proof/vectors.h"
 
-namespace photorque::concealed {
+namespace photorque::injected {
 
 // What a law may look at. Vectors in body axes.
 struct Surroundings {
@@ -38,6 +38,6 @@ struct LawEntry {
 const std::vector<LawEntry>& laws();
 // NumericalError for an unknown kind.
 const LawEntry& law_of(const std::string& kind);
-Numbers numbers_of(const ConcealedEffect& effect);
+Numbers numbers_of(const InjectedEffect& effect);
 
-}  // namespace photorque::concealed
+}  // namespace photorque::injected

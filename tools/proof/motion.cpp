@@ -12,7 +12,7 @@
 namespace photorque {
 namespace {
 
-using namespace concealed;
+using namespace injected;
 
 constexpr double earth_rate_1_s = 7.292115e-5;
 constexpr size_t state_size = 10;  // attitude 4, rate 3, charge [Ah], appendage's angle and rate
@@ -26,18 +26,18 @@ struct Acting {
 // An appendage on a spring: angle beside the body, and its absolute rate.
 struct Appendage {
   Triple axis = {};
-  double pulsation_1_s = 0.0, damping = 0.0, inertia_kg_m2 = 0.0;
+  double angular_frequency_1_s = 0.0, damping = 0.0, inertia_kg_m2 = 0.0;
 };
 
 class Equations {
  public:
-  explicit Equations(const ConcealedWorld& world) : world_(world), inertia_(world.inertia_kg_m2) {
+  explicit Equations(const InjectedWorld& world) : world_(world), inertia_(world.inertia_kg_m2) {
     gravity_lab_ = {0, 0, -world.gravity_m_s2};
     acting_.push_back({{world.drag_N_m_s}, law_of("bearing_drag").torque});
     acting_.push_back({numbers_of({"static_unbalance",
                                    {{"offset_m", {world.offset_m.begin(), world.offset_m.end()}}}}),
                        law_of("static_unbalance").torque});
-    for (const ConcealedEffect& effect : world.effects) add(effect);
+    for (const InjectedEffect& effect : world.effects) add(effect);
     own_inertia_ = inertia_;
     if (appendage_) {
       const Triple& a = appendage_->axis;
@@ -48,7 +48,7 @@ class Equations {
     inverse_ = inverse(own_inertia_);
   }
 
-  State begin(const ConcealedStart& start) const {
+  State begin(const InjectedStart& start) const {
     State y = {};
     std::copy(start.attitude.begin(), start.attitude.end(), y.begin());
     std::copy(start.rate_rad_s.begin(), start.rate_rad_s.end(), y.begin() + 4);
@@ -56,7 +56,7 @@ class Equations {
     return y;
   }
 
-  State rates(double time_s, const State& y, const ConcealedCommand& command) const {
+  State rates(double time_s, const State& y, const InjectedCommand& command) const {
     const Surroundings now = surroundings(time_s, y, command);
     Triple torque = command.torque_N_m;
     for (const Acting& a : acting_) torque = plus(torque, a.torque(a.numbers, now));
@@ -70,7 +70,8 @@ class Equations {
     if (appendage_) {
       const Appendage& a = *appendage_;
       d[8] = y[9] - dot(a.axis, now.rate);
-      const double pull = a.pulsation_1_s * (a.pulsation_1_s * y[8] + 2.0 * a.damping * d[8]);
+      const double pull =
+          a.angular_frequency_1_s * (a.angular_frequency_1_s * y[8] + 2.0 * a.damping * d[8]);
       d[9] = -pull;
       torque = plus(torque, times(a.inertia_kg_m2 * pull, a.axis));
       momentum = plus(momentum, times(a.inertia_kg_m2 * y[9], a.axis));
@@ -83,8 +84,8 @@ class Equations {
   }
 
   // What the instruments read in a state.
-  ConcealedMoment read(double time_s, const State& y) const {
-    ConcealedMoment moment;
+  InjectedContext read(double time_s, const State& y) const {
+    InjectedContext moment;
     moment.time_s = time_s;
     moment.attitude = normalised({y[0], y[1], y[2], y[3]});
     moment.camera = product(moment.attitude, quaternion_of(camera_turn_));
@@ -98,7 +99,7 @@ class Equations {
   // Jumps of the laws after `from_s` and before `to_s`.
   std::vector<double> jumps(double from_s, double to_s) const {
     std::vector<double> all;
-    for (const ConcealedEffect& effect : world_.effects) {
+    for (const InjectedEffect& effect : world_.effects) {
       if (effect.kind == "mass_shift") all.push_back(effect.parameters.at("time_s")[0]);
       if (effect.kind != "pulsed_torque") continue;
       const double period_s = effect.parameters.at("period_s")[0];
@@ -112,7 +113,7 @@ class Equations {
   }
 
  private:
-  void add(const ConcealedEffect& effect) {
+  void add(const InjectedEffect& effect) {
     const LawEntry& law = law_of(effect.kind);
     const Numbers p = numbers_of(effect);
     if (law.torque != nullptr) acting_.push_back({p, law.torque});
@@ -139,7 +140,7 @@ class Equations {
     }
   }
 
-  Surroundings surroundings(double time_s, const State& y, const ConcealedCommand& command) const {
+  Surroundings surroundings(double time_s, const State& y, const InjectedCommand& command) const {
     Surroundings s;
     s.time_s = time_s;
     s.attitude = normalised({y[0], y[1], y[2], y[3]});
@@ -157,7 +158,7 @@ class Equations {
     return s;
   }
 
-  ConcealedWorld world_;
+  InjectedWorld world_;
   Matrix inertia_, own_inertia_ = {}, inverse_ = {};
   Triple gravity_lab_ = {}, earth_lab_ = {};
   Triple bias_ = {}, gyro_scale_ = {}, gyro_turn_ = {}, camera_turn_ = {};
@@ -172,7 +173,7 @@ State along(const State& y, double by, const State& d) {
 }
 
 // Kutta's classical step. A law that jumps at either end is looked at just inside.
-State step(const Equations& equations, const ConcealedCommand& command, double t, const State& y,
+State step(const Equations& equations, const InjectedCommand& command, double t, const State& y,
            double h) {
   const double inside = 1e-9 * h;
   const State a = equations.rates(t + inside, y, command);
@@ -188,7 +189,7 @@ State step(const Equations& equations, const ConcealedCommand& command, double t
 
 }  // namespace
 
-std::vector<std::string> concealed_kinds() {
+std::vector<std::string> injected_kinds() {
   std::vector<std::string> names;
   for (const LawEntry& law : laws()) names.push_back(law.kind);
   return names;
@@ -198,7 +199,7 @@ bool is_outside_catalogue(const std::string& kind) {
   return !law_of(kind).in_catalogue;
 }
 
-void scale_effect(ConcealedEffect& effect, double by) {
+void scale_effect(InjectedEffect& effect, double by) {
   static const std::set<std::string> shape = {"time_s", "frequency_Hz", "phase",    "damping",
                                               "axis",   "periods",      "period_s", "seed"};
   for (auto& [key, numbers] : effect.parameters) {
@@ -207,22 +208,22 @@ void scale_effect(ConcealedEffect& effect, double by) {
   }
 }
 
-double concealed_latency_s(const ConcealedWorld& world) {
-  for (const ConcealedEffect& effect : world.effects) {
+double injected_latency_s(const InjectedWorld& world) {
+  for (const InjectedEffect& effect : world.effects) {
     if (effect.kind == "attitude_latency") return effect.parameters.at("latency_s")[0];
   }
   return 0.0;
 }
 
-std::vector<ConcealedMoment> concealed_motion(const ConcealedWorld& world,
-                                              const std::vector<ConcealedCommand>& commands,
-                                              const ConcealedStart& start, double from_s,
-                                              const std::vector<double>& times_s, double step_s) {
+std::vector<InjectedContext> injected_motion(const InjectedWorld& world,
+                                             const std::vector<InjectedCommand>& commands,
+                                             const InjectedStart& start, double from_s,
+                                             const std::vector<double>& times_s, double step_s) {
   const Equations equations(world);
-  std::vector<ConcealedMoment> moments;
+  std::vector<InjectedContext> moments;
   if (times_s.empty()) return moments;
   std::vector<double> stops = equations.jumps(from_s, times_s.back());
-  for (const ConcealedCommand& c : commands) stops.push_back(c.time_s);
+  for (const InjectedCommand& c : commands) stops.push_back(c.time_s);
   std::ranges::sort(stops);
 
   State y = equations.begin(start);
@@ -233,7 +234,7 @@ std::vector<ConcealedMoment> concealed_motion(const ConcealedWorld& world,
     const double h = steps > 0 ? (end_s - t) / steps : 0.0;
     while (held + 1 < commands.size() && commands[held + 1].time_s <= t + 1e-12) ++held;
     const bool before = commands.empty() || commands[held].time_s > t + 1e-12;
-    const ConcealedCommand now = before ? ConcealedCommand{} : commands[held];
+    const InjectedCommand now = before ? InjectedCommand{} : commands[held];
     for (int i = 0; i < steps; ++i) y = step(equations, now, t + i * h, y, h);
     t = end_s;
   };

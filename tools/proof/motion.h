@@ -1,4 +1,4 @@
-// The moving platform of `prove`: what really happens in a concealed case.
+// The moving platform of `prove`: what really happens in an injected case.
 //
 // A second implementation of the catalogue, so that `diagnose` is not tried on its own equations.
 // It shares no code with folder attitude: the laws are written again in plain arithmetic, every
@@ -17,25 +17,25 @@ namespace photorque {
 using Triple = std::array<double, 3>;
 
 // An effect with its numbers in SI units, keys as in an experiment file.
-struct ConcealedEffect {
+struct InjectedEffect {
   std::string kind;
   std::map<std::string, std::vector<double>> parameters;
 };
 
 // What holds from its time to the next.
-struct ConcealedCommand {
+struct InjectedCommand {
   double time_s = 0.0;
   Triple torque_N_m = {};
   double battery_current_A = 0.0;
 };
 
-struct ConcealedStart {
+struct InjectedStart {
   std::array<double, 4> attitude = {1, 0, 0, 0};  // w, x, y, z: lab from body
   Triple rate_rad_s = {};                         // body axes
 };
 
 // Everything that acts.
-struct ConcealedWorld {
+struct InjectedWorld {
   double mass_kg = 1.0;
   std::array<Triple, 3> inertia_kg_m2 = {};
   double gravity_m_s2 = 9.80665;
@@ -44,11 +44,11 @@ struct ConcealedWorld {
   Triple offset_m = {};     // of the centre of mass
   double drag_N_m_s = 0.0;  // of the bearing
   Triple gyro_bias_rad_s = {};
-  std::vector<ConcealedEffect> effects;
+  std::vector<InjectedEffect> effects;
 };
 
 // What noiseless instruments read, and the state behind it.
-struct ConcealedMoment {
+struct InjectedContext {
   double time_s = 0.0;
   std::array<double, 4> attitude = {1, 0, 0, 0};  // true
   std::array<double, 4> camera = {1, 0, 0, 0};    // misaligned; not delayed
@@ -63,18 +63,18 @@ struct ConcealedMoment {
 //   slow_random_torque (torque_N_m[3] rms about lab axes, time_s correlation, seed);
 //   exponential_decay (torque_N_m[3] body, time_s);
 //   pulsed_torque (torque_N_m[3] body, period_s): on for the first third of each period.
-std::vector<std::string> concealed_kinds();
+std::vector<std::string> injected_kinds();
 bool is_outside_catalogue(const std::string& kind);
 // Multiplies what makes the effect strong: torques, offsets, gains, not times or frequencies.
-void scale_effect(ConcealedEffect& effect, double by);
-double concealed_latency_s(const ConcealedWorld& world);
+void scale_effect(InjectedEffect& effect, double by);
+double injected_latency_s(const InjectedWorld& world);
 
 // Noiseless readings at `times_s` (rising, not before `from_s`, where the motion starts). Steps of
 // at most `step_s` that end at every jump; the error falls with its fourth power: 1e-9 rad for
 // 0.01 s and rates below 1 rad/s. NumericalError for an unknown kind and when the motion diverges.
-std::vector<ConcealedMoment> concealed_motion(const ConcealedWorld& world,
-                                              const std::vector<ConcealedCommand>& commands,
-                                              const ConcealedStart& start, double from_s,
-                                              const std::vector<double>& times_s, double step_s);
+std::vector<InjectedContext> injected_motion(const InjectedWorld& world,
+                                             const std::vector<InjectedCommand>& commands,
+                                             const InjectedStart& start, double from_s,
+                                             const std::vector<double>& times_s, double step_s);
 
 }  // namespace photorque

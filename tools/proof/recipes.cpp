@@ -2,35 +2,35 @@
 
 #include <algorithm>
 
-namespace photorque::concealed {
+namespace photorque::injected {
 namespace {
 
-using Case = ConcealedCase;
+using Case = InjectedCase;
 
 std::vector<double> list(const Triple& v) {
   return {v.begin(), v.end()};
 }
 
 // An effect whose only number is a vector of random direction.
-std::function<ConcealedEffect(RandomDraw&, const Case&)> vector_of(const std::string& kind,
-                                                                   const std::string& key,
-                                                                   double size) {
+std::function<InjectedEffect(RandomDraw&, const Case&)> vector_of(const std::string& kind,
+                                                                  const std::string& key,
+                                                                  double size) {
   return [=](RandomDraw& draw, const Case&) {
-    return ConcealedEffect{kind, {{key, list(times(size, draw.direction()))}}};
+    return InjectedEffect{kind, {{key, list(times(size, draw.direction()))}}};
   };
 }
 
-std::function<ConcealedEffect(RandomDraw&, const Case&)> number_of(const std::string& kind,
-                                                                   const std::string& key,
-                                                                   double size,
-                                                                   bool either_sign = false) {
+std::function<InjectedEffect(RandomDraw&, const Case&)> number_of(const std::string& kind,
+                                                                  const std::string& key,
+                                                                  double size,
+                                                                  bool either_sign = false) {
   return [=](RandomDraw& draw, const Case&) {
-    return ConcealedEffect{kind, {{key, {either_sign ? draw.sign() * size : size}}}};
+    return InjectedEffect{kind, {{key, {either_sign ? draw.sign() * size : size}}}};
   };
 }
 
-std::function<ConcealedEffect(RandomDraw&, const Case&)> nothing_of(const std::string& kind) {
-  return [=](RandomDraw&, const Case&) { return ConcealedEffect{kind, {}}; };
+std::function<InjectedEffect(RandomDraw&, const Case&)> nothing_of(const std::string& kind) {
+  return [=](RandomDraw&, const Case&) { return InjectedEffect{kind, {}}; };
 }
 
 // Slow enough for four readings a period.
@@ -38,34 +38,34 @@ double frequency_Hz(RandomDraw& draw, const Case& c) {
   return draw.log_uniform(0.15, std::min(3.0, 0.25 * c.sensors.rate_Hz / c.sensors.camera_every));
 }
 
-ConcealedEffect mass_shift(RandomDraw& draw, const Case& c) {
+InjectedEffect mass_shift(RandomDraw& draw, const Case& c) {
   const double time_s = draw.uniform(0.25, 0.65) * c.runs[0].duration_s;
   return {"mass_shift",
           {{"time_s", {std::round(10.0 * time_s) / 10.0}},
            {"offset_m", list(times(2e-6, draw.direction()))}}};
 }
 
-ConcealedEffect elastic_sag(RandomDraw& draw, const Case&) {
+InjectedEffect elastic_sag(RandomDraw& draw, const Case&) {
   return {"elastic_sag",
           {{"compliance_s2",
             {draw.uniform(0.2e-7, 1e-7), draw.uniform(0.2e-7, 1e-7), draw.uniform(0.2e-7, 1e-7)}}}};
 }
 
-ConcealedEffect floor_vibration(RandomDraw& draw, const Case& c) {
+InjectedEffect floor_vibration(RandomDraw& draw, const Case& c) {
   return {"floor_vibration",
           {{"acceleration_m_s2", list(times(0.05, draw.direction()))},
            {"frequency_Hz", {frequency_Hz(draw, c)}},
            {"phase", {draw.uniform(-3.1, 3.1)}}}};
 }
 
-ConcealedEffect periodic_torque(RandomDraw& draw, const Case& c) {
+InjectedEffect periodic_torque(RandomDraw& draw, const Case& c) {
   return {"periodic_torque",
           {{"torque_N_m", list(times(5e-5, draw.direction()))},
            {"frequency_Hz", {frequency_Hz(draw, c)}},
            {"phase", {draw.uniform(-3.1, 3.1)}}}};
 }
 
-ConcealedEffect flexible_mode(RandomDraw& draw, const Case& c) {
+InjectedEffect flexible_mode(RandomDraw& draw, const Case& c) {
   const Triple axis = draw.direction();
   double about_axis = 0.0;
   for (size_t k = 0; k < 3; ++k) about_axis += axis[k] * axis[k] * c.world.inertia_kg_m2[k][k];
@@ -76,7 +76,7 @@ ConcealedEffect flexible_mode(RandomDraw& draw, const Case& c) {
            {"inertia_kg_m2", {0.05 * about_axis}}}};
 }
 
-ConcealedEffect inertia_error(RandomDraw& draw, const Case& c) {
+InjectedEffect inertia_error(RandomDraw& draw, const Case& c) {
   std::vector<double> delta;
   double mean = 0.0;
   for (size_t k = 0; k < 3; ++k) {
@@ -88,31 +88,31 @@ ConcealedEffect inertia_error(RandomDraw& draw, const Case& c) {
   return {"inertia_error", {{"delta_kg_m2", delta}}};
 }
 
-ConcealedEffect gravity_tilt(RandomDraw& draw, const Case&) {
+InjectedEffect gravity_tilt(RandomDraw& draw, const Case&) {
   return {"gravity_tilt", {{"tilt_rad", {2e-3 * draw.normal(), 2e-3 * draw.normal()}}}};
 }
 
-ConcealedEffect heading_cogging(RandomDraw& draw, const Case&) {
+InjectedEffect heading_cogging(RandomDraw& draw, const Case&) {
   return {"heading_cogging",
           {{"torque_N_m", {5e-6}},
            {"periods", {static_cast<double>(2 + draw.below(4))}},
            {"phase", {draw.uniform(-3.1, 3.1)}}}};
 }
 
-ConcealedEffect slow_random_torque(RandomDraw& draw, const Case&) {
+InjectedEffect slow_random_torque(RandomDraw& draw, const Case&) {
   return {"slow_random_torque",
           {{"torque_N_m", list(times(3e-6, {draw.uniform(0, 1), draw.uniform(0, 1), 1.0}))},
            {"time_s", {draw.log_uniform(15.0, 50.0)}},
            {"seed", {std::floor(draw.uniform(1, 1e6))}}}};
 }
 
-ConcealedEffect exponential_decay(RandomDraw& draw, const Case&) {
+InjectedEffect exponential_decay(RandomDraw& draw, const Case&) {
   return {"exponential_decay",
           {{"torque_N_m", list(times(5e-6, draw.direction()))},
            {"time_s", {draw.log_uniform(20.0, 120.0)}}}};
 }
 
-ConcealedEffect pulsed_torque(RandomDraw& draw, const Case&) {
+InjectedEffect pulsed_torque(RandomDraw& draw, const Case&) {
   return {"pulsed_torque",
           {{"torque_N_m", list(times(5e-6, draw.direction()))},
            {"period_s", {draw.uniform(25.0, 90.0)}}}};
@@ -198,4 +198,4 @@ std::vector<Recipe> recipes() {
   };
 }
 
-}  // namespace photorque::concealed
+}  // namespace photorque::injected

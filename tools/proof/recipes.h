@@ -1,4 +1,4 @@
-// How each concealed effect is drawn.
+// How each injected effect is drawn.
 #pragma once
 
 #include <functional>
@@ -8,13 +8,13 @@
 #include "tools/proof/case.h"
 #include "tools/proof/draw.h"
 
-namespace photorque::concealed {
+namespace photorque::injected {
 
 struct Recipe {
   std::string kind;
   // The effect at a size that is plausible in a laboratory; the strength is then fitted to what the
   // readings shall show.
-  std::function<ConcealedEffect(RandomDraw&, const ConcealedCase&)> draw;
+  std::function<InjectedEffect(RandomDraw&, const InjectedCase&)> draw;
   double most = 30.0;  // times that size at most
   bool needs_commands = false;
   bool needs_small_turns = false;
@@ -23,7 +23,7 @@ struct Recipe {
   std::string depends_on = {};
 };
 
-// One per kind of concealed_kinds().
+// One per kind of injected_kinds().
 std::vector<Recipe> recipes();
 
-}  // namespace photorque::concealed
+}  // namespace photorque::injected

@@ -1,4 +1,4 @@
-// Scores of diagnoses against what was concealed.
+// Scores of diagnoses against what was injected.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ struct CaseScore {
   std::string name, family;  // as in truth.json; family "case" where that names none
   std::string true_verdict, verdict;
   std::vector<std::string> true_kinds, kinds;
-  double chi2_gain = 0.0;  // what the data can show of the concealed effects; NaN: not stated
+  double chi2_gain = 0.0;  // what the data can show of the injected effects; NaN: not stated
   bool answered = false;   // a diagnosis.json was written
   std::string failure;     // what the program said instead
   bool verdict_right = false;
@@ -41,8 +41,8 @@ CaseScore score_case(const std::filesystem::path& truth_folder,
                      const std::filesystem::path& diagnosis_folder,
                      const std::filesystem::path& oracle_folder);
 
-// k of n as a share with its interval of 95 % (E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209).
-struct Share {
+// k of n as a fraction with its interval of 95 % (E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209).
+struct Fraction {
   int hits = 0, of = 0;
   double low() const;
   double high() const;
@@ -51,7 +51,7 @@ struct Share {
 // The headline counts: one row per question, "aim" in words.
 struct ProofRow {
   std::string question;
-  Share share;
+  Fraction fraction;
   std::string aim;
 };
 std::vector<ProofRow> proof_rows(const std::vector<CaseScore>& scores);
@@ -60,7 +60,7 @@ std::vector<ProofRow> proof_rows(const std::vector<CaseScore>& scores);
 Table proof_by_kind(const std::vector<CaseScore>& scores);
 // One row per case.
 Table proof_cases(const std::vector<CaseScore>& scores);
-// Stated probability, in five bins, beside the share that was right.
+// Stated probability, in five bins, beside the fraction that was right.
 Table proof_reliability(const std::vector<CaseScore>& scores);
 // The headline counts as a table, and figures of pulls, held-out error and time.
 Table proof_summary(const std::vector<CaseScore>& scores);

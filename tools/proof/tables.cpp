@@ -12,14 +12,15 @@ constexpr double visible = 30.0;  // gain of chi² from which a name is asked fo
 constexpr double hopeless = 6.0;  // and below which nothing can be said
 
 template <class Belongs, class Hits>
-Share share_of(const std::vector<CaseScore>& scores, const Belongs& belongs, const Hits& hits) {
-  Share share;
+Fraction fraction_of(const std::vector<CaseScore>& scores, const Belongs& belongs,
+                     const Hits& hits) {
+  Fraction fraction;
   for (const CaseScore& s : scores) {
     if (!belongs(s)) continue;
-    ++share.of;
-    share.hits += hits(s) ? 1 : 0;
+    ++fraction.of;
+    fraction.hits += hits(s) ? 1 : 0;
   }
-  return share;
+  return fraction;
 }
 
 bool is_outside(const CaseScore& s) {
@@ -37,10 +38,10 @@ bool is_visible(const CaseScore& s) {
 }
 
 // Half width for 95 %.
-double wilson(const Share& share, double sign) {
-  if (share.of == 0) return sign < 0 ? 0.0 : 1.0;
+double wilson(const Fraction& fraction, double sign) {
+  if (fraction.of == 0) return sign < 0 ? 0.0 : 1.0;
   constexpr double z = 1.959963984540054;
-  const double n = share.of, p = share.hits / n, z2 = z * z / n;
+  const double n = fraction.of, p = fraction.hits / n, z2 = z * z / n;
   const double half = z * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n));
   return std::clamp((p + 0.5 * z2 + sign * half) / (1.0 + z2), 0.0, 1.0);
 }
@@ -60,10 +61,10 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-double Share::low() const {
+double Fraction::low() const {
   return wilson(*this, -1.0);
 }
-double Share::high() const {
+double Fraction::high() const {
   return wilson(*this, 1.0);
 }
 
@@ -77,22 +78,24 @@ std::vector<ProofRow> proof_rows(const std::vector<CaseScore>& scores) {
     return is_outside(s) && s.verdict == "unexplained";
   };
   std::vector<ProofRow> rows = {
-      {"all cases: verdict and names right", share_of(scores, all, right), "≥ 95 %"},
-      {"one effect that shows: name right", share_of(scores, single, right), "≥ 95 %"},
+      {"all cases: verdict and names right", fraction_of(scores, all, right), "≥ 95 %"},
+      {"one effect that shows: name right", fraction_of(scores, single, right), "≥ 95 %"},
       {"one effect that shows: right within the group named",
-       share_of(scores, single, [](const CaseScore& s) { return s.right_within_group; }), ""},
-      {"two effects: both names right", share_of(scores, pair, right), ""},
-      {"nothing missing: consistent", share_of(scores, is_none, right), "all"},
-      {"below the limit: consistent, or the right name", share_of(scores, below, right), "all"},
-      {"unknown law: unexplained, nothing wrong named", share_of(scores, is_outside, right), "all"},
+       fraction_of(scores, single, [](const CaseScore& s) { return s.right_within_group; }), ""},
+      {"two effects: both names right", fraction_of(scores, pair, right), ""},
+      {"nothing missing: consistent", fraction_of(scores, is_none, right), "all"},
+      {"below the limit: consistent, or the right name", fraction_of(scores, below, right), "all"},
+      {"unknown law: unexplained, nothing wrong named", fraction_of(scores, is_outside, right),
+       "all"},
       {"unknown law called unexplained: variable right",
-       share_of(scores, seen_unknown, [](const CaseScore& s) { return s.dependence_right; }), ""},
+       fraction_of(scores, seen_unknown, [](const CaseScore& s) { return s.dependence_right; }),
+       ""},
       {"cases with a wrong name",
-       share_of(scores, all, [](const CaseScore& s) { return s.wrong_name; }), "none"},
+       fraction_of(scores, all, [](const CaseScore& s) { return s.wrong_name; }), "none"},
       {"cases without an answer",
-       share_of(scores, all, [](const CaseScore& s) { return !s.answered; }), "none"},
+       fraction_of(scores, all, [](const CaseScore& s) { return !s.answered; }), "none"},
   };
-  std::erase_if(rows, [](const ProofRow& row) { return row.share.of == 0; });
+  std::erase_if(rows, [](const ProofRow& row) { return row.fraction.of == 0; });
   return rows;
 }
 
@@ -103,10 +106,10 @@ Table proof_summary(const std::vector<CaseScore>& scores) {
   for (const ProofRow& row : proof_rows(scores)) {
     table.columns[0].texts.push_back(row.question);
     table.columns[1].texts.push_back(row.aim.empty() ? "-" : row.aim);
-    const double of = row.share.of;
+    const double of = row.fraction.of;
     size_t i = 2;
-    for (const double x : {static_cast<double>(row.share.hits), of, row.share.hits / of,
-                           row.share.low(), row.share.high()}) {
+    for (const double x : {static_cast<double>(row.fraction.hits), of, row.fraction.hits / of,
+                           row.fraction.low(), row.fraction.high()}) {
       table.columns[i++].values.push_back(x);
     }
   }
@@ -178,22 +181,22 @@ Table proof_reliability(const std::vector<CaseScore>& scores) {
     table.columns.push_back({name, {}, {}});
   }
   for (size_t bin = 0; bin + 1 < edges.size(); ++bin) {
-    Share share;
+    Fraction fraction;
     double stated = 0.0;
     for (const CaseScore& s : scores) {
       for (const auto& [probability, right] : s.claims) {
         const bool last = bin + 2 == edges.size();
         if (!(probability >= edges[bin] && (probability < edges[bin + 1] || last))) continue;
-        ++share.of;
-        share.hits += right ? 1 : 0;
+        ++fraction.of;
+        fraction.hits += right ? 1 : 0;
         stated += probability;
       }
     }
-    if (share.of == 0) continue;
+    if (fraction.of == 0) continue;
     size_t i = 0;
-    const double n = share.of;
-    for (const double x :
-         {edges[bin], edges[bin + 1], n, stated / n, share.hits / n, share.low(), share.high()}) {
+    const double n = fraction.of;
+    for (const double x : {edges[bin], edges[bin + 1], n, stated / n, fraction.hits / n,
+                           fraction.low(), fraction.high()}) {
       table.columns[i++].values.push_back(x);
     }
   }

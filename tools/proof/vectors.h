@@ -1,10 +1,10 @@
-// Arithmetic of three numbers for the concealed motion.
+// Arithmetic of three numbers for the injected motion.
 #pragma once
 
 #include <array>
 #include <cmath>
 
-namespace photorque::concealed {
+namespace photorque::injected {
 
 using Triple = std::array<double, 3>;
 using Matrix = std::array<Triple, 3>;      // rows
@@ -73,4 +73,4 @@ inline Triple turn_of(const Quaternion& q) {
   return times(sine < 1e-12 ? 2.0 : 2.0 * std::atan2(sine, side * q[0]) / sine, v);
 }
 
-}  // namespace photorque::concealed
+}  // namespace photorque::injected

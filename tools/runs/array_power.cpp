@@ -92,7 +92,7 @@ ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const Trace
 
 Product array_power_product(const ArrayResult& array, const TraceResult& result) {
   Product product = array_product(array);
-  const double emitted = result.ledger.emitted_W;
+  const double emitted = result.power_balance.emitted_W;
   const auto over_emitted = [&](const Estimate& power) {
     return Estimate{power.value / emitted, power.standard_error / emitted};
   };
@@ -102,7 +102,7 @@ Product array_power_product(const ArrayResult& array, const TraceResult& result)
 }
 
 void print_array(const Console& console, const ArrayResult& array, const TraceResult& result) {
-  const double emitted = result.ledger.emitted_W;
+  const double emitted = result.power_balance.emitted_W;
   console.heading("Solar array (maximum power point)");
   console.line("  light on the cells      " + show(array.power_on_cells_W, "W") + "  (" +
                show(100 * array.power_on_cells_W.value / emitted) + " % of emitted)");

@@ -39,9 +39,9 @@ ArrayReport::Motion read_motion(const Settings& s) {
 
 CellTables tables_for(const ArrayPower& array, const ArrayResult& result,
                       const std::vector<std::vector<double>>& lights) {
-  double most_A = 0.0;
-  for (const auto& light : lights) most_A = std::max(most_A, *std::ranges::max_element(light));
-  return cell_tables(array.design, result.cell_area_m2, most_A);
+  double max_A = 0.0;
+  for (const auto& light : lights) max_A = std::max(max_A, *std::ranges::max_element(light));
+  return cell_tables(array.design, result.cell_area_m2, max_A);
 }
 
 Product tracker_product(const std::vector<TrackerRun>& runs) {
@@ -90,7 +90,7 @@ void print_trackers(const Console& console, const std::vector<TrackerRun>& runs)
 
 LossInputs loss_inputs(const ArrayPower& array, const OpticalRun& run, const TraceResult& traced) {
   LossInputs in;
-  in.emitted_W = traced.ledger.emitted_W;
+  in.emitted_W = traced.power_balance.emitted_W;
   const ArrayLight light = array_light(run.flux_map(array.flux_map), traced.sums[array.flux_map]);
   const std::vector<double> bins_W = mean_bins(light.power_W);
   const auto bands = static_cast<size_t>(light.bands);
@@ -141,10 +141,10 @@ void print_uniformity(const Console& console, const Table& table) {
 // The warmest cells may absorb no less than they deliver.
 void check_heat(const DaySettings& day, const ArrayResult& result,
                 const std::filesystem::path& experiment) {
-  const double share = result.power_W.value / result.power_on_cells_W.value;
-  if (!day.lamps_on || !day.heat || !(day.heat->absorptance < share)) return;
+  const double fraction = result.power_W.value / result.power_on_cells_W.value;
+  if (!day.lamps_on || !day.heat || !(day.heat->absorptance < fraction)) return;
   throw InputError({experiment.string()}, "array.day.absorptance", show(day.heat->absorptance),
-                   "at least what the cells deliver of the light on them, " + show(share));
+                   "at least what the cells deliver of the light on them, " + show(fraction));
 }
 
 Product day_report(const Console& console, const ArrayPower& array, const ArrayResult& result,

@@ -29,7 +29,7 @@ struct ArrayReport {
   };
   std::optional<Motion> motion;
   std::optional<DaySettings> day;  // [array.day], see read_day()
-  // [array.layout]: most_tried = 2000. Over the attitudes of the motion, or the one that is traced.
+  // [array.layout]: max_tried = 2000. Over the attitudes of the motion, or the one that is traced.
   std::optional<int64_t> layout_most_tried;
   std::vector<PublishedFigure> published;  // [[published]], what the target is held against
 };

@@ -10,7 +10,7 @@ double wavelength_m(const Beam& beam) {
   return beam.spectrum.shape == Spectrum::Shape::gaussian ? beam.spectrum.centre_m : 0.0;
 }
 
-void keep(const Hits& hits, const BinnedHits& binned, double wavelength_m, double share,
+void keep(const Hits& hits, const BinnedHits& binned, double wavelength_m, double fraction,
           std::vector<RaySet::Ray>& rays) {
   for (size_t r = 0; r < static_cast<size_t>(binned.runs); ++r) {
     for (size_t i = binned.run[r].begin; i < binned.run[r].end; ++i) {
@@ -20,7 +20,7 @@ void keep(const Hits& hits, const BinnedHits& binned, double wavelength_m, doubl
         ray.direction[static_cast<int>(k)] = hits.direction[k][i];
       }
       for (size_t b = 0; b < static_cast<size_t>(hits.bands); ++b) {
-        ray.flux += share * hits.incident_W[b][i];
+        ray.flux += fraction * hits.incident_W[b][i];
       }
       ray.wavelength_m = wavelength_m;
       if (ray.flux > 0.0) rays.push_back(ray);

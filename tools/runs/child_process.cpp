@@ -44,7 +44,7 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
 
 ChildResult run_child(const std::filesystem::path& program,
                       const std::vector<std::string>& arguments, const std::filesystem::path& in,
-                      double longest_s) {
+                      double max_time_s) {
   const auto folder = std::filesystem::absolute(in);
   const auto errors = folder / "stderr.txt";
   const Clock::time_point begin = Clock::now();
@@ -52,10 +52,10 @@ ChildResult run_child(const std::filesystem::path& program,
   ChildResult result;
   int status = 0;
   while (waitpid(child, &status, WNOHANG) == 0) {
-    if (since(begin) > longest_s) {
+    if (since(begin) > max_time_s) {
       kill(child, SIGKILL);
       waitpid(child, &status, 0);
-      result.errors = "stopped after " + std::to_string(static_cast<int>(longest_s)) + " s\n";
+      result.errors = "stopped after " + std::to_string(static_cast<int>(max_time_s)) + " s\n";
       break;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));

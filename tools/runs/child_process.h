@@ -17,7 +17,7 @@ struct ChildResult {
 // stopped after `longest_s`. NumericalError when it cannot be started.
 ChildResult run_child(const std::filesystem::path& program,
                       const std::vector<std::string>& arguments, const std::filesystem::path& in,
-                      double longest_s);
+                      double max_time_s);
 
 // This program's own file.
 std::filesystem::path own_program();

@@ -48,7 +48,7 @@ std::optional<size_t> watch_insides(Experiment& experiment) {
 
 // The largest disagreement, in standard errors, between the force and torque summed over surfaces
 // and the same from the rays alone.
-double momentum_disagreement(const Ledger& ledger, const BinSums& sums,
+double momentum_disagreement(const PowerBalance& power_balance, const BinSums& sums,
                              const WrenchReceiver& wrench) {
   const WrenchEstimate surfaces = wrench_about(wrench.total(sums), Vec3::Zero());
   double worst = 0.0;
@@ -56,11 +56,12 @@ double momentum_disagreement(const Ledger& ledger, const BinSums& sums,
     const auto i = static_cast<size_t>(k);
     const auto compare = [&](const Estimate& rays, double value, double error) {
       const double sigma = std::hypot(rays.standard_error, error);
-      const double rounding = 1e-7 * ledger.emitted_W / speed_of_light_m_s;
+      const double rounding = 1e-7 * power_balance.emitted_W / speed_of_light_m_s;
       worst = std::max(worst, std::abs(rays.value - value) / (sigma + rounding));
     };
-    compare(ledger.force_N[i], surfaces.mean.force_N[k], surfaces.force_error_N()[k]);
-    compare(ledger.torque_N_m[i], surfaces.mean.torque_N_m[k], surfaces.torque_error_N_m()[k]);
+    compare(power_balance.force_N[i], surfaces.mean.force_N[k], surfaces.force_error_N()[k]);
+    compare(power_balance.torque_N_m[i], surfaces.mean.torque_N_m[k],
+            surfaces.torque_error_N_m()[k]);
   }
   return worst;
 }
@@ -95,7 +96,7 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
   TraceOptions options = experiment_.file.trace;
   options.rays = rays.value_or(options.rays);
   // A sequence has at most 2^31 points (see trace()).
-  const uint64_t most_rays =
+  const uint64_t max_rays =
       std::min<uint64_t>(1ull << 38, static_cast<uint64_t>(options.replicates) << 31);
   options.threads = threads_;
   options.progress = progress;
@@ -109,7 +110,7 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
     const double next_s = 2.0 * (result.wall_s - before_s);
     const bool reached = !effort.target_error || result.worst_bin_error <= *effort.target_error;
     const bool late = effort.max_time_s && result.wall_s + next_s > *effort.max_time_s;
-    if (reached || late || 2 * options.rays > most_rays) return result;
+    if (reached || late || 2 * options.rays > max_rays) return result;
   }
 }
 
@@ -139,20 +140,20 @@ std::string OpticalRun::inside_light(const TraceResult& result) const {
   const auto& watch =
       dynamic_cast<const InsideLightReceiver&>(*experiment_.receivers[*inside_light_].receiver);
   return describe_inside_light(experiment_.scene, watch.lit_inside(result.sums[*inside_light_]),
-                               result.ledger.emitted_W);
+                               result.power_balance.emitted_W);
 }
 
 Product OpticalRun::product(const OpticalResult& result) const {
-  const Ledger& ledger = result.ledger;
+  const PowerBalance& power_balance = result.power_balance;
   Product product;
   product.quantities = {
-      {"emitted_W", {ledger.emitted_W, 0.0}},
-      {"absorbed_W", ledger.absorbed_W},
-      {"escaped_W", ledger.escaped_W},
-      {"truncated_W", ledger.truncated_W},
-      {"ledger_closure", {ledger.closure, 0.0}},
+      {"emitted_W", {power_balance.emitted_W, 0.0}},
+      {"absorbed_W", power_balance.absorbed_W},
+      {"escaped_W", power_balance.escaped_W},
+      {"truncated_W", power_balance.truncated_W},
+      {"ledger_closure", {power_balance.closure, 0.0}},
       {"momentum_disagreement_sigma",
-       {momentum_disagreement(ledger, result.sums[wrench_], wrench()), 0.0}},
+       {momentum_disagreement(power_balance, result.sums[wrench_], wrench()), 0.0}},
   };
   for (const DirectLight& direct : result.direct.gathered) {
     product.quantities.push_back({"direct_on_" + direct.name + "_W", direct.gathered_W});
@@ -160,10 +161,10 @@ Product OpticalRun::product(const OpticalResult& result) const {
   }
   Table parts{"absorbed_by_part", "Power absorbed by each part", {}};
   parts.columns = {{"part", {}, {}}, {"absorbed_W", {}, {}}, {"standard_error_W", {}, {}}};
-  for (size_t i = 0; i < ledger.absorbed_by_instance_W.size(); ++i) {
+  for (size_t i = 0; i < power_balance.absorbed_by_instance_W.size(); ++i) {
     parts.columns[0].texts.push_back(experiment_.scene.instances[i].path);
-    parts.columns[1].values.push_back(ledger.absorbed_by_instance_W[i].value);
-    parts.columns[2].values.push_back(ledger.absorbed_by_instance_W[i].standard_error);
+    parts.columns[1].values.push_back(power_balance.absorbed_by_instance_W[i].value);
+    parts.columns[2].values.push_back(power_balance.absorbed_by_instance_W[i].standard_error);
   }
   product.tables = {beam_shape_table(experiment_.beams), std::move(parts)};
   for (size_t i = 0; i < experiment_.receivers.size(); ++i) {
@@ -173,18 +174,18 @@ Product OpticalRun::product(const OpticalResult& result) const {
 }
 
 void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result) {
-  const Ledger& ledger = result.ledger;
+  const PowerBalance& power_balance = result.power_balance;
   const auto row = [&](const std::string& name, const Estimate& power) {
-    const double percent = 100.0 * power.value / ledger.emitted_W;
+    const double percent = 100.0 * power.value / power_balance.emitted_W;
     console.line("  " + name + std::string(24 - std::min<size_t>(24, name.size()), ' ') +
                  show(power, "W") + "  (" + show(std::round(percent * 1000) / 1000) + " %)");
   };
   console.heading("Power");
-  row("emitted", {ledger.emitted_W, 0.0});
-  row("absorbed", ledger.absorbed_W);
-  row("escaped", ledger.escaped_W);
-  row("truncated", ledger.truncated_W);
-  if (ledger.escaped_W.value >= ledger.emitted_W) {
+  row("emitted", {power_balance.emitted_W, 0.0});
+  row("absorbed", power_balance.absorbed_W);
+  row("escaped", power_balance.escaped_W);
+  row("truncated", power_balance.truncated_W);
+  if (power_balance.escaped_W.value >= power_balance.emitted_W) {
     console.line("  note: no light meets the scene: where do the sources stand and look?");
   }
   for (size_t i = 0; i < run.experiment().receivers.size(); ++i) {
@@ -205,10 +206,12 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
                  show(Estimate{body.mean.torque_N_m[k], body.torque_error_N_m()[k]}, "N m"));
   }
   console.heading("Checks");
-  console.line("  power: emitted = absorbed + escaped + truncated to " + show(ledger.closure));
-  console.line("  momentum: surfaces and rays differ by at most " +
-               show(momentum_disagreement(ledger, result.sums[run.wrench_index()], run.wrench())) +
-               " standard errors");
+  console.line("  power: emitted = absorbed + escaped + truncated to " +
+               show(power_balance.closure));
+  console.line(
+      "  momentum: surfaces and rays differ by at most " +
+      show(momentum_disagreement(power_balance, result.sums[run.wrench_index()], run.wrench())) +
+      " standard errors");
   const std::string inside = run.inside_light(result);
   if (!inside.empty()) console.line("  note: " + inside);
   for (const std::string& notice : result.direct.notices) console.line("  note: " + notice);

@@ -10,7 +10,7 @@
 namespace photorque {
 namespace {
 
-constexpr size_t most_designs = 1000000;
+constexpr size_t max_designs = 1000000;
 
 std::string toml_number(double value) {
   char text[40];
@@ -33,7 +33,7 @@ std::vector<std::string> listed_values(const Settings& axis) {
 
 std::vector<std::string> stepped_values(const Settings& axis) {
   const double from = axis.number("from"), to = axis.number("to");
-  const auto count = axis.integer("count", 2, static_cast<int64_t>(most_designs));
+  const auto count = axis.integer("count", 2, static_cast<int64_t>(max_designs));
   const bool logarithmic = axis.choice_or("spacing", {"linear", "logarithmic"}, 0) == 1;
   if (logarithmic && !(from > 0.0 && to > 0.0)) {
     throw axis.error("spacing",
@@ -42,9 +42,9 @@ std::vector<std::string> stepped_values(const Settings& axis) {
   }
   std::vector<std::string> values;
   for (int64_t i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-    values.push_back(
-        toml_number(logarithmic ? from * std::pow(to / from, share) : from + share * (to - from)));
+    const double fraction = static_cast<double>(i) / static_cast<double>(count - 1);
+    values.push_back(toml_number(logarithmic ? from * std::pow(to / from, fraction)
+                                             : from + fraction * (to - from)));
   }
   return values;
 }
@@ -129,7 +129,7 @@ SweepPlan read_sweep_plan(const Settings& sweep) {
   if (sweep.has("figures")) plan.figures = sweep.texts("figures");
   plan.grid = !sweep.has("designs");
   const auto random =
-      plan.grid ? 0 : sweep.integer("designs", 2, static_cast<int64_t>(most_designs));
+      plan.grid ? 0 : sweep.integer("designs", 2, static_cast<int64_t>(max_designs));
   const auto seed =
       plan.grid ? 0 : sweep.integer_or("seed", 1, 0, std::numeric_limits<int64_t>::max());
   double designs = 1.0;
@@ -147,9 +147,9 @@ SweepPlan read_sweep_plan(const Settings& sweep) {
     plan.axes.push_back(std::move(read));
   }
   if (plan.axes.empty()) throw sweep.error("axis", "none", "at least one [[sweep.axis]]");
-  if (designs > static_cast<double>(most_designs)) {
+  if (designs > static_cast<double>(max_designs)) {
     throw sweep.error("axis", toml_number(designs) + " designs",
-                      "at most " + std::to_string(most_designs));
+                      "at most " + std::to_string(max_designs));
   }
   sweep.finish();
   return plan;

@@ -23,8 +23,8 @@ struct CommandLine {
   std::optional<double> target_error;             // --target-error, of commands that trace
   std::optional<double> max_time_s;               // --max-time, likewise
   std::vector<std::filesystem::path> recordings;  // --recording, of commands that take some
-  std::vector<std::filesystem::path> holdouts;    // --holdout, recordings kept back from a fit
-  std::optional<std::filesystem::path> cases;     // --cases, a folder of concealed cases
+  std::vector<std::filesystem::path> holdouts;    // --holdout, recordings held out from a fit
+  std::optional<std::filesystem::path> cases;     // --cases, a folder of injected cases
   bool only_make = false;                         // --only-make: the cases, nothing more
   std::string shard;                              // --shard K/N, of a sweep
   bool summary_only = false;                      // of a design in a sweep: no other files

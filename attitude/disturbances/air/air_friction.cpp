@@ -11,7 +11,7 @@ namespace {
 
 struct AirFriction final : TorqueLaw<AirFriction> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     return -own.parameter(0) * sqrt(length(now.rate_body_rad_s)) * now.rate_body_rad_s;
   }
 };

@@ -107,17 +107,18 @@ AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s) {
   return {};
 }
 
-double exposed_share(double socket_half_angle_rad) {
+double exposed_fraction(double socket_half_angle_rad) {
   const double s = std::sin(0.5 * socket_half_angle_rad);
   return 1.0 - s * s * s * s * (3.0 - 2.0 * s * s);
 }
 
-double exposed_share_as_published(double socket_half_angle_rad) {
+double exposed_fraction_as_published(double socket_half_angle_rad) {
   return socket_half_angle_rad / pi;
 }
 
 std::vector<AirPart> parts_of_topology(Topology topology, AirPart plate, AirPart cylinder,
-                                       AirPart sphere, int cylinders, double sphere_exposed_share) {
+                                       AirPart sphere, int cylinders,
+                                       double sphere_exposed_fraction) {
   switch (topology) {
     case Topology::dumbbell:
       plate.count *= 2.0;
@@ -127,7 +128,7 @@ std::vector<AirPart> parts_of_topology(Topology topology, AirPart plate, AirPart
       cylinder.count *= cylinders;
       return {plate, cylinder};
     case Topology::hollow:
-      sphere.count *= sphere_exposed_share;
+      sphere.count *= sphere_exposed_fraction;
       return {sphere};
     case Topology::free:
       break;
@@ -176,8 +177,8 @@ std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts) {
 Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_rad_s) {
   Table table{"external_air", "External air by part", {}};
   Table::Column name{"part", {}, {}}, law{"law_holds", {}, {}};
-  Table::Column torque{"torque_N_m", {}, {}}, share{"share", {}, {}}, reynolds{"reynolds", {}, {}},
-      transition{"transition_reynolds", {}, {}};
+  Table::Column torque{"torque_N_m", {}, {}}, fraction{"share", {}, {}},
+      reynolds{"reynolds", {}, {}}, transition{"transition_reynolds", {}, {}};
   const double whole_N_m = air_coefficients(parts, air).torque_N_m(rate_rad_s);
   for (const AirPart& part : parts) {
     const AirFlow flow = air_flow(part, air, rate_rad_s);
@@ -187,11 +188,11 @@ Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_r
                            : flow.reynolds > flow.transition_reynolds ? "no: turbulent"
                                                                       : "no: creeping");
     torque.values.push_back(torque_N_m);
-    share.values.push_back(whole_N_m > 0.0 ? torque_N_m / whole_N_m : 0.0);
+    fraction.values.push_back(whole_N_m > 0.0 ? torque_N_m / whole_N_m : 0.0);
     reynolds.values.push_back(flow.reynolds);
     transition.values.push_back(flow.transition_reynolds);
   }
-  table.columns = {name, law, torque, share, reynolds, transition};
+  table.columns = {name, law, torque, fraction, reynolds, transition};
   return table;
 }
 

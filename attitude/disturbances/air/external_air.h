@@ -30,7 +30,7 @@ enum class AirShape {
 struct AirPart {
   std::string name = {};
   AirShape shape = AirShape::disc;
-  double count = 1.0;                // may be fractional: the share of a sphere that is exposed
+  double count = 1.0;                // may be fractional: the fraction of a sphere that is exposed
   int faces = 2;                     // wetted faces of discs and plates, 1 or 2
   double radius_m = 0.0;             // disc, sphere, cylinder
   double length_m = 0.0;             // plates: along the flow; cylinders: along their axis
@@ -82,17 +82,18 @@ struct AirFlow {
 };
 AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s);
 
-// Share of the torque on a whole sphere that a ball feels which sits in a socket up to the polar
+// Fraction of the torque on a whole sphere that a ball feels which sits in a socket up to the polar
 // angle θ_S, if the shear is taken proportional to the surface's speed: 1 − ∫₀^θS sin³ / (4/3).
-double exposed_share(double socket_half_angle_rad);
-// θ_S / π, as the paper's figure of the hollow platform prints: the share of the socket.
-double exposed_share_as_published(double socket_half_angle_rad);
+double exposed_fraction(double socket_half_angle_rad);
+// θ_S / π, as the paper's figure of the hollow platform prints: the fraction of the socket.
+double exposed_fraction_as_published(double socket_half_angle_rad);
 
 // The paper's decomposition of a platform. Dumbbell: two plates, two cylinders, one sphere.
-// Tabletop: one plate, `cylinders` cylinders. Hollow: the exposed share of one sphere. The counts
-// of the given parts are multiplied by these. A free body has no decomposition: empty.
+// Tabletop: one plate, `cylinders` cylinders. Hollow: the exposed fraction of one sphere. The
+// counts of the given parts are multiplied by these. A free body has no decomposition: empty.
 std::vector<AirPart> parts_of_topology(Topology topology, AirPart plate, AirPart cylinder,
-                                       AirPart sphere, int cylinders, double sphere_exposed_share);
+                                       AirPart sphere, int cylinders,
+                                       double sphere_exposed_fraction);
 
 // The parts of an experiment: `[[disturbance.part]]` or the like. Keys: name, shape, count,
 //   disc: radius_m, faces; plate: length_m, area_m2, distance_m, faces;

@@ -9,7 +9,7 @@ namespace {
 
 struct RoomDraft final : TorqueLaw<RoomDraft> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     return now.to_body(own.vector(0));
   }
 };

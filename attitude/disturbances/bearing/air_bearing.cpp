@@ -57,7 +57,7 @@ FilmDrag film_drag(const SphericalSocket& socket, double viscosity_Pa_s) {
   const double area = std::cos(recess) - std::cos(rim);  // solid angle over 2π
   const double radius2_m2 = socket.radius_m * socket.radius_m;
   const double scale =
-      2.0 * pi * viscosity_Pa_s * radius2_m2 * radius2_m2 / socket.gap_m * socket.sheared_share;
+      2.0 * pi * viscosity_Pa_s * radius2_m2 * radius2_m2 / socket.gap_m * socket.sheared_fraction;
   return {scale * sin_cubed, scale * (area - 0.5 * sin_cubed)};
 }
 

@@ -13,8 +13,9 @@ struct SphericalSocket {
   double half_angle_rad = 0.0;         // θ_S, in (0, π/2] to carry; drag holds up to π
   double gap_m = 0.0;                  // h > 0, uniform
   double recess_half_angle_rad = 0.0;  // θ_r, in [0, θ_S)
-  // Share of the film's area that is narrow; grooves take the rest and are taken as free of shear.
-  double sheared_share = 1.0;
+  // Fraction of the film's area that is narrow; grooves take the rest and are taken as free of
+  // shear.
+  double sheared_fraction = 1.0;
 };
 
 // Load capacity [N]: the gauge pressure projected on the vertical (eq. 4), with the pressure

@@ -129,9 +129,9 @@ double porous_pad_pressure_Pa(const PorousPad& pad, double gap_m, double supply_
                               const FilmAir& air, double r_m) {
   const double lambda_1_m = std::sqrt(feeding_number_1_m2(pad, gap_m));
   const double x = lambda_1_m * r_m, rim = lambda_1_m * pad.radius_m;
-  const double share = scaled_bessel_i(0, x) / scaled_bessel_i(0, rim) * std::exp(x - rim);
+  const double fraction = scaled_bessel_i(0, x) / scaled_bessel_i(0, rim) * std::exp(x - rim);
   const double supply2_Pa2 = supply_Pa * supply_Pa;
-  return std::sqrt(supply2_Pa2 - (supply2_Pa2 - air.pressure_Pa * air.pressure_Pa) * share);
+  return std::sqrt(supply2_Pa2 - (supply2_Pa2 - air.pressure_Pa * air.pressure_Pa) * fraction);
 }
 
 FilmState porous_pad_film(const PorousPad& pad, double gap_m, double supply_Pa,

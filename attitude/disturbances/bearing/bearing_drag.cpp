@@ -2,7 +2,7 @@
 //
 // coefficient_N_m_s: the same about every axis; or
 // axial_N_m_s and transverse_N_m_s: about the socket's axis, lab z, and across it; or
-// the table socket = {radius_m, half_angle_deg, gap_m, recess_half_angle_deg (0), sheared_share
+// the table socket = {radius_m, half_angle_deg, gap_m, recess_half_angle_deg (0), sheared_fraction
 // (1)} of air_bearing.h, whose gap holds at the platform's own weight unless it also has
 //   rated_load_N, stiffness_N_m: gap_m is the rated gap of a spring (the paper's model), or
 //   supply_Pa (absolute), hole_area_mm2, discharge_coefficient (0.8): gap_m is found from the
@@ -16,14 +16,14 @@ namespace {
 
 struct IsotropicDrag final : TorqueLaw<IsotropicDrag> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     return -own.parameter(0) * now.rate_body_rad_s;
   }
 };
 
 struct SocketDrag final : TorqueLaw<SocketDrag> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const T axial = own.parameter(0), transverse = own.parameter(1);
     const Vec3Of<T> axis_body = now.lab_from_body.row(2).transpose();
     const T spin = axis_body.dot(now.rate_body_rad_s);
@@ -60,7 +60,7 @@ FilmDrag read_socket_drag(const Settings& s, const DisturbanceContext& context) 
   socket.half_angle_rad = s.number("half_angle_deg", {0.0, pi, true, false});
   socket.recess_half_angle_rad =
       s.number_or("recess_half_angle_deg", 0.0, {0.0, socket.half_angle_rad, false, true});
-  socket.sheared_share = s.number_or("sheared_share", 1.0, Range::fraction());
+  socket.sheared_fraction = s.number_or("sheared_share", 1.0, Range::fraction());
   socket.gap_m = read_gap_m(s, socket, context);
   return film_drag(socket, context.environment.air_viscosity_Pa_s);
 }

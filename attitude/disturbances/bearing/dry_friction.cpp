@@ -13,7 +13,7 @@ class DryFriction final : public TorqueLaw<DryFriction> {
   explicit DryFriction(double creep_rate_rad_s) : creep_rate_rad_s_(creep_rate_rad_s) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T>& w = now.rate_body_rad_s;
     const T speed = sqrt(w.dot(w) + T(creep_rate_rad_s_ * creep_rate_rad_s_));
     return -(own.parameter(0) / speed) * w;

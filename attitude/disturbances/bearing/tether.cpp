@@ -9,7 +9,7 @@ namespace {
 
 struct Tether final : TorqueLaw<Tether> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const QuatOf<T>& q = now.attitude;
     // q and −q are the same attitude; the one with w ≥ 0 is the short way.
     const T side = where_at_least(q.w(), 0.0, T(1.0), T(-1.0));

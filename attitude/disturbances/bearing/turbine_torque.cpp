@@ -9,7 +9,7 @@ namespace {
 
 struct TurbineTorque final : TorqueLaw<TurbineTorque> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     return own.parameter(0) * now.lab_from_body.row(2).transpose();
   }
 };

@@ -12,7 +12,7 @@ namespace {
 
 struct EddyDamping final : TorqueLaw<EddyDamping> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T>& B_T = now.magnetic_field_body_T;
     const Vec3Of<T> swept = now.rate_body_rad_s.cross(B_T);
     return own.parameter(0) * swept.cross(B_T);

@@ -21,7 +21,7 @@ class HelmholtzCage final : public LawOf<HelmholtzCage> {
   explicit HelmholtzCage(TimeSeries wanted_lab_T) : wanted_lab_T_(std::move(wanted_lab_T)) {}
 
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const Vec3Of<T> missing_T =
         wanted_lab_T_.sample(now.time_s) - now.environment.magnetic_field_lab_T.template cast<T>();
     now.magnetic_field_lab_T += (1.0 + own.parameter(0)) * missing_T;

@@ -10,7 +10,7 @@ namespace {
 
 struct MagneticDipole final : TorqueLaw<MagneticDipole> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     return own.vector(0).cross(now.magnetic_field_body_T);
   }
 };

@@ -27,7 +27,7 @@ class Orbit final : public LawOf<Orbit> {
       : orbit_(orbit), field_T_(std::move(field_T)), sun_direction_(std::move(sun_direction)) {}
 
   template <class T>
-  void apply(const Own<T>&, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>&, EvaluationContext<T>& now) const {
     const T u = orbit_.phase_rad + orbit_.motion_rad_s() * now.time_s;
     const Vec3 node = orbit_.node(), ahead = orbit_.ahead();
     now.up_lab = cos(u) * node.cast<T>() + sin(u) * ahead.cast<T>();
@@ -40,8 +40,8 @@ class Orbit final : public LawOf<Orbit> {
  private:
   Lanes light(const Lanes& time_s) const {
     return each_lane(time_s, [this](double t_s) {
-      return sunlit_share(orbit_.radius_m * orbit_.up(t_s), astronomical_unit_m * *sun_direction_,
-                          mean_radius_m);
+      return sunlit_fraction(orbit_.radius_m * orbit_.up(t_s),
+                             astronomical_unit_m * *sun_direction_, mean_radius_m);
     });
   }
 

@@ -55,7 +55,7 @@ class MonotoneCurve {
 
 // sin²(tilt/2), which is smooth where the tilt itself has a corner.
 template <class T>
-T half_tilt_sine_squared(const Moment<T>& now) {
+T half_tilt_sine_squared(const EvaluationContext<T>& now) {
   return now.attitude.x() * now.attitude.x() + now.attitude.y() * now.attitude.y();
 }
 
@@ -65,7 +65,7 @@ class PowerBalance final : public LawOf<PowerBalance> {
 
   // Parameters: load, scale.
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const T at_tilt_W =
         from_values(half_tilt_sine_squared(now), [this](double x) { return power_W_.at(x); });
     now.array_power_W += own.parameter(1) * now.illumination * at_tilt_W;
@@ -78,15 +78,15 @@ class PowerBalance final : public LawOf<PowerBalance> {
   }
 
  private:
-  // Share of the current that flows: 1 − exp(−room/δ), room the charge that can still move.
+  // Fraction of the current that flows: 1 − exp(−room/δ), room the charge that can still move.
   template <class T>
   static T controller(const T& drawn_C, const T& current_A, double capacity_C) {
     const T room_C = where_at_least(values(current_A), 0.0, T(capacity_C - drawn_C), drawn_C);
     const T bounded_C = where_at_least(values(room_C), 0.0, room_C, T(0.0));
-    return 1.0 - exp(-bounded_C / (taper_share * capacity_C));
+    return 1.0 - exp(-bounded_C / (taper_fraction * capacity_C));
   }
 
-  static constexpr double taper_share = 0.002;
+  static constexpr double taper_fraction = 0.002;
 
   MonotoneCurve power_W_;
 };

@@ -28,7 +28,7 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
       : surface_(std::move(surface)), sun_direction_lab_(sun_direction_lab) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     // A hair off the pole, where the second angle has no derivative.
     constexpr double hair = 1e-9;
     const bool tilt = surface_.angles() == WrenchTable::Angles::tilt_heading;

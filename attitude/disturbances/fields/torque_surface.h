@@ -32,7 +32,7 @@ class TorqueSurface {
   struct Row {
     Vec3 value, slope;
   };
-  // Of one cell between nodes: Σ c[4 j + i] s^j t^i, s and t the shares of its width along the
+  // Of one cell between nodes: Σ c[4 j + i] s^j t^i, s and t the fractions of its width along the
   // polar angle and around.
   using Patch = std::array<Vec3, 16>;
   Patch fit_patch(size_t polar, size_t around) const;

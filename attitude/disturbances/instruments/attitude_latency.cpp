@@ -6,7 +6,7 @@ namespace {
 
 struct AttitudeLatency final : LawOf<AttitudeLatency> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     now.camera_delay_s += own.parameter(0);
   }
 };

@@ -8,7 +8,7 @@ namespace {
 // seen body axes.
 struct CameraMisalignment final : LawOf<CameraMisalignment> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     now.camera_error_rad += own.vector(0);
   }
 };

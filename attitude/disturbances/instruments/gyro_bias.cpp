@@ -6,7 +6,7 @@ namespace {
 
 struct GyroBias final : LawOf<GyroBias> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     now.gyro_error_rad_s += own.vector(0);
   }
 };

@@ -8,7 +8,7 @@ namespace {
 // order, good to |m|²/2.
 struct GyroMisalignment final : LawOf<GyroMisalignment> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     now.gyro_error_rad_s += own.vector(0).cross(now.inertial_rate_body_rad_s);
   }
 };

@@ -7,7 +7,7 @@ namespace {
 // reading − ω = s_i ω_i on each axis.
 struct GyroScale final : LawOf<GyroScale> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     for (int i = 0; i < 3; ++i) {
       now.gyro_error_rad_s[i] += own.parameter(i) * now.inertial_rate_body_rad_s[i];
     }

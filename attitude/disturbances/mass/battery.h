@@ -1,4 +1,4 @@
-// What a discharging lithium-ion battery does to a platform: lithium wanders from anode to cathode
+// What a discharging lithium-ion battery does to a platform: lithium migrates from anode to cathode
 // and takes the centre of mass along. Source: eq. 30–34.
 #pragma once
 
@@ -23,8 +23,9 @@ struct BatteryCell {
   // axes. The paper takes half the cell's length; wound and stacked cells alternate their
   // electrodes every 0.1 mm or so, for which that is an upper bound by orders of magnitude.
   Vec3 electrodes_body_m = Vec3::Zero();
-  // Share of the battery's charge that passes through this cell: 1 in series, 1/n of n in parallel.
-  double charge_share = 1.0;
+  // Fraction of the battery's charge that passes through this cell: 1 in series, 1/n of n in
+  // parallel.
+  double charge_fraction = 1.0;
 };
 
 // Shift of the platform's centre of mass per charge drawn [m/C] (eq. 30). Equal cells mounted in

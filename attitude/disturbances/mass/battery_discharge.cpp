@@ -1,10 +1,10 @@
-// Lithium wanders through the battery: T = m s Q(t) × g_B, Q the charge drawn (eq. 30–34).
+// Lithium migrates through the battery: T = m s Q(t) × g_B, Q the charge drawn (eq. 30–34).
 //
 // shift_m_per_Ah[3]: shift of the centre of mass per charge, body axes; or one [[disturbance.cell]]
 // per cell with
 //   electrodes_m[3]: from the lithium's mean place when charged to that when empty, body axes. Half
 //     a cell's length is the paper's upper bound; wound cells shift by orders of magnitude less;
-//   charge_share: 1 in series (default), 1/n of n in parallel;
+//   charge_fraction: 1 in series (default), 1/n of n in parallel;
 // and lithium: "exact" (Faraday, default) or "rounded" (the paper's 0.3 g/Ah).
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/battery.h"
@@ -14,7 +14,7 @@ namespace {
 
 struct BatteryDischarge final : LawOf<BatteryDischarge> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     now.move_mass(now.charge_drawn_C * own.vector(0));
   }
 };
@@ -24,7 +24,7 @@ Parameters shift_from_cells(const Settings& settings, double platform_mass_kg) {
   for (const Settings& s : settings.tables("cell")) {
     BatteryCell cell;
     cell.electrodes_body_m = s.vector3("electrodes_m");
-    cell.charge_share = s.number_or("charge_share", 1.0, Range::fraction());
+    cell.charge_fraction = s.number_or("charge_share", 1.0, Range::fraction());
     cells.push_back(cell);
   }
   const bool rounded = settings.choice_or("lithium", {"exact", "rounded"}, 0) == 1;

@@ -12,20 +12,20 @@ namespace photorque {
 namespace {
 
 template <class T>
-Vec3Of<T> gravity_change(const Moment<T>& now) {
+Vec3Of<T> gravity_change(const EvaluationContext<T>& now) {
   return now.gravity_body_m_s2 - now.gravity_lab_m_s2;  // at zero attitude both axes agree
 }
 
 struct DiagonalSag final : LawOf<DiagonalSag> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     now.move_mass(own.vector(0).cwiseProduct(gravity_change(now)));
   }
 };
 
 struct MatrixSag final : LawOf<MatrixSag> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     now.move_mass(own.matrix(0) * gravity_change(now));
   }
 };

@@ -1,6 +1,6 @@
 // An appendage on a spring, or sloshing liquid: one mode with its own two states.
 //
-// axis[3] (body, any length), frequency_Hz and damping (share of critical) of the appendage with
+// axis[3] (body, any length), frequency_Hz and damping (fraction of critical) of the appendage with
 // the body held, inertia_kg_m2 (J, about the axis; part of the platform's inertia). With φ its
 // angle beside the body and σ its absolute rate about the axis a:
 //   φ' = σ − a·ω,  σ' = −ω_n² φ − 2 ζ ω_n φ',  T = a J (ω_n² φ + 2 ζ ω_n φ') − ω × (J a σ)
@@ -13,16 +13,17 @@ namespace {
 
 struct FlexibleMode final : LawOf<FlexibleMode> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const Vec3Of<T> direction = own.vector(0);
     const Vec3Of<T> axis = direction / length(direction);
-    const T pulsation = 2.0 * pi * own.parameter(3);
+    const T angular_frequency = 2.0 * pi * own.parameter(3);
     const T& damping = own.parameter(4);
     const T& inertia = own.parameter(5);
     const T angle = own.states[0], rate = own.states[1];
 
     const T angle_rate = rate - axis.dot(now.rate_body_rad_s);
-    const T pull = pulsation * pulsation * angle + 2.0 * damping * pulsation * angle_rate;
+    const T pull = angular_frequency * angular_frequency * angle +
+                   2.0 * damping * angular_frequency * angle_rate;
     own.state_rates[0] = angle_rate;
     own.state_rates[1] = -pull;
 

@@ -8,7 +8,7 @@ namespace {
 
 struct GravityGradient final : TorqueLaw<GravityGradient> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>&, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>&, const EvaluationContext<T>& now) const {
     const Vec3Of<T> pull = now.inertia_kg_m2 * now.up_body;
     return 3.0 * now.gravity_gradient_1_s2 * now.up_body.cross(pull);
   }

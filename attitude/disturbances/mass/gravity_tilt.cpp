@@ -8,7 +8,7 @@ namespace {
 
 struct GravityTilt final : LawOf<GravityTilt> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const Vec3Of<T> turn(own.parameter(0), own.parameter(1), T(0.0));
     const T angle = length(turn);
     const Vec3Of<T> axis = turn / angle;

@@ -1,4 +1,4 @@
-// The inertia is not what was believed: I + δ, about the centre of rotation.
+// The inertia is not the nominal model: I + δ, about the centre of rotation.
 //
 // delta_kg_m2[6]: xx, yy, zz, xy, xz, yz. The whole must remain an inertia.
 #include "attitude/disturbances/kind.h"
@@ -15,7 +15,7 @@ Mat3Of<T> symmetric(const T& xx, const T& yy, const T& zz, const T& xy, const T&
 
 struct InertiaError final : LawOf<InertiaError> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const T* d = own.parameters;
     now.change_inertia(symmetric<T>(d[0], d[1], d[2], d[3], d[4], d[5]));
   }

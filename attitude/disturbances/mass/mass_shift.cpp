@@ -8,7 +8,7 @@ namespace {
 
 struct MassShift final : LawOf<MassShift> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const double start_s = values(own.parameter(0))[0];
     now.move_mass(active_from(now.time_s, start_s) * own.vector(1));
   }

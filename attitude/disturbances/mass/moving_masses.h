@@ -41,9 +41,9 @@ struct BalanceCommand {
   Vec3 left_over_m = Vec3::Zero();  // of the centre of mass, body axes
 };
 
-// The steps that best undo an offset of the centre of mass: the least travel, rounded, then mended
-// step by step while that brings the rest closer to zero. Directions that no mass can reach are
-// left over.
+// The steps that best undo an offset of the centre of mass: the least travel, rounded, then
+// repaired step by step while that brings the rest closer to zero. Directions that no mass can
+// reach are left over.
 BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<MovingMass>& masses,
                                  double platform_mass_kg);
 

@@ -9,7 +9,7 @@ namespace {
 
 struct StaticUnbalance final : LawOf<StaticUnbalance> {
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     now.move_mass(own.vector(0));
   }
 };

@@ -17,7 +17,7 @@ class StepperQuantization final : public LawOf<StepperQuantization> {
   explicit StepperQuantization(std::vector<Vec3> com_step_m) : com_step_m_(std::move(com_step_m)) {}
 
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     Vec3Of<T> offset_m = Vec3Of<T>::Constant(T(0.0));
     for (size_t i = 0; i < com_step_m_.size(); ++i) {
       for (int k = 0; k < 3; ++k) {

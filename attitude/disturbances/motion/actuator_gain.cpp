@@ -8,14 +8,14 @@ namespace {
 
 struct CommonGain final : TorqueLaw<CommonGain> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     return own.parameter(0) * now.command_body_N_m;
   }
 };
 
 struct AxisGain final : TorqueLaw<AxisGain> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     return own.vector(0).cwiseProduct(now.command_body_N_m);
   }
 };

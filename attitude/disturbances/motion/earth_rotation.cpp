@@ -10,7 +10,7 @@ namespace {
 
 struct EarthRotation final : LawOf<EarthRotation> {
   template <class T>
-  void apply(const Own<T>&, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>&, EvaluationContext<T>& now) const {
     const Vec3Of<T>& w = now.rate_body_rad_s;
     const Mat3Of<T>& inertia = now.inertia_kg_m2;
     const Vec3Of<T> earth = now.to_body(now.environment.earth_rate_lab_rad_s.template cast<T>());

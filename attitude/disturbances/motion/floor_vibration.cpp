@@ -17,14 +17,14 @@ namespace photorque {
 namespace {
 
 template <class T>
-Vec3Of<T> shaken(const Moment<T>& now, const Vec3Of<T>& acceleration_lab_m_s2) {
+Vec3Of<T> shaken(const EvaluationContext<T>& now, const Vec3Of<T>& acceleration_lab_m_s2) {
   const Vec3Of<T> felt_body_m_s2 = now.to_body(acceleration_lab_m_s2);
   return -now.mass_kg * now.mass_offset_body_m.cross(felt_body_m_s2);
 }
 
 struct ToneVibration final : TorqueLaw<ToneVibration> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T> acceleration_m_s2 =
         sinusoid(now.time_s, own.parameter(3), own.parameter(4)) * own.vector(0);
     return shaken(now, acceleration_m_s2);
@@ -36,7 +36,7 @@ class SpectrumVibration final : public TorqueLaw<SpectrumVibration> {
   explicit SpectrumVibration(std::vector<VibrationTone> tones) : tones_(std::move(tones)) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     Vec3Of<T> sum = Vec3Of<T>::Constant(T(0.0));
     for (const VibrationTone& tone : tones_) {
       for (int k = 0; k < 3; ++k) {
@@ -58,7 +58,7 @@ class RecordedVibration final : public TorqueLaw<RecordedVibration> {
       : acceleration_lab_m_s2_(std::move(acceleration_lab_m_s2)) {}
 
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T> acceleration_m_s2 =
         own.parameter(0) * acceleration_lab_m_s2_.sample(now.time_s);
     return shaken(now, acceleration_m_s2);

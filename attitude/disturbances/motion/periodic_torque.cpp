@@ -9,7 +9,7 @@ namespace {
 
 struct PeriodicTorque final : TorqueLaw<PeriodicTorque> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     return sinusoid(now.time_s, own.parameter(3), own.parameter(4)) * own.vector(0);
   }
 };

@@ -8,7 +8,7 @@ namespace {
 
 struct RotorMomentum final : TorqueLaw<RotorMomentum> {
   template <class T>
-  Vec3Of<T> torque(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     return own.vector(0).cross(now.inertial_rate_body_rad_s);
   }
 };

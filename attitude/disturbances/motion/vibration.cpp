@@ -17,8 +17,8 @@ Vec3 power_below(std::span<const SpectrumPoint> spectrum, double frequency_Hz) {
     const SpectrumPoint &a = spectrum[i], &b = spectrum[i + 1];
     if (frequency_Hz <= a.frequency_Hz) break;
     const double end_Hz = std::min(frequency_Hz, b.frequency_Hz);
-    const double share = (end_Hz - a.frequency_Hz) / (b.frequency_Hz - a.frequency_Hz);
-    const Vec3 density_at_end = (1.0 - share) * a.density_m2_s3 + share * b.density_m2_s3;
+    const double fraction = (end_Hz - a.frequency_Hz) / (b.frequency_Hz - a.frequency_Hz);
+    const Vec3 density_at_end = (1.0 - fraction) * a.density_m2_s3 + fraction * b.density_m2_s3;
     sum += 0.5 * (end_Hz - a.frequency_Hz) * (a.density_m2_s3 + density_at_end);
   }
   return sum;

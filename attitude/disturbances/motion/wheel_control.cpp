@@ -29,9 +29,9 @@ T saturated(const T& x, double limit) {
 // 1 while the wheel is below its largest rate, falling to 0 over its last per cent; `share` is its
 // rate over the largest, positive where the motor drives it further.
 template <class T>
-T headroom(const T& share) {
+T headroom(const T& fraction) {
   // Beyond the bound the exponential would overflow, and the result is 0 anyway.
-  const T bounded = where_at_least(share, 1.2, T(1.2), share);
+  const T bounded = where_at_least(fraction, 1.2, T(1.2), fraction);
   return 1.0 / (1.0 + exp(1200.0 * (bounded - 0.995)));
 }
 
@@ -49,17 +49,17 @@ class WheelControl final : public LawOf<WheelControl> {
 
   // Parameters: k_p, k_d, viscous, dry. States: absolute axial rate of each wheel.
   template <class T>
-  void apply(const Own<T>& own, Moment<T>& now) const {
+  void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const double inertia = settings_.wheel_inertia_kg_m2;
     const Vec3Of<T> wanted_N_m = feedback(own, now);
     Vec3Of<T> momentum, on_wheel;
     for (int k = 0; k < 3; ++k) {
       const T relative = own.states[k] - now.rate_body_rad_s[k];
-      const T share = relative / settings_.largest_rate_rad_s;
+      const T fraction = relative / settings_.largest_rate_rad_s;
       const T motor = saturated(T(-wanted_N_m[k]), settings_.largest_torque_N_m);
       // A motor cannot speed up a wheel that is at its largest rate in that direction.
       const T forward = where_at_least(values(motor), 0.0, T(1.0), T(-1.0));
-      on_wheel[k] = motor * headroom(T(share * forward)) - friction(own, relative);
+      on_wheel[k] = motor * headroom(T(fraction * forward)) - friction(own, relative);
       momentum[k] = inertia * own.states[k];
       own.state_rates[k] = on_wheel[k] / inertia;
     }
@@ -69,7 +69,7 @@ class WheelControl final : public LawOf<WheelControl> {
 
  private:
   template <class T>
-  Vec3Of<T> feedback(const Own<T>& own, const Moment<T>& now) const {
+  Vec3Of<T> feedback(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const QuatOf<T> error = settings_.lab_from_target.conjugate().template cast<T>() * now.attitude;
     const T shortest = where_at_least(values(error.w()), 0.0, T(1.0), T(-1.0));
     const Vec3Of<T> off = now.rate_body_rad_s - settings_.target_rate_body_rad_s.template cast<T>();
@@ -77,7 +77,7 @@ class WheelControl final : public LawOf<WheelControl> {
   }
 
   template <class T>
-  T friction(const Own<T>& own, const T& relative) const {
+  T friction(const ParametersAndStates<T>& own, const T& relative) const {
     // Dry friction turns over within this rate, a wheel's creep.
     constexpr double creep_rad_s = 0.1;
     return own.parameter(2) * relative +
@@ -94,9 +94,8 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   if (!(axis.norm() > 0.0)) throw settings.error("target_axis", "a zero vector", "a direction");
   wheels.lab_from_target = Quat(Eigen::AngleAxisd(angle_rad, axis.normalized()));
   wheels.target_rate_body_rad_s = settings.vector3_or("target_rate_rad_s", Vec3::Zero());
-  const double least_kg_m2 = context.platform.inertia_kg_m2.diagonal().minCoeff();
-  wheels.wheel_inertia_kg_m2 =
-      settings.number("wheel_inertia_kg_m2", {0.0, least_kg_m2, true, true});
+  const double min_kg_m2 = context.platform.inertia_kg_m2.diagonal().minCoeff();
+  wheels.wheel_inertia_kg_m2 = settings.number("wheel_inertia_kg_m2", {0.0, min_kg_m2, true, true});
   wheels.largest_torque_N_m = settings.number("largest_torque_N_m", Range::positive());
   wheels.largest_rate_rad_s = settings.number("largest_rate_rad_s", Range::positive());
   std::vector<ExtraState> states;
