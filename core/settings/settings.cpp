@@ -77,8 +77,8 @@ namespace {
 // them all.
 std::string known_instead_of(std::string_view key, const std::set<std::string>& known) {
   constexpr size_t most = 12;
-  if (const std::string weak_evidence = nearest(key, known); !weak_evidence.empty()) {
-    return "a known key, perhaps \"" + weak_evidence + "\"";
+  if (const std::string likest = nearest(key, known); !likest.empty()) {
+    return "a known key, perhaps \"" + likest + "\"";
   }
   std::string list;
   size_t count = 0;

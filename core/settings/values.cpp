@@ -166,13 +166,13 @@ size_t Settings::choice(std::string_view key, const std::vector<std::string>& ch
   if (s != nullptr) {
     const auto it = std::find(choices.begin(), choices.end(), *s);
     if (it != choices.end()) return static_cast<size_t>(it - choices.begin());
-    const std::string weak_evidence = nearest(*s, {choices.begin(), choices.end()});
-    if (!weak_evidence.empty()) {
-      // A long list would hide the hint.
+    const std::string likest = nearest(*s, {choices.begin(), choices.end()});
+    if (!likest.empty()) {
+      // A long list would hide the suggestion.
       const std::string known =
           choices.size() > 10 ? "one of " + std::to_string(choices.size()) + " names" : expected;
       throw InputError(node.where, full_name(key), describe(node),
-                       known + " (did you mean \"" + weak_evidence + "\"?)");
+                       known + " (did you mean \"" + likest + "\"?)");
     }
   }
   throw InputError(node.where, full_name(key), describe(node), expected);

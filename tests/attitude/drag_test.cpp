@@ -64,6 +64,11 @@ TEST(BearingDrag, TakesItsFilmFromTheSocket) {
                             {"supply_bar", node(6.5)},
                             {"hole_area_mm2", node(0.02)}});
   EXPECT_NEAR(fed / at_5um, 5e-6 / gap_m, 0.01);  // the recess shears nothing: a little less
+  EXPECT_NEAR(axial({{"recess_half_angle_deg", node(6)},
+                     {"supply_Pa", node(6.5e5)},
+                     {"hole_area_m2", node(2e-8)}}) /
+                  fed,
+              1.0, 1e-12);
   EXPECT_THROW(axial({{"supply_bar", node(6.5)}, {"hole_area_mm2", node(0.02)}}), InputError);
 }
 

@@ -45,6 +45,9 @@ TEST(Units, LongestSuffixWins) {
   EXPECT_NEAR(unit_of_key("stiffness_N_m_per_deg").to_SI, 180.0 / pi, 1e-12);
   EXPECT_EQ(unit_of_key("stiffness_N_m_per_deg").stem, unit_of_key("stiffness_N_m_per_rad").stem);
   EXPECT_EQ(unit_of_key("offset_m").unit, "m");
+  // 1 mm² = (1e-3 m)².
+  EXPECT_DOUBLE_EQ(unit_of_key("hole_area_mm2").to_SI, 1e-6);
+  EXPECT_EQ(unit_of_key("hole_area_mm2").stem, unit_of_key("hole_area_m2").stem);
   EXPECT_EQ(unit_of_key("kind").unit, "");
 }
 

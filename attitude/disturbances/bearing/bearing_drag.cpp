@@ -2,7 +2,7 @@
 //
 // coefficient_N_m_s: the same about every axis; or
 // axial_N_m_s and transverse_N_m_s: about the socket's axis, lab z, and across it; or
-// the table socket = {radius_m, half_angle_deg, gap_m, recess_half_angle_deg (0), sheared_fraction
+// the table socket = {radius_m, half_angle_deg, gap_m, recess_half_angle_deg (0), sheared_share
 // (1)} of air_bearing.h, whose gap holds at the platform's own weight unless it also has
 //   rated_load_N, stiffness_N_m: gap_m is the rated gap of a spring (the paper's model), or
 //   supply_Pa (absolute), hole_area_mm2, discharge_coefficient (0.8): gap_m is found from the
@@ -37,7 +37,7 @@ double read_gap_m(const Settings& s, SphericalSocket socket, const DisturbanceCo
     const FilmAir air{context.environment.air_pressure_Pa, context.environment.air_temperature_K,
                       context.environment.air_viscosity_Pa_s};
     const OrificeFeed feed{s.number("supply_Pa", {air.pressure_Pa, 1e308, true, false}),
-                           s.number("hole_area_mm2", Range::positive()) * 1e-6,
+                           s.number("hole_area_mm2", Range::positive()),
                            s.number_or("discharge_coefficient", 0.8, {0.0, 1.0, true, false})};
     if (!(socket.recess_half_angle_rad > 0.0)) {
       throw s.error("recess_half_angle_deg", "none", "a recess that the holes feed");
