@@ -15,6 +15,10 @@ if(GIT)
     endif()
   endif()
 endif()
+# For builds without a repository, and for builds whose outputs are compared byte by byte.
+if(DEFINED ENV{PHOTORQUE_GIT_HASH})
+  set(hash "$ENV{PHOTORQUE_GIT_HASH}")
+endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT
 "#pragma once
 namespace photorque {
