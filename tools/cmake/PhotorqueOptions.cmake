@@ -42,10 +42,10 @@ endif()
 # errno and signalling NaN are not used; both block vectorisation and change no result.
 add_compile_options(-fno-math-errno -fno-trapping-math)
 
-# Multiply-add in one rounding, which only the laws of motion gain from: faster, and never less
-# accurate. With "off" no result depends on what the compiler inlines, so that two versions of the
-# program can be compared byte by byte.
-set(PHOTORQUE_FP_CONTRACT "fast" CACHE STRING "-ffp-contract of attitude: fast, off")
+# Multiply-add in one rounding: faster, and never less accurate. With "off" no result depends on
+# what the compiler inlines, so that two versions of the program can be compared byte by byte.
+set(PHOTORQUE_FP_CONTRACT "fast" CACHE STRING "-ffp-contract: fast, off")
+add_compile_options(-ffp-contract=${PHOTORQUE_FP_CONTRACT})
 
 if(PHOTORQUE_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
