@@ -10,12 +10,13 @@
 #include "attitude/ccsds/aem.h"
 #include "attitude/environment/epoch.h"
 #include "core/errors.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
 
-std::filesystem::path shared_file(const std::string& name) {
-  return std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/ccsds" / name;
+std::filesystem::path shared_message(const std::string& name) {
+  return outside::third_party("ccsds") / name;
 }
 
 class TemporaryFile {
@@ -78,8 +79,8 @@ INSTANTIATE_TEST_SUITE_P(File, SharedMessage,
                          });
 
 TEST_P(SharedMessage, SaysTheSameWhenWrittenBack) {
-  const std::filesystem::path path = shared_file(GetParam());
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not at hand";
+  PHOTORQUE_NEEDS_THIRD_PARTY("ccsds");
+  const std::filesystem::path path = shared_message(GetParam());
   const TemporaryFile copy;
   if (std::string(GetParam()).starts_with("ACM")) {
     const AttitudeComprehensive acm = read_acm(path);
@@ -95,8 +96,8 @@ TEST_P(SharedMessage, SaysTheSameWhenWrittenBack) {
 
 // GMAT wrote the same attitude as quaternions (scalar last) and as Euler angles 321.
 TEST(Aem, QuaternionAndEulerFilesHoldTheSameAttitude) {
-  const auto quaternion_path = shared_file("CCSDS_BasicQuatFile.aem");
-  if (!std::filesystem::exists(quaternion_path)) GTEST_SKIP() << "shared files are not at hand";
+  PHOTORQUE_NEEDS_THIRD_PARTY("ccsds");
+  const auto quaternion_path = shared_message("CCSDS_BasicQuatFile.aem");
   const auto by_epoch = [](const std::filesystem::path& path) {
     std::map<std::string, Quat> attitudes;
     for (const auto& segment : read_aem(path).segments) {
@@ -109,7 +110,7 @@ TEST(Aem, QuaternionAndEulerFilesHoldTheSameAttitude) {
   };
   const auto quaternions = by_epoch(quaternion_path);
   int compared = 0;
-  for (const auto& [epoch, attitude] : by_epoch(shared_file("CCSDS_BasicEulerFile.aem"))) {
+  for (const auto& [epoch, attitude] : by_epoch(shared_message("CCSDS_BasicEulerFile.aem"))) {
     const auto same = quaternions.find(epoch);
     if (same == quaternions.end()) continue;
     EXPECT_GT(std::abs(same->second.dot(attitude)), 1.0 - 1e-14) << epoch;
@@ -177,8 +178,8 @@ TEST(Aem, WrongMessagesAreRefused) {
 }
 
 TEST(Acm, NumbersOfTheSharedFile) {
-  const auto path = shared_file("ACMExample05.txt");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not at hand";
+  PHOTORQUE_NEEDS_THIRD_PARTY("ccsds");
+  const auto path = shared_message("ACMExample05.txt");
   const AttitudeComprehensive acm = read_acm(path);
   ASSERT_EQ(acm.attitudes.size(), 5u);
   EXPECT_EQ(acm.attitudes[0].time_s[1], 0.25);

@@ -10,12 +10,10 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
-
-const std::filesystem::path reference_folder =
-    std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/reference";
 
 constexpr double nT = 1e-9;
 
@@ -48,8 +46,9 @@ TEST(Igrf, AgreesWithTheReferenceProgramAtAHandfulOfPlaces) {
 
 // The rows' own rounding is 0.02 nT: coordinates are printed to 0.01 km and 0.01 deg and are exact.
 TEST(Igrf, AgreesWithEveryGeodeticReferenceRow) {
-  std::ifstream file(reference_folder / "igrf14_geodetic.txt");
-  if (!file) GTEST_SKIP() << "reference/igrf14_geodetic.txt is not at hand";
+  const char* const name = "reference/igrf14_geodetic.txt";
+  PHOTORQUE_NEEDS_THIRD_PARTY(name);
+  std::ifstream file(outside::third_party(name));
   int rows = 0;
   double worst_nT = 0.0;
   for (std::string line; std::getline(file, line); ++rows) {
@@ -147,8 +146,9 @@ TEST(Igrf, RefusesYearsWithoutCoefficients) {
 
 // The table in the program against the official release, number by number.
 TEST(Igrf, CommittedCoefficientsAreTheOfficialOnes) {
-  std::ifstream official(reference_folder / "igrf14coeffs.txt");
-  if (!official) GTEST_SKIP() << "reference/igrf14coeffs.txt is not at hand";
+  const char* const name = "reference/igrf14coeffs.txt";
+  PHOTORQUE_NEEDS_THIRD_PARTY(name);
+  std::ifstream official(outside::third_party(name));
   std::ifstream committed(std::filesystem::path(PHOTORQUE_SOURCE_DIR) /
                           "attitude/environment/igrf14_coefficients.inc");
   ASSERT_TRUE(committed);

@@ -12,6 +12,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/settings_bench.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
@@ -265,10 +266,15 @@ TEST(Commands, MustBeInOrderAndCommandSomething) {
   EXPECT_THAT(complaint_of("t_s,gyro_x_rad_s\n0,1\n1,0\n"), HasSubstr("no command"));
 }
 
-TEST(Recording, SharedRecordingsAreRead) {
-  const std::filesystem::path folder =
-      std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/recordings";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not at hand";
+TEST(Recording, CleanRecordingOfAnotherProgramIsReadWhole) {
+  const Recording recording = read_recording(outside::reference_data("cases/02/run1.csv.gz"));
+  EXPECT_EQ(recording.rows(), 4000u);
+  EXPECT_EQ(recording.report.outlier_cells, 0);
+}
+
+TEST(Recording, RecordingsOfRealHardwareAreRead) {
+  PHOTORQUE_NEEDS_THIRD_PARTY("recordings");
+  const std::filesystem::path folder = outside::third_party("recordings");
   int read_files = 0;
   for (const char* set : {"throw_flywheel", "racquet_tumble", "wheel_coastdown"}) {
     for (const auto& entry : std::filesystem::directory_iterator(folder / set)) {

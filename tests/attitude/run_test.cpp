@@ -301,16 +301,5 @@ TEST(Wheels, SaturateInTorqueAndRate) {
   EXPECT_GT(std::abs(torque_body_N_m(model, spun).z()), 1.5e-3);
 }
 
-TEST(Cases, SharedExperimentsNeedNoOtherKeys) {
-  // What the experiments of the shared cases hold beside the contract's example: nothing. Their
-  // recordings are checked where files are read.
-  const std::filesystem::path folder =
-      std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/cases/02";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not at hand";
-  const Recording recording = read_recording(folder / "run1.csv.gz");
-  EXPECT_EQ(recording.rows(), 4000u);
-  EXPECT_EQ(recording.report.outlier_cells, 0);
-}
-
 }  // namespace
 }  // namespace photorque

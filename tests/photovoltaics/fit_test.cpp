@@ -48,8 +48,8 @@ double score(const SingleDiode& fit, const ivcurves::Truth& truth) {
 }
 
 TEST(PhotovoltaicFit, ExactCurvesGiveTheirParametersBack) {
+  PHOTORQUE_NEEDS_THIRD_PARTY("reference/ivcurves");
   const auto curves = ivcurves::read("case1");
-  if (curves.empty()) GTEST_SKIP() << "no ivcurves beside this source tree";
   double sum = 0.0;
   for (const ivcurves::Curve& c : curves) {
     const SweepFit fit = fit_sweeps(std::array{IvSweep{c.voltage_V, c.current_A}}, {});
@@ -67,7 +67,6 @@ TEST(PhotovoltaicFit, ExactCurvesGiveTheirParametersBack) {
 // Sum of the relative errors of all parameters from 50 noisy repeats (the benchmark's score).
 double noisy_score(const std::string& name, SweepFit* fit) {
   const auto curves = ivcurves::read(name);
-  if (curves.empty()) return -1.0;
   std::vector<IvSweep> sweeps;
   for (const auto& c : curves) sweeps.push_back({c.voltage_V, c.current_A});
   // As the benchmark describes its sweeps: even steps, then noise that is uniform ±0.05 % in
@@ -84,10 +83,10 @@ double noisy_score(const std::string& name, SweepFit* fit) {
 }
 
 TEST(PhotovoltaicFit, FiftyNoisyRepeatsGiveTheirParametersBack) {
+  PHOTORQUE_NEEDS_THIRD_PARTY("reference/ivcurves");
   for (const auto& [name, most] : {std::pair{"case3a", 0.1}, std::pair{"case3c", 0.05}}) {
     SweepFit fit;
     const double sum = noisy_score(name, &fit);
-    if (sum < 0) GTEST_SKIP() << "no ivcurves beside this source tree";
     EXPECT_LT(sum, most) << name;
     std::printf("    %s: score %.4f, variance per degree of freedom %.3f\n", name, sum,
                 fit.variance);
@@ -240,8 +239,8 @@ const RatedPoint* at(const MeasuredModule& module, double irradiance, double cel
 }
 
 TEST(PhotovoltaicFit, TwoPointsPredictTheRestOfEveryMeasuredModule) {
-  const auto folder = reference::folder().parent_path() / "measured" / "nrel_mpert" / "modules";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no measured modules beside this tree";
+  PHOTORQUE_NEEDS_THIRD_PARTY("measured/nrel_mpert/modules");
+  const auto folder = outside::third_party("measured/nrel_mpert/modules");
   std::vector<std::filesystem::path> files;
   for (const auto& file : std::filesystem::directory_iterator(folder)) files.push_back(file.path());
   std::ranges::sort(files);
@@ -273,9 +272,8 @@ TEST(PhotovoltaicFit, TwoPointsPredictTheRestOfEveryMeasuredModule) {
 }
 
 TEST(PhotovoltaicFit, PartlyShadedStringHasBothMeasuredPeaks) {
-  const auto file = reference::folder().parent_path() / "measured" / "ddiv" / "IV_step3.csv";
-  std::ifstream in(file);
-  if (!in) GTEST_SKIP() << "no measured curves beside this source tree";
+  PHOTORQUE_NEEDS_THIRD_PARTY("measured/ddiv/IV_step3.csv");
+  std::ifstream in(outside::third_party("measured/ddiv/IV_step3.csv"));
   IvSweep sweep;
   std::string line;
   for (std::getline(in, line); std::getline(in, line);) {

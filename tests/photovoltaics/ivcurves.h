@@ -1,4 +1,4 @@
-// The published curves and parameters of cwhanse/ivcurves, in ../shared/reference/ivcurves.
+// The published curves and parameters of cwhanse/ivcurves.
 #pragma once
 
 #include <filesystem>
@@ -56,10 +56,9 @@ inline double quoted_number(const std::string& json, const std::string& key, siz
   return std::stod(json.substr(quote + 1, json.find('"', quote + 1) - quote - 1));
 }
 
-// The curves of a case; each with the parameters of its line, or of the only line. Empty where the
-// folder is absent.
+// The curves of a case; each with the parameters of its line, or of the only line.
 inline std::vector<Curve> read(const std::string& name) {
-  const auto folder = reference::folder() / "ivcurves";
+  const auto folder = outside::third_party("reference/ivcurves");
   std::ifstream in(folder / (name + ".json"));
   std::stringstream text;
   text << in.rdbuf();

@@ -1,6 +1,6 @@
 // The 100-cell array of the reference calculations: cells, maps, wirings, in the words of
-// ../shared/reference/electrical.md, whose numbers come from PVMismatch, from ngspice and from a
-// nested bracketed solver in Python.
+// tests/data/electrical, whose numbers come from PVMismatch, from ngspice and from a nested
+// bracketed solver in Python.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,11 +16,12 @@
 #include "core/constants.h"
 #include "photovoltaics/array/design.h"
 #include "photovoltaics/network/curve.h"
+#include "tests/outside.h"
 
 namespace photorque::reference {
 
-inline std::filesystem::path folder() {
-  return std::filesystem::path(PHOTORQUE_SOURCE_DIR).parent_path() / "shared" / "reference";
+inline std::filesystem::path file(const std::string& name) {
+  return outside::reference_data("electrical") / (name + ".csv");
 }
 
 // All numbers of a CSV file without header; lines that begin with # are comments.
@@ -35,9 +36,9 @@ inline std::vector<double> numbers(const std::filesystem::path& file) {
   return all;
 }
 
-// The 10 × 10 irradiances of a map over one sun; empty where the reference folder is absent.
+// The 10 × 10 irradiances of a map over one sun.
 inline std::vector<double> suns(const std::string& map) {
-  return numbers(folder() / "electrical" / "maps" / (map + ".csv"));
+  return numbers(file(map));
 }
 
 // ngspice was run with constants of CODATA 2014; only kT/q enters, so this temperature gives the

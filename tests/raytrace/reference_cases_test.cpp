@@ -1,15 +1,12 @@
 // Maps and forces computed by other programs.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
+#include "tests/outside.h"
 #include "tests/raytrace/test_scenes.h"
 
 namespace photorque {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::add;
 using testing::PillboxDisc;
 
@@ -27,16 +24,6 @@ class SquareMap final : public Receiver {
   }
   Product product(const BinSums&) const override { return {}; }
 };
-
-std::vector<double> read_reference(const std::string& name) {
-  const fs::path path = fs::path(PHOTORQUE_SOURCE_DIR) / "../shared/reference/optics" / name;
-  std::vector<double> values;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return values;
-  values.resize(10000);
-  in.read(reinterpret_cast<char*>(values.data()), 80000);
-  return values;
-}
 
 struct MapCheck {
   double mean_square_z;  // of (map − reference)/error over lit bins
@@ -71,8 +58,9 @@ class DiscOverSquare
 
 // A disc of 0.4 m at z = 1.5 m, pillbox of 1.5 deg, over a 0.5 m square with a black box between.
 TEST_P(DiscOverSquare, MapAgreesWithTheReferenceWithinItsErrors) {
-  const auto reference = read_reference(GetParam().first);
-  if (reference.empty()) GTEST_SKIP() << "no reference map " << GetParam().first;
+  const auto reference =
+      outside::read_float32(outside::reference_data("optics") / GetParam().first);
+  ASSERT_EQ(reference.size(), 10000u);
   Scene scene;
   const auto black = grey_surface("black", 0, 0);
   add(scene, testing::rectangle(Vec3::Zero(), Vec3(0.5, 0, 0), Vec3(0, 0.5, 0)), black, "receiver");
@@ -96,8 +84,8 @@ TEST_P(DiscOverSquare, MapAgreesWithTheReferenceWithinItsErrors) {
   RecordProperty("mean_square_z", std::to_string(check.mean_square_z));
 }
 INSTANTIATE_TEST_SUITE_P(CaseA, DiscOverSquare,
-                         ::testing::Values(std::pair{"refA0.f64", PillboxDisc::Measure::angle},
-                                           std::pair{"refA1.f64",
+                         ::testing::Values(std::pair{"disc_angle.f32", PillboxDisc::Measure::angle},
+                                           std::pair{"disc_projected.f32",
                                                      PillboxDisc::Measure::projected}));
 
 // The 16 oblique cases of a faceted spacecraft: ten facets, each lit on its front only, no mutual

@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "core/constants.h"
+#include "tests/outside.h"
 #include "tests/raytrace/test_scenes.h"
 #include "tests/receivers/gather_lamps.h"
 
@@ -38,12 +36,8 @@ class GatheredDisc : public ::testing::TestWithParam<std::tuple<const char*, con
 // The reference maps of case A; precise to 1e-4 (A0) and 7e-4 (A1).
 TEST_P(GatheredDisc, MapAgreesWithTheReference) {
   const auto& [name, measure, precision] = GetParam();
-  const auto path =
-      std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/reference/optics" / name;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) GTEST_SKIP() << "no reference map " << name;
-  std::vector<double> reference(10000);
-  in.read(reinterpret_cast<char*>(reference.data()), 80000);
+  const auto reference = outside::read_float32(outside::reference_data("optics") / name);
+  ASSERT_EQ(reference.size(), 10000u);
   const double peak = *std::max_element(reference.begin(), reference.end());
 
   const TraceableScene scene(shaded_square());
@@ -79,8 +73,8 @@ TEST_P(GatheredDisc, MapAgreesWithTheReference) {
   EXPECT_NEAR(squares / shaded, 1.154, 0.25);
 }
 INSTANTIATE_TEST_SUITE_P(CaseA, GatheredDisc,
-                         ::testing::Values(std::tuple{"refA0.f64", "angle", 1e-4},
-                                           std::tuple{"refA1.f64", "projected", 7e-4}));
+                         ::testing::Values(std::tuple{"disc_angle.f32", "angle", 1e-4},
+                                           std::tuple{"disc_projected.f32", "projected", 7e-4}));
 
 // Rays and gather are two routes to one map, also at an angle, with several lamps and over a
 // surface with a hole.

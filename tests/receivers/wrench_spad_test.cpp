@@ -5,6 +5,7 @@
 
 #include "receiver_scenes.h"
 #include "receivers/wrench/spad.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
@@ -77,7 +78,7 @@ WrenchTable sample_table(bool with_torque) {
 }
 
 std::filesystem::path sample(const std::string& name) {
-  return std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/spad" / name;
+  return outside::third_party("spad") / name;
 }
 
 TEST(Spad, ReadsRowsInAnyOrderAndInches) {
@@ -168,7 +169,7 @@ TEST(Spad, OnlyTheWholeSphereIsWritten) {
 }
 
 TEST(Spad, ReadsATableOfJwst) {
-  if (!std::filesystem::exists(sample("JWST-10cm1R.spo"))) GTEST_SKIP() << "no sample files here";
+  PHOTORQUE_NEEDS_THIRD_PARTY("spad");
   const SpadFile file = read_spad(sample("JWST-10cm1R.spo"));
   EXPECT_EQ(file.system, "JWST");
   EXPECT_TRUE(file.has_torque);
@@ -186,8 +187,7 @@ TEST(Spad, ReadsATableOfJwst) {
 }
 
 TEST(Spad, ReadsATableOfASphereWhoseForcesPointAtTheSun) {
-  if (!std::filesystem::exists(sample("SphericalModel.spo")))
-    GTEST_SKIP() << "no sample files here";
+  PHOTORQUE_NEEDS_THIRD_PARTY("spad");
   const SpadFile file = read_spad(sample("SphericalModel.spo"));
   EXPECT_FALSE(file.has_torque);
   EXPECT_EQ(file.table.nodes(), 2701u);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "gltf_test_model.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
@@ -12,8 +13,7 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const std::filesystem::path corpus =
-    std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/models/malformed";
+const std::filesystem::path corpus = photorque::outside::third_party("models/malformed");
 
 // Files that the validator calls wrong and that are read all the same, because what is wrong cannot
 // change a triangle, a transform or an optical property.
@@ -55,7 +55,7 @@ std::string bytes_of_file(const std::filesystem::path& path) {
 }
 
 TEST(GltfCorpus, EveryErrorThatMattersIsRefusedInOneLine) {
-  if (!std::filesystem::exists(corpus)) GTEST_SKIP() << "no " << corpus;
+  PHOTORQUE_NEEDS_THIRD_PARTY("models/malformed");
   size_t wrong_files = 0, right_files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(corpus)) {
     const std::string extension = entry.path().extension().string();

@@ -2,14 +2,14 @@
 #include <filesystem>
 
 #include "gltf_test_model.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
 
 using ::testing::HasSubstr;
 
-const std::filesystem::path models =
-    std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/models";
+const std::filesystem::path models = photorque::outside::third_party("models");
 
 // From gltf_reference.py, beside this file, run on the same models.
 struct Reference {
@@ -29,7 +29,7 @@ class GltfModels : public ::testing::TestWithParam<Reference> {};
 
 TEST_P(GltfModels, HaveTheSizeThatAnotherProgramFinds) {
   const Reference& expected = GetParam();
-  if (!std::filesystem::exists(models / expected.file)) GTEST_SKIP() << "no " << expected.file;
+  PHOTORQUE_NEEDS_THIRD_PARTY("models");
   const GltfModel model = read_gltf(models / expected.file);
   EXPECT_EQ(model.scene.instances.size(), expected.instances);
   const SceneSize size = size_of(model.scene);
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
 // What the models' READMEs and exporters say beyond sizes.
 TEST(GltfModels, ShareTheMeshOfNodesThatShareIt) {
   const auto file = models / "blender/02_shared_mesh/02_shared_mesh.gltf";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared models";
+  PHOTORQUE_NEEDS_THIRD_PARTY("models");
   const Scene scene = read_gltf(file).scene;
   ASSERT_EQ(scene.instances.size(), 2u);
   EXPECT_EQ(scene.meshes.size(), 1u);
@@ -123,7 +123,7 @@ TEST(GltfModels, ShareTheMeshOfNodesThatShareIt) {
 
 TEST(GltfModels, RecordDoubleSided) {
   const auto file = models / "blender/01_single_vs_double_sided/01_single_vs_double_sided.gltf";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared models";
+  PHOTORQUE_NEEDS_THIRD_PARTY("models");
   for (const GltfMaterial& material : read_gltf(file).materials) {
     EXPECT_EQ(material.double_sided, material.name == "mat_double") << material.name;
   }
@@ -133,7 +133,7 @@ TEST(GltfModels, RecordDoubleSided) {
 // states for its accessors, which is what went into the encoder; 14 bits of 17 m are 1 mm.
 TEST(GltfModels, UnpackASatelliteFromDraco) {
   const auto file = models / "NASA_Aqua_B_draco.glb";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared models";
+  PHOTORQUE_NEEDS_THIRD_PARTY("models");
   const GltfModel model = read_gltf(file);
   EXPECT_EQ(model.scene.instances.size(), 6u);
   const SceneSize size = size_of(model.scene);
@@ -149,7 +149,7 @@ TEST(GltfModels, UnpackASatelliteFromDraco) {
 // The same engine plain and packed: 11 bits of each mesh.
 TEST(GltfModels, UnpackTheSameEngineAsThePlainOne) {
   const auto packed = models / "2CylinderEngine_draco/2CylinderEngine.gltf";
-  if (!std::filesystem::exists(packed)) GTEST_SKIP() << "no shared models";
+  PHOTORQUE_NEEDS_THIRD_PARTY("models");
   const Scene draco = read_gltf(packed).scene;
   const SceneSize a = size_of(draco), b = size_of(read_gltf(models / "2CylinderEngine.glb").scene);
   EXPECT_EQ(draco.instances.size(), 115u);
@@ -162,7 +162,7 @@ TEST(GltfModels, UnpackTheSameEngineAsThePlainOne) {
 
 // A cube of side 2, quantized and packed, with and without a filter on what is not needed.
 TEST(GltfModels, UnpackABoxFromMeshopt) {
-  if (!std::filesystem::exists(models)) GTEST_SKIP() << "no shared models";
+  PHOTORQUE_NEEDS_THIRD_PARTY("models");
   for (const char* file : {"in/BoxMeshopt.glb", "in/BoxMeshopt.gltf"}) {
     SCOPED_TRACE(file);
     const SceneSize size = size_of(read_gltf(models / file).scene);
@@ -175,7 +175,7 @@ TEST(GltfModels, UnpackABoxFromMeshopt) {
 
 TEST(GltfModels, RefuseWhatIsNotThere) {
   const auto file = models / "in/BoxDraco.gltf";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared models";
+  PHOTORQUE_NEEDS_THIRD_PARTY("models");
   try {
     read_gltf(file);
     ADD_FAILURE() << "was read";

@@ -6,6 +6,7 @@
 
 #include "core/numerics/random.h"
 #include "gltf_test_model.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
@@ -178,17 +179,14 @@ TEST(GltfMutations, BitsFlippedAnywhere) {
 }
 
 TEST(GltfMutations, BitsFlippedInExportersFiles) {
-  const std::filesystem::path file =
-      std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/models/in/TwoCubes.glb";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
-  std::ifstream in(file, std::ios::binary);
+  PHOTORQUE_NEEDS_THIRD_PARTY("models/in/TwoCubes.glb");
+  std::ifstream in(photorque::outside::third_party("models/in/TwoCubes.glb"), std::ios::binary);
   flip_bits({std::istreambuf_iterator<char>(in), {}}, "a.glb", 1000);
 }
 
 TEST(GltfMutations, BitsFlippedInPackedFiles) {
-  const std::filesystem::path models =
-      std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/models";
-  if (!std::filesystem::exists(models)) GTEST_SKIP() << "no " << models;
+  PHOTORQUE_NEEDS_THIRD_PARTY("models");
+  const std::filesystem::path models = photorque::outside::third_party("models");
   const auto bytes_of = [&](const char* file) {
     std::ifstream in(models / file, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});

@@ -170,7 +170,7 @@ TEST(IesFile, OfTypesAAndBComesBackAsWritten) {
 }
 
 TEST(PhotometricSamples, AreAllReadAndComeBackAsWritten) {
-  if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
+  PHOTORQUE_NEEDS_THIRD_PARTY("photometry");
   int files = 0;
   for (const char* folder : {"ies", "ldt", "synthetic"}) {
     for (const auto& entry : fs::directory_iterator(samples() / folder)) {
@@ -203,7 +203,7 @@ double flux_by_means(const PhotometricLamp& lamp) {
 // Widths and flux by another program (index.txt), which draws straight lines between the angles and
 // takes the flux by means. These tables are coarse, and a smooth curve is up to 2 % wider.
 TEST(PhotometricSamples, AgreeWithAnotherProgram) {
-  if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
+  PHOTORQUE_NEEDS_THIRD_PARTY("photometry");
   struct Known {
     const char* file;
     double fwhm_deg, tenth_deg, flux;
@@ -228,15 +228,15 @@ struct Answer {
   double fwhm_deg, half_deg, ninety_deg, ninety_nine_deg, within_1_5, within_3;
 };
 
-// answers.txt: closed forms, to the digits given.
+// Closed forms, to the digits given.
 TEST(PhotometricSamples, ReproduceTheAnswersOfSyntheticBeams) {
-  if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
   for (const Answer& answer :
        {Answer{"gauss3", 3.0000, 1.4999, 2.7337, 3.8660, 0.50006, 0.93753},
         Answer{"core3_halo12_20pct", 3.0310, 1.7497, 5.9926, 12.4571, 0.40855, 0.78192}}) {
     for (const char* extension : {".ies", ".ldt"}) {
       SCOPED_TRACE(std::string(answer.name) + extension);
-      const fs::path path = samples() / "synthetic" / (std::string(answer.name) + extension);
+      const fs::path path =
+          outside::reference_data("beams") / (std::string(answer.name) + extension);
       const PhotometricLamp lamp = lamp_of(read_sample_table(path));
       const EncircledFlux flux(lamp);
       EXPECT_NEAR(full_width_rad(lamp, 0.5) / deg, answer.fwhm_deg, 2e-4);
@@ -251,7 +251,7 @@ TEST(PhotometricSamples, ReproduceTheAnswersOfSyntheticBeams) {
 }
 
 TEST(EulumdatFile, RefusesDamage) {
-  if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
+  PHOTORQUE_NEEDS_THIRD_PARTY("photometry");
   const std::string good = read_file(samples() / "ldt/0-4-2.ldt");
   EXPECT_NO_THROW(read_eulumdat(good, "good"));
   for (size_t length = 0; length + 4 < good.size(); ++length) {

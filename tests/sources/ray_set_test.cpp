@@ -47,7 +47,7 @@ void expect_equal(const RaySet& a, const RaySet& b) {
 
 // The same lamp in two formats; 10,000 rays of one program in two of its formats.
 TEST(RaySamples, AreAllReadAndAgreeAcrossFormats) {
-  if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
+  PHOTORQUE_NEEDS_THIRD_PARTY("photometry");
   const auto compare = [&](const char* first, const char* second, double tolerance) {
     const RaySet a = read_sample_rays(samples() / first), b = read_sample_rays(samples() / second);
     ASSERT_EQ(a.rays.size(), b.rays.size());
@@ -71,7 +71,7 @@ TEST(RaySamples, AreAllReadAndAgreeAcrossFormats) {
 }
 
 TEST(RaySamples, ComeBackAsWritten) {
-  if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
+  PHOTORQUE_NEEDS_THIRD_PARTY("photometry");
   for (const char* file :
        {"synthetic/gauss3.tm25ray", "rays/Cyl10k.1.tm25ray", "rays/farfield.TM25ray"}) {
     SCOPED_TRACE(file);
@@ -80,9 +80,10 @@ TEST(RaySamples, ComeBackAsWritten) {
   }
 }
 
-// answers.txt, as far as 20,000 rays can tell: a fraction p of them errs by √(p(1 − p)/n).
+// The closed forms of these beams, as far as 20,000 rays can tell: a fraction p of them errs by
+// √(p(1 − p)/n).
 TEST(RaySamples, HoldTheEncircledFluxOfTheirBeam) {
-  if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
+  PHOTORQUE_NEEDS_THIRD_PARTY("photometry");
   const auto check = [&](const char* file, double half_angle_rad, double fraction) {
     const RayLamp lamp(1.0, read_sample_rays(samples() / file));
     const double sigma = std::sqrt(fraction * (1.0 - fraction) / 20000.0);
@@ -146,8 +147,7 @@ TEST(Tm25, RefusesDamage) {
 }
 
 TEST(ZemaxRays, RefuseDamage) {
-  if (!fs::exists(samples())) GTEST_SKIP() << "no samples at " << samples();
-  const std::string good = read_file(samples() / "synthetic/gauss3.dat").substr(0, 208 + 28 * 50);
+  const std::string good = read_file(outside::reference_data("beams/gauss3_begin.dat"));
   const auto patched = [&](size_t at, const std::string& bytes) {
     return std::string(good).replace(at, bytes.size(), bytes);
   };

@@ -15,6 +15,7 @@
 #include "raytrace/emitter.h"
 #include "sources/kind.h"
 #include "sources/rayfiles/set.h"
+#include "tests/outside.h"
 
 namespace photorque {
 
@@ -24,7 +25,7 @@ namespace test {
 
 // Where the sample files of photometers and lamp makers lie, if they are there.
 inline std::filesystem::path samples() {
-  return std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "../shared/photometry";
+  return outside::third_party("photometry");
 }
 
 inline SettingsNode vector_node(double x, double y, double z) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/outside.h"
 #include "tests/tools/command_test.h"
 
 namespace photorque {
@@ -157,8 +158,7 @@ TEST_F(AttitudeCommands, WrongInputIsOneLineAndExitTwo) {
 // Recordings that another program made, in another language, with another integrator: with the
 // injected effect of each case put into the experiment, the whole trajectory fits to its noise.
 TEST_F(AttitudeCommands, RecordingsOfAnotherSimulatorFitToTheirNoise) {
-  const fs::path cases = source / "../shared/cases";
-  if (!fs::exists(cases)) GTEST_SKIP() << cases << " is not at hand";
+  const fs::path cases = photorque::outside::reference_data("cases");
   int compared = 0;
   for (const auto& entry : fs::directory_iterator(cases)) {
     if (!fs::exists(entry.path() / "truth.json")) continue;
