@@ -8,10 +8,7 @@
 namespace photorque {
 namespace {
 
-// Difference of log evidence below which two explanations count as equally good.
-constexpr double same_log_evidence = 3.0;
-
-std::vector<std::string> kinds_of(const Trial& t, const std::vector<Candidate>& all) {
+std::vector<std::string> kinds_of(const Trial& t, const Candidates& all) {
   std::vector<std::string> kinds;
   for (const size_t c : t.candidates) {
     if (!all[c].empirical()) kinds.push_back(all[c].effect.kind);
@@ -25,7 +22,7 @@ std::string in_words(std::string kind) {
   return kind;
 }
 
-std::string label_of(const Trial& t, const std::vector<Candidate>& all) {
+std::string label_of(const Trial& t, const Candidates& all) {
   std::string label;
   for (const size_t c : t.candidates) {
     if (!label.empty()) label += " and ";
@@ -76,14 +73,13 @@ std::vector<FittedParameter> parameters_of(const Trial& t, size_t disturbance) {
 
 // Kinds that stand in for `kind` in an equally good trial that is otherwise the same.
 std::vector<std::string> rivals(const std::string& kind, const Trial& chosen,
-                                const std::vector<Trial>& trials,
-                                const std::vector<Candidate>& all) {
+                                const std::vector<Trial>& trials, const Candidates& all) {
   std::vector<std::string> others = kinds_of(chosen, all);
   others.erase(std::find(others.begin(), others.end(), kind));
   std::set<std::string> result;
   for (const Trial& t : trials) {
     if (!t.objection.empty() || t.candidates.size() != chosen.candidates.size()) continue;
-    if (t.log_evidence < chosen.log_evidence - same_log_evidence) continue;
+    if (t.log_evidence < chosen.log_evidence - all.limits.search.min_log_evidence_gain) continue;
     std::vector<std::string> kinds = kinds_of(t, all);
     if (kinds.size() != t.candidates.size()) continue;
     for (const std::string& other : others) {
@@ -98,7 +94,7 @@ std::vector<std::string> rivals(const std::string& kind, const Trial& chosen,
 }  // namespace
 
 std::vector<FoundEffect> found_effects(const Decision& decision, const std::vector<Trial>& trials,
-                                       const std::vector<Candidate>& all) {
+                                       const Candidates& all) {
   const Trial& chosen = trials[decision.chosen];
   std::vector<FoundEffect> effects;
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
@@ -122,7 +118,7 @@ std::vector<FoundEffect> found_effects(const Decision& decision, const std::vect
 }
 
 std::vector<Alternative> alternatives(const Decision& decision, const std::vector<Trial>& trials,
-                                      const std::vector<Candidate>& all) {
+                                      const Candidates& all) {
   constexpr size_t most = 25;
   std::map<std::string, const Trial*> best;
   for (const Trial& t : trials) {

@@ -8,11 +8,11 @@ namespace photorque {
 
 // The effects of the chosen trial, each with the probability that its kind acts.
 std::vector<FoundEffect> found_effects(const Decision& decision, const std::vector<Trial>& trials,
-                                       const std::vector<Candidate>& all);
+                                       const Candidates& all);
 
 // The best of every set of names, best first, relative to the nominal model.
 std::vector<Alternative> alternatives(const Decision& decision, const std::vector<Trial>& trials,
-                                      const std::vector<Candidate>& all);
+                                      const Candidates& all);
 
 // What was nominal with an uncertainty, as the chosen trial has it.
 std::vector<FittedParameter> refined_priors(const Trial& chosen);

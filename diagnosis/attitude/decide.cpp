@@ -9,37 +9,27 @@
 namespace photorque {
 namespace {
 
-// Evidence by which something must beat the nominal model before it is said: odds of 1 in 90, on
-// top of the prior odds against each name.
-constexpr double min_log_odds = 4.5;
-// Of a named effect.
-constexpr double min_significance = 4.0;
-// Of the probability, for a name that only the recordings and what was held out show together.
-constexpr double min_fraction_of_weak_evidence = 0.7;
-// Of the residual structure, before the best physics is called insufficient.
-constexpr double max_excess_sigma = 6.0;
-
-bool has_empirical(const Trial& t, const std::vector<Candidate>& all) {
+bool has_empirical(const Trial& t, const Candidates& all) {
   return std::any_of(t.candidates.begin(), t.candidates.end(),
                      [&](size_t c) { return all[c].empirical(); });
 }
 
-bool is_significant(const Trial& t, const std::vector<Candidate>& all,
+bool is_significant(const Trial& t, const Candidates& all,
                     const std::vector<double>& significance) {
   for (size_t i = 0; i < t.candidates.size(); ++i) {
     const Candidate& c = all[t.candidates[i]];
     if (c.start.parameters.empty() || c.effect.kind == "flexible_mode") continue;
-    if (significance[i] < min_significance) return false;
+    if (significance[i] < all.limits.decision.min_significance) return false;
   }
   return true;
 }
 
-bool is_significant(const Trial& t, const std::vector<Candidate>& all) {
+bool is_significant(const Trial& t, const Candidates& all) {
   return is_significant(t, all,
                         t.joint_significance.empty() ? t.significance : t.joint_significance);
 }
 
-std::multiset<std::string> names_of(const Trial& t, const std::vector<Candidate>& all) {
+std::multiset<std::string> names_of(const Trial& t, const Candidates& all) {
   std::multiset<std::string> names;
   for (const size_t c : t.candidates) names.insert(all[c].label);
   return names;
@@ -62,15 +52,16 @@ std::vector<double> posterior(const std::vector<Trial>& trials) {
 
 }  // namespace
 
-Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& all,
+Decision decide(const std::vector<Trial>& trials, const Candidates& all,
                 const std::vector<Observation>& runs) {
+  const Thresholds::Decision& limits = all.limits.decision;
   Decision d;
   d.probability = posterior(trials);
   const double none = trials.front().log_evidence;
   size_t physics = 0, empirical = 0;
   for (size_t i = 1; i < trials.size(); ++i) {
     const Trial& t = trials[i];
-    if (!t.objection.empty() || t.log_evidence < none + min_log_odds) continue;
+    if (!t.objection.empty() || t.log_evidence < none + limits.min_log_odds) continue;
     if (!is_significant(t, all)) continue;
     size_t& best = has_empirical(t, all) ? empirical : physics;
     if (best == 0 || t.log_evidence > trials[best].log_evidence) best = i;
@@ -78,22 +69,23 @@ Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& 
   d.physics = physics;
   const double physics_evidence = physics == 0 ? none : trials[physics].log_evidence;
   const bool law_unknown =
-      empirical != 0 && trials[empirical].log_evidence > physics_evidence + min_log_odds;
-  const bool structure_left = excess_sigma(trials[physics].fit, runs) > max_excess_sigma;
+      empirical != 0 && trials[empirical].log_evidence > physics_evidence + limits.min_log_odds;
+  const bool structure_left =
+      excess_sigma(trials[physics].fit, runs, all.limits.noise) > limits.max_excess_sigma;
   if (law_unknown || structure_left) {
     d.verdict = Verdict::unexplained;
     d.chosen = law_unknown ? empirical : physics;
     for (size_t i = 0; i < trials.size(); ++i) {
       if (has_empirical(trials[i], all)) d.confidence += d.probability[i];
     }
-    if (structure_left) d.confidence = std::max(d.confidence, 0.95);
+    if (structure_left) d.confidence = std::max(d.confidence, limits.structure_confidence);
   } else if (physics != 0) {
     // The same names with another parametrisation are the same answer.
     const auto names = names_of(trials[physics], all);
     for (size_t i = 0; i < trials.size(); ++i) {
       if (names_of(trials[i], all) == names) d.confidence += d.probability[i];
     }
-    d.undecided = d.confidence < min_fraction_of_weak_evidence &&
+    d.undecided = d.confidence < limits.min_fraction_of_weak_evidence &&
                   !is_significant(trials[physics], all, trials[physics].significance);
     d.verdict = d.undecided ? Verdict::consistent : Verdict::missing_physics;
     d.chosen = d.undecided ? 0 : physics;

@@ -18,7 +18,7 @@ struct Decision {
 };
 
 // Trial 0 is the nominal model.
-Decision decide(const std::vector<Trial>& trials, const std::vector<Candidate>& all,
+Decision decide(const std::vector<Trial>& trials, const Candidates& all,
                 const std::vector<Observation>& runs);
 
 }  // namespace photorque

@@ -67,19 +67,19 @@ Data read_data(const NominalModel& nominal, const std::vector<NamedRecording>& r
 
 // The nominal model fitted; readings that stand out are dropped and wrong noise levels repaired on
 // the way.
-Fit settle(const NominalModel& nominal, Data& data) {
-  Fit fitted = fit_nominal(nominal, data.train);
+Fit settle(const NominalModel& nominal, const Thresholds& limits, Data& data) {
+  Fit fitted = fit_nominal(nominal, data.train, limits);
   if (!std::isfinite(fitted.chi2)) {
     throw NumericalError("the believed model cannot be propagated along the recording");
   }
   const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
-  data.outliers = drop_outliers(residuals, data.train);
-  const Whiteness found = whiteness(residuals);
-  data.noise_corrected = correct_noise(found, data.train);
-  correct_noise(found, data.held);
+  data.outliers = drop_outliers(residuals, data.train, limits.noise);
+  const Whiteness found = whiteness(residuals, limits.noise);
+  data.noise_corrected = correct_noise(found, data.train, limits.noise);
+  correct_noise(found, data.held, limits.noise);
   if (data.outliers > 0 || data.noise_corrected) fitted = fit(fitted.best, data.train);
-  data.outliers +=
-      drop_outliers(residuals_of(propagate_model(fitted, data.held), data.held), data.held);
+  const Fit held = propagate_model(fitted, data.held, limits);
+  data.outliers += drop_outliers(residuals_of(held, data.held), data.held, limits.noise);
   return fitted;
 }
 
@@ -138,8 +138,8 @@ Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
   Data data = read_data(nominal, recordings, holdouts, options);
   tell(options, "fitting what is believed");
-  const Fit nominal_fit = settle(nominal, data);
-  const std::vector<Candidate> all = all_candidates(nominal, data.train);
+  const Fit nominal_fit = settle(nominal, options.limits, data);
+  const Candidates all = all_candidates(nominal, data.train, options.limits);
   tell(options, "fitting every effect of the catalogue");
   std::vector<Trial> trials =
       search(nominal_fit, all, data.train, {options.threads, options.max_effects});
@@ -154,7 +154,7 @@ Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording
   Diagnosis d;
   d.verdict = decision.verdict;
   d.confidence = decision.confidence;
-  d.where = locate(residuals_of(nominal_fit, data.train), data.train);
+  d.where = locate(residuals_of(nominal_fit, data.train), data.train, all.limits.location);
   if (d.verdict == Verdict::missing_physics) d.where.depends_on = depends_on;
   if (d.verdict == Verdict::unexplained) {
     d.where.depends_on = of_unknown_law(depends_on, chosen, all);
@@ -164,8 +164,8 @@ Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording
   d.chi2_per_sample_before = nominal_fit.chi2_per_sample();
   d.chi2_per_sample_after = chosen.fit.chi2_per_sample();
   d.samples = nominal_fit.samples;
-  const Fit held_before = propagate_model(nominal_fit, data.held),
-            held_after = propagate_model(chosen.fit, data.held);
+  const Fit held_before = propagate_model(nominal_fit, data.held, all.limits),
+            held_after = propagate_model(chosen.fit, data.held, all.limits);
   d.holdout = compare_holdout(held_before, held_after, data.held);
   d.alternatives = alternatives(decision, trials, all);
   d.manoeuvres = manoeuvres(d.effects, decision, trials, all, data.train, options.threads);

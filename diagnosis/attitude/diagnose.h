@@ -11,6 +11,7 @@
 #include "attitude/propagation/run.h"
 #include "attitude/recordings/recording.h"
 #include "diagnosis/diagnosis.h"
+#include "inference/thresholds.h"
 
 namespace photorque {
 
@@ -24,6 +25,7 @@ struct DiagnoseOptions {
   int max_effects = 3;             // that may be found together
   size_t max_blocks = 6000;        // into which each recording is averaged
   double holdout_fraction = 0.25;  // of each recording, its end, held out when there is no holdout
+  Thresholds limits;               // of search and decision
   // Called with what begins; may be empty.
   std::function<void(const std::string&)> progress;
 };

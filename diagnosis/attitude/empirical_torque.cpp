@@ -96,8 +96,7 @@ EmpiricalTorque torque_of(const Trial& chosen, size_t which, const Candidate& ca
 
 }  // namespace
 
-std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen,
-                                               const std::vector<Candidate>& all,
+std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen, const Candidates& all,
                                                const std::vector<Observation>& runs) {
   const AttitudeModel model = chosen.fit.best.model_of(0, runs.front());
   const Dynamics dynamics(model);

@@ -8,8 +8,7 @@ namespace photorque {
 
 // The empirical parts of a trial along its first run: means over bins of the variable, with the
 // standard errors that follow from the covariance of the law's coefficients.
-std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen,
-                                               const std::vector<Candidate>& all,
+std::vector<EmpiricalTorque> empirical_torques(const Trial& chosen, const Candidates& all,
                                                const std::vector<Observation>& runs);
 
 }  // namespace photorque

@@ -15,9 +15,6 @@ namespace {
 // looks as wide as its damping: enough of it for the grid of frequencies.
 constexpr double scanned_damping = 0.08;
 
-// On noise alone χ² falls by six with six strengths.
-constexpr double min_ringing_gain = 14.0;
-
 // Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.
 ScoreGroup appendages(const Disturbance& start, double frequency_Hz) {
   ScoreGroup group;
@@ -99,7 +96,8 @@ Score together(const Score& a, const Score& b) {
 
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,
-                                        const std::vector<Observation>& slow_runs) {
+                                        const std::vector<Observation>& slow_runs,
+                                        const Thresholds::Scoring& limits) {
   constexpr double step = 1.2, max_Hz = 5.0;
   constexpr size_t max_starts = 3, max_fast_starts = 2;
   const auto interval_s = [](const Observation& seen) {
@@ -118,7 +116,7 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
     std::vector<double> gain;
     for (const Mode& mode : modes) gain.push_back(mode.gain);
     for (const size_t i : peaks(gain, most)) {
-      if (gain[i] > min_scan_gain) starts.push_back({modes[i].start, gain[i]});
+      if (gain[i] > limits.min_scan_gain) starts.push_back({modes[i].start, gain[i]});
     }
   };
   std::vector<Mode> modes;
@@ -136,7 +134,7 @@ std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit
     const ScoreGroup group = appendages(start, f_Hz);
     const Score ringing =
         score_of_ringing(all, inertia_kg_m2, axes_of(group), f_Hz, scanned_damping);
-    modes.push_back(ringing.gain < min_ringing_gain
+    modes.push_back(ringing.gain < limits.min_scan_gain
                         ? Mode{}
                         : best_appendage(group, together(carried, ringing), inertia_kg_m2));
   }

@@ -9,6 +9,7 @@ namespace photorque {
 // its expected strength, `slow_runs` averages of the runs, as good for what is slow.
 std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
                                         const std::vector<Observation>& runs,
-                                        const std::vector<Observation>& slow_runs);
+                                        const std::vector<Observation>& slow_runs,
+                                        const Thresholds::Scoring& limits);
 
 }  // namespace photorque

@@ -49,7 +49,8 @@ std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
 
 }  // namespace
 
-Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs) {
+Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs,
+                    const Thresholds& limits) {
   Hypothesis h = fitted.best;
   std::erase_if(h.free, [](const Free& f) { return !f.per_run; });
   std::vector<double> own;
@@ -57,7 +58,7 @@ Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs) {
   h.runs.clear();
   for (const Observation& seen : runs) h.runs.push_back({first_state(h.model, seen), own});
   FitSettings settings;
-  settings.windows = {0.05, 0.2, 1.0};
+  settings.windows = limits.fitting.first_windows;
   return fit(h, runs, settings);
 }
 

@@ -8,7 +8,8 @@ namespace photorque {
 
 // The model of a fit propagated on other runs: only how these runs began (initial state, instrument
 // biases within their stated uncertainty) is taken from them.
-Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs);
+Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs,
+                    const Thresholds& limits);
 
 Holdout compare_holdout(const Fit& before, const Fit& after, const std::vector<Observation>& runs);
 

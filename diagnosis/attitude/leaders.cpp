@@ -8,34 +8,31 @@ namespace photorque {
 namespace {
 
 // Enough to see whether a fit that is far off falls into another local minimum.
-FitSettings brief() {
+FitSettings brief(const Thresholds& limits) {
   FitSettings settings;
-  settings.max_iterations = 10;
+  settings.max_iterations = limits.fitting.brief_iterations;
   return settings;
 }
 
-// Of χ², to be worth a second chance.
-constexpr double worth_a_fit = 10.0;
-
-void learn(Trial& trial, const Trial& best, const std::vector<Candidate>& all,
+void learn(Trial& trial, const Trial& best, const Candidates& all,
            const std::vector<Observation>& runs) {
-  if (trial.fit.chi2 < best.fit.chi2 + worth_a_fit) return;
-  const FitSettings how = is_near(trial, best) ? patient_fit() : brief();
+  if (trial.fit.chi2 < best.fit.chi2 + all.limits.leaders.worth_a_fit) return;
+  const FitSettings how =
+      is_near(trial, best, all.limits) ? patient_fit(all.limits) : brief(all.limits);
   Trial again = refit_near(trial, best, all, runs, how);
   if (again.log_evidence > trial.log_evidence) trial = std::move(again);
 }
 
 }  // namespace
 
-FitSettings patient_fit() {
+FitSettings patient_fit(const Thresholds& limits) {
   FitSettings settings;
-  settings.max_iterations = 60;
+  settings.max_iterations = limits.fitting.patient_iterations;
   return settings;
 }
 
-bool is_near(const Trial& trial, const Trial& best) {
-  constexpr double fraction = 1.3, slack = 100.0;
-  return trial.fit.chi2 < fraction * best.fit.chi2 + slack;
+bool is_near(const Trial& trial, const Trial& best, const Thresholds& limits) {
+  return trial.fit.chi2 < limits.leaders.near_fraction * best.fit.chi2 + limits.leaders.near_chi2;
 }
 
 std::vector<size_t> by_evidence(const std::vector<Trial>& trials) {
@@ -48,17 +45,16 @@ std::vector<size_t> by_evidence(const std::vector<Trial>& trials) {
 }
 
 void settle_leaders(std::vector<Trial>& found, std::vector<Trial>& parents,
-                    std::vector<Trial>& trials, const std::vector<Candidate>& all,
+                    std::vector<Trial>& trials, const Candidates& all,
                     const std::vector<Observation>& runs, int threads) {
-  constexpr size_t max_leaders = 6;
   std::vector<size_t> leaders = by_evidence(found);
   if (leaders.empty()) return;
-  leaders.resize(std::min(max_leaders, leaders.size()));
+  leaders.resize(std::min(all.limits.leaders.max_leaders, leaders.size()));
   const Trial first = found[leaders.front()];
-  std::erase_if(leaders, [&](size_t i) { return !is_near(found[i], first); });
+  std::erase_if(leaders, [&](size_t i) { return !is_near(found[i], first, all.limits); });
   parallel_for(leaders.size(), threads, [&](size_t i) {
     Trial& trial = found[leaders[i]];
-    Trial again = refit(trial, all, runs, trial.fit.best.runs, patient_fit());
+    Trial again = refit(trial, all, runs, trial.fit.best.runs, patient_fit(all.limits));
     if (again.log_evidence > trial.log_evidence) trial = std::move(again);
   });
   const Trial best = found[by_evidence(found).front()];
@@ -73,7 +69,7 @@ void settle_leaders(std::vector<Trial>& found, std::vector<Trial>& parents,
   }
 }
 
-void learn_from_best(std::vector<Trial>& trials, const std::vector<Candidate>& all,
+void learn_from_best(std::vector<Trial>& trials, const Candidates& all,
                      const std::vector<Observation>& runs, int threads) {
   const Trial best =
       *std::min_element(trials.begin(), trials.end(),

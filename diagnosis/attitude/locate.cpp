@@ -34,9 +34,10 @@ std::vector<Where::ChannelMisfit> channels(const std::vector<Prediction>& residu
   return result;
 }
 
-// Fortieths of the run whose mean square exceeds that of noise by five standard errors, joined
-// where they touch.
-std::vector<Where::Interval> intervals(const Prediction& p, const Observation& seen) {
+// Fortieths of the run whose mean square exceeds that of noise beyond doubt, joined where they
+// touch.
+std::vector<Where::Interval> intervals(const Prediction& p, const Observation& seen,
+                                       const Thresholds::Location& limits) {
   constexpr size_t windows = 40;
   std::vector<Where::Interval> result;
   const size_t blocks = p.residual.size();
@@ -52,7 +53,8 @@ std::vector<Where::Interval> intervals(const Prediction& p, const Observation& s
       }
     }
     const double n = static_cast<double>(count);
-    if (count < 20 || sum < n + 5.0 * std::sqrt(2.0 * n)) continue;
+    if (count < limits.min_readings) continue;
+    if (sum < n + limits.interval_sigma * std::sqrt(2.0 * n)) continue;
     const double from_s = seen.time_s[first], to_s = seen.time_s[last - 1];
     const bool touches =
         !result.empty() && w > 0 && result.back().to >= seen.time_s[first == 0 ? 0 : first - 1];
@@ -65,8 +67,9 @@ std::vector<Where::Interval> intervals(const Prediction& p, const Observation& s
   return result;
 }
 
-// The band that holds nine tenths of the power above that of noise.
-std::optional<Where::Interval> band(const Prediction& p, const Observation& seen) {
+// The band that holds nearly all of the power above that of noise.
+std::optional<Where::Interval> band(const Prediction& p, const Observation& seen,
+                                    const Thresholds::Location& limits) {
   constexpr size_t max_lines = 400;
   const double step_Hz = 0.5 / seen.duration_s();
   const double highest_Hz = 0.5 * static_cast<double>(seen.blocks()) / seen.duration_s();
@@ -83,33 +86,34 @@ std::optional<Where::Interval> band(const Prediction& p, const Observation& seen
         sum += p.residual[i][k] * std::polar(1.0, angle);
         count += 1.0;
       }
-      if (count > 0.0) excess[l] += std::max(0.0, std::norm(sum) / count - 4.0);
+      if (count > 0.0) excess[l] += std::max(0.0, std::norm(sum) / count - limits.noise_power);
     }
     total += excess[l];
   }
-  if (!(total > 50.0)) return std::nullopt;
+  if (!(total > limits.min_band_power)) return std::nullopt;
   double below = 0.0;
   size_t low = 0, high = 0;
   for (size_t l = 0; l < lines; ++l) {
     below += excess[l];
-    if (below < 0.05 * total) low = l;
-    if (below < 0.95 * total) high = l + 1;
+    if (below < limits.band_edge * total) low = l;
+    if (below < (1.0 - limits.band_edge) * total) high = l + 1;
   }
   return Where::Interval{step_Hz * static_cast<double>(low), step_Hz * static_cast<double>(high)};
 }
 
 }  // namespace
 
-Where locate(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs) {
+Where locate(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs,
+             const Thresholds::Location& limits) {
   Where where;
   where.channels = channels(residuals);
-  where.intervals_s = intervals(residuals.front(), runs.front());
-  where.band_Hz = band(residuals.front(), runs.front());
+  where.intervals_s = intervals(residuals.front(), runs.front(), limits);
+  where.band_Hz = band(residuals.front(), runs.front(), limits);
   return where;
 }
 
 std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
-                                           const std::vector<Candidate>& all) {
+                                           const Candidates& all) {
   const double nominal = trials.front().log_evidence;
   double most = nominal;
   for (const Trial& t : trials) most = std::max(most, t.log_evidence);
@@ -122,7 +126,7 @@ std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
   }
   std::vector<Where::Dependence> result;
   for (const auto& [variable, fraction] : strength) {
-    if (fraction > 0.1) result.push_back({variable, fraction});
+    if (fraction > all.limits.location.min_dependence) result.push_back({variable, fraction});
   }
   std::stable_sort(result.begin(), result.end(),
                    [](const auto& a, const auto& b) { return a.strength > b.strength; });
@@ -130,8 +134,7 @@ std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
 }
 
 std::vector<Where::Dependence> of_unknown_law(std::vector<Where::Dependence> depends_on,
-                                              const Trial& chosen,
-                                              const std::vector<Candidate>& all) {
+                                              const Trial& chosen, const Candidates& all) {
   for (const size_t c : chosen.candidates) {
     if (!all[c].empirical()) continue;
     const auto known = std::find_if(depends_on.begin(), depends_on.end(),

@@ -8,18 +8,17 @@
 namespace photorque {
 
 // `residuals` are those of the nominal model. `depends_on` is left empty.
-Where locate(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs);
+Where locate(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs,
+             const Thresholds::Location& limits);
 
 // From trials with one candidate: by each variable, the fraction of the misfit of the first trial
 // (the nominal model) that an empirical law in it explains, largest first. Variables that explain
-// less than a tenth are left out.
-std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials,
-                                           const std::vector<Candidate>& all);
+// little are left out.
+std::vector<Where::Dependence> dependences(const std::vector<Trial>& trials, const Candidates& all);
 
 // The same where a law is unknown: the variable of the law that was chosen comes first, and there
 // is one at least.
 std::vector<Where::Dependence> of_unknown_law(std::vector<Where::Dependence> depends_on,
-                                              const Trial& chosen,
-                                              const std::vector<Candidate>& all);
+                                              const Trial& chosen, const Candidates& all);
 
 }  // namespace photorque

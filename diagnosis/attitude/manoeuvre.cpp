@@ -97,9 +97,8 @@ struct Rival {
   Trial fitted;
   std::vector<Observation> runs;
 
-  Rival(const Trial& trial, const std::vector<Candidate>& all,
-        const std::vector<Observation>& recorded) {
-    constexpr size_t blocks = 1000;
+  Rival(const Trial& trial, const Candidates& all, const std::vector<Observation>& recorded) {
+    const size_t blocks = all.limits.fitting.slow_blocks;
     for (const Observation& seen : recorded) runs.push_back(seen.averaged(blocks));
     fitted = refit(trial, all, runs, trial.fit.best.runs);
   }
@@ -108,7 +107,7 @@ struct Rival {
 constexpr double not_known = -1.0;
 
 // What the manoeuvre would add to the rival's χ², halved; not_known where its fit does not end.
-double expected_lead(const Trial& truth, const Rival& rival, const std::vector<Candidate>& all,
+double expected_lead(const Trial& truth, const Rival& rival, const Candidates& all,
                      const StartChange& change) {
   try {
     PlatformState start = truth.fit.best.runs.front().initial;
@@ -119,7 +118,7 @@ double expected_lead(const Trial& truth, const Rival& rival, const std::vector<C
     starts.push_back(starts.front());
     starts.back().initial = start;
     FitSettings growing;
-    growing.windows = {0.1, 0.4, 1.0};
+    growing.windows = all.limits.fitting.added_windows;
     const Trial both = refit(rival.fitted, all, runs, starts, growing);
     if (!both.fit.converged) return not_known;
     const double more = both.fit.chi2 - rival.fitted.fit.chi2;  // bent priors count
@@ -130,10 +129,8 @@ double expected_lead(const Trial& truth, const Rival& rival, const std::vector<C
 }
 
 // The start that predicts most.
-Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival,
-                     const std::vector<Candidate>& all, const std::vector<Observation>& recorded,
-                     int threads) {
-  constexpr double worth_it = 3.0;  // as much as names need to be told apart
+Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival, const Candidates& all,
+                     const std::vector<Observation>& recorded, int threads) {
   const std::vector<StartManoeuvre> known = start_manoeuvres();
   const Rival other(rival, all, recorded);
   std::vector<double> lead(known.size());
@@ -143,7 +140,7 @@ Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival,
   if (lead[best] == not_known) return m;
   m.log_evidence_expected = lead[best];
   m.text = known[best].text;
-  if (lead[best] < worth_it) {
+  if (lead[best] < all.limits.search.min_log_evidence_gain) {
     m.text = std::string(longer) +
              "; of four other starts of the same run none would tell them "
              "apart, the best of them this: " +
@@ -154,7 +151,7 @@ Manoeuvre best_start(Manoeuvre m, const Trial& truth, const Trial& rival,
 
 // The best trial in which `rival` stands in for `kind`.
 const Trial* stand_in(const std::string& kind, const std::string& rival, const Trial& chosen,
-                      const std::vector<Trial>& trials, const std::vector<Candidate>& all) {
+                      const std::vector<Trial>& trials, const Candidates& all) {
   const auto labels_of = [&](const Trial& t) {
     std::multiset<std::string> kinds;
     for (const size_t c : t.candidates) kinds.insert(all[c].label);
@@ -174,8 +171,7 @@ const Trial* stand_in(const std::string& kind, const std::string& rival, const T
 }  // namespace
 
 std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects, const Decision& decision,
-                                  const std::vector<Trial>& trials,
-                                  const std::vector<Candidate>& all,
+                                  const std::vector<Trial>& trials, const Candidates& all,
                                   const std::vector<Observation>& runs, int threads) {
   const Trial& chosen = trials[decision.chosen];
   std::vector<Manoeuvre> result;

@@ -11,8 +11,7 @@ namespace photorque {
 // its exact readings together with the recordings that there are: half of what χ² gains is the
 // expected lead in log evidence. The start with the largest is proposed.
 std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects, const Decision& decision,
-                                  const std::vector<Trial>& trials,
-                                  const std::vector<Candidate>& all,
+                                  const std::vector<Trial>& trials, const Candidates& all,
                                   const std::vector<Observation>& runs, int threads);
 
 }  // namespace photorque

@@ -31,9 +31,10 @@ size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance) {
   return hypothesis.model.disturbances.size() - 1;
 }
 
-Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs) {
+Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs,
+                const Thresholds& limits) {
   FitSettings settings;
-  settings.windows = {0.05, 0.2, 1.0};
+  settings.windows = limits.fitting.first_windows;
   return fit(nominal_hypothesis(nominal, runs), runs, settings);
 }
 

@@ -5,6 +5,7 @@
 
 #include "attitude/propagation/run.h"
 #include "diagnosis/attitude/fit.h"
+#include "inference/thresholds.h"
 
 namespace photorque {
 
@@ -16,6 +17,7 @@ Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Obs
 size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance);
 
 // The nominal model fitted to the runs, over windows that grow.
-Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs);
+Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs,
+                const Thresholds& limits = {});
 
 }  // namespace photorque

@@ -69,7 +69,8 @@ void add_power(const Prediction& prediction, const Observation& seen, Spectrum& 
 
 // The jump in the centre of mass at each of a grid of instants.
 std::vector<Start> mass_shift_starts(const Candidate& c, const Trial& parent,
-                                     const std::vector<Observation>& runs) {
+                                     const std::vector<Observation>& runs,
+                                     const Thresholds::Scoring& limits) {
   constexpr size_t count = 30;
   const double last_s = end_s(runs), first_s = runs.front().time_s.front();
   std::vector<ScoreGroup> groups;
@@ -82,7 +83,7 @@ std::vector<Start> mass_shift_starts(const Candidate& c, const Trial& parent,
   for (const Score& s : scores) gain.push_back(s.gain);
   std::vector<Start> starts;
   for (const size_t i : peaks(gain, 2)) {
-    if (gain[i] < min_scan_gain) continue;
+    if (gain[i] < limits.min_scan_gain) continue;
     Disturbance d = groups[i].disturbances.front();
     for (Eigen::Index k = 0; k < scores[i].estimate.size() && k < 3; ++k) {
       d.parameters[static_cast<size_t>(1 + k)].value = scores[i].estimate[k];
@@ -100,7 +101,8 @@ double slowest_line_Hz(const std::vector<Observation>& runs) {
 
 // Frequencies below slowest_line_Hz() at which a sinusoid of this kind would gain most.
 std::vector<double> slow_frequencies_Hz(const Disturbance& tone, const Fit& at,
-                                        const std::vector<Observation>& runs) {
+                                        const std::vector<Observation>& runs,
+                                        const Thresholds::Scoring& limits) {
   constexpr size_t most = 2;
   const double step_Hz = 0.7 / span_s(runs);
   std::vector<double> frequency_Hz;
@@ -114,7 +116,7 @@ std::vector<double> slow_frequencies_Hz(const Disturbance& tone, const Fit& at,
   for (const Score& s : score(at, runs, groups)) gain.push_back(s.gain);
   std::vector<double> result;
   for (const size_t i : peaks(gain, most)) {
-    if (gain[i] > min_scan_gain) result.push_back(frequency_Hz[i]);
+    if (gain[i] > limits.min_scan_gain) result.push_back(frequency_Hz[i]);
   }
   return result;
 }
@@ -124,8 +126,9 @@ std::vector<double> slow_frequencies_Hz(const Disturbance& tone, const Fit& at,
 std::vector<Start> sinusoid_starts(const Candidate& c, const Trial& parent,
                                    const std::vector<Observation>& runs,
                                    const std::vector<Observation>& slow_runs,
-                                   const std::vector<double>& lines_Hz) {
-  std::vector<double> frequencies_Hz = slow_frequencies_Hz(c.start, parent.fit, slow_runs);
+                                   const std::vector<double>& lines_Hz,
+                                   const Thresholds::Scoring& limits) {
+  std::vector<double> frequencies_Hz = slow_frequencies_Hz(c.start, parent.fit, slow_runs, limits);
   frequencies_Hz.insert(frequencies_Hz.end(), lines_Hz.begin(), lines_Hz.end());
   std::vector<ScoreGroup> groups;
   std::vector<Score> scores;
@@ -139,9 +142,8 @@ std::vector<Start> sinusoid_starts(const Candidate& c, const Trial& parent,
   for (const Score& s : scores) best = std::max(best, s.gain);
   std::vector<Start> starts;
   for (size_t i = 0; i < groups.size(); ++i) {
-    constexpr double min_fraction = 0.1;
     if (scores[i].estimate.size() != 6) continue;
-    if (scores[i].gain < std::max(min_scan_gain, min_fraction * best)) continue;
+    if (scores[i].gain < std::max(limits.min_scan_gain, limits.min_line_fraction * best)) continue;
     Eigen::Matrix<double, 3, 2> amplitude;
     amplitude.col(0) = scores[i].estimate.head<3>();
     amplitude.col(1) = scores[i].estimate.tail<3>();
@@ -159,7 +161,7 @@ std::vector<Start> sinusoid_starts(const Candidate& c, const Trial& parent,
 }  // namespace
 
 std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
-                                        size_t most) {
+                                        const Thresholds::Scoring& limits, size_t most) {
   double interval_s = span_s(runs);
   for (const Observation& seen : runs) {
     interval_s = std::min(interval_s, seen.duration_s() / static_cast<double>(seen.blocks() - 1));
@@ -187,8 +189,8 @@ std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observa
   std::fill(power.begin(), power.begin() + static_cast<std::ptrdiff_t>(slow), 0.0);
   std::vector<double> result;
   for (const size_t i : peaks(power, most)) {
-    // Power 1 for each of nine channels is noise; the largest of thousands stays below this.
-    if (power[i] > 30.0) result.push_back(static_cast<double>(i) * spectrum.step_Hz);
+    if (power[i] > limits.min_line_power)
+      result.push_back(static_cast<double>(i) * spectrum.step_Hz);
   }
   return result;
 }
@@ -196,14 +198,15 @@ std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observa
 std::vector<Start> starts_of(const Candidate& candidate, const Trial& parent,
                              const std::vector<Observation>& runs,
                              const std::vector<Observation>& slow_runs,
-                             const std::vector<double>& lines_Hz) {
+                             const std::vector<double>& lines_Hz,
+                             const Thresholds::Scoring& limits) {
   const std::string& kind = candidate.effect.kind;
-  if (kind == "mass_shift") return mass_shift_starts(candidate, parent, slow_runs);
+  if (kind == "mass_shift") return mass_shift_starts(candidate, parent, slow_runs, limits);
   if (kind == "periodic_torque" || kind == "floor_vibration") {
-    return sinusoid_starts(candidate, parent, runs, slow_runs, lines_Hz);
+    return sinusoid_starts(candidate, parent, runs, slow_runs, lines_Hz, limits);
   }
   if (kind == "flexible_mode") {
-    return flexible_mode_starts(candidate.start, parent.fit, runs, slow_runs);
+    return flexible_mode_starts(candidate.start, parent.fit, runs, slow_runs, limits);
   }
   return {{candidate.start}};
 }

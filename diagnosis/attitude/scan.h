@@ -12,7 +12,7 @@ namespace photorque {
 // Frequencies at which what is left of a fit has power, strongest first [Hz], at most `most`, above
 // those of the platform's own motion.
 std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
-                                        size_t most = 4);
+                                        const Thresholds::Scoring& limits, size_t most = 4);
 
 struct Start {
   Disturbance disturbance;
@@ -26,6 +26,7 @@ struct Start {
 std::vector<Start> starts_of(const Candidate& candidate, const Trial& parent,
                              const std::vector<Observation>& runs,
                              const std::vector<Observation>& slow_runs,
-                             const std::vector<double>& lines_Hz);
+                             const std::vector<double>& lines_Hz,
+                             const Thresholds::Scoring& limits);
 
 }  // namespace photorque

@@ -8,10 +8,6 @@
 
 namespace photorque {
 
-// Fall of χ² predicted by a scan's peak, to be worth a fit: chance alone reaches less in most
-// scans.
-constexpr double min_scan_gain = 14.0;
-
 // From the first reading to the last [s]: of several recordings the longest, of the pieces of one
 // all of it. What acts at one frequency keeps its phase from piece to piece.
 inline double span_s(const std::vector<Observation>& runs) {

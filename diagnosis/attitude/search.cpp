@@ -18,8 +18,10 @@ struct Task {
   Disturbance start;
 };
 
-// Of a fit, beyond which its slopes say little: the trajectory is elsewhere.
-constexpr double diverged_chi2_per_sample = 20.0;
+// Whether the slopes of a fit say little, because the trajectory is elsewhere.
+bool has_diverged(const Trial& trial, const Candidates& all) {
+  return trial.fit.chi2_per_sample() > all.limits.diverged_chi2_per_sample;
+}
 
 // The runs, or what each was cut into.
 struct Runs {
@@ -27,15 +29,14 @@ struct Runs {
   size_t pieces = 1;  // of each recording
 
   // In fewer blocks: enough for changes of the fit that are slow, and several times faster.
-  std::vector<Observation> averaged(const Fit& about) const {
-    constexpr size_t blocks = 1000;
-    return averaged_about(about, all, blocks / pieces);
+  std::vector<Observation> averaged(const Fit& about, const Thresholds& limits) const {
+    return averaged_about(about, all, limits.fitting.slow_blocks / pieces);
   }
 };
 
 // Every run cut into as many pieces, each of which will have a start of its own.
-Runs cut(const std::vector<Observation>& runs, size_t pieces) {
-  constexpr std::ptrdiff_t fewest_attitudes = 10;
+Runs cut(const std::vector<Observation>& runs, size_t pieces, const Thresholds& limits) {
+  const auto fewest_attitudes = static_cast<std::ptrdiff_t>(limits.search.min_readings_of_piece);
   Runs result{{}, pieces};
   for (const Observation& seen : runs) {
     for (size_t i = 0; i < pieces; ++i) {
@@ -50,9 +51,6 @@ Runs cut(const std::vector<Observation>& runs, size_t pieces) {
   return result;
 }
 
-// Of the best candidate's gain, to be worth a fit.
-constexpr double min_fraction = 0.02;
-
 struct Promising {
   std::vector<size_t> candidates;
   double min_gain;  // that a scan's start must predict, to be worth a fit beside these
@@ -60,11 +58,11 @@ struct Promising {
 
 // Where the trajectory is near the readings, the score test predicts what each candidate would
 // gain: those that would gain hardly anything against the best need no fit of their own.
-Promising promising(const Trial& parent, const std::vector<Candidate>& all,
+Promising promising(const Trial& parent, const Candidates& all,
                     const std::vector<size_t>& candidates,
                     const std::vector<Observation>& slow_runs) {
-  constexpr double min_gain = 5.0;
-  if (parent.fit.chi2_per_sample() > diverged_chi2_per_sample) return {candidates, 0.0};
+  const Thresholds::Scoring& limits = all.limits.scoring;
+  if (has_diverged(parent, all)) return {candidates, 0.0};
   std::vector<ScoreGroup> groups;
   for (const size_t c : candidates) {
     groups.push_back(
@@ -73,11 +71,11 @@ Promising promising(const Trial& parent, const std::vector<Candidate>& all,
   const std::vector<Score> scores = score(parent.fit, slow_runs, groups);
   double best = 0.0;
   for (const Score& s : scores) best = std::max(best, s.gain);
-  Promising result{{}, min_fraction * best};
+  Promising result{{}, limits.min_fraction * best};
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& c = all[candidates[i]];
     const double parameters = static_cast<double>(c.start.parameters.size());
-    const bool worth_it = scores[i].gain > std::max(min_gain + parameters, result.min_gain);
+    const bool worth_it = scores[i].gain > std::max(limits.min_gain + parameters, result.min_gain);
     if (!c.is_linear() || worth_it) result.candidates.push_back(candidates[i]);
   }
   return result;
@@ -94,13 +92,13 @@ void keep_below(std::vector<Trial>& trials, size_t fitted) {
 }
 
 // The fits of all tasks on `runs`; of several starts of a candidate the best.
-std::vector<Trial> extend_by_tasks(const Trial& parent, const std::vector<Candidate>& all,
+std::vector<Trial> extend_by_tasks(const Trial& parent, const Candidates& all,
                                    const std::vector<Task>& tasks,
                                    const std::vector<Observation>& runs, int threads) {
   std::vector<Trial> trials(tasks.size());
   parallel_for(tasks.size(), threads, [&](size_t i) {
     FitSettings settings;
-    settings.max_iterations = 12;
+    settings.max_iterations = all.limits.fitting.trial_iterations;
     trials[i] = extend(parent, all, tasks[i].candidate, tasks[i].start, runs, settings);
   });
   std::vector<Trial> best;
@@ -116,22 +114,21 @@ std::vector<Trial> extend_by_tasks(const Trial& parent, const std::vector<Candid
 
 // Every candidate added to `parent`, whose slopes can be trusted. Slow laws are fitted to averages
 // first; those that come near the best, and all fast ones, to the full runs.
-std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>& all,
+std::vector<Trial> extend_near(const Trial& parent, const Candidates& all,
                                const std::vector<size_t>& candidates, const Runs& run_set,
                                int threads) {
-  constexpr size_t max_refits = 4;
   const std::vector<Observation>& runs = run_set.all;
-  const std::vector<Observation> slow_runs = run_set.averaged(parent.fit);
+  const std::vector<Observation> slow_runs = run_set.averaged(parent.fit, all.limits);
   std::vector<double> lines_Hz;
   Promising hopeful;
   parallel_for(2, threads, [&](size_t i) {
-    if (i == 0) lines_Hz = line_frequencies_Hz(parent.fit, runs);
+    if (i == 0) lines_Hz = line_frequencies_Hz(parent.fit, runs, all.limits.scoring);
     if (i == 1) hopeful = promising(parent, all, candidates, slow_runs);
   });
   const std::vector<size_t>& worth_it = hopeful.candidates;
   std::vector<std::vector<Start>> starts(worth_it.size());
   parallel_for(worth_it.size(), threads, [&](size_t i) {
-    starts[i] = starts_of(all[worth_it[i]], parent, runs, slow_runs, lines_Hz);
+    starts[i] = starts_of(all[worth_it[i]], parent, runs, slow_runs, lines_Hz, all.limits.scoring);
   });
   std::vector<Task> slow, fast;
   for (size_t i = 0; i < worth_it.size(); ++i) {
@@ -150,7 +147,7 @@ std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>
   for (Trial& t : rough) t.log_evidence += parent.log_evidence - rough_parent;
   std::stable_sort(rough.begin(), rough.end(),
                    [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
-  const size_t refits = std::min(max_refits, rough.size());
+  const size_t refits = std::min(all.limits.search.max_refits_of_averages, rough.size());
   parallel_for(refits, threads,
                [&](size_t i) { rough[i] = refit(rough[i], all, runs, rough[i].fit.best.runs); });
   keep_below(rough, refits);
@@ -161,27 +158,28 @@ std::vector<Trial> extend_near(const Trial& parent, const std::vector<Candidate>
 // Every candidate added to a parent that has diverged. A trajectory far from the readings says
 // little about why, so the runs are cut into pieces, each with a start of its own, in which it
 // stays near them; what explains the pieces best is then fitted to the whole (multiple shooting).
-std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candidate>& all,
+std::vector<Trial> extend_by_pieces(const Trial& parent, const Candidates& all,
                                     const std::vector<size_t>& candidates,
                                     const std::vector<Observation>& runs, int threads) {
-  constexpr size_t max_refits = 6;
+  const Thresholds::Search& limits = all.limits.search;
   Runs pieces{runs};
   Trial near = parent;
-  for (const size_t count : {6u, 20u}) {
-    Runs shorter = cut(runs, count);
+  for (const size_t count : limits.pieces) {
+    Runs shorter = cut(runs, count, all.limits);
     // Too few readings to be cut.
     if (shorter.all.empty()) break;
     pieces = std::move(shorter);
     near = refit(parent, all, pieces.all, seen_starts(parent.fit.best, pieces.all));
-    if (near.fit.chi2_per_sample() < diverged_chi2_per_sample) break;
+    if (near.fit.chi2_per_sample() < all.limits.diverged_chi2_per_sample) break;
   }
   std::vector<Trial> found = extend_near(near, all, candidates, pieces, threads);
   std::stable_sort(found.begin(), found.end(),
                    [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
   FitSettings growing;
-  growing.windows = {0.06, 0.25, 1.0};
+  growing.windows = all.limits.fitting.diverged_windows;
   size_t refits = 0;
-  while (refits < std::min(max_refits, found.size()) && is_near(found[refits], found.front())) {
+  const size_t most = std::min(limits.max_refits_of_pieces, found.size());
+  while (refits < most && is_near(found[refits], found.front(), all.limits)) {
     ++refits;
   }
   parallel_for(found.size(), threads, [&](size_t i) {
@@ -198,17 +196,17 @@ std::vector<Trial> extend_by_pieces(const Trial& parent, const std::vector<Candi
   return found;
 }
 
-std::vector<Trial> extend_by_each(const Trial& parent, const std::vector<Candidate>& all,
+std::vector<Trial> extend_by_each(const Trial& parent, const Candidates& all,
                                   const std::vector<size_t>& candidates,
                                   const std::vector<Observation>& runs, int threads) {
-  if (parent.fit.chi2_per_sample() > diverged_chi2_per_sample) {
+  if (has_diverged(parent, all)) {
     return extend_by_pieces(parent, all, candidates, runs, threads);
   }
   return extend_near(parent, all, candidates, {runs}, threads);
 }
 
 // One kind acts once, in whatever parametrisation.
-bool contains(const Trial& trial, const std::vector<Candidate>& all, size_t candidate) {
+bool contains(const Trial& trial, const Candidates& all, size_t candidate) {
   return std::any_of(trial.candidates.begin(), trial.candidates.end(),
                      [&](size_t c) { return all[c].label == all[candidate].label; });
 }
@@ -232,7 +230,7 @@ std::vector<Trial> without_twins(std::vector<Trial> trials) {
   return kept;
 }
 
-bool is_physics(const Trial& trial, const std::vector<Candidate>& all) {
+bool is_physics(const Trial& trial, const Candidates& all) {
   return std::none_of(trial.candidates.begin(), trial.candidates.end(),
                       [&](size_t c) { return all[c].empirical(); });
 }
@@ -240,8 +238,7 @@ bool is_physics(const Trial& trial, const std::vector<Candidate>& all) {
 // A pair is found by way of its stronger half, which may have been another kind that takes its
 // place: the other half alone, where it has not been a parent, to be extended in turn.
 std::vector<Trial> other_halves(const Trial& pair, const std::vector<Trial>& parents,
-                                const std::vector<Trial>& singles,
-                                const std::vector<Candidate>& all,
+                                const std::vector<Trial>& singles, const Candidates& all,
                                 const std::vector<Observation>& runs) {
   std::vector<Trial> halves;
   for (const size_t candidate : pair.candidates) {
@@ -258,14 +255,13 @@ std::vector<Trial> other_halves(const Trial& pair, const std::vector<Trial>& par
 
 // Two effects that hide each other: alone neither may be what explains most. Near the readings the
 // score test predicts what every pair would gain; the best are fitted.
-std::vector<Trial> best_pairs(const Trial& nominal, const std::vector<Candidate>& all,
+std::vector<Trial> best_pairs(const Trial& nominal, const Candidates& all,
                               const std::vector<Observation>& runs, const std::vector<Trial>& known,
                               int threads) {
-  constexpr size_t max_pairs = 4;
-  // Over the better of the two alone, to be worth a fit.
-  constexpr double min_gain = 16.0;
-  if (nominal.fit.chi2_per_sample() > diverged_chi2_per_sample) return {};
-  const std::vector<Observation> slow_runs = Runs{runs}.averaged(nominal.fit);
+  const Thresholds::Scoring& limits = all.limits.scoring;
+  const size_t max_pairs = all.limits.search.max_pairs;
+  if (has_diverged(nominal, all)) return {};
+  const std::vector<Observation> slow_runs = Runs{runs}.averaged(nominal.fit, all.limits);
   std::vector<size_t> linear;
   std::vector<ScoreGroup> groups;
   for (size_t c = 0; c < all.size(); ++c) {
@@ -285,7 +281,7 @@ std::vector<Trial> best_pairs(const Trial& nominal, const std::vector<Candidate>
       const auto [a, b] = gains(i, i) > gains(j, j) ? std::pair(i, j) : std::pair(j, i);
       const Pair pair{linear[static_cast<size_t>(a)], linear[static_cast<size_t>(b)], gains(i, j)};
       if (all[pair.first].label == all[pair.second].label) continue;
-      if (gains(i, j) < gains(a, a) + min_gain) continue;
+      if (gains(i, j) < gains(a, a) + limits.min_pair_gain) continue;
       const bool tried = std::any_of(known.begin(), known.end(), [&](const Trial& t) {
         return t.candidates == std::vector<size_t>{pair.first, pair.second} ||
                t.candidates == std::vector<size_t>{pair.second, pair.first};
@@ -297,7 +293,7 @@ std::vector<Trial> best_pairs(const Trial& nominal, const std::vector<Candidate>
     const auto worth = [&](const Pair& p) {
       const size_t parameters =
           all[p.first].start.parameters.size() + all[p.second].start.parameters.size();
-      return p.gain - 4.0 * static_cast<double>(parameters);
+      return p.gain - limits.cost_per_parameter * static_cast<double>(parameters);
     };
     return worth(a) > worth(b);
   });
@@ -314,9 +310,10 @@ std::vector<Trial> best_pairs(const Trial& nominal, const std::vector<Candidate>
 
 }  // namespace
 
-std::vector<Trial> search(const Fit& nominal, const std::vector<Candidate>& all,
+std::vector<Trial> search(const Fit& nominal, const Candidates& all,
                           const std::vector<Observation>& runs, const SearchOptions& options) {
-  std::vector<Trial> trials = {nominal_trial(nominal)};
+  const Thresholds::Search& limits = all.limits.search;
+  std::vector<Trial> trials = {nominal_trial(nominal, all)};
   std::vector<Trial> parents = trials;
   for (int effects = 1; effects <= options.max_effects; ++effects) {
     std::vector<Trial> found;
@@ -336,7 +333,8 @@ std::vector<Trial> search(const Fit& nominal, const std::vector<Candidate>& all,
     }
     if (effects == 2 && !found.empty()) {
       const Trial best = found[by_evidence(found).front()];
-      const bool gained = best.log_evidence > parents.front().log_evidence + 3.0;
+      const bool gained =
+          best.log_evidence > parents.front().log_evidence + limits.min_log_evidence_gain;
       if (gained && is_physics(best, all)) {
         for (const Trial& half : other_halves(best, parents, trials, all, runs)) {
           extend_all(half, false);
@@ -350,20 +348,20 @@ std::vector<Trial> search(const Fit& nominal, const std::vector<Candidate>& all,
     settle_leaders(found, parents, trials, all, runs, options.threads);
     // The best physics goes on, and the next best while the best leaves structure behind; when
     // nothing gained, nothing more will.
-    const size_t max_parents = effects == 1 ? 2 : 1;
-    constexpr double explained_sigma = 5.0;
+    const size_t max_parents = effects == 1 ? limits.max_single_parents : limits.max_parents;
     std::vector<Trial> next;
     for (const size_t i : by_evidence(found)) {
-      const bool gained = found[i].log_evidence > parents.front().log_evidence + 3.0;
+      const bool gained =
+          found[i].log_evidence > parents.front().log_evidence + limits.min_log_evidence_gain;
       if (!gained || next.size() == max_parents) break;
       if (!is_physics(found[i], all)) {
         continue;
       }
       if (!found[i].objection.empty()) continue;
       // Two effects that leave the trajectory elsewhere: no third will bring it back.
-      if (effects >= 2 && found[i].fit.chi2_per_sample() > diverged_chi2_per_sample) break;
+      if (effects >= 2 && has_diverged(found[i], all)) break;
       next.push_back(found[i]);
-      if (excess_sigma(found[i].fit, runs) < explained_sigma) break;
+      if (excess_sigma(found[i].fit, runs, all.limits.noise) < limits.explained_sigma) break;
     }
     for (Trial& t : found) trials.push_back(std::move(t));
     if (next.empty()) break;

@@ -11,7 +11,7 @@ struct SearchOptions {
 };
 
 // All trials that were fitted, the nominal model first.
-std::vector<Trial> search(const Fit& nominal, const std::vector<Candidate>& all,
+std::vector<Trial> search(const Fit& nominal, const Candidates& all,
                           const std::vector<Observation>& runs, const SearchOptions& options = {});
 
 }  // namespace photorque

@@ -11,12 +11,6 @@
 namespace photorque {
 namespace {
 
-// Far wider than any effect: keeps what the data do not determine from running away, no more.
-constexpr double fit_prior_widths = 30.0;
-// Of one effect of the catalogue among all, and of one empirical law.
-constexpr double log_prior_effect = -3.4;  // 1/30
-constexpr double log_prior_empirical = -5.0;
-
 Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) {
   Candidate c;
   c.label = effect.kind;
@@ -73,7 +67,7 @@ struct Strengths {
 // ones, is uniform in its logarithm from a millionth to ten times. With θ̂ and C from a fit with
 // a flat prior, a width contributes N(θ̂; 0, C + S) but for a constant.
 double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covariance,
-                             size_t candidates) {
+                             size_t candidates, const Thresholds::Evidence& limits) {
   const auto n = static_cast<Eigen::Index>(s.at.size());
   if (n == 0) return 0.0;
   Eigen::MatrixXd C(n, n);
@@ -88,8 +82,10 @@ double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covarian
       C(a, b) = covariance(s.at[i], s.at[j]) / (s.scale[i] * s.scale[j]);
     }
   }
-  constexpr int widths = 15;
-  const auto width = [](int k) { return std::pow(10.0, -6.0 + 0.5 * k); };
+  const int widths = limits.strength_widths;
+  const auto width = [&](int k) {
+    return std::pow(10.0, limits.first_log10_width + limits.step_log10_width * k);
+  };
   std::vector<int> chosen(candidates, widths - 3);
   const auto at = [&]() {
     Eigen::MatrixXd sum = C;
@@ -120,15 +116,16 @@ double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covarian
 
 // Laplace's approximation of the evidence. The fit's own prior is far wider than the nominal model
 // of an effect; here it is replaced.
-double log_evidence(const Trial& trial, const std::vector<Candidate>& all) {
+double log_evidence(const Trial& trial, const Candidates& all) {
   const Fit& fit = trial.fit;
+  const Thresholds::Evidence& limits = all.limits.evidence;
   if (!std::isfinite(fit.chi2)) return -1e300;
   Eigen::MatrixXd hessian = fit.hessian;
   double result = -0.5 * fit.chi2;
   Strengths strengths;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];
-    result += c.empirical() ? log_prior_empirical : log_prior_effect;
+    result += c.empirical() ? limits.log_prior_empirical : limits.log_prior_effect;
     const std::vector<Eigen::Index> where = shared_indices(trial, i);
     size_t k = 0;
     for (size_t p = 0; p < c.scale.size(); ++p) {
@@ -143,24 +140,25 @@ double log_evidence(const Trial& trial, const std::vector<Candidate>& all) {
         if (c.lowest[p] == 0.0) result += std::log(2.0);  // half of a Gaussian
         continue;
       }
-      const double sigma = c.scale[p], wide = sigma * fit_prior_widths;
+      const double sigma = c.scale[p], wide = sigma * limits.fit_prior_widths;
       hessian(fit.first_shared + at, fit.first_shared + at) +=
           1.0 / (sigma * sigma) - 1.0 / (wide * wide);
       result -= std::log(sigma);
     }
     for (size_t s = 0; s < c.start.states.size(); ++s) {
-      result -= static_cast<double>(fit.best.runs.size()) * std::log(0.01);  // prior of its start
+      result -= static_cast<double>(fit.best.runs.size()) *
+                std::log(limits.own_state_sigma);  // prior of its start
     }
   }
   result -= 0.5 * log_determinant(hessian);
   return result +
-         log_strength_evidence(strengths, fit.shared_covariance(), trial.candidates.size());
+         log_strength_evidence(strengths, fit.shared_covariance(), trial.candidates.size(), limits);
 }
 
 // The largest change of a principal moment by a fitted error of the inertia, as a fraction of the
 // nominal one. The torque equation is homogeneous: hardly any inertia at all explains nearly
 // everything, but nobody weighs a platform that badly.
-double inertia_change(const Trial& trial, const std::vector<Candidate>& all) {
+double inertia_change(const Trial& trial, const Candidates& all) {
   const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
   const Vec3 nominal = nominal_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
   double largest = 0.0;
@@ -178,7 +176,8 @@ double inertia_change(const Trial& trial, const std::vector<Candidate>& all) {
   return largest;
 }
 
-std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) {
+std::string objection_to(const Trial& trial, const Candidates& all) {
+  const Thresholds::Objection& limits = all.limits.objection;
   if (!std::isfinite(trial.fit.chi2)) return "cannot be propagated";
   const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
@@ -191,13 +190,13 @@ std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) 
       const double value =
           trial.fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value;
       const double sigma = std::sqrt(std::max(0.0, covariance(at, at)));
-      if (value < c.lowest[p] - 2.0 * sigma || value > c.highest[p] + 2.0 * sigma) {
+      const double beyond = limits.bound_sigma * sigma;
+      if (value < c.lowest[p] - beyond || value > c.highest[p] + beyond) {
         return c.label + " would have the wrong sign";
       }
     }
   }
-  constexpr double max_inertia_change = 0.4;
-  if (const double change = inertia_change(trial, all); change > max_inertia_change) {
+  if (const double change = inertia_change(trial, all); change > limits.max_inertia_change) {
     return "a principal moment of inertia would change by " +
            std::to_string(static_cast<int>(std::lround(100.0 * change))) + " %";
   }
@@ -208,11 +207,11 @@ std::string objection_to(const Trial& trial, const std::vector<Candidate>& all) 
     has_drag = true;
     for (const Parameter& p : d.parameters) drag += p.value;
   }
-  if (has_drag && drag < -1e-6) return "the bearing's drag would feed energy";
+  if (has_drag && drag < limits.min_drag_N_m_s) return "the bearing's drag would feed energy";
   return "";
 }
 
-double significance(const Trial& trial, const std::vector<Candidate>& all, size_t which) {
+double significance(const Trial& trial, const Candidates& all, size_t which) {
   const Candidate& c = all[trial.candidates[which]];
   const std::vector<Eigen::Index> where = shared_indices(trial, which);
   const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
@@ -242,7 +241,7 @@ double significance(const Trial& trial, const std::vector<Candidate>& all, size_
   return std::sqrt(std::max(0.0, scaled.dot(correlation.ldlt().solve(scaled))));
 }
 
-void judge(Trial& trial, const std::vector<Candidate>& all) {
+void judge(Trial& trial, const Candidates& all) {
   trial.significance.clear();
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     trial.significance.push_back(significance(trial, all, i));
@@ -253,8 +252,8 @@ void judge(Trial& trial, const std::vector<Candidate>& all) {
 
 }  // namespace
 
-std::vector<Candidate> all_candidates(const NominalModel& nominal,
-                                      const std::vector<Observation>& runs) {
+Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
+                          const Thresholds& limits) {
   const DisturbanceContext context{nominal.model.platform, nominal.model.environment};
   double duration_s = 0.0, charge_C = 0.0;
   bool has_commands = false;
@@ -266,7 +265,7 @@ std::vector<Candidate> all_candidates(const NominalModel& nominal,
       has_commands = has_commands || held.command_body_N_m.norm() > 0.0;
     }
   }
-  std::vector<Candidate> all;
+  Candidates all{{}, limits};
   for (const Effect& effect : catalogue(nominal.model.platform)) {
     if (effect.needs == "command" && !has_commands) continue;
     if (effect.needs == "charge" && charge_C == 0.0) continue;
@@ -277,11 +276,11 @@ std::vector<Candidate> all_candidates(const NominalModel& nominal,
     const bool acts = std::any_of(acting.begin(), acting.end(),
                                   [&](const Disturbance& d) { return d.kind == effect.kind; });
     if (effect.keys.empty() && acts) continue;
-    all.push_back(candidate_of(effect, context));
+    all.list.push_back(candidate_of(effect, context));
   }
   const double torque_N_m = 5e-6;
   for (const EmpiricalLaw& law : empirical_laws(duration_s, charge_C, has_commands, torque_N_m)) {
-    all.push_back(candidate_of(law));
+    all.list.push_back(candidate_of(law));
   }
   return all;
 }
@@ -312,26 +311,24 @@ void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observati
 
 }  // namespace
 
-Trial nominal_trial(const Fit& nominal) {
+Trial nominal_trial(const Fit& nominal, const Candidates& all) {
   Trial trial;
   trial.fit = nominal;
-  trial.log_evidence = log_evidence(trial, {});
+  trial.log_evidence = log_evidence(trial, all);
   return trial;
 }
 
-Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t candidate,
-             const Disturbance& start, const std::vector<Observation>& runs,
-             const FitSettings& settings) {
+Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Disturbance& start,
+             const std::vector<Observation>& runs, const FitSettings& settings) {
   const Candidate& c = all[candidate];
   Trial trial;
   trial.candidates = parent.candidates;
   trial.disturbances = parent.disturbances;
   Hypothesis h = parent.fit.best;
   FitSettings how = settings;
-  constexpr double diverged_chi2_per_sample = 20.0;
-  if (parent.fit.chi2_per_sample() > diverged_chi2_per_sample) {
+  if (parent.fit.chi2_per_sample() > all.limits.diverged_chi2_per_sample) {
     start_again(h, parent, runs);
-    how.windows = {0.06, 0.25, 1.0};
+    how.windows = all.limits.fitting.diverged_windows;
   }
   const size_t index = add_disturbance(h, start);
   trial.candidates.push_back(candidate);
@@ -340,7 +337,7 @@ Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t cand
     if (!is_fitted(c, p)) continue;
     Free f{index, static_cast<int>(p)};
     f.mean = c.searched[p] ? start.parameters[p].value : 0.0;
-    f.sigma = fit_prior_widths * c.scale[p];
+    f.sigma = all.limits.evidence.fit_prior_widths * c.scale[p];
     if (c.searched[p]) {
       f.lowest = c.lowest[p];
       f.highest = c.highest[p];
@@ -352,9 +349,8 @@ Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t cand
   return trial;
 }
 
-Trial refit(const Trial& trial, const std::vector<Candidate>& all,
-            const std::vector<Observation>& runs, const std::vector<RunStart>& starts,
-            const FitSettings& settings) {
+Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
+            const std::vector<RunStart>& starts, const FitSettings& settings) {
   Trial result = trial;
   Hypothesis h = trial.fit.best;
   h.runs = starts;
@@ -363,7 +359,7 @@ Trial refit(const Trial& trial, const std::vector<Candidate>& all,
   return result;
 }
 
-Trial refit_near(const Trial& trial, const Trial& other, const std::vector<Candidate>& all,
+Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
                  const std::vector<Observation>& runs, const FitSettings& settings) {
   Trial from = trial;
   std::vector<Disturbance>& to = from.fit.best.model.disturbances;

@@ -9,6 +9,7 @@
 #include "diagnosis/attitude/catalogue.h"
 #include "diagnosis/attitude/empirical.h"
 #include "diagnosis/attitude/fit.h"
+#include "inference/thresholds.h"
 
 namespace photorque {
 
@@ -31,8 +32,17 @@ struct Candidate {
            std::none_of(searched.begin(), searched.end(), [](bool b) { return b; });
   }
 };
-std::vector<Candidate> all_candidates(const NominalModel& nominal,
-                                      const std::vector<Observation>& runs);
+
+// Everything that may be missing, and by what it is judged.
+struct Candidates {
+  std::vector<Candidate> list;
+  Thresholds limits;
+
+  const Candidate& operator[](size_t i) const { return list[i]; }
+  size_t size() const { return list.size(); }
+};
+Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
+                          const Thresholds& limits = {});
 
 // The nominal model and some candidates.
 struct Trial {
@@ -50,22 +60,20 @@ struct Trial {
   std::optional<double> holdout_chi2_per_sample = {};  // where it flew what was held out
 };
 
-Trial nominal_trial(const Fit& nominal);
+Trial nominal_trial(const Fit& nominal, const Candidates& all);
 
 // Adds a candidate, its parameters starting from `start`, and fits.
-Trial extend(const Trial& parent, const std::vector<Candidate>& all, size_t candidate,
-             const Disturbance& start, const std::vector<Observation>& runs,
-             const FitSettings& settings = {});
+Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Disturbance& start,
+             const std::vector<Observation>& runs, const FitSettings& settings = {});
 
 // The same trial on other or more runs: shared parameters start from the fitted ones.
-Trial refit(const Trial& trial, const std::vector<Candidate>& all,
-            const std::vector<Observation>& runs, const std::vector<RunStart>& starts,
-            const FitSettings& settings = {});
+Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
+            const std::vector<RunStart>& starts, const FitSettings& settings = {});
 
 // The same trial from where another on the same runs ended: its starts, and its values of all that
 // the two share. Of a long run that tumbles a fit may end in one of many valleys; what others found
 // is a second chance.
-Trial refit_near(const Trial& trial, const Trial& other, const std::vector<Candidate>& all,
+Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
                  const std::vector<Observation>& runs, const FitSettings& settings = {});
 
 // Indices of a candidate's parameters among the shared ones of the fit.

@@ -20,14 +20,13 @@ struct Leader {
 };
 
 // Trials within reach of the best by their evidence, and the nominal model.
-std::vector<size_t> leaders_among(const std::vector<Trial>& trials) {
-  constexpr size_t max_leaders = 12;
-  constexpr double within = 15.0;
+std::vector<size_t> leaders_among(const std::vector<Trial>& trials,
+                                  const Thresholds::HeldOut& limits) {
   const std::vector<size_t> order = by_evidence(trials);
   std::vector<size_t> leaders;
   for (const size_t i : order) {
-    if (!trials[i].objection.empty() || leaders.size() == max_leaders) continue;
-    if (trials[i].log_evidence < trials[order.front()].log_evidence - within) break;
+    if (!trials[i].objection.empty() || leaders.size() == limits.max_leaders) continue;
+    if (trials[i].log_evidence < trials[order.front()].log_evidence - limits.within) break;
     leaders.push_back(i);
   }
   if (std::find(leaders.begin(), leaders.end(), 0u) == leaders.end()) leaders.push_back(0);
@@ -36,14 +35,13 @@ std::vector<size_t> leaders_among(const std::vector<Trial>& trials) {
 
 class Weighing {
  public:
-  Weighing(std::vector<Trial>& trials, const std::vector<Candidate>& all, const HeldOut& data,
-           int threads)
+  Weighing(std::vector<Trial>& trials, const Candidates& all, const HeldOut& data, int threads)
       : trials_(trials), all_(all), data_(data), threads_(threads), joint_(data.train) {
     joint_.insert(joint_.end(), data.held.begin(), data.held.end());
   }
 
   void run() {
-    const std::vector<size_t> places = leaders_among(trials_);
+    const std::vector<size_t> places = leaders_among(trials_, all_.limits.held_out);
     const double nominal = trials_.front().log_evidence;
     const double gain = trials_[places.front()].log_evidence - nominal;
     add_leaders(places);
@@ -74,11 +72,11 @@ class Weighing {
   }
 
   Trial fit_together(Trial& t) const {
-    const Fit held = propagate_model(t.fit, data_.held);
+    const Fit held = propagate_model(t.fit, data_.held, all_.limits);
     if (std::isfinite(held.chi2)) t.holdout_chi2_per_sample = held.chi2_per_sample();
     std::vector<RunStart> starts = t.fit.best.runs;
     starts.insert(starts.end(), held.best.runs.begin(), held.best.runs.end());
-    return refit(t, all_, joint_, starts, patient_fit());
+    return refit(t, all_, joint_, starts, patient_fit(all_.limits));
   }
 
   void learn() {
@@ -99,12 +97,10 @@ class Weighing {
   // Candidates that would gain beside `parent` (one of the leaders) on all runs, and were not tried
   // or not among the leaders.
   void add_what_only_all_show(const std::vector<size_t>& parent) {
-    constexpr double diverged_chi2_per_sample = 20.0;
-    constexpr size_t blocks = 1000;
     const auto is_parent = [&](const Leader& l) { return trials_[l.at].candidates == parent; };
     const auto at = std::find_if(leaders_.begin(), leaders_.end(), is_parent);
     const Trial joint = at->joint, train = trials_[at->at];
-    if (!(joint.fit.chi2_per_sample() < diverged_chi2_per_sample)) return;
+    if (!(joint.fit.chi2_per_sample() < all_.limits.diverged_chi2_per_sample)) return;
     std::vector<size_t> untried;
     std::vector<ScoreGroup> groups;
     for (size_t c = 0; c < all_.size(); ++c) {
@@ -114,15 +110,15 @@ class Weighing {
       untried.push_back(c);
       groups.push_back({{all_[c].start}});
     }
-    const std::vector<Score> scores =
-        score(joint.fit, averaged_about(joint.fit, joint_, blocks), groups);
+    const std::vector<Score> scores = score(
+        joint.fit, averaged_about(joint.fit, joint_, all_.limits.fitting.slow_blocks), groups);
     const std::vector<size_t> worth_it = best_of(untried, scores);
     std::vector<Trial> on_train(worth_it.size()), on_all(worth_it.size());
     parallel_for(worth_it.size(), threads_, [&](size_t k) {
       const size_t c = untried[worth_it[k]];
       on_train[k] = extend(train, all_, c, all_[c].start, data_.train);
-      on_all[k] = extend(joint, all_, c, all_[c].start, joint_, patient_fit());
-      const Fit held = propagate_model(on_train[k].fit, data_.held);
+      on_all[k] = extend(joint, all_, c, all_[c].start, joint_, patient_fit(all_.limits));
+      const Fit held = propagate_model(on_train[k].fit, data_.held, all_.limits);
       if (std::isfinite(held.chi2)) on_train[k].holdout_chi2_per_sample = held.chi2_per_sample();
     });
     for (size_t k = 0; k < worth_it.size(); ++k) {
@@ -134,14 +130,13 @@ class Weighing {
   // empirical laws.
   std::vector<size_t> best_of(const std::vector<size_t>& candidates,
                               const std::vector<Score>& scores) const {
-    constexpr double min_gain = 14.0;
-    constexpr size_t max_effects = 4, max_laws = 2;
+    const Thresholds::HeldOut& limits = all_.limits.held_out;
     const auto beyond_chance = [&](size_t i) {
       return scores[i].gain - static_cast<double>(all_[candidates[i]].start.parameters.size());
     };
     std::vector<size_t> order;
     for (size_t i = 0; i < candidates.size(); ++i) {
-      if (beyond_chance(i) > min_gain) order.push_back(i);
+      if (beyond_chance(i) > all_.limits.scoring.min_joint_gain) order.push_back(i);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](size_t a, size_t b) { return beyond_chance(a) > beyond_chance(b); });
@@ -149,7 +144,7 @@ class Weighing {
     size_t effects = 0, laws = 0;
     for (const size_t i : order) {
       const bool law = all_[candidates[i]].empirical();
-      if (law ? laws++ < max_laws : effects++ < max_effects) best.push_back(i);
+      if (law ? laws++ < limits.max_empirical : effects++ < limits.max_effects) best.push_back(i);
     }
     return best;
   }
@@ -200,7 +195,7 @@ class Weighing {
   }
 
   std::vector<Trial>& trials_;
-  const std::vector<Candidate>& all_;
+  const Candidates& all_;
   const HeldOut& data_;
   int threads_;
   std::vector<Observation> joint_;  // the train runs, then those held out
@@ -209,8 +204,8 @@ class Weighing {
 
 }  // namespace
 
-void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>& all,
-                        const HeldOut& data, int threads) {
+void weigh_with_holdout(std::vector<Trial>& trials, const Candidates& all, const HeldOut& data,
+                        int threads) {
   Weighing(trials, all, data, threads).run();
 }
 

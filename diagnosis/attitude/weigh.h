@@ -15,7 +15,7 @@ struct HeldOut {
 // best, and stay below the leaders. What only all runs together show, because one of them alone
 // leaves it to the uncertainty of a nominal model, is screened for and added to `trials`, fitted to
 // the train runs like all others. The nominal model comes first in `trials` and stays there.
-void weigh_with_holdout(std::vector<Trial>& trials, const std::vector<Candidate>& all,
-                        const HeldOut& data, int threads);
+void weigh_with_holdout(std::vector<Trial>& trials, const Candidates& all, const HeldOut& data,
+                        int threads);
 
 }  // namespace photorque

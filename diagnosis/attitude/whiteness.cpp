@@ -8,8 +8,6 @@
 namespace photorque {
 namespace {
 
-constexpr size_t neighbours = 20;
-
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -53,7 +51,8 @@ std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observati
   return all;
 }
 
-Whiteness whiteness(const std::vector<Prediction>& residuals) {
+Whiteness whiteness(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits) {
+  const size_t neighbours = limits.neighbours;
   Whiteness result;
   double sum = 0.0, variance = 0.0;
   int64_t means = 0;
@@ -71,7 +70,7 @@ Whiteness whiteness(const std::vector<Prediction>& residuals) {
         ++means;
       }
     }
-    if (differences.size() < 50) continue;
+    if (differences.size() < limits.min_differences) continue;
     result.readings[static_cast<size_t>(k)] = static_cast<int64_t>(differences.size());
     // The median of |x| is 0.6745 σ, and second differences have six times the variance.
     result.noise_ratio[static_cast<size_t>(k)] =
@@ -84,22 +83,26 @@ Whiteness whiteness(const std::vector<Prediction>& residuals) {
   return result;
 }
 
-double excess_sigma(const Fit& fit, const std::vector<Observation>& runs) {
+double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
+                    const Thresholds::Noise& limits) {
   try {
-    return whiteness(residuals_of(fit, runs)).excess_sigma;
+    return whiteness(residuals_of(fit, runs), limits).excess_sigma;
   } catch (const NumericalError&) {
-    return 1e9;
+    return limits.excess_unknown;
   }
 }
 
-bool correct_noise(const Whiteness& found, std::vector<Observation>& runs) {
+bool correct_noise(const Whiteness& found, std::vector<Observation>& runs,
+                   const Thresholds::Noise& limits) {
   bool any = false;
   for (size_t k = 0; k < 6; ++k) {
     const double ratio = found.noise_ratio[k];
-    // The median of correlated second differences scatters by 1.4/√n of itself.
-    const double scatter =
-        1.4 / std::sqrt(static_cast<double>(std::max<int64_t>(found.readings[k], 1)));
-    if (!(std::abs(ratio - 1.0) > std::max(0.05, 5.0 * scatter)) || !(ratio > 0.0)) continue;
+    const double scatter = limits.difference_scatter /
+                           std::sqrt(static_cast<double>(std::max<int64_t>(found.readings[k], 1)));
+    if (!(std::abs(ratio - 1.0) >
+          std::max(limits.min_correction, limits.correction_sigma * scatter)) ||
+        !(ratio > 0.0))
+      continue;
     any = true;
     for (Observation& seen : runs) {
       (k < 3 ? seen.noise.camera_rad[static_cast<Eigen::Index>(k)]
@@ -109,8 +112,8 @@ bool correct_noise(const Whiteness& found, std::vector<Observation>& runs) {
   return any;
 }
 
-int64_t drop_outliers(const std::vector<Prediction>& residuals, std::vector<Observation>& runs) {
-  constexpr double furthest = 9.0;
+int64_t drop_outliers(const std::vector<Prediction>& residuals, std::vector<Observation>& runs,
+                      const Thresholds::Noise& limits) {
   int64_t dropped = 0;
   for (size_t run = 0; run < runs.size(); ++run) {
     for (Eigen::Index k = 0; k < 6; ++k) {
@@ -120,8 +123,8 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, std::vector<Obse
         if (std::isfinite(residuals[run].residual[i][k])) rows.push_back(i);
       }
       const std::vector<double> r = channel(residuals[run], k);
-      for (size_t n = 0; n < r.size() && r.size() > 4; ++n) {
-        if (!(std::abs(r[n] - expected(r, n)) > furthest)) continue;
+      for (size_t n = 0; n < r.size() && r.size() >= limits.min_neighbourhood; ++n) {
+        if (!(std::abs(r[n] - expected(r, n)) > limits.outlier_sigma)) continue;
         ++dropped;
         // An attitude is right or wrong as a whole.
         if (k < 3) runs[run].attitude_rows[rows[n]] = 0.0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnosis/attitude/fit.h"
+#include "inference/thresholds.h"
 
 namespace photorque {
 
@@ -22,17 +23,20 @@ struct Whiteness {
   double slow_chi2_per_mean = 1.0;
   double excess_sigma = 0.0;
 };
-Whiteness whiteness(const std::vector<Prediction>& residuals);
+Whiteness whiteness(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits);
 
 // The excess of what is left of a fit; huge where it cannot be propagated.
-double excess_sigma(const Fit& fit, const std::vector<Observation>& runs);
+double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
+                    const Thresholds::Noise& limits);
 
-// Gives every channel of the runs the noise that was found, where it is off by more than 5 % and
-// more than five standard errors. Returns whether any was.
-bool correct_noise(const Whiteness& found, std::vector<Observation>& runs);
+// Gives every channel of the runs the noise that was found, where it is off beyond doubt. Returns
+// whether any was.
+bool correct_noise(const Whiteness& found, std::vector<Observation>& runs,
+                   const Thresholds::Noise& limits);
 
-// Drops readings that stand out from what their neighbours' residuals lead to by more than nine
-// standard deviations. Returns their number.
-int64_t drop_outliers(const std::vector<Prediction>& residuals, std::vector<Observation>& runs);
+// Drops readings that stand out from what their neighbours' residuals lead to. Returns their
+// number.
+int64_t drop_outliers(const std::vector<Prediction>& residuals, std::vector<Observation>& runs,
+                      const Thresholds::Noise& limits);
 
 }  // namespace photorque

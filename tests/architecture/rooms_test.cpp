@@ -34,8 +34,8 @@ const std::vector<std::pair<std::string, std::string>> only_place = {
 
 // Folders of sources, as ARCHITECTURE.md's first column names them.
 const std::vector<std::string> top_folders = {"core",          "raytrace", "sources",  "receivers",
-                                              "photovoltaics", "images",   "attitude", "diagnosis",
-                                              "scenes",        "tools"};
+                                              "photovoltaics", "images",   "attitude", "inference",
+                                              "diagnosis",     "scenes",   "tools"};
 
 struct Include {
   fs::path file;

@@ -71,11 +71,11 @@ TEST(Score, PredictsWhatTwoEffectsGainTogether) {
   });
   const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
   const Fit nominal = fit_nominal(nominal_model(), runs);
-  const std::vector<Candidate> all = all_candidates(nominal_model(), runs);
+  const Candidates all = all_candidates(nominal_model(), runs);
   const auto named = [&](const std::string& label) {
-    const auto at =
-        std::find_if(all.begin(), all.end(), [&](const Candidate& c) { return c.label == label; });
-    return static_cast<size_t>(at - all.begin());
+    const auto at = std::find_if(all.list.begin(), all.list.end(),
+                                 [&](const Candidate& c) { return c.label == label; });
+    return static_cast<size_t>(at - all.list.begin());
   };
   const size_t dipole = named("magnetic_dipole"), draught = named("room_draft");
   const std::vector<ScoreGroup> groups = {{{all[dipole].start}}, {{all[draught].start}}};
@@ -85,7 +85,7 @@ TEST(Score, PredictsWhatTwoEffectsGainTogether) {
   EXPECT_NEAR(gains(1, 1), alone[1].gain, 1e-6 * alone[1].gain);
   EXPECT_EQ(gains(0, 1), gains(1, 0));
 
-  const Trial one = extend(nominal_trial(nominal), all, dipole, all[dipole].start, runs);
+  const Trial one = extend(nominal_trial(nominal, all), all, dipole, all[dipole].start, runs);
   const Trial both = extend(one, all, draught, all[draught].start, runs);
   const double gained = nominal.chi2 - both.fit.chi2;
   EXPECT_NEAR(gains(0, 1), gained, 0.05 * gained);
@@ -103,7 +103,7 @@ TEST(Scan, TakesNoMirrorImageForALine) {
   const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
   const Fit fit = fit_nominal(nominal_model(), runs);
   EXPECT_GT(fit.chi2_per_sample(), 1.5);  // there is something slow
-  for (const double line_Hz : line_frequencies_Hz(fit, runs)) EXPECT_LT(line_Hz, 2.0);
+  for (const double line_Hz : line_frequencies_Hz(fit, runs, {})) EXPECT_LT(line_Hz, 2.0);
 }
 
 // The torque equation is homogeneous: a third of the inertia explains a torque three times as
@@ -116,15 +116,16 @@ TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
   const NamedRecording seen = recorded(6, thrice);
   const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
   const NominalModel nominal = nominal_model();
-  const std::vector<Candidate> all = all_candidates(nominal, runs);
-  const auto error = std::find_if(
-      all.begin(), all.end(), [](const Candidate& c) { return c.effect.kind == "inertia_error"; });
-  ASSERT_NE(error, all.end());
+  const Candidates all = all_candidates(nominal, runs);
+  const auto error = std::find_if(all.list.begin(), all.list.end(), [](const Candidate& c) {
+    return c.effect.kind == "inertia_error";
+  });
+  ASSERT_NE(error, all.list.end());
   FitSettings settings;
   settings.max_iterations = 60;
   const Trial trial =
-      extend(nominal_trial(fit_nominal(nominal, runs)), all,
-             static_cast<size_t>(error - all.begin()), error->start, runs, settings);
+      extend(nominal_trial(fit_nominal(nominal, runs), all), all,
+             static_cast<size_t>(error - all.list.begin()), error->start, runs, settings);
   EXPECT_NE(trial.objection.find("inertia would change by"), std::string::npos) << trial.objection;
 }
 
