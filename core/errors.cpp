@@ -3,7 +3,7 @@
 namespace photorque {
 namespace {
 
-// User text may hold line breaks or control characters; what is promised is one printable line.
+// User text may hold line breaks or control characters; an error message is one printable line.
 std::string one_line(const std::string& text) {
   constexpr size_t longest = 200;
   std::string line;

@@ -19,7 +19,7 @@ void parallel_for(size_t count, int threads, const std::function<void(size_t)>& 
     loop();
     return;
   }
-  // An arena alone never gets more workers than the machine has; the control lifts that cap.
+  // An arena alone never gets more workers than the machine has; the control removes that limit.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<size_t>(threads));
   tbb::task_arena(threads).execute(loop);

@@ -43,7 +43,7 @@
 
 namespace photorque {
 
-// When in the evaluation of a moment a disturbance acts. Within a stage the order is that of the
+// When a disturbance acts while one instant is evaluated. Within a stage the order is that of the
 // experiment file and must not matter.
 enum class Stage {
   conditions,   // changes what all others see: gravity, field, command, inertia
@@ -52,8 +52,9 @@ enum class Stage {
   measurement,  // changes only what the instruments read
 };
 
-// Everything about eight instants that a disturbance may read, and what it may add to. Body vectors
-// are in body axes and about the centre of rotation; `_lab` vectors are in lab axes.
+// The evaluation context: everything about eight instants that a disturbance may read, and what it
+// may add to. Body vectors are in body axes and about the centre of rotation; `_lab` vectors are in
+// lab axes.
 template <class T>
 struct EvaluationContext {
   const Platform& platform;
@@ -186,7 +187,7 @@ class Law {
   }
 };
 
-// For laws that change the moment: Derived has
+// For laws that change the evaluation context: Derived has
 //   template <class T> void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now)
 //   const;
 template <class Derived>

@@ -60,7 +60,7 @@ Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
   inertia_changes_ = changes_inertia();
 }
 
-// Whether some law does, tried at the start: none does so only now and then.
+// Whether some law changes the inertia, tried at the start: a law that does so does it always.
 bool Dynamics::changes_inertia() const {
   const std::vector<double> start = to_vector(initial_state());
   const std::vector<Lanes> y(start.begin(), start.end());
@@ -171,7 +171,8 @@ void Dynamics::solve(const EvaluationContext<T>& now, T* rates) const {
   rates[component::charge] = now.battery_current_A;
 }
 
-// What solve() gives when nothing but the command acts, without a moment for others to look at.
+// What solve() gives when nothing but the command acts, without an evaluation context for laws to
+// read.
 void Dynamics::free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const {
   const Vec3Of<Lanes> w(y[4], y[5], y[6]);
   put_attitude_rates(QuatOf<Lanes>(y[0], y[1], y[2], y[3]), w, rates);
@@ -210,8 +211,8 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
     model_.disturbances[d].law->act({parameters_.data() + own.first_parameter, y + own.first_state,
                                      result.rates.data() + own.first_state},
                                     now);
-    // Of a part that swings with the body nothing is felt beside the rigid body's own gyroscopic
-    // torque, which the detached part no longer has.
+    // A part that swings with the body exerts no torque on it but the gyroscopic one of a rigid
+    // body, which solve() no longer counts for the detached part.
     const Vec3Of<Lanes>& w = now.rate_body_rad_s;
     const Vec3Of<Lanes> carried = Mat3Of<Lanes>(now.detached_inertia_kg_m2 - attached) * w;
     result.torque_body_N_m[d] = now.torque_body_N_m - before + w.cross(carried);

@@ -17,7 +17,7 @@
 
 namespace photorque {
 
-// Everything that is nominal about a platform and what acts on it.
+// The nominal model: a platform, what surrounds it, what acts on it and what it is commanded.
 struct AttitudeModel {
   Platform platform;
   Environment environment;
@@ -68,7 +68,8 @@ class Dynamics {
   void derivatives(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
                    const Block& block, Lanes* derivatives) const;
 
-  // Everything known about eight instants. `held` may differ from lane to lane.
+  // Everything known about eight instants. `held`, the commands of each instant, may differ from
+  // lane to lane.
   struct Instants {
     std::vector<Vec3Of<Lanes>> torque_body_N_m;  // of each disturbance, in the model's order
     Vec3Of<Lanes> command_body_N_m;              // as it acts
@@ -124,7 +125,7 @@ class Dynamics {
   std::vector<double> scales_;
   std::vector<Layout> layout_;
   std::vector<size_t> order_;        // disturbances by stage, without those of Stage::measurement
-  std::vector<size_t> instruments_;  // those
+  std::vector<size_t> instruments_;  // disturbances of Stage::measurement
   std::vector<Lanes> parameters_;
   Mat3 inverse_inertia_1_kg_m2_;
   bool inertia_changes_ = false;

@@ -1,4 +1,4 @@
-// Where the platform is: attitude, rate, charge, and what its disturbances carry.
+// The state of a platform: attitude, rate, charge, and the extra states of its disturbances.
 #pragma once
 
 #include <vector>

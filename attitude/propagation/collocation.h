@@ -24,8 +24,9 @@ class CollocationStep {
   // Starts at `y` (Dynamics::size() components). `dynamics` must outlive the step.
   CollocationStep(const Dynamics& dynamics, double time_s, std::vector<double> y);
 
-  // Attempts a step of length `h_s` from the current start with held values; the start does not
-  // move. `settled` is the size, relative to the scales, at which iteration errors are left alone.
+  // Attempts a step of length `h_s` from the current start with the commands held constant; the
+  // start does not move. `settled` is the size, relative to the scales, at which iteration errors
+  // are left alone.
   struct Outcome {
     bool converged = false;
     int iterations = 0;

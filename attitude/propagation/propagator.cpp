@@ -77,7 +77,7 @@ Propagator::Propagator(const Dynamics& dynamics, const PlatformState& initial, d
   for (const EventFunction& event : event_functions_) {
     event_values_.push_back(event.value(initial.time_s, start.data())[0]);
   }
-  // A first guess that the error control repairs.
+  // A first guess, which the error control corrects.
   h_s_ = std::min(0.1, options.max_step_s);
 }
 

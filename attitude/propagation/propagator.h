@@ -1,4 +1,4 @@
-// Flies a platform through its disturbances.
+// Propagates a platform under its disturbances.
 //
 // Gauss collocation (see collocation.h) with steps as long as the tolerance allows, ending exactly
 // at every jump of a command or a law; dense output, events found on it, and derivatives on
@@ -25,7 +25,8 @@ struct PropagationOptions {
   double tolerance = 1e-8;
   double max_step_s = std::numeric_limits<double>::infinity();
   int64_t max_steps = 1'000'000'000;
-  // Of derivatives, relative to each one's size within a step: what their iteration leaves.
+  // Bound on the error that the iteration for the derivatives leaves, relative to the largest size
+  // of each derivative within a step.
   double derivative_tolerance = 1e-16;
 };
 

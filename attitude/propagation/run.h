@@ -31,7 +31,7 @@ struct PropagationRun {
 // none is required.
 Settings own_table(const Settings& root, const std::string& key, bool required);
 
-// the nominal model of the platform and its laboratory: [platform], [environment],
+// The nominal model of the platform and its laboratory: [platform], [environment],
 // [[disturbance]] and [sensors] of an experiment file. InputError for wrong or unknown keys in
 // them.
 struct NominalModel {
@@ -59,7 +59,7 @@ struct PropagationResult {
   Propagator::Statistics statistics;
 };
 
-// Flies the run. It ends early at the bearing's stop (Platform::tilt_limit_rad). `progress` is
+// Propagates the run. It ends early at the bearing's stop (Platform::tilt_limit_rad). `progress` is
 // called now and then with the fraction of the duration that is done.
 PropagationResult propagate(const PropagationRun& run,
                             const std::function<void(double)>& progress = {});

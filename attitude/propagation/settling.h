@@ -1,4 +1,4 @@
-// When a fixed-point iteration has said all it can.
+// When a fixed-point iteration ends: converged as far as asked or as rounding allows, or failed.
 #pragma once
 
 #include <algorithm>

@@ -215,14 +215,14 @@ Product TimeHistory::product(const std::vector<Event>& events,
     add_vector_plot("torque_" + labels_[i], "Torque of " + labels_[i] + ", body axes", "N m", x);
   }
   if (!shown.empty()) {
-    // Below this fraction of the largest torque nothing is to be seen of a platform.
+    // A torque below this fraction of the largest one cannot be seen in the motion.
     constexpr double min_fraction = 1e-9;
     std::vector<Plot::Curve> all;
     for (size_t i = 0; i < shown.size(); ++i) {
       all.push_back(envelope(labels_[shown[i]], t, sizes[i], min_fraction * largest_N_m));
     }
     std::erase_if(all, [](const Plot::Curve& one) { return one.x.empty(); });
-    add_plot("torques", "Size of every torque, largest within each 240th of the flight",
+    add_plot("torques", "Size of every torque, largest within each 240th of the run",
              "Torque [N m]", std::move(all));
     product.plots.back().y_log = true;
   }

@@ -63,7 +63,7 @@ struct Recording {
   const Channel* find(std::string_view name) const;
   size_t rows() const { return time_s.size(); }
 
-  // Commands and battery current as they were held: the recording's zero-order-hold channels.
+  // The recorded commands and battery current, each held until the next row (zero-order hold).
   Schedule schedule() const;
 };
 

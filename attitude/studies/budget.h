@@ -43,7 +43,7 @@ struct Budget {
 //     radius_m, half_angle_deg, gap_m, inlet_Pa (absolute), load_N, drag_N_m (0), drag_rate_rpm
 //     (30);
 //   [budget.light]: what power printed of the scene, for the comparison with the paper:
-//     source_to_cell, conversion (shares), power_W, power_at_30_deg_W, torque_at_30_deg_N_m[3].
+//     source_to_cell, conversion (fractions), power_W, power_at_30_deg_W, torque_at_30_deg_N_m[3].
 // The load on the bearing is the platform's weight. InputError for what is missing or unknown in
 // these tables.
 Budget read_budget(const Settings& root);

@@ -20,8 +20,8 @@ namespace photorque {
 // What tracing rays through the scene gives (commands power and torque-map), which is not done
 // here. NaN: not given.
 struct PaperLight {
-  double source_to_cell = std::numeric_limits<double>::quiet_NaN();     // zero tilt, share
-  double conversion = std::numeric_limits<double>::quiet_NaN();         // zero tilt, share
+  double source_to_cell = std::numeric_limits<double>::quiet_NaN();     // fraction, at zero tilt
+  double conversion = std::numeric_limits<double>::quiet_NaN();         // fraction, at zero tilt
   double power_W = std::numeric_limits<double>::quiet_NaN();            // of the array at zero tilt
   double power_at_30_deg_W = std::numeric_limits<double>::quiet_NaN();  // every cell by itself
   // On the array, about the centre of rotation, tilted 30 deg about y.

@@ -1,4 +1,4 @@
-// What the files of Settings share.
+// What settings.cpp and values.cpp have in common.
 #pragma once
 
 #include <map>

@@ -14,7 +14,7 @@
 namespace photorque {
 
 // Bins: for every bin of a grid and every band the incident power [W], index bin · bands + band;
-// and after all of them, in the same order, the sum of power × K, K as in photovoltaic_front.h.
+// and after all of them, in the same order, the sum of power × K, K as in cell/front.h.
 // Only the ratio of the two counts, so that it may be applied to light that was found in another
 // way.
 //

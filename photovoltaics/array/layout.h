@@ -25,7 +25,7 @@ struct LayoutResult {
 // (InputError). Assignments that differ by order alone count once. If there are at most
 // `max_tried`, all are tried; else pairs of cells are exchanged while that helps, from the given
 // wiring and from one with cells of like light joined, within `max_tried` trials.
-// See photovoltaic_layout_bound.h for the bound.
+// See layout_bound.h for the bound.
 LayoutResult search_layout(const ArrayWiring& start, const CellTables& tables,
                            const AttitudeLights& lights, int64_t max_tried);
 

@@ -17,7 +17,7 @@ struct SingleDiodeCells {
 
 // Writes voltage and current of every maximum power point; zero for cells in the dark.
 //
-// Method: Halley's iteration for dP/dV_d = 0 (photovoltaic_cell.h) with a fixed number of steps
+// Method: Halley's iteration for dP/dV_d = 0 (cell.h) with a fixed number of steps
 // from the closed form of the ideal cell, x + ln(1 + x) = ln(1 + I_L/I₀) with x = V_d/nV_t; a cell
 // whose last step was not small enough is solved by the bracketed search instead, so that none
 // fails. Accuracy: power to 1e-13 relative, voltage and current to 1e-10. Throws InputError when

@@ -1,7 +1,7 @@
 // The diode voltage of a cell as a table.
 //
 // Like cells under different light differ only in I_L, and V_d depends on I_L − I alone. One
-// function of one variable, j ↦ V_d with D(V_d) = j (photovoltaic_cell.h, eq. 2), therefore serves
+// function of one variable, j ↦ V_d with D(V_d) = j (cell.h, eq. 2), therefore serves
 // every cell of an array, whatever falls on it: it is tabulated once per cell type and temperature,
 // and every voltage in a network is then an explicit expression.
 //
@@ -36,7 +36,7 @@ struct JunctionState {
   double curvature_V_A2 = 0.0;
 };
 
-struct QuadVoltage;  // photovoltaic_table_quad.h
+struct QuadVoltage;  // table_quad.h
 
 class DiodeVoltageTable {
  public:
@@ -63,7 +63,7 @@ class DiodeVoltageTable {
     return {value, per_A * first, 2 * per_A2 * second, 6 * per_A2 * per_A * third};
   }
 
-  // Four of at() side by side; defined in photovoltaic_table_quad.h.
+  // Four of at() side by side; defined in table_quad.h.
   QuadVoltage quad_at_dark(Quad dark_A) const;
 
   // The sum over cells in series, copies[i] times that of cell i at the dark current

@@ -1,4 +1,4 @@
-// What the fits of photovoltaic_fit.h share.
+// What the fits of fit.h share.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// The maxima of ArrayCurve: isolation of the zeros of P′ by bounds, as photovoltaic_curve.h tells.
+// The maxima of ArrayCurve: isolation of the zeros of P′ by bounds, as curve.h tells.
 #include <algorithm>
 #include <cmath>
 #include <limits>

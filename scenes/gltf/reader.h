@@ -2,7 +2,7 @@
 //
 // What is read: the default scene's node hierarchy with any invertible transforms, meshes of
 // triangles, strips and fans, sparse accessors, texture coordinates 0, EXT_mesh_gpu_instancing, and
-// of materials what gltf_optics.h says. What is ignored, with a notice where it could surprise:
+// of materials what optics.h says. What is ignored, with a notice where it could surprise:
 // points and lines, textures and images (opened only for GltfOptions::picture), cameras, lights,
 // animations (the rest pose counts). What is refused because the geometry would be wrong without
 // it: skins, morph targets with non-zero weights, and every required extension that is not known to

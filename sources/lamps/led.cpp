@@ -5,7 +5,7 @@
 //   name = "lamp"              # default "led"
 //   power_W = 2.0              # radiant, > 0
 //   aperture_diameter_m = 0.02
-//   profile = "gaussian"       # and its angles: see source_settings.h
+//   profile = "gaussian"       # and its angles: see settings.h
 //   fwhm_deg = 3.0
 //   wavelength_nm = 730
 //   spectral_fwhm_nm = 30      # default 20

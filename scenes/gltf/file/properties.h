@@ -1,4 +1,4 @@
-// The members of a glTF document that the reader depends on, as tables that gltf_schema.cpp walks.
+// The members of a glTF document that the reader depends on, as tables that schema.cpp walks.
 //
 // They follow the specification (glTF 2.0, section 5 "Properties Reference") and the READMEs of the
 // extensions that they name, member by member.
