@@ -1,10 +1,72 @@
 #include "raytrace/surfaces/bsdf.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/constants.h"
 
 namespace photorque {
+namespace {
+
+// Axes of a hit; z is the normal on the lit side.
+struct HitFrame {
+  Vec3 x, y, z;
+
+  Vec3 to_outer(const Vec3& local) const { return local.x() * x + local.y() * y + local.z() * z; }
+};
+
+// The frame that lobes are stated in: x in the plane of incidence.
+HitFrame plane_of_incidence(const Incidence& incidence) {
+  const Vec3& z = incidence.normal;
+  const Vec3 along = -incidence.direction - incidence.cosine * z;
+  const Vec3 x = along.squaredNorm() > 1e-20 ? along.normalized() : z.unitOrthogonal();
+  return {x, z.cross(x), z};
+}
+
+// Any frame about the normal, for what is the same all round it. No square root.
+// Source: T. Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 6(1), 2017).
+HitFrame any_frame(const Vec3& n) {
+  const double sign = std::copysign(1.0, n.z());
+  const double a = -1.0 / (sign + n.z());
+  const double b = n.x() * n.y() * a;
+  return {{1.0 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()},
+          {b, sign + n.y() * n.y() * a, -n.y()},
+          n};
+}
+
+Vec3 mirrored(const Incidence& incidence) {
+  const Vec3& n = incidence.normal;
+  return incidence.direction - 2.0 * incidence.direction.dot(n) * n;
+}
+
+// The component's own lobe; null for a mirror, Lambert's law and what goes straight on or back.
+const Lobe* lobe_of(const OpticalSurface& surface, Component component) {
+  if (!surface.bsdf) return nullptr;
+  if (component == Component::specular) return surface.bsdf->specular.get();
+  if (component == Component::diffuse) return surface.bsdf->diffuse.get();
+  return nullptr;
+}
+
+}  // namespace
+
+double PowerFractions::of(Component component) const {
+  switch (component) {
+    case Component::specular:
+      return specular;
+    case Component::diffuse:
+      return diffuse;
+    case Component::transmitted:
+      return transmitted;
+    case Component::retroreflected:
+      break;
+  }
+  return retroreflected;
+}
+
+Incidence::Incidence(const Vec3& direction_in, const Vec3& normal_in)
+    : direction(direction_in),
+      normal(normal_in),
+      cosine(std::clamp(-direction.dot(normal), 1e-9, 1.0)) {}
 
 PowerFractions fractions_of(const OpticalSurface& surface, double cosine, size_t band) {
   const Bsdf* bsdf = surface.bsdf.get();
@@ -13,31 +75,49 @@ PowerFractions fractions_of(const OpticalSurface& surface, double cosine, size_t
           surface.transmitted[band], bsdf == nullptr ? 0.0 : bsdf->retroreflected[band]};
 }
 
-double scattering_1_sr(const OpticalSurface& surface, double cosine, const Vec3& out, size_t band) {
-  const PowerFractions fractions = fractions_of(surface, cosine, band);
-  const Bsdf* bsdf = surface.bsdf.get();
-  double f = 0.0;
-  if (bsdf != nullptr && bsdf->specular) {
-    f += fractions.specular * bsdf->specular->density(cosine, out) / out.z();
+Vec3 scattered_direction(const OpticalSurface& surface, Component component,
+                         const Incidence& incidence, const Draw& draw) {
+  if (const Lobe* lobe = lobe_of(surface, component)) {
+    return plane_of_incidence(incidence).to_outer(lobe->direction(incidence.cosine, draw));
   }
-  f +=
-      fractions.diffuse *
-      (bsdf != nullptr && bsdf->diffuse ? bsdf->diffuse->density(cosine, out) / out.z() : 1.0 / pi);
-  return f;
+  switch (component) {
+    case Component::specular:
+      return mirrored(incidence);
+    case Component::diffuse:
+      return any_frame(incidence.normal).to_outer(lambertian_direction(draw.u, draw.v));
+    case Component::transmitted:
+      break;
+    case Component::retroreflected:
+      return -incidence.direction;
+  }
+  return incidence.direction;
 }
 
-Vec3 first_moment(const OpticalSurface& surface, double cosine, size_t band) {
+Vec3 mean_flow(const OpticalSurface& surface, Component component, const Incidence& incidence,
+               double power) {
+  if (const Lobe* lobe = lobe_of(surface, component)) {
+    return power * plane_of_incidence(incidence).to_outer(lobe->mean_direction(incidence.cosine));
+  }
+  switch (component) {
+    case Component::specular:
+      return power * mirrored(incidence);
+    case Component::diffuse:
+      return lambertian_mean * power * incidence.normal;
+    case Component::transmitted:
+      break;
+    case Component::retroreflected:
+      return -power * incidence.direction;
+  }
+  return power * incidence.direction;
+}
+
+double scattering_1_sr(const OpticalSurface& surface, double cosine, const Vec3& out, size_t band) {
   const PowerFractions fractions = fractions_of(surface, cosine, band);
-  const Bsdf* bsdf = surface.bsdf.get();
-  const Vec3 towards_light(std::sqrt(std::max(0.0, 1.0 - cosine * cosine)), 0.0, cosine);
-  const Vec3 mirrored(-towards_light.x(), 0.0, cosine);
-  Vec3 mean = (fractions.retroreflected - fractions.transmitted) * towards_light;
-  mean += fractions.specular *
-          (bsdf != nullptr && bsdf->specular ? bsdf->specular->mean_direction(cosine) : mirrored);
-  mean +=
-      fractions.diffuse * (bsdf != nullptr && bsdf->diffuse ? bsdf->diffuse->mean_direction(cosine)
-                                                            : Vec3(0.0, 0.0, 2.0 / 3.0));
-  return mean;
+  const Lobe* specular = lobe_of(surface, Component::specular);
+  const Lobe* diffuse = lobe_of(surface, Component::diffuse);
+  double f = specular ? fractions.specular * specular->density(cosine, out) / out.z() : 0.0;
+  f += fractions.diffuse * (diffuse ? diffuse->density(cosine, out) / out.z() : 1.0 / pi);
+  return f;
 }
 
 Vec3 lambertian_direction(double u, double v) {

@@ -1,13 +1,16 @@
-// What a surface does with light where a mirror, Lambert's law and the same fractions at every
-// angle do not do.
+// How a surface scatters light: its bidirectional scattering distribution function.
 //
 // An AlbedoLaw says how much of the power goes where, a Lobe in which directions. Both see a hit in
 // its own frame: z is the normal on the lit side and x lies in the plane of incidence, so that
 // light comes from (sin θ, 0, cos θ) =: i and leaves along o. The scattering function is then
-//   f(i, o) = Σ share(cos θ_i) · density(cos θ_i, o) / o_z        [1/sr]
-// over the lobes that are no delta functions. A passive surface has f(i, o) = f(o, i).
+//   f(i, o) = Σ fraction(cos θ_i) · density(cos θ_i, o) / o_z        [1/sr]
+// over the components that are not delta functions. A passive surface has f(i, o) = f(o, i).
+//
+// Every surface takes this way. A plain one has a constant albedo, a mirror as its specular and
+// Lambert's law as its diffuse component, and needs no Bsdf to say so.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -17,18 +20,25 @@
 
 namespace photorque {
 
+// The components of a BSDF; light that is not absorbed goes on along one of them. Transmitted light
+// goes straight on, retroreflected light goes back where it came from.
+enum class Component : size_t { specular, diffuse, transmitted, retroreflected };
+inline constexpr std::array components = {Component::specular, Component::diffuse,
+                                          Component::transmitted, Component::retroreflected};
+
 // Uniform random numbers in (0, 1) for one direction, and as many more as its method needs.
 struct Draw {
   double u = 0.5, v = 0.5;  // well distributed from hit to hit
   uint64_t key = 0;         // of the hit
 
   double extra(uint64_t which) const { return unit_interval(hash_words(key, which)); }
+  // The numbers for another try, where directions are drawn by rejection; 0 is the first.
   Draw attempt(uint64_t number) const {
     return number == 0 ? *this : Draw{extra(3 * number), extra(3 * number + 1), key};
   }
 };
 
-// Directions of reflected light. Immutable; called from many threads at once.
+// The directions of one component's light. Immutable; called from many threads at once.
 class Lobe {
  public:
   virtual ~Lobe() = default;
@@ -47,12 +57,16 @@ class Lobe {
 // Where the power of one band goes, in fractions that sum to 1.
 struct PowerFractions {
   double absorbed = 0.0, specular = 0.0, diffuse = 0.0, transmitted = 0.0, retroreflected = 0.0;
+
+  double of(Component component) const;
 };
 
+// How a surface's fractions depend on the angle of incidence. Immutable; called from many threads
+// at once.
 class AlbedoLaw {
  public:
   virtual ~AlbedoLaw() = default;
-  // `cosine` ∈ (0, 1] is cos θ_i.
+  // `cosine` ∈ (0, 1] is cos θ_i; `band` is one that the surface was made for.
   virtual PowerFractions fractions(double cosine, size_t band) const = 0;
 };
 
@@ -61,25 +75,47 @@ struct Bsdf {
   std::shared_ptr<const AlbedoLaw> law;  // null: the surface's fractions at every angle
   std::shared_ptr<const Lobe> specular;  // null: a mirror
   std::shared_ptr<const Lobe> diffuse;   // null: Lambert's law
-  // Goes back where it came from. With the surface's four fractions it sums to 1. Not with a law.
+  // The retroreflected fraction per band. With the surface's four fractions it sums to 1. Zero
+  // where there is a law, which gives its own.
   BandValues retroreflected{};
-  // This fraction of the absorbed power leaves at once as heat radiation, by Lambert's law, of it
-  // `front_emission` on the front. In forces and torques only: the power stays booked as absorbed.
+  // The fraction of the absorbed power that leaves at once as heat radiation, by Lambert's law;
+  // `front_emission` is the part of it that leaves the front. It counts in forces and torques only:
+  // the power stays booked as absorbed.
   double reemitted = 0.0;
   double front_emission = 0.5;
   std::string description = {};  // a few words for notices
 };
 
+// How light meets a surface, in any right-handed frame.
+struct Incidence {
+  // `direction` of the light, `normal` on the lit side, both of unit length.
+  Incidence(const Vec3& direction, const Vec3& normal);
+
+  Vec3 direction, normal;
+  double cosine;  // of the angle of incidence, in [1e-9, 1]
+};
+
+// The fractions of one band at `cosine` ∈ (0, 1] of the angle of incidence.
 PowerFractions fractions_of(const OpticalSurface& surface, double cosine, size_t band);
 
-// f(i, o) without delta functions (mirror, straight on, retroreflection).
+// Where light of one component goes: a unit vector in the frame of `incidence`.
+Vec3 scattered_direction(const OpticalSurface& surface, Component component,
+                         const Incidence& incidence, const Draw& draw);
+
+// `power` times the expectation of scattered_direction(): over c, the momentum flow that leaves
+// along the component.
+Vec3 mean_flow(const OpticalSurface& surface, Component component, const Incidence& incidence,
+               double power);
+
+// f(i, o) without delta functions (mirror, straight on, retroreflection), in the frame of the hit.
 double scattering_1_sr(const OpticalSurface& surface, double cosine, const Vec3& out, size_t band);
 
-// The expected direction of everything that leaves, times its fraction of the power: for power P in
-// `band` the momentum flow that leaves is P/c times this. Frame of the hit. Without heat radiation.
-Vec3 first_moment(const OpticalSurface& surface, double cosine, size_t band);
-
-// Lambert's law about z: uniform in projected solid angle.
+// Lambert's law about z: uniform in projected solid angle. `u`, `v` ∈ (0, 1).
 Vec3 lambertian_direction(double u, double v);
+// The mean of its z: light that leaves by Lambert's law pushes with 2/3 of its power over c along
+// the normal.
+// Source: F. L. Markley and J. L. Crassidis, Fundamentals of Spacecraft Attitude Determination and
+// Control (2014), section 3.3.6.
+inline constexpr double lambertian_mean = 2.0 / 3.0;
 
 }  // namespace photorque

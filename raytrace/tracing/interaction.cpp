@@ -4,107 +4,10 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "raytrace/tracing/bsdf_interaction.h"
+#include "raytrace/tracing/scattering.h"
 
 namespace photorque {
 namespace {
-
-enum class Lobe { specular, diffuse, transmitted };
-
-// Draws a lobe in proportion to the power that it carries over all bands, and turns the powers of
-// the bands into those of the ray that goes on: their sum is exactly what was not absorbed.
-Lobe choose_lobe(const OpticalSurface& surface, int bands, double u, BandValues& power_W) {
-  double specular = 0.0, diffuse = 0.0, transmitted = 0.0;
-  for (int b = 0; b < bands; ++b) {
-    specular += power_W[b] * surface.specular[b];
-    diffuse += power_W[b] * surface.diffuse[b];
-    transmitted += power_W[b] * surface.transmitted[b];
-  }
-  const double total = specular + diffuse + transmitted;
-  const double at = u * total;
-  const Lobe lobe = at < specular             ? Lobe::specular
-                    : at < specular + diffuse ? Lobe::diffuse
-                                              : Lobe::transmitted;
-  const BandValues& of_band = lobe == Lobe::specular  ? surface.specular
-                              : lobe == Lobe::diffuse ? surface.diffuse
-                                                      : surface.transmitted;
-  const double fraction = lobe == Lobe::specular  ? specular
-                          : lobe == Lobe::diffuse ? diffuse
-                                                  : transmitted;
-  const double scale = total / fraction;
-  for (int b = 0; b < bands; ++b) power_W[b] *= of_band[b] * scale;
-  return lobe;
-}
-
-// Lambert's law about the unit normal n: uniform in projected solid angle. The frame is that of
-// Duff et al., "Building an orthonormal basis, revisited" (JCGT 6(1), 2017).
-Vec3 lambertian_direction(const Vec3& n, double u, double v) {
-  const double sign = std::copysign(1.0, n.z());
-  const double a = -1.0 / (sign + n.z());
-  const double b = n.x() * n.y() * a;
-  const Vec3 s(1.0 + sign * n.x() * n.x() * a, sign * b, -sign * n.x());
-  const Vec3 t(b, sign + n.y() * n.y() * a, -n.y());
-  const double radius = std::sqrt(u), angle = 2.0 * pi * v;
-  return radius * std::cos(angle) * s + radius * std::sin(angle) * t + std::sqrt(1.0 - u) * n;
-}
-
-Ray make_ray(const Vec3& origin_m, const Vec3& direction, uint32_t sample) {
-  Ray ray{};
-  for (int k = 0; k < 3; ++k) {
-    ray.origin_m[k] = static_cast<float>(origin_m[k]);
-    ray.direction[k] = static_cast<float>(direction[k]);
-  }
-  ray.sample = sample;
-  return ray;
-}
-
-// The side of the surface that was hit, as its unit normal.
-Vec3 lit_normal(const InteractionContext& context, const Hits& hits, int i) {
-  const TrianglePlane& plane = context.scene->plane(hits.instance[i], hits.triangle[i]);
-  const Vec3 front(plane.normal[0], plane.normal[1], plane.normal[2]);
-  return hits.front[i] != 0 ? front : Vec3(-front);
-}
-
-Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
-  return direction - 2.0 * direction.dot(normal) * normal;
-}
-
-// The momentum flow [N] that leaves with all lobes of hit i: the expectation over what send_on()
-// draws, so that forces carry no noise of the draw. Lambertian light takes 2/3 of its power over c
-// along the normal (e.g. Markley and Crassidis, Fundamentals of Spacecraft Attitude Determination
-// and Control, section 3.3.6).
-Vec3 expected_recoil(const Hits& hits, int i, const OpticalSurface& surface, const Vec3& direction,
-                     const Vec3& normal) {
-  double specular = 0.0, diffuse = 0.0, transmitted = 0.0;
-  for (int b = 0; b < hits.bands; ++b) {
-    specular += hits.incident_W[b][i] * surface.specular[b];
-    diffuse += hits.incident_W[b][i] * surface.diffuse[b];
-    transmitted += hits.incident_W[b][i] * surface.transmitted[b];
-  }
-  return (specular * mirrored(direction, normal) + (2.0 / 3.0) * diffuse * normal +
-          transmitted * direction) /
-         speed_of_light_m_s;
-}
-
-// Sends the rest of hit i on its way along one lobe.
-void send_on(const InteractionContext& context, const SobolSequence& sequence,
-             const HitBuffer& buffer, int i, const OpticalSurface& surface, const Vec3& direction,
-             const Vec3& normal, PowerBalanceSums& power_balance, Continuation& next) {
-  const Hits& hits = buffer.hits;
-  const auto point = sequence.point(buffer.sample[i]);
-  BandValues power_W{};
-  for (int b = 0; b < hits.bands; ++b) power_W[b] = hits.incident_W[b][i];
-  const Lobe lobe = choose_lobe(surface, hits.bands, point[0], power_W);
-
-  const Vec3 position(hits.position_m[0][i], hits.position_m[1][i], hits.position_m[2][i]);
-  const double ray_offset =
-      lobe == Lobe::transmitted ? -context.scene->ray_offset_m : context.scene->ray_offset_m;
-  const Vec3 onward = lobe == Lobe::specular  ? mirrored(direction, normal)
-                      : lobe == Lobe::diffuse ? lambertian_direction(normal, point[1], point[2])
-                                              : direction;
-  go_on(context, hits.bands, {position, position + ray_offset * normal, onward, buffer.sample[i]},
-        power_W, power_balance, next);
-}
 
 // Four neighbours of a column.
 using Quad = Eigen::Array4d;
@@ -123,7 +26,7 @@ void pad_quad(Hits& hits) {
 // Whether everything stays where it hits.
 bool all_black(const TraceableScene::Data& scene, const HitBuffer& buffer) {
   const Hits& hits = buffer.hits;
-  return buffer.one_side && scene.black[2 * hits.instance[0] + hits.front[0]] != 0;
+  return buffer.one_side && scene.black[scene.side(hits.instance[0], hits.front[0])] != 0;
 }
 
 void absorb_all(Hits& hits) {
@@ -132,7 +35,7 @@ void absorb_all(Hits& hits) {
   }
 }
 
-// absorbed_W and left_W of every hit.
+// absorbed_W and left_W of every hit, by the fractions that hold at every angle.
 void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
   Hits& hits = buffer.hits;
   std::fill_n(buffer.left_W.begin(), hits.count, 0.0);
@@ -141,14 +44,30 @@ void absorb(const TraceableScene::Data& scene, HitBuffer& buffer) {
     const double* incident = hits.incident_W[b].data();
     double* absorbed = hits.absorbed_W[b].data();
     if (buffer.one_side) {
-      const double same = fraction[2 * hits.instance[0] + hits.front[0]];
+      const double same = fraction[scene.side(hits.instance[0], hits.front[0])];
       for (int i = 0; i < hits.count; ++i) absorbed[i] = incident[i] * same;
     } else {
       for (int i = 0; i < hits.count; ++i) {
-        absorbed[i] = incident[i] * fraction[2 * hits.instance[i] + hits.front[i]];
+        absorbed[i] = incident[i] * fraction[scene.side(hits.instance[i], hits.front[i])];
       }
     }
     for (int i = 0; i < hits.count; ++i) buffer.left_W[i] += incident[i] - absorbed[i];
+  }
+}
+
+// The same again where they depend on the angle of incidence.
+void absorb_by_angle(const TraceableScene::Data& scene, HitBuffer& buffer) {
+  Hits& hits = buffer.hits;
+  for (int i = 0; i < hits.count; ++i) {
+    const AlbedoLaw* law = scene.albedo_law[scene.side(hits.instance[i], hits.front[i])];
+    if (law == nullptr) continue;
+    const double cosine = incidence_at(scene, buffer, i).cosine;
+    buffer.left_W[i] = 0.0;
+    for (int b = 0; b < hits.bands; ++b) {
+      const double absorbed = law->fractions(cosine, static_cast<size_t>(b)).absorbed;
+      hits.absorbed_W[b][i] = hits.incident_W[b][i] * absorbed;
+      buffer.left_W[i] += hits.incident_W[b][i] - hits.absorbed_W[b][i];
+    }
   }
 }
 
@@ -249,50 +168,28 @@ double PowerBalanceSums::absorbed_W(size_t instance) const {
   return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
-void go_on(const InteractionContext& context, int bands, const Departure& departure,
-           const BandValues& power_W, PowerBalanceSums& power_balance, Continuation& next) {
-  double total = 0.0;
-  for (int b = 0; b < bands; ++b) total += power_W[b];
-  if (total < context.cutoff_W) {
-    power_balance.truncated_W += total;
-    power_balance.release(departure.hit_m, departure.direction, total);
-    return;
-  }
-  next.rays.push_back(make_ray(departure.origin_m, departure.direction, departure.sample));
-  next.power_W.insert(next.power_W.end(), power_W.begin(), power_W.begin() + bands);
-}
-
 void interact(const InteractionContext& context, HitBuffer& buffer, PowerBalanceSums& power_balance,
               Continuation& next) {
   Hits& hits = buffer.hits;
-  const Scene& scene = context.scene->scene;
-  const bool bsdfs = !context.scene->bsdf.empty();
-  const bool black = all_black(*context.scene, buffer);
+  const TraceableScene::Data& scene = *context.scene;
+  const bool black = all_black(scene, buffer);
   if (black) {
     absorb_all(hits);
   } else {
-    absorb(*context.scene, buffer);
-    if (bsdfs) absorb_by_angle(*context.scene, buffer);
+    absorb(scene, buffer);
+    if (!scene.albedo_law.empty()) absorb_by_angle(scene, buffer);
   }
   take_momentum(buffer);
   if (context.depth == 0) book_momentum(hits, power_balance);
   book_absorbed(buffer, power_balance);
-  if (black) return;
-  if (!bsdfs && !any_left(buffer)) return;
+  if (black || !(scene.reemits || any_left(buffer))) return;
   SobolStream stream = context.stream;
   stream.group = static_cast<uint32_t>(context.depth) + 1u;
   const SobolSequence sequence(stream);
-  if (bsdfs) settle_finishes(context, sequence, buffer, power_balance, next);
   for (int i = 0; i < hits.count; ++i) {
-    if (!(buffer.left_W[i] > 0.0)) continue;
-    const Instance& instance = scene.instances[hits.instance[i]];
-    const OpticalSurface& surface =
-        scene.surfaces[hits.front[i] != 0 ? instance.front_surface : instance.back_surface];
-    const Vec3 direction = buffer.direction(i);
-    const Vec3 normal = lit_normal(context, hits, i);
-    const Vec3 recoil = expected_recoil(hits, i, surface, direction, normal);
-    for (int k = 0; k < 3; ++k) hits.force_N[k][i] -= recoil[k];
-    send_on(context, sequence, buffer, i, surface, direction, normal, power_balance, next);
+    if (scene.reemits || buffer.left_W[i] > 0.0) {
+      scatter(context, sequence, buffer, i, power_balance, next);
+    }
   }
 }
 

@@ -47,21 +47,9 @@ struct InteractionContext {
   double cutoff_W = 0.0;  // rays with less than this are truncated
 };
 
-// A ray on its way from a hit.
-struct Departure {
-  Vec3 hit_m;     // where it was reflected
-  Vec3 origin_m;  // a little off the surface
-  Vec3 direction;
-  uint32_t sample;
-};
-
-// Appends the ray to `next`, or ends it if it carries less than the cutoff.
-void go_on(const InteractionContext& context, int bands, const Departure& departure,
-           const BandValues& power_W, PowerBalanceSums& power_balance, Continuation& next);
-
 // Settles all hits of the buffer: fills absorbed_W and force_N, adds to the power balance and
-// appends the rays that go on to `next`. The lobe and direction of a ray come from its own Sobol
-// point of group depth + 1.
+// appends the rays that go on to `next`. The component and direction of a ray come from its own
+// Sobol point of group depth + 1.
 void interact(const InteractionContext& context, HitBuffer& buffer, PowerBalanceSums& power_balance,
               Continuation& next);
 

@@ -93,16 +93,23 @@ void add_instance(TraceableScene::Data& data, const Instance& instance) {
   }
 }
 
-void gather_bsdfs(TraceableScene::Data& data) {
-  const Scene& scene = data.scene;
-  if (std::none_of(scene.surfaces.begin(), scene.surfaces.end(),
-                   [](const OpticalSurface& surface) { return surface.bsdf != nullptr; })) {
-    return;
+void note_bsdfs(TraceableScene::Data& data) {
+  const auto law_of = [&](uint32_t surface) -> const AlbedoLaw* {
+    const Bsdf* bsdf = data.scene.surfaces[surface].bsdf.get();
+    return bsdf == nullptr ? nullptr : bsdf->law.get();
+  };
+  for (const Instance& instance : data.scene.instances) {
+    data.albedo_law.push_back(law_of(instance.back_surface));
+    data.albedo_law.push_back(law_of(instance.front_surface));
   }
-  for (const Instance& instance : scene.instances) {
-    data.bsdf.push_back(scene.surfaces[instance.back_surface].bsdf.get());
-    data.bsdf.push_back(scene.surfaces[instance.front_surface].bsdf.get());
+  if (std::all_of(data.albedo_law.begin(), data.albedo_law.end(),
+                  [](const AlbedoLaw* law) { return law == nullptr; })) {
+    data.albedo_law.clear();
   }
+  data.reemits = std::any_of(data.scene.surfaces.begin(), data.scene.surfaces.end(),
+                             [](const OpticalSurface& surface) {
+                               return surface.bsdf != nullptr && surface.bsdf->reemitted > 0.0;
+                             });
 }
 
 void bound(TraceableScene::Data& data) {
@@ -137,7 +144,7 @@ TraceableScene::TraceableScene(Scene scene, bool leak_safe) : data_(std::make_un
   rtcSetSceneFlags(data_->embree, leak_safe ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   rtcSetSceneBuildQuality(data_->embree, RTC_BUILD_QUALITY_MEDIUM);
   for (const Instance& instance : data_->scene.instances) add_instance(*data_, instance);
-  gather_bsdfs(*data_);
+  note_bsdfs(*data_);
   bound(*data_);
   rtcCommitScene(data_->embree);
   if (rtcGetDeviceError(data_->device) != RTC_ERROR_NONE) {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "raytrace/surfaces/bsdf.h"
 #include "raytrace/tracing/embree_seam.h"
 #include "raytrace/tracing/tracer.h"
 
@@ -27,18 +28,24 @@ struct TraceableScene::Data {
   int packet_width = 8;                  // rays per packet that this machine's Embree runs natively
   std::vector<uint32_t> first_triangle;  // per instance, into `planes`
   std::vector<TrianglePlane> planes;
-  // absorbed_fraction[band][2 · instance + (1 if hit from the front)]
-  std::array<std::vector<double>, max_bands> absorbed_fraction;
-  // Whether a side absorbs everything and does nothing else, numbered alike.
-  std::vector<uint8_t> black;
-  // BSDF[2 · instance + (1 if hit from the front)], null for plain surfaces; empty if all are.
-  std::vector<const Bsdf*> bsdf;
+  // What hits ask for often, numbered by side().
+  std::array<std::vector<double>, max_bands> absorbed_fraction;  // [band][side], at every angle
+  std::vector<uint8_t> black;  // 1: the side absorbs everything and does nothing else
+  // Null where fractions are the same at every angle; empty if they are so everywhere.
+  std::vector<const AlbedoLaw*> albedo_law;
+  bool reemits = false;          // whether heat radiation leaves any surface
   Vec3 centre_m = Vec3::Zero();  // of a sphere that holds the scene
   double radius_m = 0.0;
   // How far a ray that leaves a surface starts above it: beyond single-precision rounding of any
   // point of the scene, below any feature.
   double ray_offset_m = 0.0;
 
+  // The number of an instance's back (`front` = 0) or front (1).
+  static size_t side(uint32_t instance, uint8_t front) { return 2 * instance + front; }
+  const OpticalSurface& surface(uint32_t instance, uint8_t front) const {
+    const Instance& part = scene.instances[instance];
+    return scene.surfaces[front != 0 ? part.front_surface : part.back_surface];
+  }
   const TrianglePlane& plane(uint32_t instance, uint32_t triangle) const {
     return planes[first_triangle[instance] + triangle];
   }

@@ -90,22 +90,32 @@ inline std::vector<SurfaceKind> surface_kinds(double kept) {
           {"measured", measured(forward_scatter(kept)), true}};
 }
 
+// The light of a hit in its own frame: it comes from direction_at(cosine).
+inline Incidence incidence_at(double cosine) {
+  return {-direction_at(cosine), Vec3::UnitZ()};
+}
+
+// The expected direction of everything that leaves, times its fraction of the power: for power P in
+// `band` the momentum flow that leaves is P/c times this. Frame of the hit.
+inline Vec3 first_moment(const OpticalSurface& surface, double cosine, size_t band) {
+  const PowerFractions fractions = fractions_of(surface, cosine, band);
+  Vec3 moment = Vec3::Zero();
+  for (const Component component : components) {
+    moment += mean_flow(surface, component, incidence_at(cosine), fractions.of(component));
+  }
+  return moment;
+}
+
 // Where one ray goes, in the frame of the hit; zero if it is absorbed. Transmitted light counts as
 // going up: as much comes from below.
 inline Vec3 send_ray(const OpticalSurface& surface, double cosine, const Draw& draw) {
   const PowerFractions fractions = fractions_of(surface, cosine, 0);
-  const Bsdf* bsdf = surface.bsdf.get();
-  const Vec3 in = direction_at(cosine);
   double at = draw.extra(1u << 30);
-  if ((at -= fractions.specular) < 0) {
-    return bsdf && bsdf->specular ? bsdf->specular->direction(cosine, draw)
-                                  : Vec3(-in.x(), 0, in.z());
+  for (const Component component : components) {
+    if ((at -= fractions.of(component)) >= 0) continue;
+    const Vec3 out = scattered_direction(surface, component, incidence_at(cosine), draw);
+    return component == Component::transmitted ? Vec3(-out) : out;
   }
-  if ((at -= fractions.diffuse) < 0) {
-    return bsdf && bsdf->diffuse ? bsdf->diffuse->direction(cosine, draw)
-                                 : lambertian_direction(draw.u, draw.v);
-  }
-  if ((at -= fractions.retroreflected + fractions.transmitted) < 0) return in;
   return Vec3::Zero();
 }
 

@@ -9,6 +9,7 @@
 namespace photorque {
 namespace {
 
+using testing::first_moment;
 using testing::random_draw;
 using testing::send_ray;
 using testing::surface_kinds;

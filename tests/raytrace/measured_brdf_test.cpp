@@ -8,6 +8,7 @@
 namespace photorque {
 namespace {
 
+using testing::first_moment;
 using testing::forward_scatter;
 using testing::measured;
 using testing::tabulated;
