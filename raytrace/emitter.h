@@ -50,7 +50,7 @@ class Emitter {
 
 // An aperture that shines alike from all its points, with the emitter's relative_intensity() about
 // the axis: a disc at z = 0, or an area so far away that only directions matter. What lets the
-// light on a surface be gathered from the surface's side (see disc_light.h).
+// light on a surface be gathered from the surface's side (see direct/disc_light.h).
 struct UniformAperture {
   double radius_m = 0.0;  // > 0; infinite for parallel light, whose rays fill a plane normal to
                           // each direction

@@ -12,12 +12,24 @@
 
 namespace photorque {
 
+class FluxMapReceiver;  // receivers/maps/flux_map.h
+class WrenchReceiver;   // receivers/wrench/wrench.h
+
+// A receiver as its kind made it, with handles of its own type to those that other parts of the
+// program ask for more than a Receiver tells: gathering and photovoltaics for flux maps, tables of
+// wrenches for wrenches. Null for other kinds.
+struct MadeReceiver {
+  std::shared_ptr<const Receiver> receiver;
+  std::shared_ptr<const FluxMapReceiver> flux_map = nullptr;
+  std::shared_ptr<const WrenchReceiver> wrench = nullptr;
+};
+
 // One kind of receiver: `kind = "flux_map"`.
 struct ReceiverKind {
   std::string name;
   std::string summary;  // one sentence, no full stop
   // Reads every key it knows; throws InputError, also when the scene lacks the named node.
-  std::function<std::unique_ptr<Receiver>(const Settings&, const Scene&)> make;
+  std::function<MadeReceiver(const Settings&, const Scene&)> make;
 };
 
 // Every kind named in receivers/CMakeLists.txt, in that order.

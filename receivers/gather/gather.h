@@ -1,10 +1,10 @@
 // Direct light on a flat surface, gathered from the surface's side.
 //
 // Between a bin and an aperture either provably nothing stands, and the light is a quadrature
-// (disc_light.h) without noise, or something may, and shadow rays to scrambled Sobol points of
-// aperture and bin are weighed. The proof is by shafts: the convex hull of two balls about the bins
-// and about the part of the aperture that can light them, tested against triangles, for ever
-// smaller groups of bins.
+// (raytrace/direct/disc_light.h) without noise, or something may, and shadow rays to scrambled
+// Sobol points of aperture and bin are weighed. The proof is by shafts: the convex hull of two
+// balls about the bins and about the part of the aperture that can light them, tested against
+// triangles, for ever smaller groups of bins.
 //
 // Source of the idea: E. A. Haines, J. R. Wallace, "Shaft Culling for Efficient Ray-Cast
 // Radiosity" (1991).
@@ -56,8 +56,8 @@ double tracing_cost_s(uint64_t rays);
 bool gathering_pays(size_t pairs, uint64_t rays);
 
 // The light that comes to `map` straight from the beams, at the attitude `lab_from_body`. Surfaces
-// in between shade, whatever they are made of; what they pass on is for tracer.h. The result is the
-// same bits at any number of threads.
+// in between shade, whatever they are made of; what they pass on is for raytrace/tracing/tracer.h.
+// The result is the same bits at any number of threads.
 Gathered gather_direct(const TraceableScene& scene, const RigidTransform& lab_from_body,
                        std::span<const Beam> beams, const FluxMapReceiver& map,
                        const GatherOptions& options);

@@ -43,7 +43,7 @@ class GatherPlane {
     return patches.size() == 1 && !patches[0].triangle;
   }
 
-  // Adds a power with its shares per band, and what an instance's surface absorbs of it, to the
+  // Adds a power with its fractions per band, and what an instance's surface absorbs of it, to the
   // direct entries of a bin.
   void add_power(double power_W, const BandValues& fraction, size_t bin, uint32_t instance,
                  std::span<double> entries) const;

@@ -165,10 +165,11 @@ Product FluxMapReceiver::product(const BinSums& sums) const {
 
 ReceiverKind flux_map_kind() {
   return {"flux_map", "Incident and absorbed power per bin of a surface",
-          [](const Settings& settings, const Scene& scene) -> std::unique_ptr<Receiver> {
+          [](const Settings& settings, const Scene& scene) -> MadeReceiver {
             const ReceiverTarget target = read_target(settings, scene);
-            return std::make_unique<FluxMapReceiver>(
+            const auto map = std::make_shared<const FluxMapReceiver>(
                 target.name, scene, read_surface_grid(settings, scene, target, Side::front));
+            return {.receiver = map, .flux_map = map};
           }};
 }
 

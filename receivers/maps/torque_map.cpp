@@ -73,12 +73,12 @@ Product TorqueMapReceiver::product(const BinSums& sums) const {
 
 ReceiverKind torque_map_kind() {
   return {"torque_map", "Torque of light per bin of a surface",
-          [](const Settings& settings, const Scene& scene) -> std::unique_ptr<Receiver> {
+          [](const Settings& settings, const Scene& scene) -> MadeReceiver {
             const ReceiverTarget target = read_target(settings, scene);
             // Light pushes on either side, so that the total is the torque on the node.
-            return std::make_unique<TorqueMapReceiver>(
+            return {std::make_shared<const TorqueMapReceiver>(
                 target.name, scene, read_surface_grid(settings, scene, target, Side::both),
-                settings.vector3_or("about_m", Vec3::Zero()));
+                settings.vector3_or("about_m", Vec3::Zero()))};
           }};
 }
 

@@ -147,10 +147,12 @@ Table wrench_rows(const std::vector<WrenchEstimate>& wrenches,
 
 ReceiverKind wrench_kind() {
   return {"wrench", "Force and torque of light on the whole body or a node, in total and per part",
-          [](const Settings& settings, const Scene& scene) -> std::unique_ptr<Receiver> {
+          [](const Settings& settings, const Scene& scene) -> MadeReceiver {
             ReceiverTarget target = read_target_or_all(settings, scene, "platform");
-            return std::make_unique<WrenchReceiver>(target.name, scene, std::move(target.instances),
-                                                    settings.vector3_or("about_m", Vec3::Zero()));
+            const auto wrench = std::make_shared<const WrenchReceiver>(
+                target.name, scene, std::move(target.instances),
+                settings.vector3_or("about_m", Vec3::Zero()));
+            return {.receiver = wrench, .wrench = wrench};
           }};
 }
 

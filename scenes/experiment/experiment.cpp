@@ -83,7 +83,7 @@ NamedReceiver make_receiver(const Settings& settings, const Scene& scene,
   const ReceiverKind& kind = kind_of(settings, kinds);
   std::string name = settings.has("node") ? read_target(settings, scene).name
                                           : settings.text_or("name", kind.name);
-  return {std::move(name), kind.name, kind.make(settings, scene)};
+  return {kind.make(settings, scene), std::move(name), kind.name};
 }
 
 std::vector<NamedReceiver> make_receivers(const ExperimentFile& file, const Scene& scene) {

@@ -17,6 +17,7 @@
 #include "raytrace/receiver.h"
 #include "raytrace/scene.h"
 #include "raytrace/tracing/tracer.h"
+#include "receivers/kind.h"
 #include "scenes/gltf/picture.h"
 
 namespace photorque {
@@ -103,10 +104,9 @@ ExperimentFile read_experiment_file(const std::filesystem::path& path,
                                     std::span<const std::string> overrides = {});
 
 // A receiver and what the experiment calls it.
-struct NamedReceiver {
+struct NamedReceiver : MadeReceiver {
   std::string name;  // the key `name`, else the node, else the kind
   std::string kind;
-  std::shared_ptr<const Receiver> receiver;
 };
 
 // Everything that an optical run needs.

@@ -109,7 +109,7 @@ OpticalSurface read_glass(const Settings& table, const OpticalSurface& base) {
 void read_lobe(const Settings& table, const OpticalSurface& surface, Bsdf& bsdf) {
   for (const char* key : {"roughness", "slope_error_mrad"}) {
     if (table.has(key) && !any(surface.specular)) {
-      throw table.error(key, "no specular share", "specular above 0, or refractive_index");
+      throw table.error(key, "no specular fraction", "specular above 0, or refractive_index");
     }
   }
   if (table.has("roughness")) {

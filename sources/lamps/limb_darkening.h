@@ -22,7 +22,7 @@ class LimbDarkening {
 
   // The mean of cos θ over the light.
   double mean_cosine() const { return mean_cosine_; }
-  // 1 − cos θ of the cone about the middle that holds `share` ∈ [0, 1] of the light. To 1e-6 of the
+  // 1 − cos θ of the cone about the middle that holds `fraction` ∈ [0, 1] of the light. To 1e-6 of the
   // disc's.
   double rise_within(double fraction) const;
 

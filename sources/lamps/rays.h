@@ -36,7 +36,7 @@ class RayLamp : public Emitter {
 
   double power_W_;
   std::vector<Entry> entries_;
-  std::vector<uint32_t> first_entry_;  // for evenly spaced shares
+  std::vector<uint32_t> first_entry_;  // for evenly spaced fractions
   // Steps of the intensity: their outer edges in 1 − cos θ, rising, and their values over the
   // largest.
   std::vector<double> edge_rise_, step_;

@@ -14,7 +14,7 @@ namespace {
 constexpr double allowed_error = 1e-6;
 
 // The flux outside a cone, ∫_h^end I dh, by Gauss–Legendre quadrature on even panels of the rise.
-// Summed from the edge inwards, so that the small shares far out keep their relative precision.
+// Summed from the edge inwards, so that the small fractions far out keep their relative precision.
 class FluxOutside {
  public:
   explicit FluxOutside(const AngularProfile& profile) : profile_(profile) {

@@ -80,7 +80,7 @@ double PlaneSampler::rise(double fraction) const {
   size_t k = first_cell_[static_cast<size_t>(fraction * static_cast<double>(first_cell_.size()))];
   while (k + 1 < cells_.size() && cells_[k + 1].before <= fraction) ++k;
   const Cell& cell = cells_[k];
-  // share − before = width (low t + (high − low) t²/2), in the form that does not cancel.
+  // fraction − before = width (low t + (high − low) t²/2), in the form that does not cancel.
   const double a = std::max(0.0, (fraction - cell.before) / cell.width);
   const double root =
       std::sqrt(std::max(0.0, cell.low * cell.low + 2.0 * (cell.high - cell.low) * a));

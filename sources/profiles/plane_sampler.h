@@ -36,14 +36,14 @@ class PlaneSampler {
     double before;     // fraction of the flux below the cell
     double rise;       // of its lower edge
     double width;      // in rise
-    double low, high;  // share per rise at its edges
+    double low, high;  // fraction per rise at its edges
   };
   struct Curve;
   void add(const Curve& curve, double low_rad, double high_rad, double plane_flux, int depth);
 
   double flux_ = 0.0;
   std::vector<Cell> cells_;
-  std::vector<uint32_t> first_cell_;  // for evenly spaced shares
+  std::vector<uint32_t> first_cell_;  // for evenly spaced fractions
 };
 
 }  // namespace photorque

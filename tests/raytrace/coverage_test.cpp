@@ -52,7 +52,7 @@ class ShadowBins final : public Receiver {
   Product product(const BinSums&) const override { return {}; }
 };
 
-// Shares of the beam between two lines, and their first moment about the axis: marginals of the
+// Fractions of the beam between two lines, and their first moment about the axis: marginals of the
 // beam are Gaussian with standard deviation w/2.
 double fraction(double low, double high) {
   const double unit = beam_radius_m / std::sqrt(2.0);

@@ -52,18 +52,18 @@ Settings on_array() {
 class EveryReceiver : public ::testing::TestWithParam<ReceiverKind> {};
 
 TEST_P(EveryReceiver, HasBins) {
-  EXPECT_GT(GetParam().make(on_array(), two_plates())->bins(), 0u);
+  EXPECT_GT(GetParam().make(on_array(), two_plates()).receiver->bins(), 0u);
 }
 
 TEST_P(EveryReceiver, AddsNothingForNoHits) {
-  const auto receiver = GetParam().make(on_array(), two_plates());
+  const auto receiver = GetParam().make(on_array(), two_plates()).receiver;
   std::vector<double> sums(receiver->bins(), 3.25);
   receiver->score(*hits_of({}), sums);
   EXPECT_THAT(sums, ::testing::Each(3.25));
 }
 
 TEST_P(EveryReceiver, AddsBatchesInAnyGrouping) {
-  const auto receiver = GetParam().make(on_array(), two_plates());
+  const auto receiver = GetParam().make(on_array(), two_plates()).receiver;
   const std::vector<HitMaker> all = random_hits(3, 250);
   std::vector<double> whole(receiver->bins(), 0.0), parts(receiver->bins(), 0.0);
   receiver->score(*hits_of(all), whole);
@@ -78,7 +78,7 @@ TEST_P(EveryReceiver, AddsBatchesInAnyGrouping) {
 }
 
 TEST_P(EveryReceiver, IsLinearInTheHits) {
-  const auto receiver = GetParam().make(on_array(), two_plates());
+  const auto receiver = GetParam().make(on_array(), two_plates()).receiver;
   std::vector<HitMaker> hits = random_hits(4, 250);
   std::vector<double> once(receiver->bins(), 0.0), doubled(receiver->bins(), 0.0);
   receiver->score(*hits_of(hits), once);
@@ -92,7 +92,7 @@ TEST_P(EveryReceiver, IsLinearInTheHits) {
 }
 
 TEST_P(EveryReceiver, ProductIsWhole) {
-  const auto receiver = GetParam().make(on_array(), two_plates());
+  const auto receiver = GetParam().make(on_array(), two_plates()).receiver;
   const BinSums sums =
       sums_of(*receiver, {random_hits(5, 250), random_hits(6, 250), random_hits(7, 250)});
   const Product product = receiver->product(sums);
@@ -116,7 +116,7 @@ TEST_P(EveryReceiver, ProductIsWhole) {
 }
 
 TEST_P(EveryReceiver, IsDarkWithoutLight) {
-  const auto receiver = GetParam().make(on_array(), two_plates());
+  const auto receiver = GetParam().make(on_array(), two_plates()).receiver;
   for (const Quantity& quantity : receiver->product(sums_of(*receiver, {{}, {}})).quantities) {
     if (quantity.name.starts_with("area")) continue;
     EXPECT_EQ(quantity.estimate.value, 0.0) << quantity.name;

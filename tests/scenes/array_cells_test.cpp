@@ -58,7 +58,7 @@ rays = 65536
 cells = "mesh"
 )";
   const Experiment experiment = read_experiment(folder / "array.toml");
-  const auto& map = dynamic_cast<const FluxMapReceiver&>(*experiment.receivers[0].receiver);
+  const FluxMapReceiver& map = *experiment.receivers[0].flux_map;
   const Settings array = experiment.file.others("array")[0];
   const auto places = read_cell_places(array, experiment.scene, map.grid());
   ASSERT_TRUE(places.has_value());

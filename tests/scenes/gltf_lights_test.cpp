@@ -94,7 +94,7 @@ TEST(GltfLights, ASpotIsALedWithAnEvenCone) {
   EXPECT_EQ(beam.emitter->power_W(), 3.0);
   EXPECT_LT((beam.lab_from_emitter.translation_m - Vec3(0, 0, 1)).norm(), 1e-12);
   EXPECT_LT((beam.lab_from_emitter.direction(Vec3::UnitZ()) - Vec3(0, 0, -1)).norm(), 1e-12);
-  const auto& map = dynamic_cast<const FluxMapReceiver&>(*experiment.receivers[0].receiver);
+  const FluxMapReceiver& map = *experiment.receivers[0].flux_map;
   const TraceResult traced =
       trace(TraceableScene(experiment.scene), experiment.lab_from_body, experiment.beams,
             experiment.receiver_pointers(), experiment.file.trace);

@@ -185,7 +185,7 @@ TEST(SurfaceSettings, BsdfsThatMakeNoSenseAreRefused) {
       error({{"specular", node_of(1.0)}, {"refractive_index", node_of(1.5)}, {"roughness", half}}),
       HasSubstr("material[0].roughness: found specular or transmittance behind glass"));
   EXPECT_THAT(error({{"diffuse", node_of(1.0)}, {"roughness", half}}),
-              HasSubstr("found no specular share"));
+              HasSubstr("found no specular fraction"));
   EXPECT_THAT(error({{"specular", node_of(1.0)}, {"roughness", node_of(0.0)}}),
               HasSubstr("material[0].roughness: found 0, expected a number in (0, 1]"));
   EXPECT_THAT(

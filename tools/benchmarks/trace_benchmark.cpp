@@ -314,9 +314,8 @@ void stasis_30_deg_gather(benchmark::State& state) {
       read_experiment(std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml");
   const TraceableScene scene(stasis.scene);
   for (const NamedReceiver& named : stasis.receivers) {
-    const auto* map = dynamic_cast<const FluxMapReceiver*>(named.receiver.get());
-    if (map == nullptr) continue;
-    gather(state, scene, *map, lab_from_body_at(30 * degree_rad, 0.0), stasis.beams);
+    if (!named.flux_map) continue;
+    gather(state, scene, *named.flux_map, lab_from_body_at(30 * degree_rad, 0.0), stasis.beams);
     return;
   }
 }

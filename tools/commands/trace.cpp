@@ -14,8 +14,7 @@ struct RayFile {
 std::vector<const FluxMapReceiver*> flux_maps(const Experiment& experiment) {
   std::vector<const FluxMapReceiver*> maps;
   for (const NamedReceiver& named : experiment.receivers) {
-    const auto* map = dynamic_cast<const FluxMapReceiver*>(named.receiver.get());
-    if (map != nullptr) maps.push_back(map);
+    if (named.flux_map) maps.push_back(named.flux_map.get());
   }
   return maps;
 }

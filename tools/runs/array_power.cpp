@@ -76,10 +76,11 @@ ArrayPower read_array_power(OpticalRun& run) {
   if (array.design.front || has_own_front(experiment.scene, map.grid())) {
     const InputLocation where = tables[0].where();
     array.incidence =
-        run.add_receiver({"incidence", "incidence",
-                          std::make_shared<IncidenceReceiver>(
+        run.add_receiver({{std::make_shared<IncidenceReceiver>(
                               experiment.scene, map.grid(), array.design.front,
-                              mean_wavelengths_m(array.ideal_responsivity_A_W), where)});
+                              mean_wavelengths_m(array.ideal_responsivity_A_W), where)},
+                          "incidence",
+                          "incidence"});
   }
   return array;
 }

@@ -7,10 +7,6 @@
 namespace photorque {
 namespace {
 
-const FluxMapReceiver* flux_map_of(const NamedReceiver& receiver) {
-  return dynamic_cast<const FluxMapReceiver*>(receiver.receiver.get());
-}
-
 // Incident power of direct light in all bands, per bin of one replicate.
 double direct_W(const FluxMapReceiver& map, std::span<const double> sums, size_t bin) {
   double power_W = 0.0;
@@ -89,7 +85,7 @@ DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scen
   DirectRoute route;
   if (effort.direct == TraceEffort::Direct::rays) return route;
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
-    const FluxMapReceiver* map = flux_map_of(experiment.receivers[i]);
+    const FluxMapReceiver* map = experiment.receivers[i].flux_map.get();
     if (map == nullptr || !can_gather(experiment.scene, map->grid(), experiment.beams)) continue;
     const size_t pairs = map->grid().bins() * experiment.beams.size();
     if (weigh_cost && !gathering_pays(pairs, result.rays)) {
@@ -112,7 +108,7 @@ double worst_bin_error(const Experiment& experiment, const TraceResult& result) 
   constexpr double floor = 0.1;
   double worst = 0.0;
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
-    const FluxMapReceiver* map = flux_map_of(experiment.receivers[i]);
+    const FluxMapReceiver* map = experiment.receivers[i].flux_map.get();
     if (map == nullptr) continue;
     const std::vector<Estimate> bins = map->flux_map(result.sums[i]).incident.per_bin_W_m2;
     double peak = 0.0;

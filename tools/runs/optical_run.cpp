@@ -29,20 +29,11 @@ size_t whole_wrench(Experiment& experiment) {
   std::vector<uint32_t> all(experiment.scene.instances.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<uint32_t>(i);
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
-    const auto* wrench =
-        dynamic_cast<const WrenchReceiver*>(experiment.receivers[i].receiver.get());
-    if (wrench != nullptr && wrench->part_names().size() == all.size()) return i;
+    const auto& wrench = experiment.receivers[i].wrench;
+    if (wrench && wrench->part_names().size() == all.size()) return i;
   }
-  experiment.receivers.push_back(
-      {"body", "wrench", std::make_shared<WrenchReceiver>("body", experiment.scene, all)});
-  return experiment.receivers.size() - 1;
-}
-
-// A watch over the closed parts, if there are any.
-std::optional<size_t> watch_insides(Experiment& experiment) {
-  auto watch = std::make_shared<InsideLightReceiver>(experiment.scene);
-  if (watch->bins() == 0) return std::nullopt;
-  experiment.receivers.push_back({"inside", "inside_light", std::move(watch)});
+  const auto wrench = std::make_shared<const WrenchReceiver>("body", experiment.scene, all);
+  experiment.receivers.push_back({{.receiver = wrench, .wrench = wrench}, "body", "wrench"});
   return experiment.receivers.size() - 1;
 }
 
@@ -71,7 +62,11 @@ double momentum_disagreement(const PowerBalance& power_balance, const BinSums& s
 OpticalRun::OpticalRun(const CommandLine& line, const Console& console)
     : experiment_(read(line)), scene_(experiment_.scene), threads_(line.threads) {
   wrench_ = whole_wrench(experiment_);
-  inside_light_ = watch_insides(experiment_);
+  const auto inside = std::make_shared<const InsideLightReceiver>(experiment_.scene);
+  if (inside->bins() > 0) {
+    inside_light_ = inside;
+    inside_index_ = add_receiver({{inside}, "inside", "inside_light"});
+  }
   provenance_ = build_provenance();
   provenance_.seed = experiment_.file.trace.seed;
   provenance_.inputs = experiment_.inputs;
@@ -118,7 +113,7 @@ size_t OpticalRun::flux_map_index(const std::string& name) const {
   std::string known;
   for (size_t i = 0; i < experiment_.receivers.size(); ++i) {
     const NamedReceiver& receiver = experiment_.receivers[i];
-    if (dynamic_cast<const FluxMapReceiver*>(receiver.receiver.get()) == nullptr) continue;
+    if (!receiver.flux_map) continue;
     if (name.empty() || receiver.name == name) return i;
     known += (known.empty() ? "\"" : ", \"") + receiver.name + "\"";
   }
@@ -128,18 +123,17 @@ size_t OpticalRun::flux_map_index(const std::string& name) const {
 }
 
 const WrenchReceiver& OpticalRun::wrench() const {
-  return dynamic_cast<const WrenchReceiver&>(*experiment_.receivers[wrench_].receiver);
+  return *experiment_.receivers[wrench_].wrench;
 }
 
 const FluxMapReceiver& OpticalRun::flux_map(size_t index) const {
-  return dynamic_cast<const FluxMapReceiver&>(*experiment_.receivers[index].receiver);
+  return *experiment_.receivers[index].flux_map;
 }
 
 std::string OpticalRun::inside_light(const TraceResult& result) const {
   if (!inside_light_) return "";
-  const auto& watch =
-      dynamic_cast<const InsideLightReceiver&>(*experiment_.receivers[*inside_light_].receiver);
-  return describe_inside_light(experiment_.scene, watch.lit_inside(result.sums[*inside_light_]),
+  return describe_inside_light(experiment_.scene,
+                               inside_light_->lit_inside(result.sums[inside_index_]),
                                result.power_balance.emitted_W);
 }
 
@@ -190,8 +184,8 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   }
   for (size_t i = 0; i < run.experiment().receivers.size(); ++i) {
     const NamedReceiver& receiver = run.experiment().receivers[i];
-    if (receiver.kind != "flux_map") continue;
-    const FluxMap map = run.flux_map(i).flux_map(result.sums[i]);
+    if (!receiver.flux_map) continue;
+    const FluxMap map = receiver.flux_map->flux_map(result.sums[i]);
     row("on " + receiver.name, map.incident.power_W);
   }
   const WrenchEstimate body =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,7 +63,8 @@ class OpticalRun {
   TraceableScene scene_;
   Provenance provenance_;
   size_t wrench_ = 0;
-  std::optional<size_t> inside_light_;  // none where no part is closed
+  std::shared_ptr<const InsideLightReceiver> inside_light_;  // null where no part is closed
+  size_t inside_index_ = 0;                                  // its place among the receivers
   int threads_ = 0;
 };
 
