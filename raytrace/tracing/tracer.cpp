@@ -7,26 +7,15 @@
 #include <memory>
 #include <mutex>
 
-#include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/random.h"
 #include "core/parallel.h"
-#include "raytrace/tracing/find_hits.h"
-#include "raytrace/tracing/interaction.h"
-#include "raytrace/tracing/launch.h"
+#include "raytrace/tracing/batch_tracer.h"
 
 namespace photorque {
 namespace {
 
-// The fraction of the work that belongs to one beam.
-struct BeamPlan {
-  const Beam* beam;
-  LaunchPlan launch;           // of the rays of one replicate: a power of two, at least ray_block
-  uint64_t first_batch;        // its number among the batches of a replicate
-  BandValues power_per_ray_W;  // so that each replicate carries the full power of the beam
-  double watt_per_ray;
-};
-
+// The work of one trace: the same for every replicate.
 struct Plan {
   std::vector<BeamPlan> beams;
   uint64_t batches = 0;  // per replicate
@@ -61,143 +50,6 @@ Plan make_plan(const TraceableScene::Data& scene, const RigidTransform& lab_from
   return plan;
 }
 
-// Everything that one part of the work adds up.
-struct Sums {
-  PowerBalanceSums power_balance;
-  std::vector<std::vector<double>> receivers;
-  uint64_t segments = 0;
-
-  Sums(size_t instances, std::span<const Receiver* const> all) {
-    power_balance.absorbed_lanes_W.assign(instances, {});
-    for (const Receiver* receiver : all) receivers.emplace_back(receiver->bins(), 0.0);
-  }
-  void add(const Sums& other) {
-    power_balance.add(other.power_balance);
-    for (size_t r = 0; r < receivers.size(); ++r) {
-      for (size_t i = 0; i < receivers[r].size(); ++i) receivers[r][i] += other.receivers[r][i];
-    }
-    segments += other.segments;
-  }
-};
-
-// Follows batches of rays to their end. One per thread at a time; owns the scratch memory.
-class BatchTracer {
- public:
-  BatchTracer(const TraceableScene::Data& scene, std::span<const Receiver* const> receivers,
-              const TraceOptions& options)
-      : scene_(scene),
-        receivers_(receivers),
-        options_(options),
-        hits_(std::make_unique<HitBuffer>()) {
-    hits_->hits.bands = scene.scene.bands.count();
-    for (size_t k = 0; k < 3; ++k) hits_->hits.direction[k] = hits_->ray[3 + k].data();
-  }
-
-  void run(const BeamPlan& plan, const SobolStream& stream, uint32_t batch, const HitOrigin& origin,
-           Sums& sums) {
-    sums_ = &sums;
-    origin_ = origin;
-    context_ = {&scene_, stream, 0, options_.cutoff * plan.watt_per_ray};
-    launch(*plan.beam->emitter, plan.launch, stream, batch, launched_);
-    next_.clear();
-    trace_bounce({launched_.rays, launched_.order}, plan.power_per_ray_W.data(), 0,
-                 Coherence::coherent);
-    for (context_.depth = 1; !next_.rays.empty() && context_.depth < options_.max_depth;
-         ++context_.depth) {
-      std::swap(current_, next_);
-      next_.clear();
-      trace_bounce({current_.rays, {}}, current_.power_W.data(), bands(), Coherence::incoherent);
-    }
-    truncate();
-  }
-
- private:
-  int bands() const { return hits_->hits.bands; }
-
-  // Ray i has the powers power_W[i · stride …].
-  void trace_bounce(const RayList& rays, const double* power_W, int stride, Coherence coherence) {
-    sums_->segments += rays.size();
-    for (size_t begin = 0; begin < rays.size(); begin += Hits::capacity) {
-      const RayList some = rays.part(begin, Hits::capacity);
-      const double* power = power_W + begin * static_cast<size_t>(stride);
-      find_hits(scene_, some, coherence, *hits_);
-      drop_misses(some, power, stride);
-      if (hits_->hits.count == 0) continue;
-      locate_hits(scene_, context_.depth, *hits_);
-      interact(context_, *hits_, sums_->power_balance, next_);
-      for (size_t r = 0; r < receivers_.size(); ++r) {
-        receivers_[r]->score(hits_->hits, sums_->receivers[r]);
-      }
-      if (options_.observe) options_.observe(origin_, hits_->hits);
-    }
-  }
-
-  // Lets the rays that hit nothing escape, closes the gaps that they leave, and gives the others
-  // their powers.
-  void drop_misses(const RayList& rays, const double* power_W, int stride) {
-    Hits& hits = hits_->hits;
-    const bool all = compact(*hits_, kept_) == static_cast<int>(rays.size());
-    if (!all) {
-      int at = 0;
-      for (int i = 0; i < static_cast<int>(rays.size()); ++i) {
-        if (at < hits.count && kept_[at] == i) {
-          ++at;
-        } else {
-          escape(rays[static_cast<size_t>(i)], power_W + i * stride);
-        }
-      }
-    }
-    for (int b = 0; b < hits.bands; ++b) {
-      double* incident = hits.incident_W[b].data();
-      if (stride == 0) {
-        std::fill_n(incident, hits.count, power_W[b]);
-      } else {
-        for (int i = 0; i < hits.count; ++i) {
-          incident[i] = power_W[(all ? i : kept_[i]) * stride + b];
-        }
-      }
-    }
-  }
-
-  double total(const double* power_W) const {
-    double sum = 0.0;
-    for (int b = 0; b < bands(); ++b) sum += power_W[b];
-    return sum;
-  }
-
-  void escape(const Ray& ray, const double* power_W) {
-    const double power = total(power_W);
-    sums_->power_balance.escaped_W += power;
-    if (context_.depth > 0) leave(ray, power);
-  }
-
-  void leave(const Ray& ray, double power) {
-    const Vec3 direction(ray.direction[0], ray.direction[1], ray.direction[2]);
-    const Vec3 origin(ray.origin_m[0], ray.origin_m[1], ray.origin_m[2]);
-    sums_->power_balance.release(origin, direction, power);
-  }
-
-  // What is still under way at the depth limit.
-  void truncate() {
-    for (size_t i = 0; i < next_.rays.size(); ++i) {
-      const double power = total(&next_.power_W[i * static_cast<size_t>(bands())]);
-      sums_->power_balance.truncated_W += power;
-      leave(next_.rays[i], power);
-    }
-  }
-
-  const TraceableScene::Data& scene_;
-  std::span<const Receiver* const> receivers_;
-  const TraceOptions& options_;
-  std::unique_ptr<HitBuffer> hits_;
-  LaunchBuffer launched_;
-  Continuation current_, next_;
-  InteractionContext context_{};
-  HitOrigin origin_;
-  Hits::Column<int> kept_{};
-  Sums* sums_ = nullptr;
-};
-
 // Parts that the batches of one replicate are cut into; fixed, so that sums do not depend on
 // threads.
 constexpr uint64_t max_parts = 4;
@@ -229,13 +81,13 @@ class TracerPool {
   std::vector<std::unique_ptr<BatchTracer>> idle_;
 };
 
-Sums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
-                std::span<const Receiver* const> receivers, uint64_t seed, size_t item,
-                uint64_t parts) {
+TraceSums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
+                     std::span<const Receiver* const> receivers, uint64_t seed, size_t item,
+                     uint64_t parts) {
   const uint64_t replicate = item / parts, part = item % parts;
   const uint64_t first_batch = plan.batches * part / parts;
   const uint64_t end_batch = plan.batches * (part + 1) / parts;
-  Sums sums(instances, receivers);
+  TraceSums sums(instances, receivers);
   for (size_t b = 0; b < plan.beams.size(); ++b) {
     const BeamPlan& beam = plan.beams[b];
     const SobolStream stream{seed, hash_words(b, replicate), 0};
@@ -248,7 +100,7 @@ Sums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
   return sums;
 }
 
-PowerBalance make_power_balance(const std::vector<Sums>& replicates, const Plan& plan) {
+PowerBalance make_power_balance(const std::vector<TraceSums>& replicates, const Plan& plan) {
   std::vector<double> values(replicates.size());
   const auto estimate = [&](const std::function<double(const PowerBalanceSums&)>& pick) {
     for (size_t r = 0; r < values.size(); ++r) values[r] = pick(replicates[r].power_balance);
@@ -274,7 +126,7 @@ PowerBalance make_power_balance(const std::vector<Sums>& replicates, const Plan&
     power_balance.torque_N_m[k] = estimate(
         [k](const PowerBalanceSums& s) { return s.momentum_in[3 + k] - s.momentum_out[3 + k]; });
   }
-  for (const Sums& replicate : replicates) {
+  for (const TraceSums& replicate : replicates) {
     const PowerBalanceSums& s = replicate.power_balance;
     const double gap = std::abs(plan.emitted_W - absorbed(s) - s.escaped_W - s.truncated_W);
     power_balance.closure = std::max(power_balance.closure, gap / plan.emitted_W);
@@ -323,7 +175,7 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
 
   const uint64_t parts = std::min(max_parts, plan.batches);
   const size_t replicates = static_cast<size_t>(options.replicates);
-  std::vector<Sums> done(replicates * parts, Sums(0, {}));
+  std::vector<TraceSums> done(replicates * parts, TraceSums(0, {}));
   TracerPool pool(data, receivers, options);
   std::atomic<size_t> finished = 0;
   parallel_for(done.size(), options.threads, [&](size_t item) {
@@ -336,7 +188,7 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
       options.progress(static_cast<double>(now) / static_cast<double>(done.size()));
   });
 
-  std::vector<Sums> by_replicate;
+  std::vector<TraceSums> by_replicate;
   TraceResult result;
   for (size_t r = 0; r < replicates; ++r) {
     by_replicate.push_back(std::move(done[r * parts]));
@@ -345,7 +197,7 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   }
   for (size_t i = 0; i < receivers.size(); ++i) {
     BinSums sums{receivers[i]->bins(), options.replicates, {}};
-    for (const Sums& replicate : by_replicate) {
+    for (const TraceSums& replicate : by_replicate) {
       sums.sums.insert(sums.sums.end(), replicate.receivers[i].begin(),
                        replicate.receivers[i].end());
     }

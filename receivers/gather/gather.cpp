@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "core/errors.h"
-#include "core/numerics/chebyshev.h"
 #include "core/numerics/random.h"
 #include "core/parallel.h"
 #include "raytrace/surfaces/bsdf.h"
+#include "receivers/gather/open_light.h"
 #include "receivers/gather/plane.h"
 
 namespace photorque {
@@ -25,6 +23,7 @@ class Gather {
       : plane_(scene, map),
         options_(options),
         triangles_(triangles_above(scene.scene(), plane_.patches().point_m, plane_.normal())),
+        open_light_(plane_, tile_side),
         open_W_(map.direct_entries(), 0.0) {
     const RigidTransform body_from_lab = lab_from_body.inverse();
     // The LEDs of an array share one emitter and its tables.
@@ -36,7 +35,6 @@ class Gather {
     }
     for (const auto& [emitter, light] : lights) make_table(*light);
     cut_into_tiles();
-    prepare_cell_means();
   }
 
   Gathered run() {
@@ -62,9 +60,7 @@ class Gather {
 
  private:
   static constexpr int max_points = 1 << 14;
-  static constexpr size_t tile_side = 16;  // bins
-  // Chebyshev points a side, where they replace Gauss points in every bin.
-  static constexpr size_t min_nodes = 4, max_nodes = 20;
+  static constexpr int tile_side = 16;  // bins
 
   // A table of a light for all its lamps above the plane, where it pays.
   void make_table(const DiscLight& light) {
@@ -87,12 +83,11 @@ class Gather {
 
   // Square tiles: the items of parallel work.
   void cut_into_tiles() {
-    constexpr int side = tile_side;
     const SurfaceGrid& grid = plane_.map().grid();
-    for (int row = 0; row < grid.height; row += side) {
-      for (int column = 0; column < grid.width; column += side) {
-        tiles_.push_back(
-            {column, row, std::min(side, grid.width - column), std::min(side, grid.height - row)});
+    for (int row = 0; row < grid.height; row += tile_side) {
+      for (int column = 0; column < grid.width; column += tile_side) {
+        tiles_.push_back({column, row, std::min(tile_side, grid.width - column),
+                          std::min(tile_side, grid.height - row)});
       }
     }
   }
@@ -127,9 +122,9 @@ class Gather {
     const Ball ball = plane_.ball_of(tile);
     if (lamp.misses(ball)) return 0;
     const std::vector<uint32_t> occluders = in_shaft(ball, lamp, candidates);
-    if (lamp.lights_front() && occluders.empty()) return add_open(tile, ball, lamp);
+    if (lamp.lights_front() && occluders.empty()) return open_light_.add(tile, ball, lamp, open_W_);
     if (tile.count() == 1) {
-      const size_t bin = bin_at(tile.column, tile.row);
+      const size_t bin = plane_.bin_at(tile.column, tile.row);
       if (!plane_.patches().of(bin).empty()) shaded.push_back({static_cast<uint32_t>(bin), index});
       return 0;
     }
@@ -145,92 +140,6 @@ class Gather {
     }
     const size_t open = descend(low, index, occluders, shaded);
     return open + descend(high, index, occluders, shaded);
-  }
-
-  size_t bin_at(int column, int row) const {
-    return static_cast<size_t>(row) * static_cast<size_t>(plane_.map().grid().width) +
-           static_cast<size_t>(column);
-  }
-
-  // Light without shadow on all bins of a tile.
-  size_t add_open(const BinTile& tile, const Ball& ball, const GatherLamp& lamp) {
-    // Fewer points than two Gauss points a side of every bin, where the irradiance is smooth.
-    const double turns = 2.0 * ball.radius_m / lamp.scale_m(ball);
-    const auto nodes = min_nodes + static_cast<size_t>(std::min(4.0 * turns, 100.0));
-    const auto count = static_cast<size_t>(tile.count());
-    const bool smooth = nodes <= max_nodes && nodes * nodes < 4 * count && lamp.smooth_over(ball);
-    std::vector<double> mean_W_m2;
-    if (smooth) mean_W_m2 = interpolate(tile, nodes, lamp);
-    size_t open = 0, at = 0;
-    for (int row = tile.row; row < tile.row + tile.rows; ++row) {
-      for (int column = tile.column; column < tile.column + tile.columns; ++column, ++at) {
-        const size_t bin = bin_at(column, row);
-        for (const SurfacePatch& patch : plane_.patches().of(bin)) {
-          const double mean =
-              smooth && plane_.whole(bin) ? mean_W_m2[at] : mean_irradiance_W_m2(patch, lamp);
-          plane_.add_power(patch.area_m2 * mean, lamp.fraction(), bin, patch.instance, open_W_);
-        }
-        open += plane_.patches().of(bin).empty() ? 0 : 1;
-      }
-    }
-    return open;
-  }
-
-  // All sizes of tiles that halving leads to.
-  void prepare_cell_means() {
-    std::set<int> sizes;
-    const std::function<void(int)> halve = [&](int side) {
-      if (!sizes.insert(side).second || side < 2) return;
-      halve(side / 2);
-      halve(side - side / 2);
-    };
-    for (const BinTile& tile : tiles_) {
-      halve(tile.columns);
-      halve(tile.rows);
-    }
-    for (const int cells : sizes) {
-      for (size_t nodes = min_nodes; nodes <= max_nodes; ++nodes) {
-        if (nodes * nodes >= 4 * tile_side * tile_side) break;
-        cell_means_[{nodes, static_cast<size_t>(cells)}] =
-            chebyshev_cell_means(nodes, static_cast<size_t>(cells));
-      }
-    }
-  }
-
-  // Mean irradiance of the whole bins of a tile, row by row, from its values at nodes × nodes
-  // Chebyshev points.
-  std::vector<double> interpolate(const BinTile& tile, size_t nodes, const GatherLamp& lamp) const {
-    const auto columns = static_cast<size_t>(tile.columns), rows = static_cast<size_t>(tile.rows);
-    const Eigen::MatrixXd& across = cell_means_.at({nodes, columns});
-    const Eigen::MatrixXd& along = cell_means_.at({nodes, rows});
-    std::vector<double> fraction;
-    for (size_t i = 0; i < nodes; ++i) fraction.push_back(chebyshev_fraction(nodes, i));
-    Eigen::MatrixXd values(nodes, nodes);
-    for (size_t j = 0; j < nodes; ++j) {
-      for (size_t i = 0; i < nodes; ++i) {
-        const Vec3 at = plane_.point_m(tile.column + tile.columns * fraction[i],
-                                       tile.row + tile.rows * fraction[j]);
-        values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-            lamp.irradiance_W_m2(at);
-      }
-    }
-    const Eigen::MatrixXd means = across * values * along.transpose();
-    return {means.data(), means.data() + means.size()};  // columns of the tile fastest
-  }
-
-  // 2 × 2 Gauss points, or the three-point rule of degree 2.
-  double mean_irradiance_W_m2(const SurfacePatch& patch, const GatherLamp& lamp) const {
-    const auto irradiance = [&](double a, double b) {
-      return lamp.irradiance_W_m2(patch.origin_m + a * patch.edge1_m + b * patch.edge2_m);
-    };
-    constexpr double third = 1.0 / 3.0, sixth = 1.0 / 6.0;
-    if (patch.triangle) {
-      return third * (irradiance(sixth, sixth) + irradiance(4 * sixth, sixth) +
-                      irradiance(sixth, 4 * sixth));
-    }
-    constexpr double low = 0.21132486540518712, high = 1.0 - low;
-    return 0.25 * (irradiance(low, low) + irradiance(high, low) + irradiance(low, high) +
-                   irradiance(high, high));
   }
 
   BinSums sample(int points, uint64_t& rays) const {
@@ -292,8 +201,7 @@ class Gather {
   std::vector<GatherLamp> lamps_;
   std::vector<std::vector<uint32_t>> occluders_;  // per lamp
   std::vector<BinTile> tiles_;
-  // By nodes and cells.
-  std::map<std::pair<size_t, size_t>, Eigen::MatrixXd> cell_means_;
+  OpenLight open_light_;
   std::vector<double> open_W_;
   std::vector<std::vector<ShadedPair>> shaded_;  // per tile, lamp by lamp
 };

@@ -1,4 +1,4 @@
-// What gather.cpp knows about the surface and the lamps. For the files of the gather only.
+// What gathering knows about the surface and the lamps. For the files of this folder only.
 #pragma once
 
 #include <memory>
@@ -34,6 +34,11 @@ class GatherPlane {
   // The point at column + u, row + v of the grid of bins, (0, 0) being the corner of the first.
   Vec3 point_m(double column, double row) const {
     return corner_m_ + column * column_m_ + row * row_m_;
+  }
+  // The number of a bin.
+  size_t bin_at(int column, int row) const {
+    return static_cast<size_t>(row) * static_cast<size_t>(map_.grid().width) +
+           static_cast<size_t>(column);
   }
   // Holds all bins of a tile.
   Ball ball_of(const BinTile& tile) const;
