@@ -67,13 +67,15 @@ class Receiver {
  public:
   virtual ~Receiver() = default;
 
+  // How many numbers the tracer sums for it per replicate.
   virtual size_t bins() const = 0;
 
-  // Adds the fraction of these hits to `sums` (of bins() entries). Only sums over hits, so that
-  // batches can be added in any grouping.
+  // Adds what these hits contribute to `sums` (of bins() entries). Every entry must be a sum over
+  // hits, so that batches can be added in any grouping.
   virtual void score(const Hits& hits, std::span<double> sums) const = 0;
 
-  // Results with units and standard errors.
+  // What the sums of a trace mean: results with units and standard errors. `sums` must come from
+  // this receiver, with at least two replicates.
   virtual Product product(const BinSums& sums) const = 0;
 };
 

@@ -31,6 +31,7 @@ struct SurfaceFace {
 std::vector<SurfaceFace> faces_of(const Scene& scene, std::span<const uint32_t> instances,
                                   const std::optional<Vec3>& facing_body = std::nullopt);
 
+// Where the bins lie and which faces count.
 struct SurfaceGrid {
   // plane:   bins are squares of a plane, seen along `normal_body`; coordinates u, v in metres are
   //          the components of the position along u_axis_body and v_axis_body.

@@ -11,18 +11,19 @@
 
 namespace photorque {
 
-// Standard errors come from leaving out one replicate of the light after the other (Quenouille,
-// Tukey), not from the powers of single replicates: a single replicate's map is √R times noisier
-// than their mean, and noise between cells in series lowers the power, so single replicates are
-// biased.
+// What the array does in the light of a trace. Standard errors come from leaving out one replicate
+// of the light after the other (Quenouille, Tukey), not from the powers of single replicates: a
+// single replicate's map is √R times noisier than their mean, and noise between cells in series
+// lowers the power, so single replicates are biased.
 struct ArrayResult {
   Estimate power_W;  // at the maximum power point
   Estimate voltage_V;
   Estimate current_A;
   Estimate power_on_cells_W;  // light
-  // Of it what counts like perpendicular light: less by what the cells' front reflects at a slant.
+  // The light on the cells, weighed by what their front lets in at its angle over what it lets in
+  // at normal incidence.
   Estimate power_entering_W;
-  bool entry_known = false;  // false: taken as perpendicular, power_entering_W is all
+  bool entry_known = false;  // false: all light counts as perpendicular, nothing is subtracted
   Estimate sum_of_cells_W;   // every cell at its own maximum
   Estimate efficiency;       // power_W / power_on_cells_W
   Estimate mismatch_loss;    // 1 − power_W / sum_of_cells_W: uneven light, and diodes

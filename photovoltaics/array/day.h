@@ -32,12 +32,13 @@ struct LampDroop {
 };
 
 struct Battery {
-  double capacity_J = 360.0 * 3600.0;
-  double charge = 1.0;  // at the start, of the capacity
-  double charge_efficiency = 0.97;
-  double discharge_efficiency = 0.97;
+  double capacity_J = 360.0 * 3600.0;  // > 0
+  double charge = 1.0;                 // at the start, as a fraction of the capacity, in [0, 1]
+  double charge_efficiency = 0.97;     // stored over delivered to it, in (0, 1]
+  double discharge_efficiency = 0.97;  // delivered over taken out of store, in (0, 1]
 };
 
+// Every efficiency is in (0, 1].
 struct DaySettings {
   std::optional<CellHeat> heat;
   LampDroop droop;
@@ -50,6 +51,7 @@ struct DaySettings {
   bool lamps_on = true;
 };
 
+// The history, one entry per step and one for the start, and what it sums to.
 struct DayResult {
   std::vector<double> time_s, temperature_K, array_W, charge_J;
   double final_temperature_K = 0.0;

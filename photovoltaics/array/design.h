@@ -12,6 +12,7 @@
 
 namespace photorque {
 
+// The array on one receiver: where its cells lie, how they are wired, and what they are.
 struct ArrayDesign {
   int columns = 0;                   // cells along u of the receiver's grid
   int rows = 0;                      // and along v; cell = row · columns + column
@@ -51,9 +52,8 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 //   strings = 1              parallel strings; must divide the number of cells
 //   bypass_every = 20        cells per bypass diode; default: all cells of a string
 //   cross_tied = false       tie cells of equal place in all strings
-//   wiring = [[[0, 1], [2, 3]]]   instead of the four keys above: strings of substrings of cells;
-//   an
-//                            array in place of a cell is a row of cells tied in parallel
+//   wiring = [[[0, 1], [2, 3]]]   instead of the four keys above: strings of substrings of cells
+//                            (a list in place of a cell is a row of cells tied in parallel)
 //   bypass = "ideal"         "none", "ideal" (clamps at drop_V) or "junction"; default "ideal"
 //   blocking = "none"        the same choices
 //   [array.bypass_diode]     drop_V = 0.5, saturation_A = 1e-6, ideality = 1.05,
@@ -69,6 +69,8 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 //   quantum_efficiency_peak = 0.95    of the default table for monocrystalline silicon, or
 //   [array.quantum_efficiency]        wavelength_m = […] (or _nm), efficiency = […]
 //   [array.cover]                     see read_cell_front()
+//
+// Throws InputError for values out of range, and for a wiring that names a cell twice.
 ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> places = {});
 
 }  // namespace photorque

@@ -35,7 +35,7 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
 // Table "losses", the plot "loss_waterfall" and one quantity per stage.
 Product loss_product(const std::vector<LossStage>& stages);
 
-// Of the irradiance on some cells.
+// How even the irradiance on some cells is.
 struct Uniformity {
   double mean_W_m2 = 0.0;
   double minimum_over_mean = 0.0;
@@ -46,7 +46,8 @@ Uniformity uniformity(const ArrayResult& array, std::span<const int> cells);
 // Table "uniformity": the whole array, then each string.
 Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring);
 
-// The power of an array with given photocurrents, and what it would be were something else.
+// The maximum power of `design` when every cell has `light_factor` ≥ 0 times the photocurrent that
+// it has in `array`.
 double array_power_W(const ArrayDesign& design, const ArrayResult& array, double light_factor);
 
 // Relative change of the power per change of one thing.

@@ -36,7 +36,7 @@ struct Ggx {
   Moments moments(double cosine, const std::function<double(double)>& of_facet) const;
 };
 
-// (sin θ, 0, cos θ).
+// The unit vector (sin θ, 0, cos θ) towards the light of a hit in its own frame; `cosine` ∈ [0, 1].
 Vec3 direction_at(double cosine);
 
 }  // namespace photorque

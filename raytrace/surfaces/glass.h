@@ -4,16 +4,14 @@
 // With R(θ) the unpolarised reflectance of the glass's front, which depends on the angle and on the
 // refractive index, the fractions of an OpticalSurface tell what meets the light that enters:
 //
-//   matt    (diffuse d)       of the light that enters d leaves again, scattered: specular R,
-//   diffuse
-//                             (1 − R) d with density (1 − R(θ_o)) cos θ_o/(π (1 − R̄)), as it has to
-//                             be for f(i, o) = f(o, i); R̄ = ∫ 2 μ R dμ
-//   cell    (specular s)      a base below the glass that reflects s at each meeting; inner
-//                             reflections between it and the front: R + (1 − R)² s/(1 − R s)
-//   pane    (transmittance t) both faces of a sheet that passes t on a way straight through it and
-//                             t^(1/cos θ') on a slanted one: with τ for that, reflected
-//                             R + (1 − R)² τ² R/(1 − R² τ²), passed (1 − R)² τ/(1 − R² τ²),
-//                             straight on
+// - matt (diffuse d): of the light that enters d leaves again, scattered. The specular fraction
+//   is R, the diffuse one (1 − R) d with density (1 − R(θ_o)) cos θ_o/(π (1 − R̄)), as it has to be
+//   for f(i, o) = f(o, i), where R̄ = ∫ 2 μ R dμ.
+// - cell (specular s): a base below the glass reflects s at each meeting. With the inner
+//   reflections between it and the front the specular fraction is R + (1 − R)² s/(1 − R s).
+// - pane (transmittance t): both faces of a sheet that passes t on a way straight through it and
+//   t^(1/cos θ') on a slanted one. With τ for that, R + (1 − R)² τ² R/(1 − R² τ²) is reflected
+//   and (1 − R)² τ/(1 − R² τ²) goes straight on.
 //
 // and the rest is absorbed. Intensities add, not fields: sheets far thicker than the coherence
 // length. A surface is one of the three; matt and cell are the same for s = d = 0.

@@ -28,6 +28,7 @@ class RoughGlass final : public Lobe {
   CosineTable<3> once_;  // power, sums of o_x and o_z
 };
 
+// The same, to be shared by a Bsdf and the law behind it.
 std::shared_ptr<const RoughGlass> rough_glass(double alpha, double index);
 
 }  // namespace photorque

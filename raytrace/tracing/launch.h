@@ -43,7 +43,7 @@ struct LaunchPlan {
   uint32_t octants;
 };
 
-// For 2^log2_rays rays, at least ray_block.
+// Plans 2^log2_rays rays, at least ray_block: one replicate of one beam.
 LaunchPlan plan_launch(const Emitter& emitter, const RigidTransform& body_from_emitter,
                        const TraceableScene::Data& scene, int log2_rays);
 

@@ -11,12 +11,13 @@
 
 namespace photorque {
 
-using TriangleCorners = std::array<Vec3, 3>;
+using TriangleCorners = std::array<Vec3, 3>;  // body frame [m]
 
 // The triangles of a scene that can shade a plane: all that reach above it.
 std::vector<TriangleCorners> triangles_above(const Scene& scene, const Vec3& plane_point_m,
                                              const Vec3& plane_normal);
 
+// A sphere with its inside, in the body frame.
 struct Ball {
   Vec3 centre_m;
   double radius_m;

@@ -18,7 +18,7 @@ inline double rise_at(double polar_rad) {
   return 2.0 * sine * sine;
 }
 
-// The distribution of the polar angle in one plane, for equal-fraction sampling.
+// The distribution of the polar angle in one plane, for samples of equal weight.
 class PlaneSampler {
  public:
   static constexpr double cell_error = 1e-8;

@@ -55,7 +55,7 @@ class OpticalRun {
   // Light on the inside of closed parts, as a line for people; empty if there is none.
   std::string inside_light(const TraceResult& result) const;
 
-  // Ledger, shapes of the sources, and the product of every receiver.
+  // Power balance, shapes of the sources, and the product of every receiver.
   Product product(const OpticalResult& result) const;
 
  private:
