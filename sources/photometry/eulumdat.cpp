@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/text/lines.h"
 #include "core/text/numbers.h"
 #include "sources/photometry/file.h"
 #include "sources/photometry/planes.h"
@@ -31,11 +32,8 @@ class ValueLines {
     std::string line = text(what);
     const std::string found = line;
     std::replace(line.begin(), line.end(), ',', '.');
-    const auto value = number_in(line);
-    if (!value) {
-      throw InputError(where(), what, "\"" + found.substr(0, 24) + "\"", "a number");
-    }
-    return *value;
+    if (const auto value = number_in(line)) return *value;
+    throw InputError(where(), what, quoted(found), "a number");
   }
 
   // A number that matters little: nothing counts as zero.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/text/lines.h"
 #include "core/text/numbers.h"
 #include "sources/photometry/file.h"
 #include "sources/photometry/planes.h"
@@ -34,11 +35,7 @@ class NumberStream {
   double next(const char* what) {
     const std::string_view word = next_word();
     if (word.empty()) throw InputError(where(), what, "the end of the file", "a number");
-    const auto value = number_in(word);
-    if (!value) {
-      throw InputError(where(), what, "\"" + std::string(word.substr(0, 24)) + "\"", "a number");
-    }
-    return *value;
+    return require_number(word, where(), what);
   }
 
   size_t count(const char* what, int low, int high) {

@@ -6,7 +6,7 @@
 
 #include "core/constants.h"
 #include "core/numerics/chebyshev.h"
-#include "core/numerics/gauss_legendre.h"
+#include "core/numerics/quadrature.h"
 #include "raytrace/direct/disc_light.h"
 #include "raytrace/direct/irradiance_table.h"
 #include "raytrace/tracing/shadow.h"

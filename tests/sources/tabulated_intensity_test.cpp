@@ -4,11 +4,11 @@
 #include <random>
 
 #include "core/constants.h"
+#include "core/numerics/monotone_cubic.h"
 #include "raytrace/direct/disc_light.h"
 #include "sampling.h"
 #include "sources/lamps/photometric.h"
 #include "sources/profiles/beam_shape.h"
-#include "sources/profiles/monotone_cubic.h"
 
 namespace photorque {
 namespace {
