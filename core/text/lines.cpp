@@ -64,7 +64,7 @@ std::vector<std::string_view> words_of(std::string_view line, std::string_view s
   return words;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr size_t max_bytes = 40;
   return "\"" + std::string(text.substr(0, max_bytes)) + (text.size() > max_bytes ? "…\"" : "\"");
 }

@@ -31,7 +31,7 @@ std::vector<std::string_view> words_of(std::string_view line,
                                        std::string_view separators = " \t\r\v\f");
 
 // "text" in quotes for a message, cut after 40 bytes.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 // The lines of a text that say something: neither blank nor a comment from # on.
 class DataLines {

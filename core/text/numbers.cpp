@@ -21,7 +21,7 @@ std::optional<double> number_in(std::string_view text) {
 double require_number(std::string_view text, const InputLocation& where, const std::string& what,
                       const std::string& expected) {
   if (const auto value = number_in(text)) return *value;
-  throw InputError(where, what, quoted(text), expected);
+  throw InputError(where, what, in_quotes(text), expected);
 }
 
 std::string shortest(double value) {

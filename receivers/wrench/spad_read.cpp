@@ -71,7 +71,7 @@ class Reader {
     throw InputError({name_, static_cast<int>(lines_.size())}, "", "the end of the file", expected);
   }
   InputError error(const Line& line, const std::string& expected) const {
-    return {{name_, line.number}, "", quoted(line.text), expected};
+    return {{name_, line.number}, "", in_quotes(line.text), expected};
   }
   double number(const Line& line, std::string_view word, const std::string& what) const {
     return require_number(word, {name_, line.number}, what, "a finite number");

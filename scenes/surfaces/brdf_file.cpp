@@ -63,7 +63,7 @@ std::vector<BrdfRow> read_rows(const std::string& text, const std::string& name)
       const std::string_view field = fields[(*places)[c]];
       const std::optional<double> number = number_in(field);
       if (!number || *number < 0.0 || *number > brdf_column_limits[c]) {
-        throw InputError(where, std::string(brdf_columns[c]), quoted(field),
+        throw InputError(where, std::string(brdf_columns[c]), in_quotes(field),
                          "a number from 0 to " + shortest(brdf_column_limits[c]));
       }
       row.values[c] = *number;

@@ -33,7 +33,7 @@ class ValueLines {
     const std::string found = line;
     std::replace(line.begin(), line.end(), ',', '.');
     if (const auto value = number_in(line)) return *value;
-    throw InputError(where(), what, quoted(found), "a number");
+    throw InputError(where(), what, in_quotes(found), "a number");
   }
 
   // A number that matters little: nothing counts as zero.

@@ -31,7 +31,7 @@ double unit_of(std::string_view name, const InputLocation& where) {
   if (name == "meters" || name == "metres") return 1.0;
   if (name == "inches") return 0.0254;
   if (name == "feet") return 0.3048;
-  throw InputError(where, "lt_length_units", quoted(name),
+  throw InputError(where, "lt_length_units", in_quotes(name),
                    "millimeters, centimeters, meters, inches or feet");
 }
 
