@@ -11,7 +11,7 @@
 
 namespace photorque {
 
-struct Bracket {
+struct RootBracket {
   double low, high;
 
   double middle() const { return std::midpoint(low, high); }
@@ -25,7 +25,7 @@ struct BisectionEnd {
 // Halves [low, high], of which `is_below(x)` says whether x lies below the root, until the bracket
 // is as narrow as `end` asks for or its ends are neighbouring numbers.
 template <typename Predicate>
-Bracket bisect(double low, double high, const Predicate& is_below, BisectionEnd end = {}) {
+RootBracket bisect(double low, double high, const Predicate& is_below, BisectionEnd end = {}) {
   for (int round = 0; round < end.max_rounds; ++round) {
     const double middle = std::midpoint(low, high);
     if (middle == low || middle == high) break;

@@ -24,6 +24,15 @@ double require_number(std::string_view text, const InputLocation& where, const s
   throw InputError(where, what, in_quotes(text), expected);
 }
 
+size_t require_count(double value, const InputLocation& where, const std::string& what, int low,
+                     int high) {
+  if (value == std::floor(value) && value >= low && value <= high) {
+    return static_cast<size_t>(value);
+  }
+  throw InputError(where, what, shortest(value),
+                   "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+}
+
 std::string shortest(double value) {
   char text[32];
   const auto [end, failure] = std::to_chars(text, text + sizeof text, value);

@@ -17,6 +17,10 @@ std::optional<double> number_in(std::string_view text);
 double require_number(std::string_view text, const InputLocation& where, const std::string& what,
                       const std::string& expected = "a number");
 
+// A number that counts something, as what it counts; InputError unless whole and in [low, high].
+size_t require_count(double value, const InputLocation& where, const std::string& what, int low,
+                     int high);
+
 // The shortest text that reads back as the same number.
 std::string shortest(double value);
 

@@ -47,12 +47,7 @@ class ValueLines {
 
   size_t count(const char* what, int low, int high) {
     const double value = number(what);
-    if (value != std::floor(value) || value < low || value > high) {
-      throw InputError(
-          where(), what, shortest(value),
-          "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
-    }
-    return static_cast<size_t>(value);
+    return require_count(value, where(), what, low, high);
   }
 
   std::vector<double> numbers(const char* what, size_t count) {

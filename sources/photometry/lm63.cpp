@@ -40,12 +40,7 @@ class NumberStream {
 
   size_t count(const char* what, int low, int high) {
     const double value = next(what);
-    if (value != std::floor(value) || value < low || value > high) {
-      throw InputError(
-          where(), what, shortest(value),
-          "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
-    }
-    return static_cast<size_t>(value);
+    return require_count(value, where(), what, low, high);
   }
 
   // Every number takes two bytes of the file, so that no count makes this allocate more than that.

@@ -125,13 +125,13 @@ TEST(Hermite, CubicsAreExact) {
 
 TEST(Bisect, EndsAtNeighbouringNumbersOrWhereItIsTold) {
   const auto below = [](double x) { return x * x < 2.0; };
-  const Bracket exact = bisect(0.0, 2.0, below);
+  const RootBracket exact = bisect(0.0, 2.0, below);
   EXPECT_EQ(std::nextafter(exact.low, 2.0), exact.high);
   EXPECT_LE(exact.low, std::sqrt(2.0));
   EXPECT_GE(exact.high, std::sqrt(2.0));
-  const Bracket ten = bisect(0.0, 2.0, below, {10});
+  const RootBracket ten = bisect(0.0, 2.0, below, {10});
   EXPECT_EQ(ten.high - ten.low, 2.0 / 1024);
-  const Bracket coarse = bisect(0.0, 2.0, below, {200, 1e-3});
+  const RootBracket coarse = bisect(0.0, 2.0, below, {200, 1e-3});
   EXPECT_LE(coarse.high - coarse.low, 1e-3 * coarse.high);
   EXPECT_GT(coarse.high - coarse.low, 0.4e-3 * coarse.high);
 }

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "core/files.h"
@@ -70,6 +71,13 @@ TEST(Text, AWrongNumberSaysWhereWhatAndHowMuchOfIt) {
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
               "lamp.ies:7: watts: found \"" + std::string(40, 'x') + "…\", expected a number");
+  }
+}
+
+TEST(Text, CountsAreWholeAndInRange) {
+  EXPECT_EQ(require_count(3.0, {}, "lamps", 1, 3), 3u);
+  for (const double wrong : {0.0, 4.0, 2.5, -1.0, NAN}) {
+    EXPECT_THROW(require_count(wrong, {}, "lamps", 1, 3), InputError) << wrong;
   }
 }
 
