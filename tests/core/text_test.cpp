@@ -76,7 +76,7 @@ TEST(Text, AWrongNumberSaysWhereWhatAndHowMuchOfIt) {
 
 TEST(Text, CountsAreWholeAndInRange) {
   EXPECT_EQ(require_count(3.0, {}, "lamps", 1, 3), 3u);
-  for (const double wrong : {0.0, 4.0, 2.5, -1.0, NAN}) {
+  for (const double wrong : {0.0, 4.0, 2.5, -1.0, std::nan("")}) {
     EXPECT_THROW(require_count(wrong, {}, "lamps", 1, 3), InputError) << wrong;
   }
 }
