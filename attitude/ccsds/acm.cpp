@@ -1,6 +1,7 @@
 #include "attitude/ccsds/acm.h"
 
 #include "core/errors.h"
+#include "core/text/lines.h"
 
 namespace photorque {
 namespace {
@@ -37,7 +38,7 @@ class AcmReader {
       if (!item.unit.empty() && item.unit != unit) {
         throw InputError({path_.string(), item.line}, name, "the unit " + item.unit, unit);
       }
-      const std::vector<double> numbers = kvn_numbers(kvn_words(item.value), 0, path_, item.line);
+      const std::vector<double> numbers = kvn_numbers(words_of(item.value), 0, path_, item.line);
       if (numbers.size() == 1) return numbers.front();
     }
     throw InputError({path_.string(), block.line}, name, "nothing", "one number");
@@ -53,7 +54,7 @@ class AcmReader {
     const auto states = static_cast<size_t>(number(block, "NUMBER_STATES", ""));
     for (const KvnItem& item : block.items) {
       if (item.kind != KvnItem::Kind::data) continue;
-      std::vector<double> row = kvn_numbers(kvn_words(item.value), 0, path_, item.line);
+      std::vector<double> row = kvn_numbers(words_of(item.value), 0, path_, item.line);
       if (row.size() != states + 1) {
         throw InputError({path_.string(), item.line}, "", std::to_string(row.size()) + " numbers",
                          "a time and " + std::to_string(states) + " states");

@@ -1,12 +1,13 @@
 #include "attitude/ccsds/aem.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "attitude/environment/epoch.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/lines.h"
+#include "core/text/numbers.h"
 
 namespace photorque {
 namespace {
@@ -100,7 +101,7 @@ class AemReader {
     size_t length = 0;
     for (const KvnItem& item : data.items) {
       if (item.kind == KvnItem::Kind::comment) continue;
-      const std::vector<std::string_view> words = kvn_words(item.value);
+      const std::vector<std::string_view> words = words_of(item.value);
       segment.rows.push_back({std::string(words.front()), kvn_numbers(words, 1, path_, item.line)});
       const size_t now = segment.rows.back().values.size();
       if (length == 0) length = expected_length(segment, now);
@@ -130,12 +131,6 @@ class AemReader {
   KvnItem message_;
 };
 
-std::string number_text(double x) {
-  char digits[32];
-  const auto result = std::to_chars(digits, digits + sizeof digits, x);
-  return {digits, result.ptr};
-}
-
 InputError wrong(const std::string& key, const std::string& found, const std::string& expected) {
   return {{}, key, found, expected};
 }
@@ -163,7 +158,7 @@ Quat to_quaternion(const Segment& segment, const AttitudeEphemeris::Row& row) {
   const bool first = segment.quaternion_type == "FIRST";
   const Quat q = first ? Quat(v[0], v[1], v[2], v[3]) : Quat(v[3], v[0], v[1], v[2]);
   if (!(std::abs(q.norm() - 1.0) < 0.01)) {
-    throw wrong(row.epoch, "a quaternion of norm " + number_text(q.norm()), "unit norm");
+    throw wrong(row.epoch, "a quaternion of norm " + shortest(q.norm()), "unit norm");
   }
   return q.normalized();
 }
@@ -204,7 +199,7 @@ KvnItem to_kvn(const AttitudeEphemeris& aem) {
     KvnItem data = kvn_block("DATA");
     for (const AttitudeEphemeris::Row& row : segment.rows) {
       std::string line = row.epoch;
-      for (const double x : row.values) line += " " + number_text(x);
+      for (const double x : row.values) line += " " + shortest(x);
       data.items.push_back(kvn_data(line));
     }
     message.items.push_back(std::move(meta));

@@ -1,24 +1,17 @@
 #include "attitude/ccsds/kvn.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/lines.h"
+#include "core/text/numbers.h"
 
 namespace photorque {
 namespace {
 
 constexpr std::string_view start = "_START", stop = "_STOP", comment = "COMMENT";
-
-std::string_view trimmed(std::string_view text) {
-  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 KvnItem parse_assignment(std::string_view line, size_t equals) {
   KvnItem item;
@@ -159,29 +152,11 @@ void write_kvn(const std::filesystem::path& path, const KvnItem& message) {
   write_file_whole(path, kvn_text(message));
 }
 
-std::vector<std::string_view> kvn_words(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (size_t begin = 0;
-       (begin = line.find_first_not_of(" \t", begin)) != std::string_view::npos;) {
-    const size_t end = std::min(line.find_first_of(" \t", begin), line.size());
-    words.push_back(line.substr(begin, end - begin));
-    begin = end;
-  }
-  return words;
-}
-
 std::vector<double> kvn_numbers(const std::vector<std::string_view>& words, size_t first,
                                 const std::filesystem::path& path, int line) {
   std::vector<double> numbers;
   for (size_t i = first; i < words.size(); ++i) {
-    std::string_view word = words[i];
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double x = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(x)) {
-      throw InputError({path.string(), line}, "", "\"" + std::string(words[i]) + "\"", "a number");
-    }
-    numbers.push_back(x);
+    numbers.push_back(require_number(words[i], {path.string(), line}, ""));
   }
   return numbers;
 }

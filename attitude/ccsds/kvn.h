@@ -39,8 +39,6 @@ KvnItem read_kvn(const std::filesystem::path& path);
 std::string kvn_text(const KvnItem& message);
 void write_kvn(const std::filesystem::path& path, const KvnItem& message);
 
-// The words of a data line.
-std::vector<std::string_view> kvn_words(std::string_view line);
 // All words from index `first` on as numbers; InputError (at `path`, `line`) when one is none.
 std::vector<double> kvn_numbers(const std::vector<std::string_view>& words, size_t first,
                                 const std::filesystem::path& path, int line);

@@ -33,12 +33,6 @@ Parameters vector_parameter(const Settings& settings, const std::string& key) {
   return all;
 }
 
-Parameters vector_parameter_or(const Settings& settings, const std::string& key,
-                               const Vec3& otherwise_SI) {
-  if (settings.has(key)) return vector_parameter(settings, key);
-  return fixed_parameter(key, {otherwise_SI.data(), 3});
-}
-
 Parameters array_parameter(const Settings& settings, const std::string& key, size_t size) {
   const auto require_size = [&](const std::vector<double>& x) {
     if (x.size() != size) {

@@ -240,8 +240,6 @@ Parameters scalar_parameter(const Settings& settings, const std::string& key, Ra
 Parameters scalar_parameter_or(const Settings& settings, const std::string& key,
                                double otherwise_SI, Range range = {});
 Parameters vector_parameter(const Settings& settings, const std::string& key);
-Parameters vector_parameter_or(const Settings& settings, const std::string& key,
-                               const Vec3& otherwise_SI);
 // `size` numbers, e.g. the six of a symmetric matrix.
 Parameters array_parameter(const Settings& settings, const std::string& key, size_t size);
 // How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine

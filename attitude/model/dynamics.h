@@ -49,7 +49,6 @@ class Dynamics {
   int first_state(size_t d) const { return layout_[d].first_state; }
   // Where the parameters of disturbance d begin in the list of all parameters.
   int first_parameter(size_t d) const { return layout_[d].first_parameter; }
-  int parameter_count() const { return static_cast<int>(parameters_.size()); }
 
   // At zero attitude, turning at this rate as one rigid body, the extra states at their initial
   // values.

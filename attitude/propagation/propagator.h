@@ -66,8 +66,7 @@ class Propagator {
   bool advance();
 
   // The last step; its end is the event's time when one ended the run. ZeroOrderHold values are
-  // those of its whole length. Before the first step: both the initial time.
-  double step_start_s() const { return step_.start_s(); }
+  // those of its whole length. Before the first step: the initial time.
   double step_end_s() const { return step_end_s_; }
   const ZeroOrderHold& held() const { return held_; }
   // State at eight times within the last step.
@@ -79,7 +78,6 @@ class Propagator {
   const std::optional<Sensitivity>& sensitivity() const { return sensitivity_; }
   // Events so far, in order of time.
   const std::vector<Event>& events() const { return events_; }
-  bool ended_by_event() const { return ended_by_event_; }
 
   struct Statistics {
     int64_t steps = 0;
@@ -94,7 +92,6 @@ class Propagator {
     int variable;  // whose parameter this time is, −1 for none
   };
   void collect_jumps(double from_s);
-  double next_stop_s() const;
   void check_pace() const;
   void take_step();
   double propose_length(const CollocationStep::Outcome& outcome, double h_s, bool cut) const;

@@ -20,10 +20,6 @@ struct Variable {
   size_t disturbance = 0;
   int parameter = -1;
 
-  static Variable initial_rotation(int body_axis) { return {body_axis, 0, -1}; }
-  // Of the body and of the extra states that begin by turning with it (ExtraState::per_body_rate).
-  static Variable initial_rate(int body_axis) { return {3 + body_axis, 0, -1}; }
-  static Variable initial_charge() { return {6, 0, -1}; }
   static Variable initial_extra(int index) { return {7 + index, 0, -1}; }
   static Variable of(size_t disturbance, int parameter) { return {-1, disturbance, parameter}; }
 };

@@ -1,7 +1,6 @@
 #include "attitude/recordings/recording.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -9,6 +8,8 @@
 #include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
+#include "core/text/lines.h"
+#include "core/text/numbers.h"
 
 namespace photorque {
 namespace {
@@ -21,31 +22,10 @@ constexpr std::string_view known_channels[] = {
     "led_current_A", "battery_voltage_V", "heading_rad",
 };
 
-std::string_view unquoted(std::string_view text) {
-  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '"'; };
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-void split(std::string_view line, char separator, std::vector<std::string_view>& cells) {
-  cells.clear();
-  for (;;) {
-    const size_t end = line.find(separator);
-    cells.push_back(unquoted(line.substr(0, end)));
-    if (end == std::string_view::npos) return;
-    line.remove_prefix(end + 1);
-  }
-}
-
 // NaN for an empty cell or the word nan; nullopt for what is no number.
 std::optional<double> to_number(std::string_view cell) {
   if (cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA") return empty_cell;
-  if (cell.front() == '+') cell.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  return number_in(cell);
 }
 
 // One column of the file: the channel it fills and the factor to SI.
@@ -110,7 +90,7 @@ class RecordingReader {
   }
 
   bool take_header(std::string_view line, char separator) {
-    split(line, separator, cells_);
+    split_cells(line, separator, cells_);
     columns_.clear();
     time_column_ = cells_.size();
     for (size_t i = 0; i < cells_.size(); ++i) {
@@ -134,7 +114,7 @@ class RecordingReader {
   void take_row(std::string_view line) {
     RecordingReport& report = recording_.report;
     ++report.rows_read;
-    split(line, separator_, cells_);
+    split_cells(line, separator_, cells_);
     if (cells_.size() != columns_.size()) {
       ++report.malformed_rows;
       return;
@@ -209,11 +189,8 @@ class RecordingReader {
   int64_t kept_cells_ = 0;
 };
 
-void append_number(std::string& text, double value) {
-  if (std::isnan(value)) return;
-  char digits[32];
-  const auto result = std::to_chars(digits, digits + sizeof digits, value);
-  text.append(digits, result.ptr);
+std::string cell_text(double value) {
+  return std::isnan(value) ? "" : shortest(value);
 }
 
 }  // namespace
@@ -306,10 +283,9 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
   for (const Channel& channel : recording.channels) text += "," + channel.name;
   text += "\n";
   for (size_t i = 0; i < recording.rows(); ++i) {
-    append_number(text, recording.time_s[i]);
+    text += cell_text(recording.time_s[i]);
     for (const Channel& channel : recording.channels) {
-      text += ',';
-      append_number(text, channel.values[i]);
+      text += ',' + cell_text(channel.values[i]);
     }
     text += '\n';
   }

@@ -10,6 +10,7 @@
 #include "attitude/environment/igrf.h"
 #include "attitude/recordings/sensors.h"
 #include "core/constants.h"
+#include "core/numerics/root.h"
 
 namespace photorque {
 namespace {
@@ -53,12 +54,10 @@ double disc_torque_as_published(const std::vector<AirPart>& plates) {
 
 // Rate at which this much torque is reached [rpm].
 double rate_for_torque_rpm(const std::vector<AirPart>& parts, double wanted_N_m) {
-  double low = 0.0, high = 1e4;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (torque_N_m(parts, middle) < wanted_N_m ? low : high) = middle;
-  }
-  return low / one_rpm_rad_s;
+  const auto too_slow = [&](double rate_rad_s) {
+    return torque_N_m(parts, rate_rad_s) < wanted_N_m;
+  };
+  return bisect(0.0, 1e4, too_slow).low / one_rpm_rad_s;
 }
 
 std::vector<AirPart> joined(std::vector<AirPart> a, const std::vector<AirPart>& b) {
@@ -68,12 +67,10 @@ std::vector<AirPart> joined(std::vector<AirPart> a, const std::vector<AirPart>& 
 
 // Year at which IGRF's dipole was as strong as the paper's [decimal year].
 double year_of_dipole(double field_T) {
-  double low = 1900.0, high = 2025.0;  // it falls throughout
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (GeomagneticModel(middle).dipole_equatorial_field_T() > field_T ? low : high) = middle;
-  }
-  return low;
+  const auto stronger = [&](double year) {
+    return GeomagneticModel(year).dipole_equatorial_field_T() > field_T;
+  };
+  return bisect(1900.0, 2025.0, stronger).low;  // it falls throughout
 }
 
 // The same cylinders laid down as eq. 22 has them, from the axis outwards.
@@ -267,14 +264,15 @@ UnloadedDrag unloaded_drag(const PaperInputs& in) {
   const double ambient_Pa = air.pressure_Pa;
   const SphericalSocket socket{in.ball_radius_m, in.socket_half_angle_rad, in.rated_gap_m,
                                in.recess_half_angle_rad};
-  OrificeFeed feed{ambient_Pa + in.supply_gauge_Pa, 1e-9};
   // The holes that leave k_p of the supply pressure behind them at the rated gap.
-  double low_m2 = 1e-12, high_m2 = 1e-5;
-  for (int i = 0; i < 80; ++i) {
-    feed.hole_area_m2 = std::sqrt(low_m2 * high_m2);
-    const double inlet_Pa = orifice_fed_film(socket, feed, air).inlet_Pa;
-    (inlet_Pa < in.inlet_fraction * feed.supply_Pa ? low_m2 : high_m2) = feed.hole_area_m2;
-  }
+  const auto feed_of = [&](double log_hole_area) {
+    return OrificeFeed{ambient_Pa + in.supply_gauge_Pa, std::exp(log_hole_area)};
+  };
+  const auto too_small = [&](double log_hole_area) {
+    const OrificeFeed trial = feed_of(log_hole_area);
+    return orifice_fed_film(socket, trial, air).inlet_Pa < in.inlet_fraction * trial.supply_Pa;
+  };
+  const OrificeFeed feed = feed_of(bisect(std::log(1e-12), std::log(1e-5), too_small).middle());
   UnloadedDrag result;
   result.rated_load_N = orifice_fed_film(socket, feed, air).load_N;
   result.load_as_published_N =

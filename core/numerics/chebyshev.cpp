@@ -25,19 +25,26 @@ std::vector<double> antiderivatives(size_t n, double x) {
 
 }  // namespace
 
+double chebyshev_point(size_t n, size_t i) {
+  return std::cos(pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
+}
+
 double chebyshev_fraction(size_t n, size_t i) {
-  return 0.5 - 0.5 * std::cos(pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
+  return 0.5 - 0.5 * chebyshev_point(n, i);
+}
+
+double chebyshev_weight(size_t n, size_t k, double angle_rad) {
+  return (k == 0 ? 1.0 : 2.0) / static_cast<double>(n) *
+         std::cos(static_cast<double>(k) * angle_rad);
 }
 
 Eigen::MatrixXd chebyshev_cell_means(size_t n, size_t cells) {
   const auto points = static_cast<Eigen::Index>(n), parts = static_cast<Eigen::Index>(cells);
-  // Coefficient k from the values, by the discrete orthogonality of T_k on the points.
   Eigen::MatrixXd coefficients(points, points), means(parts, points);
   for (Eigen::Index i = 0; i < points; ++i) {
     const double angle = pi * (1.0 - (static_cast<double>(i) + 0.5) / static_cast<double>(n));
     for (Eigen::Index k = 0; k < points; ++k) {
-      coefficients(k, i) =
-          (k == 0 ? 1.0 : 2.0) / static_cast<double>(n) * std::cos(static_cast<double>(k) * angle);
+      coefficients(k, i) = chebyshev_weight(n, static_cast<size_t>(k), angle);
     }
   }
   const double width = 2.0 / static_cast<double>(cells);

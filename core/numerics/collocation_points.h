@@ -7,29 +7,24 @@
 #include <array>
 
 #include "core/numerics/lanes.h"
+#include "core/numerics/quadrature.h"
 
 namespace photorque::gauss {
 
 inline constexpr int points = Lanes::count;
 using Row = std::array<double, points>;
 
-// Nodes and weights on [−1, 1], the positive half (NIST DLMF table 3.5.2 with n = 8).
-inline constexpr std::array<double, 4> half_nodes = {
-    0.18343464249564980494, 0.52553240991632898582, 0.79666647741362673959, 0.96028985649753623168};
-inline constexpr std::array<double, 4> half_weights = {
-    0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915};
-
 constexpr Row make_nodes() {
   Row c{};
-  for (int i = 0; i < 4; ++i) {
-    c[4 + i] = 0.5 + 0.5 * half_nodes[i];
-    c[3 - i] = 0.5 - 0.5 * half_nodes[i];
+  for (size_t i = 0; i < 4; ++i) {
+    c[4 + i] = 0.5 + 0.5 * gauss_8.node[i];
+    c[3 - i] = 0.5 - 0.5 * gauss_8.node[i];
   }
   return c;
 }
 constexpr Row make_weights() {
   Row b{};
-  for (int i = 0; i < 4; ++i) b[4 + i] = b[3 - i] = 0.5 * half_weights[i];
+  for (size_t i = 0; i < 4; ++i) b[4 + i] = b[3 - i] = 0.5 * gauss_8.weight[i];
   return b;
 }
 inline constexpr Row nodes = make_nodes();

@@ -5,9 +5,6 @@
 namespace photorque {
 namespace {
 
-using Quad = Lanes::Quad;
-using Bits = long long __attribute__((vector_size(32)));
-
 // |x| below this many quarter turns is reduced with exact products.
 constexpr double max_quarter_turns = 0x1p24;
 
@@ -16,7 +13,7 @@ constexpr double max_quarter_turns = 0x1p24;
 // Elementary Functions, 1980, chapter 8).
 struct Reduced {
   Quad rest;
-  Bits quarter;
+  QuadBits quarter;
 };
 Reduced reduce(const Quad& x) {
   constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
@@ -28,7 +25,7 @@ Reduced reduce(const Quad& x) {
   rest -= n * 0x1.10b461p-30;
   rest -= n * 0x1.a626330p-58;
   rest -= n * 0x1.45c06e0e68948p-86;
-  return {rest, std::bit_cast<Bits>(shifted)};
+  return {rest, std::bit_cast<QuadBits>(shifted)};
 }
 
 // Minimax polynomials of sin and cos on [−π/4, π/4], errors below 2^−58.
@@ -58,9 +55,9 @@ bool is_reducible(const Lanes& x) {
 }
 
 // sin(x + quarters π/2).
-Quad shifted_sin(const Quad& x, long long quarters) {
+Quad shifted_sin(const Quad& x, int64_t quarters) {
   const Reduced reduced = reduce(x);
-  const Bits quarter = reduced.quarter + quarters;
+  const QuadBits quarter = reduced.quarter + quarters;
   const Quad s = sin_kernel(reduced.rest), c = cos_kernel(reduced.rest);
   const Quad value = (quarter & 1) != 0 ? c : s;
   return (quarter & 2) != 0 ? -value : value;
@@ -85,10 +82,10 @@ Quad quad_atan2(const Quad& y, const Quad& x) {
   constexpr double tan_eighth_turn = 0.41421356237309503;  // tan π/8
   constexpr double quarter_pi = 0x1.921fb54442d18p-1, quarter_pi_rest = 0x1.1a62633145c07p-55;
   const Quad zero{};
-  const Quad size_x = x > zero ? x : -x, size_y = y > zero ? y : -y;
-  const Bits steep = size_y > size_x;
+  const Quad size_x = abs(x), size_y = abs(y);
+  const QuadBits steep = size_y > size_x;
   const Quad large = steep ? size_y : size_x, small = steep ? size_x : size_y;
-  const Bits beyond = small > tan_eighth_turn * large;
+  const QuadBits beyond = small > tan_eighth_turn * large;
   const Quad over = beyond ? small - large : small, under = beyond ? small + large : large;
   const Quad folded = atan_kernel(over / (under == zero ? under + 1.0 : under));
   Quad angle = beyond ? quarter_pi + (folded + quarter_pi_rest) : folded;

@@ -7,12 +7,13 @@
 #include <array>
 #include <cmath>
 
+#include "core/numerics/quad.h"
+
 namespace photorque {
 
 struct Lanes {
   static constexpr int count = 8;
-  // The compiler's vectors rather than an array: they stay in registers.
-  using Quad = double __attribute__((vector_size(32)));
+  // Rather than an array: they stay in registers.
   Quad low;
   Quad high;
 
@@ -72,21 +73,22 @@ struct Lanes {
 // `f` of every lane.
 template <class Function>
 Lanes each_lane(const Lanes& x, const Function& f) {
-  return {Lanes::Quad{f(x.low[0]), f(x.low[1]), f(x.low[2]), f(x.low[3])},
-          Lanes::Quad{f(x.high[0]), f(x.high[1]), f(x.high[2]), f(x.high[3])}};
+  return {Quad{f(x.low[0]), f(x.low[1]), f(x.low[2]), f(x.low[3])},
+          Quad{f(x.high[0]), f(x.high[1]), f(x.high[2]), f(x.high[3])}};
 }
 
 inline Lanes sqrt(const Lanes& x) {
-  return each_lane(x, [](double a) { return std::sqrt(a); });
+  return {sqrt(x.low), sqrt(x.high)};
 }
 // Good to two units in the last place for |x| < 2.5e7, to the library's accuracy beyond.
 Lanes sin(const Lanes& x);
 Lanes cos(const Lanes& x);
+// Good to one unit in the last place.
 inline Lanes exp(const Lanes& x) {
-  return each_lane(x, [](double a) { return std::exp(a); });
+  return {exp(x.low), exp(x.high)};
 }
 inline Lanes log(const Lanes& x) {
-  return each_lane(x, [](double a) { return std::log(a); });
+  return {log(x.low), log(x.high)};
 }
 Lanes pow(const Lanes& x, double exponent);
 // Good to three units in the last place for finite numbers; 0 for two zeros, whatever their signs.
@@ -97,21 +99,23 @@ inline Lanes where_at_least(const Lanes& x, double bound, const Lanes& a, const 
   return {x.low >= bound ? a.low : b.low, x.high >= bound ? a.high : b.high};
 }
 
+inline Lanes max(const Lanes& a, const Lanes& b) {
+  return {max(a.low, b.low), max(a.high, b.high)};
+}
+
 // The larger of |a| and |b|, lane by lane; |a| where b is NaN.
 inline Lanes larger_magnitude(const Lanes& a, const Lanes& b) {
-  const auto magnitude = [](const Lanes::Quad& x) { return x > -x ? x : -x; };
-  const auto larger = [](const Lanes::Quad& x, const Lanes::Quad& y) { return y > x ? y : x; };
-  return {larger(magnitude(a.low), magnitude(b.low)), larger(magnitude(a.high), magnitude(b.high))};
+  return {max(abs(a.low), abs(b.low)), max(abs(a.high), abs(b.high))};
 }
 
 inline double sum(const Lanes& x) {
-  const Lanes::Quad s = x.low + x.high;
+  const Quad s = x.low + x.high;
   return (s[0] + s[3]) + (s[1] + s[2]);
 }
 
 // The largest of the lanes, none of which may be NaN.
 inline double largest(const Lanes& x) {
-  const Lanes::Quad m = x.low > x.high ? x.low : x.high;
+  const Quad m = max(x.low, x.high);
   const double a = m[0] > m[1] ? m[0] : m[1];
   const double b = m[2] > m[3] ? m[2] : m[3];
   return a > b ? a : b;

@@ -1,8 +1,15 @@
-// Four numbers in one vector register.
+// Four numbers in one vector register: the base of all arithmetic on several numbers at a time.
+//
+// The compiler's own vectors, so that + − · / and comparisons are its operators and `mask ? a : b`
+// selects number by number. Eight at a time are Lanes (lanes.h), with derivatives DualLanes
+// (dual.h).
 #pragma once
 
+#include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #ifdef __FMA__
 #include <immintrin.h>
@@ -11,6 +18,7 @@
 namespace photorque {
 
 using Quad = double __attribute__((vector_size(32)));
+// Of comparisons: all bits set where true.
 using QuadBits = int64_t __attribute__((vector_size(32)));
 using QuadWords = uint64_t __attribute__((vector_size(32)));
 
@@ -36,6 +44,55 @@ inline Quad multiply_add(Quad a, Quad b, Quad c) {
 #else
   return a * b + c;
 #endif
+}
+
+inline bool all_of(QuadBits mask) {
+  return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
+}
+inline bool any_of(QuadBits mask) {
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+// a where the mask holds, b elsewhere; for code that is written once for numbers and vectors.
+inline Quad select(QuadBits mask, Quad a, Quad b) {
+  return mask ? a : b;
+}
+inline double select(bool condition, double a, double b) {
+  return condition ? a : b;
+}
+
+inline Quad abs(Quad x) {
+  return reinterpret_cast<Quad>(bits_of(x) & std::numeric_limits<int64_t>::max());
+}
+// As std::max and std::min: a where one of them is NaN.
+inline Quad max(Quad a, Quad b) {
+  return a < b ? b : a;
+}
+inline Quad min(Quad a, Quad b) {
+  return b < a ? b : a;
+}
+// True where x is neither infinite nor NaN.
+inline QuadBits is_finite(Quad x) {
+  return abs(x) <= std::numeric_limits<double>::max();
+}
+
+// A function of Eigen's arrays, number by number: rounded correctly for the root, to one unit in
+// the last place for exp and log.
+template <class Function>
+Quad as_array(Quad x, const Function& function) {
+  Eigen::Array4d array;
+  std::memcpy(array.data(), &x, sizeof x);
+  array = function(array);
+  return quad_at(array.data());
+}
+inline Quad sqrt(Quad x) {
+  return as_array(x, [](const auto& a) { return a.sqrt(); });
+}
+inline Quad exp(Quad x) {
+  return as_array(x, [](const auto& a) { return a.exp(); });
+}
+inline Quad log(Quad x) {
+  return as_array(x, [](const auto& a) { return a.log(); });
 }
 
 // Four rows of four numbers become four columns.

@@ -1,41 +1,68 @@
-// Quadrature rules with eight nodes.
+// Quadrature: the rules of Gauss, Legendre and Lobatto.
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <span>
 
 namespace photorque {
 
-// ∫ f over [low, high] from four pairs of nodes ±node of [−1, 1] and their weights.
-template <typename Function>
-double symmetric_rule(const std::array<double, 4>& node, const std::array<double, 4>& weight,
-                      const Function& f, double low, double high) {
-  const double centre = 0.5 * (low + high);
-  const double half = 0.5 * (high - low);
-  double sum = 0.0;
-  for (size_t i = 0; i < node.size(); ++i) {
-    sum += weight[i] * (f(centre - half * node[i]) + f(centre + half * node[i]));
-  }
-  return half * sum;
-}
+// The positive half of a rule of eight nodes ±x on [−1, 1]; both nodes of a pair have one weight.
+struct EightPointRule {
+  std::array<double, 4> node, weight;
+};
 
 // Gauss–Legendre: exact for polynomials of degree 15. Inner nodes only.
-// Source: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, table 25.4, n = 8.
-template <typename Function>
-double gauss_legendre(const Function& f, double low, double high) {
-  return symmetric_rule(
-      {0.183434642495649805, 0.525532409916328986, 0.796666477413626740, 0.960289856497536232},
-      {0.362683783378361983, 0.313706645877887287, 0.222381034453374471, 0.101228536290376259}, f,
-      low, high);
-}
+// Source: NIST Digital Library of Mathematical Functions, table 3.5.2, n = 8.
+inline constexpr EightPointRule gauss_8 = {{0.18343464249564980494, 0.52553240991632898582,
+                                            0.79666647741362673959, 0.96028985649753623168},
+                                           {0.36268378337836198297, 0.31370664587788728734,
+                                            0.22238103445337447054, 0.10122853629037625915}};
 
 // Gauss–Lobatto: exact for polynomials of degree 13. Both ends are nodes, so that a step of the
 // integrand next to an end, which the inner nodes miss, shows as a difference of the two rules.
-// Source: the same, table 25.6, n = 8.
+// Source: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, table 25.6, n = 8.
+inline constexpr EightPointRule lobatto_8 = {
+    {0.209299217902478869, 0.591700181433142302, 0.871740148509606615, 1.0},
+    {0.412458794658703882, 0.341122692483504365, 0.210704227143506039, 1.0 / 28.0}};
+
+// Σ w f over the nodes of a rule laid over [centre − half, centre + half]; times `half` the
+// integral.
 template <typename Function>
-double gauss_lobatto(const Function& f, double low, double high) {
-  return symmetric_rule(
-      {0.209299217902478869, 0.591700181433142302, 0.871740148509606615, 1.0},
-      {0.412458794658703882, 0.341122692483504365, 0.210704227143506039, 1.0 / 28.0}, f, low, high);
+double weighted_sum(const EightPointRule& rule, const Function& f, double centre, double half) {
+  double sum = 0.0;
+  for (size_t i = 0; i < rule.node.size(); ++i) {
+    sum += rule.weight[i] * (f(centre - half * rule.node[i]) + f(centre + half * rule.node[i]));
+  }
+  return sum;
 }
+
+// ∫ f over [low, high].
+template <typename Function>
+double integrate(const EightPointRule& rule, const Function& f, double low, double high) {
+  const double half = 0.5 * (high - low);
+  return half * weighted_sum(rule, f, 0.5 * (low + high), half);
+}
+
+// The same over `panels` equal parts of [low, high], the rule in each.
+template <typename Function>
+double integrate(const EightPointRule& rule, const Function& f, double low, double high,
+                 int panels) {
+  const double half = 0.5 * (high - low) / panels;
+  double sum = 0.0;
+  for (int k = 0; k < panels; ++k) sum += weighted_sum(rule, f, low + (2 * k + 1) * half, half);
+  return half * sum;
+}
+
+struct QuadratureNode {
+  double x;  // in (−1, 1)
+  double weight;
+};
+
+inline constexpr size_t max_gauss_nodes = 64;
+
+// The Gauss–Legendre rule of n nodes, 1 ≤ n ≤ max_gauss_nodes, rising; exact for polynomials of
+// degree 2n − 1, to rounding.
+std::span<const QuadratureNode> gauss_legendre(size_t n);
 
 }  // namespace photorque

@@ -1,4 +1,5 @@
-// A root of a falling function that cannot fail.
+// Roots inside a bracket, by searches that cannot fail: bisection, Newton's method kept inside the
+// bracket, and for falling functions with known curvature a method of third order.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +7,59 @@
 #include <limits>
 #include <numeric>
 
+#include "core/numerics/quad.h"
+
 namespace photorque {
+
+struct RootBracket {
+  double low, high;
+
+  double middle() const { return std::midpoint(low, high); }
+};
+
+struct BisectionEnd {
+  int max_rounds = 200;
+  double relative_width = 0.0;  // of |high|
+};
+
+// Halves [low, high], of which `is_below(x)` says whether x lies below the root, until the bracket
+// is as narrow as `end` asks for or its ends are neighbouring numbers.
+template <typename Predicate>
+RootBracket bisect(double low, double high, const Predicate& is_below, BisectionEnd end = {}) {
+  for (int round = 0; round < end.max_rounds; ++round) {
+    const double middle = std::midpoint(low, high);
+    if (middle == low || middle == high) break;
+    if (high - low <= end.relative_width * std::abs(high)) break;
+    (is_below(middle) ? low : high) = middle;
+  }
+  return {low, high};
+}
+
+// What newton_root() asks of a function at x.
+struct NewtonStep {
+  bool is_below;  // x lies below the root
+  double length;  // from x to where Newton's method leads; 0: x is the root
+};
+
+// The root between `low` and `high` from the start x, by Newton's method; bisection whenever a step
+// leaves the bracket or is not half the one before. Ends with a step of at most `tolerance`·|x|.
+template <typename Function>
+double newton_root(double low, double high, double x, double tolerance, const Function& step_at) {
+  double last_step = high - low;
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    const NewtonStep step = step_at(x);
+    if (step.length == 0.0) return x;
+    (step.is_below ? low : high) = x;
+    double next = x + step.length;
+    if (!(next > low && next < high) || std::abs(next - x) > 0.5 * last_step) {
+      next = std::midpoint(low, high);
+    }
+    last_step = std::abs(next - x);
+    x = next;
+    if (last_step <= tolerance * std::abs(x)) break;
+  }
+  return x;
+}
 
 struct FunctionAt {
   double value = 0.0;
@@ -18,23 +71,49 @@ struct FunctionAt {
   bool close = true;
 };
 
-// One step towards the root: the inverse function's series as far as derivatives are known.
+// One step towards the root of a number or of lanes: the inverse function's series as far as
+// derivatives are known.
+template <class T>
 struct RootStep {
-  double length = 0.0;
-  double left = 0.0;  // estimate of the error after it; ∞ without third derivative
+  T length;
+  T left;  // estimate of the error after it; ∞ without third derivative
 };
 
-inline RootStep root_step(const FunctionAt& f) {
+// With f″ where its term is small enough to be trusted: Chebyshev's method.
+// Source: J. F. Traub, Iterative Methods for the Solution of Equations (1964), section 5.1.
+template <class T>
+T second_order_length(const T& newton, const T& bend) {
+  using photorque::abs;
+  using std::abs;
+  return -newton * select(abs(bend) < 0.5, 1.0 + bend, 1.0 + T{});
+}
+
+template <class T>
+RootStep<T> third_order_step(const T& value, const T& slope, const T& curvature, const T& third) {
+  using photorque::abs;
+  using photorque::max;
+  using photorque::sqrt;
+  using std::abs;
+  using std::max;
+  using std::sqrt;
+  const T inverse_slope = 1.0 / slope;
+  const T newton = value * inverse_slope;
+  const T bend = 0.5 * newton * curvature * inverse_slope;
+  const T twist = newton * newton * third * inverse_slope / 6.0;
+  const T q2 = max(bend * bend, abs(twist));
+  // The next term is of third order in q; third derivatives are good to 1e-3.
+  const T left = abs(newton) * q2 * (sqrt(q2) + 2e-3);
+  return {select(q2 < 0.09, -newton * (1.0 + bend + 2.0 * bend * bend - twist),
+                 second_order_length(newton, bend)),
+          left};
+}
+
+inline RootStep<double> root_step(const FunctionAt& f) {
+  if (!std::isnan(f.third)) return third_order_step(f.value, f.slope, f.curvature, f.third);
   const double inverse_slope = 1.0 / f.slope;
   const double newton = f.value * inverse_slope;
-  const double bend = 0.5 * newton * f.curvature * inverse_slope;
-  const double chebyshev = newton * (std::abs(bend) < 0.5 ? 1.0 + bend : 1.0);
-  if (std::isnan(f.third)) return {-chebyshev, std::numeric_limits<double>::infinity()};
-  const double twist = newton * newton * f.third * inverse_slope / 6.0;
-  const double q2 = std::max(bend * bend, std::abs(twist));
-  // The next term is of third order in q; third derivatives are good to 1e-3.
-  const double left = std::abs(newton) * q2 * (std::sqrt(q2) + 2e-3);
-  return {q2 < 0.09 ? -newton * (1.0 + bend + 2.0 * bend * bend - twist) : -chebyshev, left};
+  return {second_order_length(newton, 0.5 * newton * f.curvature * inverse_slope),
+          std::numeric_limits<double>::infinity()};
 }
 
 // The root of a falling function on [low, high], where it is ≥ 0 at low and ≤ 0 at high (rounding
@@ -53,7 +132,7 @@ double falling_root(double low, double high, double guess, double tolerance, Fun
     const FunctionAt f = function(x);
     if (f.value == 0.0) return x;
     (f.value > 0 ? low : high) = x;
-    const RootStep step = root_step(f);
+    const RootStep<double> step = root_step(f);
     double next = x + step.length;
     const bool bisected = !(next >= low && next <= high) || std::abs(step.length) > 0.5 * last_step;
     if (bisected) next = std::midpoint(low, high);

@@ -3,28 +3,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/text/lines.h"
+
 namespace photorque {
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r\v\f\x1a";
-  const size_t first = text.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
-
-std::vector<std::string_view> lines_of(std::string_view text) {
-  std::vector<std::string_view> lines;
-  while (!text.empty()) {
-    const size_t end = text.find_first_of("\r\n");
-    lines.push_back(text.substr(0, end));
-    if (end == std::string_view::npos) break;
-    text.remove_prefix(text.substr(end).starts_with("\r\n") ? end + 2 : end + 1);
-  }
-  return lines;
-}
-
 std::optional<double> number_in(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0.0;
   const char* end = text.data() + text.size();
   const auto [stop, failure] = std::from_chars(text.data(), end, value);
@@ -32,6 +16,21 @@ std::optional<double> number_in(std::string_view text) {
     return std::nullopt;
   }
   return value;
+}
+
+double require_number(std::string_view text, const InputLocation& where, const std::string& what,
+                      const std::string& expected) {
+  if (const auto value = number_in(text)) return *value;
+  throw InputError(where, what, in_quotes(text), expected);
+}
+
+size_t require_count(double value, const InputLocation& where, const std::string& what, int low,
+                     int high) {
+  if (value == std::floor(value) && value >= low && value <= high) {
+    return static_cast<size_t>(value);
+  }
+  throw InputError(where, what, shortest(value),
+                   "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
 }
 
 std::string shortest(double value) {

@@ -1,18 +1,19 @@
 #include "photovoltaics/cell/batch.h"
 
-#include <Eigen/Core>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/lanes.h"
 #include "photovoltaics/cell/cell.h"
 
 namespace photorque {
 namespace {
 
-constexpr int width = 8;
-using Lanes = Eigen::Array<double, width, 1>;
+constexpr size_t width = Lanes::count;
 
 struct LaneCells {
   Lanes photocurrent_A, saturation_A, scale_V, series_ohm, shunt_S;
@@ -26,22 +27,22 @@ struct LanePoints {
 // The ideal cell, x + ln(1 + x) = L, by two rounds of substitution; then dP/dV_d = 0 solved for the
 // exponential with what that says about the current: I₀ e^x/nV_t = I/(V_d − 2 I R_s) − 1/R_sh.
 Lanes first_guess(const LaneCells& c) {
-  const Lanes total = (c.photocurrent_A / c.saturation_A + 1.0).log();
-  const Lanes x = total - (1.0 + total - (1.0 + total).log()).log();
+  const Lanes total = log(c.photocurrent_A / c.saturation_A + 1.0);
+  const Lanes x = total - log(1.0 + total - log(1.0 + total));
   const Lanes v = c.scale_V * x;
   const Lanes junction_A = (c.photocurrent_A + c.saturation_A) / (1.0 + x);
-  const Lanes current = (junction_A * x - c.shunt_S * v).max(0.3 * junction_A * x);
-  const Lanes arm = (v - 2.0 * current * c.series_ohm).max(0.2 * v);
-  const Lanes junction_S = (current / arm - c.shunt_S).max(0.2 * current / arm);
-  return c.scale_V * (junction_S * c.scale_V / c.saturation_A).log();
+  const Lanes current = max(junction_A * x - c.shunt_S * v, 0.3 * junction_A * x);
+  const Lanes arm = max(v - 2.0 * current * c.series_ohm, 0.2 * v);
+  const Lanes junction_S = max(current / arm - c.shunt_S, 0.2 * current / arm);
+  return c.scale_V * log(junction_S * c.scale_V / c.saturation_A);
 }
 
 LanePoints solve(const LaneCells& c) {
   constexpr int steps = 4;
-  const Lanes per_scale = c.scale_V.inverse();
-  Lanes v = first_guess(c), step = Lanes::Zero();
+  const Lanes per_scale = 1.0 / c.scale_V;
+  Lanes v = first_guess(c), step = 0.0;
   for (int i = 0; i < steps; ++i) {
-    const Lanes junction_A = c.saturation_A * (v * per_scale).exp();
+    const Lanes junction_A = c.saturation_A * exp(v * per_scale);
     const Lanes current = c.photocurrent_A + c.saturation_A - junction_A - c.shunt_S * v;
     const Lanes junction_S = junction_A * per_scale;
     const Lanes d1 = junction_S + c.shunt_S;
@@ -55,7 +56,7 @@ LanePoints solve(const LaneCells& c) {
     v -= step;
   }
   const Lanes current =
-      c.photocurrent_A + c.saturation_A - c.saturation_A * (v * per_scale).exp() - c.shunt_S * v;
+      c.photocurrent_A + c.saturation_A - c.saturation_A * exp(v * per_scale) - c.shunt_S * v;
   return {v - current * c.series_ohm, current, step * per_scale};
 }
 
@@ -69,12 +70,18 @@ CellOperatingPoint solve_alone(const SingleDiodeCells& cells, size_t i) {
   return CellCurve(p).maximum_power(cells.photocurrent_A[i]);
 }
 
+// The last cell stands in for those that are missing.
 Lanes load(std::span<const double> values, size_t first) {
-  const size_t count = std::min<size_t>(width, values.size() - first);
-  Lanes lanes;
-  for (size_t k = 0; k < width; ++k)
-    lanes[static_cast<Eigen::Index>(k)] = values[first + std::min(k, count - 1)];
-  return lanes;
+  std::array<double, width> lanes;
+  for (size_t k = 0; k < width; ++k) lanes[k] = values[std::min(first + k, values.size() - 1)];
+  return Lanes(lanes);
+}
+
+// Cubic convergence: what is left is far below the last step cubed. A maximum lies at V, I > 0.
+// Where the photocurrent is below I₀ the exponential minus one would lose digits.
+bool is_solved(const LaneCells& c, const LanePoints& points, int lane) {
+  return std::abs(points.last_step[lane]) < 1e-5 && points.voltage_V[lane] > 0.0 &&
+         points.current_A[lane] > 0.0 && c.photocurrent_A[lane] > c.saturation_A[lane];
 }
 
 }  // namespace
@@ -94,20 +101,12 @@ void maximum_power_points(const SingleDiodeCells& cells, std::span<double> volta
                       load(cells.scale_V, first), load(cells.series_ohm, first),
                       load(cells.shunt_S, first)};
     const LanePoints points = solve(c);
-    // Cubic convergence: what is left is far below the last step cubed. A maximum lies at V, I > 0.
-    // Where the photocurrent is below I₀ the exponential minus one would lose digits.
-    const auto good = ((points.last_step.abs() < 1e-5) && (points.voltage_V > 0.0) &&
-                       (points.current_A > 0.0) && (c.photocurrent_A > c.saturation_A))
-                          .eval();
-    const bool all_good = good.all();
-    for (size_t k = 0; k < std::min<size_t>(width, count - first); ++k) {
-      const auto lane = static_cast<Eigen::Index>(k);
-      voltage_V[first + k] = points.voltage_V[lane];
-      current_A[first + k] = points.current_A[lane];
-      if (all_good || good[lane]) continue;
-      const CellOperatingPoint alone = solve_alone(cells, first + k);
-      voltage_V[first + k] = alone.voltage_V;
-      current_A[first + k] = alone.current_A;
+    for (size_t k = 0; k < std::min(width, count - first); ++k) {
+      const auto lane = static_cast<int>(k);
+      CellOperatingPoint at{points.voltage_V[lane], points.current_A[lane]};
+      if (!is_solved(c, points, lane)) at = solve_alone(cells, first + k);
+      voltage_V[first + k] = at.voltage_V;
+      current_A[first + k] = at.current_A;
     }
   }
 }

@@ -8,6 +8,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/root.h"
 
 namespace photorque {
 namespace {
@@ -133,25 +134,14 @@ double CellCurve::diode_voltage_V(double dark_A, double extra_S) const {
   high += 4 * rounding * std::abs(high);
   double v = dark_A > 0 ? high : low;
   if (breakdown_S_ > 0) v = std::max(v, -breakdown_size_V_ * (1.0 - rounding));
-  // Newton's method on log(D/j), which is straight both for exponentials and for powers; bisection
-  // whenever it leaves the bracket or fails to halve the step.
-  double last_step = high - low;
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    DarkCurrent d = dark(v);
-    d.value_A += extra_S * v;
+  // On log(D/j), which is straight both for exponentials and for powers.
+  return newton_root(low, high, v, 4 * rounding, [&](double trial_V) {
+    DarkCurrent d = dark(trial_V);
+    d.value_A += extra_S * trial_V;
     d.slope_S += extra_S;
     const double excess = (d.value_A - dark_A) / dark_A;
-    if (excess == 0.0) return v;
-    ((d.value_A > dark_A) ? high : low) = v;
-    double next = v - std::log1p(excess) * d.value_A / d.slope_S;
-    if (!(next > low && next < high) || std::abs(next - v) > 0.5 * last_step) {
-      next = std::midpoint(low, high);
-    }
-    last_step = std::abs(next - v);
-    if (last_step <= 4 * rounding * std::abs(v)) return next;
-    v = next;
-  }
-  return v;
+    return NewtonStep{!(d.value_A > dark_A), -std::log1p(excess) * d.value_A / d.slope_S};
+  });
 }
 
 double CellCurve::voltage_V(double photocurrent_A, double current_A) const {
@@ -176,26 +166,18 @@ CellOperatingPoint CellCurve::maximum_power(double photocurrent_A) const {
   if (photocurrent_A <= 0.0) return {};
   const double rs = parameters_.series_ohm;
   // dP/dV_d = I − D′ (V_d − 2 I R_s) falls through zero between short and open circuit.
-  double low = short_circuit_A(photocurrent_A) * rs;
-  double high = open_circuit_V(photocurrent_A);
+  const double low = short_circuit_A(photocurrent_A) * rs;
+  const double high = open_circuit_V(photocurrent_A);
   double v = std::max(low, high - 3.0 * std::max(scale_1_V_, scale_2_V_));
   if (!(v > low)) v = std::midpoint(low, high);
-  double last_step = high - low;
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    const DarkCurrent d = dark(v);
+  v = newton_root(low, high, v, 4 * rounding, [&](double trial_V) {
+    const DarkCurrent d = dark(trial_V);
     const double current = photocurrent_A - d.value_A;
-    const double arm_V = v - 2.0 * current * rs;
+    const double arm_V = trial_V - 2.0 * current * rs;
     const double slope = current - d.slope_S * arm_V;
-    (slope > 0 ? low : high) = v;
     const double curvature = -d.slope_S * (2.0 + 2.0 * d.slope_S * rs) - d.curvature_A_V2 * arm_V;
-    double next = v - slope / curvature;
-    if (!(next > low && next < high) || std::abs(next - v) > 0.5 * last_step) {
-      next = std::midpoint(low, high);
-    }
-    last_step = std::abs(next - v);
-    v = next;
-    if (last_step <= 4 * rounding * std::abs(v)) break;
-  }
+    return NewtonStep{slope > 0.0, -slope / curvature};
+  });
   const double current = photocurrent_A - dark(v).value_A;
   return {v - current * rs, current, v};
 }

@@ -3,15 +3,18 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 
 namespace photorque {
 
-// y falls with x: `slope` is −dy/dx ≥ 0, `curvature` d²y/dx² and `third` d³y/dx³.
-struct Slopes {
-  double slope = 0.0, curvature = 0.0, third = 0.0;
+// y falls with x: `slope` is −dy/dx ≥ 0, `curvature` d²y/dx² and `third` d³y/dx³; of one curve, or
+// of several in lanes.
+template <class T>
+struct SlopesOf {
+  T slope{}, curvature{}, third{};
 
   // V(I) of elements in series, I(V) of elements in parallel.
-  Slopes& operator+=(const Slopes& other) {
+  SlopesOf& operator+=(const SlopesOf& other) {
     slope += other.slope;
     curvature += other.curvature;
     third += other.third;
@@ -19,12 +22,17 @@ struct Slopes {
   }
 };
 
+using Slopes = SlopesOf<double>;
+
 // From V(I) to I(V) or back: d³x/dy³ = (3 y″² − y′ y‴)/y′⁵, the others as below. A slope of ∞ (a
-// blocked string) becomes 0.
-inline Slopes inverted(const Slopes& s) {
-  const double inverse = 1.0 / s.slope;
-  if (inverse == 0.0) return {};
-  const double cube = inverse * inverse * inverse;
+// blocked string; none is in lanes) becomes 0.
+template <class T>
+SlopesOf<T> inverted(const SlopesOf<T>& s) {
+  const T inverse = 1.0 / s.slope;
+  if constexpr (std::is_same_v<T, double>) {
+    if (inverse == 0.0) return {};
+  }
+  const T cube = inverse * inverse * inverse;
   return {inverse, s.curvature * cube,
           -(3.0 * s.curvature * s.curvature * inverse + s.third) * inverse * cube};
 }

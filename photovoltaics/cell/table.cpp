@@ -1,7 +1,8 @@
 #include "photovoltaics/cell/table.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "core/numerics/root.h"
 
 namespace photorque {
 namespace {
@@ -17,12 +18,11 @@ DiodeVoltage inverse(const DarkCurrent& d, double diode_V) {
 double largest_slope(const CellCurve& curve) {
   const CellParameters& p = curve.parameters();
   if (p.breakdown_fraction == 0.0) return p.shunt_ohm;
-  double low = p.breakdown_V * (1.0 - 1e-12), high = 0.0;
+  const double low = p.breakdown_V * (1.0 - 1e-12);
+  double high = 0.0;
   while (curve.dark(high).curvature_A_V2 < 0.0) high += curve.thermal_V();
-  for (int i = 0; i < 100 && high - low > 1e-15 * (high - p.breakdown_V); ++i) {
-    const double middle = std::midpoint(low, high);
-    (curve.dark(middle).curvature_A_V2 < 0.0 ? low : high) = middle;
-  }
+  const auto bends_down = [&](double v) { return curve.dark(v).curvature_A_V2 < 0.0; };
+  high = bisect(low, high, bends_down, {52}).high;
   return 1.0 / curve.dark(high).slope_S;
 }
 

@@ -45,7 +45,7 @@ DiodeVoltage DiodeVoltageTable::series_at(std::span<const double> photocurrents_
     third_V_A3 = multiply_add(weight, v.third_V_A3, third_V_A3);
     store(v.slope_ohm, v.curvature_V_A2, &states[i]);
   }
-  if ((any_outside[0] | any_outside[1] | any_outside[2] | any_outside[3]) != 0) {
+  if (any_of(any_outside)) {
     return series_one_by_one(photocurrents_A, copies, current_A, states);
   }
   return {sum_of(value_V), sum_of(slope_ohm), sum_of(curvature_V_A2), sum_of(third_V_A3)};

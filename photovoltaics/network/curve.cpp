@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/errors.h"
+#include "core/numerics/monotone_cubic.h"
 #include "core/numerics/root.h"
 
 namespace photorque {
@@ -53,10 +54,9 @@ double extrapolated_A(const StringState& a, double voltage_V) {
 // Between two points, from values and slopes.
 double hermite_A(const StringState& a, const StringState& b, double voltage_V) {
   const double width = b.voltage_V - a.voltage_V, t = (voltage_V - a.voltage_V) / width;
-  const double rise = b.current_A - a.current_A;
-  const double slope_a = -width / a.slope_ohm, slope_b = -width / b.slope_ohm;
-  return a.current_A + t * (slope_a + t * (3 * rise - 2 * slope_a - slope_b +
-                                           t * (slope_a + slope_b - 2 * rise)));
+  const auto c = hermite_coefficients(a.current_A, b.current_A - a.current_A, -width / a.slope_ohm,
+                                      -width / b.slope_ohm);
+  return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
 }
 
 }  // namespace
@@ -116,9 +116,9 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
     strings_[s].at_voltage(x, regimes[s], guess.low_A, guess.high_A, tolerance, node.strings[s]);
   };
   for (const FourStrings& four : fours_) {
-    FourStrings::Lanes low_A, high_A;
-    for (Eigen::Index lane = 0; lane < 4; ++lane) {
-      const size_t s = four.member(static_cast<size_t>(lane));
+    Quad low_A{}, high_A{};
+    for (size_t lane = 0; lane < 4; ++lane) {
+      const size_t s = four.member(lane);
       const CurrentGuess guess = guess_current(s, x, node, low, high);
       low_A[lane] = guess.low_A;
       high_A[lane] = guess.high_A;
@@ -126,14 +126,13 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
     bool solved = false;
     if (x >= 0.0) {
       FourStrings::State state = four.read(node.strings);
-      solved = four.solve(x, low_A.max(0.0), high_A, tolerance, state,
+      solved = four.solve(x, max(low_A, Quad{}), high_A, tolerance, state,
                           cells_too ? std::span(node.strings) : std::span<StringState>());
       if (solved) four.write(state, node.strings);
     }
     for (size_t i = 0; i < four.members().size(); ++i) {
       if (solved && four.solves(i, x)) continue;
-      const auto lane = static_cast<Eigen::Index>(i);
-      alone(four.member(i), {low_A[lane], high_A[lane]});
+      alone(four.member(i), {low_A[i], high_A[i]});
     }
   }
   for (const size_t s : singles_) alone(s, guess_current(s, x, node, low, high));

@@ -15,7 +15,7 @@
 
 #include <vector>
 
-#include "photovoltaics/network/lanes.h"
+#include "photovoltaics/network/four_strings.h"
 #include "photovoltaics/network/string.h"
 
 namespace photorque {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/constants.h"
-#include "core/numerics/gauss_legendre.h"
+#include "core/numerics/quadrature.h"
 
 namespace photorque {
 namespace {

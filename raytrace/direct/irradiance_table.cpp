@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/constants.h"
+#include "core/numerics/chebyshev.h"
 #include "core/parallel.h"
 
 namespace photorque {
 namespace {
 
 constexpr double root_half = 0.70710678118654752440;
-
-double cosine_of_node(size_t node, size_t nodes) {
-  return std::cos(pi * (static_cast<double>(node) + 0.5) / static_cast<double>(nodes));
-}
 
 double factor_a(const DiscLight& light, double distance_m, double height_m) {
   return light.irradiance_W_m2({distance_m, 0.0, height_m}, -Vec3::UnitZ());
@@ -70,13 +66,12 @@ void IrradianceTable::fill(const DiscLight& light, int threads) {
     Node& node = nodes_[n];
     node.setZero();
     for (size_t j = 0; j < degrees_; ++j) {
-      const double x = cosine_of_node(j, degrees_);
+      const double x = chebyshev_point(degrees_, j);
       const double h = middle_m_ + half_range_m_ * x;
       const double d = distance_m(n / (steps + 1), static_cast<double>(n % (steps + 1)), h);
       const std::array<double, 2> value = {factor_a(light, d, h), factor_b(light, d, h)};
-      for (size_t k = 0; k < degrees_; ++k) {  // Chebyshev coefficients by discrete orthogonality
-        const double weight = (k == 0 ? 1.0 : 2.0) / static_cast<double>(degrees_) *
-                              std::cos(static_cast<double>(k) * std::acos(x));
+      for (size_t k = 0; k < degrees_; ++k) {
+        const double weight = chebyshev_weight(degrees_, k, std::acos(x));
         for (size_t f = 0; f < 2; ++f) {
           node(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(f)) += weight * value[f];
         }

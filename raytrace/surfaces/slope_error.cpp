@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "core/numerics/gauss_legendre.h"
+#include "core/numerics/quadrature.h"
 #include "raytrace/surfaces/cosine_table.h"
 #include "raytrace/surfaces/ggx.h"
 

@@ -1,22 +1,22 @@
 #include "receivers/wrench/spad.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
-#include <sstream>
 
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/lines.h"
+#include "core/text/numbers.h"
 
 namespace photorque {
 namespace {
 
 struct Line {
   int number = 0;  // 1-based
-  std::string text;
+  std::string_view text;
 };
 
 struct Motion {
@@ -53,10 +53,9 @@ struct Header {
 // Reads the lines of one file and says where it is.
 class Reader {
  public:
-  Reader(const std::string& text, std::string name) : name_(std::move(name)) {
-    std::istringstream stream(text);
+  Reader(std::string_view text, std::string name) : name_(std::move(name)) {
     int number = 0;
-    for (std::string line; std::getline(stream, line);) lines_.push_back({++number, trim(line)});
+    for (const std::string_view line : lines_of(text)) lines_.push_back({++number, trimmed(line)});
   }
 
   // The next line that is neither empty nor a row of dashes; none at the end.
@@ -72,22 +71,10 @@ class Reader {
     throw InputError({name_, static_cast<int>(lines_.size())}, "", "the end of the file", expected);
   }
   InputError error(const Line& line, const std::string& expected) const {
-    return {{name_, line.number}, "", "\"" + line.text + "\"", expected};
+    return {{name_, line.number}, "", in_quotes(line.text), expected};
   }
-  double number(const Line& line, const std::string& word, const std::string& what) const {
-    double value = 0.0;
-    const char* first = word.data() + (word.starts_with('+') ? 1 : 0);
-    const auto [end, failure] = std::from_chars(first, word.data() + word.size(), value);
-    if (failure != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
-      throw InputError({name_, line.number}, what, "\"" + word + "\"", "a finite number");
-    }
-    return value;
-  }
-
-  static std::string trim(const std::string& text) {
-    const size_t first = text.find_first_not_of(" \t\r");
-    if (first == std::string::npos) return "";
-    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+  double number(const Line& line, std::string_view word, const std::string& what) const {
+    return require_number(word, {name_, line.number}, what, "a finite number");
   }
 
  private:
@@ -96,18 +83,8 @@ class Reader {
   size_t position_ = 0;
 };
 
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
-Vec3 read_point(const Reader& reader, const Line& line, std::string text) {
-  for (char& c : text) {
-    if (c == '(' || c == ')' || c == ',') c = ' ';
-  }
-  const std::vector<std::string> words = words_of(text);
+Vec3 read_point(const Reader& reader, const Line& line, std::string_view text) {
+  const std::vector<std::string_view> words = words_of(text, " \t(),");
   if (words.size() != 3) throw reader.error(line, "a centre of mass (x, y, z)");
   Vec3 point;
   for (int i = 0; i < 3; ++i) {
@@ -131,8 +108,8 @@ Header read_header(Reader& reader) {
     const Line line = reader.require("\": END\" after the ranges of the motions");
     const size_t colon = line.text.find(':');
     if (colon == std::string::npos) throw reader.error(line, "a line \"Key : value\"");
-    const std::string key = Reader::trim(line.text.substr(0, colon));
-    const std::string value = Reader::trim(line.text.substr(colon + 1));
+    const std::string key(trimmed(line.text.substr(0, colon)));
+    const std::string value(trimmed(line.text.substr(colon + 1)));
     if (key.empty() && value == "END") ended = true;
     if (key == "System") header.system = value;
     if (key == "Center of Mass") header.centre_of_mass_m = read_point(reader, line, value);
@@ -158,8 +135,7 @@ size_t read_count(Reader& reader) {
   if (!line.text.starts_with("Record count") || colon == std::string::npos) {
     throw reader.error(line, "\"Record count : N\"");
   }
-  const double count =
-      reader.number(line, Reader::trim(line.text.substr(colon + 1)), "Record count");
+  const double count = reader.number(line, trimmed(line.text.substr(colon + 1)), "Record count");
   if (!(count >= 1 && count <= 1e9 && count == std::floor(count))) {
     throw reader.error(line, "a whole number of records");
   }
@@ -176,7 +152,7 @@ Columns read_columns(Reader& reader) {
   const Line titles = reader.require("a row of column titles");
   if (!titles.text.starts_with("Azimuth")) throw reader.error(titles, "titles from Azimuth on");
   const Line line = reader.require("a row of units");
-  const std::vector<std::string> units = words_of(line.text);
+  const std::vector<std::string_view> units = words_of(line.text);
   static const std::map<std::string, double> lengths_m = {
       {"m", 1.0}, {"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}, {"ft", 0.3048}};
   const std::string expected =
@@ -184,12 +160,12 @@ Columns read_columns(Reader& reader) {
   if (units.size() < 5 || units[0] != "degrees" || units[1] != "degrees") {
     throw reader.error(line, expected);
   }
-  const std::string length = units[2].substr(0, units[2].find('^'));
+  const std::string length(units[2].substr(0, units[2].find('^')));
   const auto known = lengths_m.find(length);
   const auto all_are = [&](size_t first, const std::string& unit) {
     return std::all_of(units.begin() + static_cast<std::ptrdiff_t>(first),
                        units.begin() + static_cast<std::ptrdiff_t>(first) + 3,
-                       [&](const std::string& u) { return u == unit; });
+                       [&](std::string_view u) { return u == unit; });
   };
   if (known == lengths_m.end() || !all_are(2, length + "^2")) throw reader.error(line, expected);
   const bool has_torque = units.size() >= 9;
@@ -206,7 +182,7 @@ struct Row {
 };
 
 Row read_row(const Reader& reader, const Line& line, const Columns& columns) {
-  const std::vector<std::string> words = words_of(line.text);
+  const std::vector<std::string_view> words = words_of(line.text);
   const size_t needed = columns.has_torque ? 9 : 5;
   if (words.size() < needed) {
     throw reader.error(line, "at least " + std::to_string(needed) + " columns");

@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/lines.h"
 #include "core/text/numbers.h"
 
 namespace photorque {
@@ -21,21 +22,6 @@ struct BrdfRow {
   std::array<double, 4> values;  // in the order of brdf_columns
   int line;
 };
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const size_t comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-std::string quoted(std::string_view text) {
-  constexpr size_t most = 40;
-  return "\"" + std::string(text.substr(0, most)) + (text.size() > most ? "…\"" : "\"");
-}
 
 // Where each of brdf_columns stands in the header.
 std::array<size_t, 4> read_header(const std::vector<std::string_view>& fields,
@@ -56,12 +42,10 @@ std::vector<BrdfRow> read_rows(const std::string& text, const std::string& name)
   std::vector<BrdfRow> rows;
   std::optional<std::array<size_t, 4>> places;
   size_t width = 0;
-  InputLocation where{name, 0};
-  for (const std::string_view whole : lines_of(text)) {
-    ++where.line;
-    const std::string_view line = trimmed(whole);
-    if (line.empty() || line.front() == '#') continue;
-    const std::vector<std::string_view> fields = fields_of(line);
+  DataLines lines(text, name);
+  for (std::string_view line; lines.next(line);) {
+    const InputLocation& where = lines.where();
+    const std::vector<std::string_view> fields = cells_of(line);
     if (!places) {
       places = read_header(fields, where);
       width = fields.size();
@@ -79,7 +63,7 @@ std::vector<BrdfRow> read_rows(const std::string& text, const std::string& name)
       const std::string_view field = fields[(*places)[c]];
       const std::optional<double> number = number_in(field);
       if (!number || *number < 0.0 || *number > brdf_column_limits[c]) {
-        throw InputError(where, std::string(brdf_columns[c]), quoted(field),
+        throw InputError(where, std::string(brdf_columns[c]), in_quotes(field),
                          "a number from 0 to " + shortest(brdf_column_limits[c]));
       }
       row.values[c] = *number;

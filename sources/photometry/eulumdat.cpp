@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/text/lines.h"
 #include "core/text/numbers.h"
 #include "sources/photometry/file.h"
 #include "sources/photometry/planes.h"
@@ -31,11 +32,8 @@ class ValueLines {
     std::string line = text(what);
     const std::string found = line;
     std::replace(line.begin(), line.end(), ',', '.');
-    const auto value = number_in(line);
-    if (!value) {
-      throw InputError(where(), what, "\"" + found.substr(0, 24) + "\"", "a number");
-    }
-    return *value;
+    if (const auto value = number_in(line)) return *value;
+    throw InputError(where(), what, in_quotes(found), "a number");
   }
 
   // A number that matters little: nothing counts as zero.
@@ -49,12 +47,7 @@ class ValueLines {
 
   size_t count(const char* what, int low, int high) {
     const double value = number(what);
-    if (value != std::floor(value) || value < low || value > high) {
-      throw InputError(
-          where(), what, shortest(value),
-          "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
-    }
-    return static_cast<size_t>(value);
+    return require_count(value, where(), what, low, high);
   }
 
   std::vector<double> numbers(const char* what, size_t count) {

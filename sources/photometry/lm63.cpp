@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/text/lines.h"
 #include "core/text/numbers.h"
 #include "sources/photometry/file.h"
 #include "sources/photometry/planes.h"
@@ -34,21 +35,12 @@ class NumberStream {
   double next(const char* what) {
     const std::string_view word = next_word();
     if (word.empty()) throw InputError(where(), what, "the end of the file", "a number");
-    const auto value = number_in(word);
-    if (!value) {
-      throw InputError(where(), what, "\"" + std::string(word.substr(0, 24)) + "\"", "a number");
-    }
-    return *value;
+    return require_number(word, where(), what);
   }
 
   size_t count(const char* what, int low, int high) {
     const double value = next(what);
-    if (value != std::floor(value) || value < low || value > high) {
-      throw InputError(
-          where(), what, shortest(value),
-          "a whole number from " + std::to_string(low) + " to " + std::to_string(high));
-    }
-    return static_cast<size_t>(value);
+    return require_count(value, where(), what, low, high);
   }
 
   // Every number takes two bytes of the file, so that no count makes this allocate more than that.

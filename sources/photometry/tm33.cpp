@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/constants.h"
+#include "core/text/lines.h"
 #include "core/text/numbers.h"
 #include "sources/photometry/file.h"
 #include "sources/photometry/planes.h"
@@ -42,12 +43,7 @@ std::string on_one_line(const char* text) {
 
 double number_of(const XmlText& text, const pugi::xml_node& node, const std::string& key,
                  const char* value) {
-  const auto number = number_in(trimmed(value));
-  if (!number) {
-    throw InputError(text.at(node), key, "\"" + on_one_line(value).substr(0, 24) + "\"",
-                     "a number");
-  }
-  return *number;
+  return require_number(trimmed(value), text.at(node), key);
 }
 
 double child_number_or(const XmlText& text, const pugi::xml_node& node, const char* key,

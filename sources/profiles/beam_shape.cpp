@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "core/numerics/quadrature.h"
+#include "core/numerics/root.h"
 
 namespace photorque {
 namespace {
@@ -48,8 +49,8 @@ double EncircledFlux::flux_density(double angle_rad) const {
 }
 
 double EncircledFlux::flux_between(double low_rad, double high_rad) const {
-  return gauss_legendre([this](double angle_rad) { return flux_density(angle_rad); }, low_rad,
-                        high_rad);
+  return integrate(
+      gauss_8, [this](double angle_rad) { return flux_density(angle_rad); }, low_rad, high_rad);
 }
 
 void EncircledFlux::refine(double low_rad, double high_rad, double tolerance, int depth) {
@@ -57,8 +58,8 @@ void EncircledFlux::refine(double low_rad, double high_rad, double tolerance, in
   const double middle_rad = 0.5 * (low_rad + high_rad);
   const auto density = [this](double angle_rad) { return flux_density(angle_rad); };
   const double flux = flux_between(low_rad, high_rad);
-  const double check =
-      gauss_lobatto(density, low_rad, middle_rad) + gauss_lobatto(density, middle_rad, high_rad);
+  const double check = integrate(lobatto_8, density, low_rad, middle_rad) +
+                       integrate(lobatto_8, density, middle_rad, high_rad);
   if (depth == 0 || std::abs(flux - check) <= tolerance) {
     panels_.push_back({low_rad, high_rad, 0.0, flux});
     return;
@@ -91,12 +92,8 @@ double EncircledFlux::half_angle_rad(double fraction) const {
                                       [](const Panel& candidate, double wanted) {
                                         return candidate.before + candidate.flux < wanted;
                                       });
-  double low_rad = panel->low_rad, high_rad = panel->high_rad;
-  for (int step = 0; step < 52; ++step) {
-    const double middle_rad = 0.5 * (low_rad + high_rad);
-    (flux_within(*panel, middle_rad) < flux ? low_rad : high_rad) = middle_rad;
-  }
-  return high_rad;
+  const auto is_within = [&](double angle_rad) { return flux_within(*panel, angle_rad) < flux; };
+  return bisect(panel->low_rad, panel->high_rad, is_within, {52}).high;
 }
 
 double full_width_rad(const Emitter& emitter, double level) {
@@ -107,12 +104,7 @@ double full_width_rad(const Emitter& emitter, double level) {
   const auto outermost = std::find_if(ladder.rbegin(), ladder.rend(), reaches);
   if (outermost == ladder.rbegin()) return 2.0 * pi;
   if (outermost == ladder.rend() || *outermost == 0.0) return 0.0;
-  double inside_rad = *outermost, outside_rad = *(outermost - 1);
-  for (int step = 0; step < 52; ++step) {
-    const double middle_rad = 0.5 * (inside_rad + outside_rad);
-    (reaches(middle_rad) ? inside_rad : outside_rad) = middle_rad;
-  }
-  return 2.0 * inside_rad;
+  return 2.0 * bisect(*outermost, *(outermost - 1), reaches, {52}).low;
 }
 
 BeamShape describe(const Emitter& emitter) {

@@ -6,7 +6,9 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/monotone_cubic.h"
 #include "core/numerics/quadrature.h"
+#include "core/numerics/root.h"
 
 namespace photorque {
 namespace {
@@ -37,29 +39,24 @@ class FluxOutside {
     return outside_[j + 1] + integral(rise, edge(j + 1));
   }
 
-  // The rise outside which `flux` ∈ (0, total) lies, to rounding: Newton's method, kept inside the
-  // panel by bisection.
+  // The rise outside which `flux` ∈ (0, total) lies, to rounding.
   double inverse(double flux) const {
     const auto below = std::lower_bound(outside_.rbegin(), outside_.rend(), flux);
     const auto j = std::min<size_t>(static_cast<size_t>(outside_.rend() - below) - 1, panels - 1);
-    double low = edge(j), high = edge(j + 1);
-    double rise = 0.5 * (low + high);
-    for (int step = 0; step < 60; ++step) {
+    return newton_root(edge(j), edge(j + 1), 0.5 * (edge(j) + edge(j + 1)), 0.0, [&](double rise) {
       const double excess = outside_[j + 1] + integral(rise, edge(j + 1)) - flux;
-      if (std::abs(excess) <= 1e-14 * flux) break;
-      (excess > 0.0 ? low : high) = rise;
-      const double newton = rise + excess / intensity(rise);
-      if (std::abs(newton - rise) <= 4e-16 * rise) break;
-      rise = newton > low && newton < high ? newton : 0.5 * (low + high);
-    }
-    return rise;
+      const double length = excess / intensity(rise);
+      const bool exact = std::abs(excess) <= 1e-14 * flux || std::abs(length) <= 4e-16 * rise;
+      return NewtonStep{excess > 0.0, exact ? 0.0 : length};
+    });
   }
 
  private:
   static constexpr size_t panels = 512;
   double edge(size_t j) const { return static_cast<double>(j) * width_; }
   double integral(double low, double high) const {
-    return gauss_legendre([this](double rise) { return intensity(rise); }, low, high);
+    return integrate(
+        gauss_8, [this](double rise) { return intensity(rise); }, low, high);
   }
 
   const AngularProfile& profile_;
@@ -85,9 +82,8 @@ InverseFlux::InverseFlux(const AngularProfile& profile) {
     // Sufficient for a monotone cubic: F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17
     // (1980).
     const bool monotone = slope_low >= 3.0 * change && slope_high >= 3.0 * change;
-    coefficients_.insert(coefficients_.end(),
-                         {low, slope_low, 3.0 * change - 2.0 * slope_low - slope_high,
-                          slope_low + slope_high - 2.0 * change});
+    const auto cubic = hermite_coefficients(low, change, slope_low, slope_high);
+    coefficients_.insert(coefficients_.end(), cubic.begin(), cubic.end());
     const double middle = 0.5 * (knot(k) + knot(k + 1));
     const double error = std::abs(outside(rise(middle)) / total - middle);
     largest_error_ = std::max(largest_error_, error);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/numerics/monotone_cubic.h"
 #include "core/numerics/quadrature.h"
-#include "sources/profiles/monotone_cubic.h"
 
 namespace photorque {
 
@@ -17,7 +17,8 @@ struct PlaneSampler::Curve {
                                  (polar_rad - from_rad) / width_rad));
   }
   double flux(double low_rad, double high_rad) const {
-    return gauss_legendre([this](double t) { return (*this)(t)*std::sin(t); }, low_rad, high_rad);
+    return integrate(
+        gauss_8, [this](double t) { return (*this)(t)*std::sin(t); }, low_rad, high_rad);
   }
 };
 

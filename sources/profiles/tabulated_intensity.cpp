@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/constants.h"
+#include "core/numerics/monotone_cubic.h"
 #include "core/numerics/quadrature.h"
 #include "core/numerics/vector_math.h"
-#include "sources/profiles/monotone_cubic.h"
 
 namespace photorque {
 
@@ -177,7 +177,8 @@ TabulatedIntensity::Coarseness TabulatedIntensity::coarseness() const {
   for (size_t i = 0; i + 1 < polar.size(); ++i) {
     const double low = mean_[2 * i], high = mean_[2 * i + 2];  // every second knot is an angle
     const double middle_rad = knot_rad_[2 * i + 1];
-    straight += gauss_legendre(
+    straight += integrate(
+        gauss_8,
         [&](double t) {
           return std::sin(t) * std::lerp(low, high, (t - polar[i]) / (polar[i + 1] - polar[i]));
         },

@@ -2,6 +2,7 @@
 // x y z  l m n  flux [wavelength].
 #include <algorithm>
 
+#include "core/text/lines.h"
 #include "core/text/numbers.h"
 #include "sources/rayfiles/checks.h"
 #include "sources/rayfiles/set.h"
@@ -10,6 +11,7 @@ namespace photorque {
 namespace {
 
 constexpr double nanometre_m = 1e-9;
+constexpr std::string_view separators = " \t\r\v\f\x1a,";
 
 struct LightToolsHeader {
   double metres_per_unit = 1e-3;
@@ -17,22 +19,10 @@ struct LightToolsHeader {
   size_t columns = 7;
 };
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  while (!(line = trimmed(line)).empty()) {
-    const size_t end = std::min(line.find_first_of(" \t,"), line.size());
-    if (end > 0) words.push_back(line.substr(0, end));
-    line.remove_prefix(std::max<size_t>(end, 1));
-  }
-  return words;
-}
-
 double number_at(const std::vector<std::string_view>& words, size_t index,
                  const InputLocation& where) {
-  const std::string_view word = index < words.size() ? words[index] : "";
-  if (const auto value = number_in(word)) return *value;
-  throw InputError(where, "column " + std::to_string(index + 1),
-                   "\"" + std::string(word.substr(0, 24)) + "\"", "a number");
+  return require_number(index < words.size() ? words[index] : "", where,
+                        "column " + std::to_string(index + 1));
 }
 
 double unit_of(std::string_view name, const InputLocation& where) {
@@ -41,7 +31,7 @@ double unit_of(std::string_view name, const InputLocation& where) {
   if (name == "meters" || name == "metres") return 1.0;
   if (name == "inches") return 0.0254;
   if (name == "feet") return 0.3048;
-  throw InputError(where, "lt_length_units", "\"" + std::string(name.substr(0, 24)) + "\"",
+  throw InputError(where, "lt_length_units", in_quotes(name),
                    "millimeters, centimeters, meters, inches or feet");
 }
 
@@ -51,7 +41,7 @@ void read_keyword(std::string_view line, const InputLocation& where, LightToolsH
   if (colon == std::string_view::npos) return;
   const std::string_view key = trimmed(line.substr(0, colon));
   const std::string_view value = trimmed(line.substr(colon + 1));
-  const std::vector<std::string_view> words = words_of(value);
+  const std::vector<std::string_view> words = words_of(value, separators);
   if (key == "dataname") set.name = std::string(value);
   if (key == "lt_length_units") header.metres_per_unit = unit_of(value, where);
   if (key == "lt_datatype" && value.find("luminous") != std::string_view::npos) {
@@ -67,7 +57,7 @@ void read_keyword(std::string_view line, const InputLocation& where, LightToolsH
 
 RaySet::Ray read_ray(std::string_view line, const LightToolsHeader& header,
                      const InputLocation& where) {
-  const std::vector<std::string_view> words = words_of(line);
+  const std::vector<std::string_view> words = words_of(line, separators);
   RaySet::Ray ray;
   for (int k = 0; k < 3; ++k) {
     ray.origin_m[k] = header.metres_per_unit *
@@ -87,11 +77,9 @@ RaySet read_lighttools_rays(const std::string& bytes, const std::string& name) {
   set.format = "LightTools";
   LightToolsHeader header;
   bool in_data = false;
-  int line_number = 0;
-  for (const std::string_view line : lines_of(bytes)) {
-    const InputLocation where{name, ++line_number};
-    const std::string_view text = trimmed(line);
-    if (text.empty() || text.starts_with('#')) continue;
+  DataLines lines(bytes, name);
+  for (std::string_view text; lines.next(text);) {
+    const InputLocation& where = lines.where();
     if (text == "lt_endofdata") break;
     if (in_data) {
       set.rays.push_back(read_ray(text, header, where));
@@ -102,7 +90,7 @@ RaySet read_lighttools_rays(const std::string& bytes, const std::string& name) {
       read_keyword(text, where, header, set);
     }
   }
-  require_flux(set, {name, line_number});
+  require_flux(set, lines.where());
   return set;
 }
 

@@ -1,7 +1,6 @@
 #include "core/numerics/vector_math.h"
 
 #include "core/constants.h"
-#include "core/numerics/quadrature.h"
 #include "core/numerics/random.h"
 #include "core/numerics/sobol.h"
 
@@ -62,15 +61,6 @@ TEST(VectorMath, LogarithmMatchesLibraryToFiveEMinus16) {
     EXPECT_NEAR(log_positive(x), exact, 5e-16 * std::abs(exact)) << x;
   }
   EXPECT_EQ(log_positive(1.0), 0.0);
-}
-
-TEST(Quadrature, ExactForTheDegreesThatItClaims) {
-  const auto power = [](int degree) { return [degree](double x) { return std::pow(x, degree); }; };
-  const auto exact = [](int degree) { return std::pow(2.0, degree + 1) / (degree + 1); };
-  EXPECT_NEAR(gauss_legendre(power(15), 0.0, 2.0) / exact(15), 1.0, 1e-14);
-  EXPECT_NEAR(gauss_lobatto(power(13), 0.0, 2.0) / exact(13), 1.0, 1e-14);
-  EXPECT_GT(std::abs(gauss_legendre(power(16), 0.0, 2.0) / exact(16) - 1.0), 1e-10);
-  EXPECT_GT(std::abs(gauss_lobatto(power(14), 0.0, 2.0) / exact(14) - 1.0), 1e-10);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/constants.h"
-#include "core/numerics/gauss_legendre.h"
+#include "core/numerics/quadrature.h"
 #include "raytrace/surfaces/cosine_table.h"
 #include "raytrace/surfaces/fresnel.h"
 #include "tests/raytrace/bsdf_kinds.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/constants.h"
-#include "core/numerics/gauss_legendre.h"
+#include "core/numerics/quadrature.h"
 #include "tests/raytrace/bsdf_kinds.h"
 #include "tests/raytrace/test_scenes.h"
 

@@ -5,8 +5,7 @@
 #include <random>
 
 #include "core/constants.h"
-#include "core/numerics/chebyshev.h"
-#include "core/numerics/gauss_legendre.h"
+#include "core/numerics/quadrature.h"
 #include "raytrace/direct/disc_light.h"
 #include "raytrace/direct/irradiance_table.h"
 #include "raytrace/tracing/shadow.h"
@@ -114,34 +113,6 @@ TEST(IrradianceTable, RefusesWhatItCannotTabulate) {
   EXPECT_FALSE(IrradianceTable::make(sharp, 6.0, 9.0, 1).has_value());
   const DiscLight wide(*lambertian.emitter, *lambertian.aperture);
   EXPECT_FALSE(IrradianceTable::make(wide, 1.0, 2.0, 1).has_value());
-}
-
-TEST(Chebyshev, CellMeansOfAPolynomialAreExact) {
-  const size_t n = 6, cells = 5;
-  const auto f = [](double x) { return 1 - 3 * x + 2 * x * x * x - 7 * std::pow(x, 5); };
-  const auto whole = [](double x) {
-    return x - 1.5 * x * x + 0.5 * std::pow(x, 4) - 7.0 / 6.0 * std::pow(x, 6);
-  };
-  Eigen::VectorXd values(static_cast<Eigen::Index>(n));
-  for (size_t i = 0; i < n; ++i) values(static_cast<Eigen::Index>(i)) = f(chebyshev_fraction(n, i));
-  const Eigen::VectorXd means = chebyshev_cell_means(n, cells) * values;
-  for (size_t c = 0; c < cells; ++c) {
-    const double low = static_cast<double>(c) / cells, high = static_cast<double>(c + 1) / cells;
-    EXPECT_NEAR(means(static_cast<Eigen::Index>(c)), (whole(high) - whole(low)) / (high - low),
-                1e-13);
-  }
-}
-
-TEST(GaussLegendre, RulesIntegratePowersUpToTheirDegree) {
-  for (const size_t n : {1u, 2u, 7u, 33u, 64u}) {
-    for (const size_t power : {size_t{0}, n, 2 * n - 1, 2 * n - 2}) {
-      double sum = 0.0;
-      for (const auto& [x, weight] : gauss_legendre(n))
-        sum += weight * std::pow(x, static_cast<double>(power));
-      const double exact = power % 2 == 1 ? 0.0 : 2.0 / static_cast<double>(power + 1);
-      EXPECT_NEAR(sum, exact, 2e-14) << n << " " << power;
-    }
-  }
 }
 
 // A segment between random points of two balls that crosses a triangle proves that the shaft meets

@@ -8,7 +8,6 @@
 #include "sampling.h"
 #include "sources/lamps/photometric.h"
 #include "sources/profiles/beam_shape.h"
-#include "sources/profiles/monotone_cubic.h"
 
 namespace photorque {
 namespace {
@@ -36,34 +35,6 @@ IntensityTable planes(int count, double end_rad, const std::function<double(doub
     }
   }
   return table;
-}
-
-TEST(MonotoneSlopes, NeverLeaveTheDataAndMeetSmoothOnes) {
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  for (int trial = 0; trial < 200; ++trial) {
-    std::vector<double> x{0.0}, y{uniform(random)};
-    for (int i = 0; i < 12; ++i) {
-      x.push_back(x.back() + 0.01 + uniform(random));
-      y.push_back(uniform(random) < 0.3 ? y.back() : uniform(random));
-    }
-    const auto slope = monotone_slopes(x, y);
-    for (size_t i = 0; i + 1 < x.size(); ++i) {
-      double before = y[i];
-      for (double t = 0.02; t <= 1.0; t += 0.02) {
-        const double at = hermite(x[i + 1] - x[i], y[i], slope[i], y[i + 1], slope[i + 1], t);
-        EXPECT_GE((at - before) * (y[i + 1] - y[i]), -1e-15);
-        before = at;
-      }
-    }
-  }
-  std::vector<double> x, y;
-  for (int i = 0; i <= 20; ++i) {
-    x.push_back(0.05 * i + 0.01 * (i % 3));
-    y.push_back(std::exp(x.back()));
-  }
-  const auto slope = monotone_slopes(x, y);
-  for (size_t i = 2; i + 2 < x.size(); ++i) EXPECT_NEAR(slope[i] / y[i], 1.0, 3e-6);
 }
 
 // ∫ exp(−θ²/2σ²) over the sphere, by a sum of a million terms.

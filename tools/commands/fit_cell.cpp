@@ -1,11 +1,10 @@
 // photorque fit-cell: the parameters of a solar cell, module or shaded string from measurements.
-#include <charconv>
 #include <chrono>
-#include <sstream>
 
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/columns.h"
 #include "photovoltaics/fit/fit.h"
 #include "scenes/experiment/toml_reader.h"
 #include "tools/runs/optical_run.h"
@@ -28,56 +27,17 @@ struct FitTask {
   double temperature_K = 298.15;
 };
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream text(line);
-  for (std::string cell; std::getline(text, cell, ',');) {
-    std::erase_if(cell, [](char c) { return c == '"' || c == '\r' || c == ' '; });
-    cells.push_back(cell);
-  }
-  return cells;
-}
-
 // voltage_V,current_A; or V,I as some instruments write.
 IvSweep read_sweep(const fs::path& file) {
-  std::stringstream text(read_file(file));
-  IvSweep sweep;
-  size_t voltage = 0, current = 0;
-  bool header = false;
-  int number = 0;
-  for (std::string line; std::getline(text, line);) {
-    ++number;
-    if (line.empty() || line[0] == '#' || line == "\r") continue;
-    const std::vector<std::string> cells = split(line);
-    const auto column = [&](const char* name, const char* other) {
-      const auto at = std::ranges::find_if(
-          cells, [&](const std::string& c) { return c == name || c == other; });
-      if (at == cells.end()) {
-        throw InputError({file.string(), number}, name, line, "a header voltage_V,current_A");
-      }
-      return static_cast<size_t>(at - cells.begin());
-    };
-    if (!header) {
-      voltage = column("voltage_V", "V");
-      current = column("current_A", "I");
-      header = true;
-      continue;
-    }
-    const auto value = [&](size_t i, const char* name) {
-      double x = 0.0;
-      const std::string cell = i < cells.size() ? cells[i] : "";
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
-      if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(x)) {
-        throw InputError({file.string(), number}, name, '"' + cell + '"', "a number");
-      }
-      return x;
-    };
-    sweep.voltage_V.push_back(value(voltage, "voltage_V"));
-    sweep.current_A.push_back(value(current, "current_A"));
-  }
-  if (!header)
-    throw InputError({file.string(), 1}, "voltage_V", "no header", "voltage_V,current_A");
-  return sweep;
+  const std::vector<std::string> header = read_column_names(file);
+  const auto named = [&](const std::string& name, const std::string& other) {
+    const bool has_other = std::ranges::find(header, name) == header.end() &&
+                           std::ranges::find(header, other) != header.end();
+    return has_other ? other : name;
+  };
+  const NumberColumns numbers =
+      read_number_columns(file, {named("voltage_V", "V"), named("current_A", "I")});
+  return {numbers.columns[0], numbers.columns[1]};
 }
 
 RatedPoint read_point(const Settings& s) {

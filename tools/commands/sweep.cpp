@@ -1,12 +1,12 @@
 // photorque sweep: one command over many designs, and what they gave as one table.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
+#include "core/text/numbers.h"
 #include "scenes/experiment/experiment.h"
 #include "tools/runs/optical_run.h"
 #include "tools/runs/sweep_design.h"
@@ -89,10 +89,7 @@ Table::Column axis_column(const SweepPlan& plan, size_t axis) {
   Table::Column column{plan.axes[axis].key, {}, {}};
   for (size_t d = 0; d < plan.designs(); ++d) {
     const std::string& text = plan.value(d, axis);
-    double number = 0.0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool whole = read.ec == std::errc() && read.ptr == text.data() + text.size();
-    column.values.push_back(whole ? number : std::numeric_limits<double>::quiet_NaN());
+    column.values.push_back(number_in(text).value_or(std::numeric_limits<double>::quiet_NaN()));
     column.texts.push_back(text);
   }
   const bool numbers = std::ranges::none_of(column.values, [](double v) { return std::isnan(v); });

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/numerics/root.h"
 #include "core/numerics/sobol.h"
 
 namespace photorque {
@@ -51,12 +52,10 @@ std::vector<std::string> stepped_values(const Settings& axis) {
 
 // Where the standard normal distribution reaches `fraction`; by bisection, to rounding.
 double normal_quantile(double fraction) {
-  double low = -10.0, high = 10.0;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (0.5 * std::erfc(-middle / std::numbers::sqrt2) < fraction ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  const auto too_low = [&](double x) {
+    return 0.5 * std::erfc(-x / std::numbers::sqrt2) < fraction;
+  };
+  return bisect(-10.0, 10.0, too_low, {60}).middle();
 }
 
 // `fractions` are uniform in (0, 1).

@@ -1,10 +1,11 @@
 #include "attitude/disturbances/bearing/air_film.h"
 
-#include <array>
 #include <cmath>
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/quadrature.h"
+#include "core/numerics/root.h"
 
 namespace photorque {
 namespace {
@@ -12,34 +13,14 @@ namespace {
 constexpr double gas_constant_J_kg_K = 287.05;  // dry air, as in Environment
 constexpr double heat_ratio = 1.4;
 
-// Where `f`, falling in x, crosses zero between two brackets, to the last bits.
+// Where `f`, falling in x, crosses zero between two brackets, to 1e-14 of itself.
 template <class Function>
-double falling_root(double low, double high, const Function& f) {
-  for (int i = 0; i < 200 && high - low > 1e-14 * high; ++i) {
-    const double middle = 0.5 * (low + high);
-    (f(middle) > 0.0 ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+double crossing(double low, double high, const Function& f) {
+  return bisect(low, high, [&](double x) { return f(x) > 0.0; }, {200, 1e-14}).middle();
 }
 
-// Integral of f over [a, b], Gauss–Legendre with eight nodes in each of 16 panels.
-template <class Function>
-double integrate(double a, double b, const Function& f) {
-  constexpr std::array<double, 4> node = {0.1834346424956498, 0.5255324099163290,
-                                          0.7966664774136267, 0.9602898564975363};
-  constexpr std::array<double, 4> weight = {0.3626837833783620, 0.3137066458778873,
-                                            0.2223810344533745, 0.1012285362903763};
-  constexpr int panels = 16;
-  const double half = 0.5 * (b - a) / panels;
-  double sum = 0.0;
-  for (int k = 0; k < panels; ++k) {
-    const double middle = a + (2 * k + 1) * half;
-    for (size_t i = 0; i < node.size(); ++i) {
-      sum += weight[i] * (f(middle - half * node[i]) + f(middle + half * node[i]));
-    }
-  }
-  return sum * half;
-}
+// The pressure falls like a logarithm or a Bessel function over the film: to rounding.
+constexpr int film_panels = 16;
 
 // Isentropic flow through a hole, choked below the critical pressure ratio.
 double nozzle_flow_kg_s(const OrificeFeed& feed, double downstream_Pa, double temperature_K) {
@@ -67,7 +48,8 @@ double film_load_N(const SphericalSocket& socket, double inlet_Pa, double ambien
   };
   const double sine = std::sin(recess);
   return 2.0 * pi * socket.radius_m * socket.radius_m *
-         (0.5 * sine * sine * (inlet_Pa - ambient_Pa) + integrate(recess, rim, gauge_on_vertical));
+         (0.5 * sine * sine * (inlet_Pa - ambient_Pa) +
+          integrate(gauss_8, gauge_on_vertical, recess, rim, film_panels));
 }
 
 void require_feed(const SphericalSocket& socket, const OrificeFeed& feed, const FilmAir& air) {
@@ -101,7 +83,7 @@ FilmState orifice_fed_film(const SphericalSocket& socket, const OrificeFeed& fee
   const auto film_flow_kg_s = [&](double inlet_Pa) {
     return conductance * (inlet_Pa * inlet_Pa - air.pressure_Pa * air.pressure_Pa);
   };
-  const double inlet_Pa = falling_root(air.pressure_Pa, feed.supply_Pa, [&](double p_Pa) {
+  const double inlet_Pa = crossing(air.pressure_Pa, feed.supply_Pa, [&](double p_Pa) {
     return nozzle_flow_kg_s(feed, p_Pa, air.temperature_K) - film_flow_kg_s(p_Pa);
   });
   return {film_load_N(socket, inlet_Pa, air.pressure_Pa), film_flow_kg_s(inlet_Pa), inlet_Pa};
@@ -122,7 +104,7 @@ double gap_under_load_m(const SphericalSocket& socket, const OrificeFeed& feed, 
   if (spare_N(widest_m) > 0.0) {
     throw NumericalError("air film: the load is too small for any film thinner than 1 % of R");
   }
-  return falling_root(0.0, widest_m, spare_N);
+  return crossing(0.0, widest_m, spare_N);
 }
 
 double porous_pad_pressure_Pa(const PorousPad& pad, double gap_m, double supply_Pa,
@@ -136,10 +118,11 @@ double porous_pad_pressure_Pa(const PorousPad& pad, double gap_m, double supply_
 
 FilmState porous_pad_film(const PorousPad& pad, double gap_m, double supply_Pa,
                           const FilmAir& air) {
-  const double load_N = integrate(0.0, pad.radius_m, [&](double r_m) {
+  const auto gauge_on_ring = [&](double r_m) {
     return 2.0 * pi * r_m *
            (porous_pad_pressure_Pa(pad, gap_m, supply_Pa, air, r_m) - air.pressure_Pa);
-  });
+  };
+  const double load_N = integrate(gauss_8, gauge_on_ring, 0.0, pad.radius_m, film_panels);
   const double lambda_1_m = std::sqrt(feeding_number_1_m2(pad, gap_m));
   const double rim = lambda_1_m * pad.radius_m;
   const double flow_kg_s = 2.0 * pi * rim * gap_m * gap_m * gap_m /

@@ -1,4 +1,4 @@
-#include "sources/profiles/monotone_cubic.h"
+#include "core/numerics/monotone_cubic.h"
 
 #include <algorithm>
 #include <cmath>

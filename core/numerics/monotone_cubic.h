@@ -1,6 +1,8 @@
-// Slopes for a cubic Hermite interpolant that rises and falls only where its data do.
+// Cubic Hermite interpolation, and slopes for it with which it rises and falls only where its data
+// do.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -21,11 +23,19 @@ std::vector<double> monotone_slopes(std::span<const double> x, std::span<const d
 // beams fall off like exponentials; not where a value is zero or a hundred times its neighbour.
 double monotone_middle(std::span<const double> x, std::span<const double> y, size_t i);
 
-// The cubic on [0, width] with these values and slopes at its ends, at `t` ∈ [0, 1].
+// The cubic of t ∈ [0, 1] from `low` to `low + rise` with these slopes dy/dt at its ends, as
+// coefficients of 1, t, t², t³.
+inline std::array<double, 4> hermite_coefficients(double low, double rise, double slope_low,
+                                                  double slope_high) {
+  return {low, slope_low, 3.0 * rise - 2.0 * slope_low - slope_high,
+          slope_low + slope_high - 2.0 * rise};
+}
+
+// The cubic on [0, width] with these values and slopes at its ends, at `t` ∈ [0, 1] of the width.
 inline double hermite(double width, double low, double slope_low, double high, double slope_high,
                       double t) {
-  const double a = slope_low * width, b = slope_high * width, rise = high - low;
-  return low + t * (a + t * (3.0 * rise - 2.0 * a - b + t * (a + b - 2.0 * rise)));
+  const auto c = hermite_coefficients(low, high - low, slope_low * width, slope_high * width);
+  return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
 }
 
 }  // namespace photorque

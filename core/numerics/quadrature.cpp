@@ -1,4 +1,4 @@
-#include "core/numerics/gauss_legendre.h"
+#include "core/numerics/quadrature.h"
 
 #include <cmath>
 #include <vector>

@@ -1,0 +1,106 @@
+// Lines, cells, words and numbers of text files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "core/files.h"
+#include "core/text/columns.h"
+#include "core/text/lines.h"
+#include "core/text/numbers.h"
+
+namespace photorque {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Text, LinesEndAsAnySystemEndsThem) {
+  EXPECT_THAT(lines_of("a\nb\r\nc\rd"), ElementsAre("a", "b", "c", "d"));
+  EXPECT_THAT(lines_of("a\n\nb\n"), ElementsAre("a", "", "b"));
+  EXPECT_THAT(lines_of(""), ElementsAre());
+}
+
+TEST(Text, TrimmedLosesBlanksAndUnquotedQuotesToo) {
+  EXPECT_EQ(trimmed(" \t\r\v\fa b\x1a\n"), "a b");
+  EXPECT_EQ(trimmed("\"a\""), "\"a\"");
+  EXPECT_EQ(unquoted(" \"a b\" "), "a b");
+  EXPECT_EQ(trimmed(" \t"), "");
+}
+
+TEST(Text, CellsAreOneMoreThanSeparators) {
+  EXPECT_THAT(cells_of("a, \"b\" ,,c"), ElementsAre("a", "b", "", "c"));
+  EXPECT_THAT(cells_of("a;b;", ';'), ElementsAre("a", "b", ""));
+  EXPECT_THAT(cells_of(""), ElementsAre(""));
+}
+
+TEST(Text, WordsAreNeverEmpty) {
+  EXPECT_THAT(words_of("  a\tb  c "), ElementsAre("a", "b", "c"));
+  EXPECT_THAT(words_of("(1, 2,3)", " (),"), ElementsAre("1", "2", "3"));
+  EXPECT_THAT(words_of(" "), ElementsAre());
+}
+
+TEST(Text, DataLinesSkipCommentsAndKnowWhereTheyAre) {
+  DataLines lines("# one\n\n  a \r\n# four\nb", "f.csv");
+  std::string_view line;
+  ASSERT_TRUE(lines.next(line));
+  EXPECT_EQ(line, "a");
+  EXPECT_EQ(lines.where().line, 3);
+  ASSERT_TRUE(lines.next(line));
+  EXPECT_EQ(line, "b");
+  EXPECT_EQ(lines.where().line, 5);
+  EXPECT_FALSE(lines.next(line));
+}
+
+TEST(Text, NumbersAreWholeAndFinite) {
+  EXPECT_EQ(number_in("-2.5e3"), -2500.0);
+  EXPECT_EQ(number_in("+1"), 1.0);
+  for (const char* wrong : {"", " 1", "1 ", "1,5", "nan", "inf", "1e999", "+-1", "++1", "0x1p3"}) {
+    EXPECT_FALSE(number_in(wrong).has_value()) << wrong;
+  }
+  for (const double x : {0.1, 1.0 / 3.0, 5e-324, -1.7976931348623157e308}) {
+    EXPECT_EQ(number_in(shortest(x)), x);
+  }
+}
+
+TEST(Text, AWrongNumberSaysWhereWhatAndHowMuchOfIt) {
+  try {
+    require_number(std::string(60, 'x'), {"lamp.ies", 7}, "watts");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "lamp.ies:7: watts: found \"" + std::string(40, 'x') + "…\", expected a number");
+  }
+}
+
+TEST(Text, CountsAreWholeAndInRange) {
+  EXPECT_EQ(require_count(3.0, {}, "lamps", 1, 3), 3u);
+  for (const double wrong : {0.0, 4.0, 2.5, -1.0, std::nan("")}) {
+    EXPECT_THROW(require_count(wrong, {}, "lamps", 1, 3), InputError) << wrong;
+  }
+}
+
+TEST(Columns, AreFoundByNameAndWrongCellsByLine) {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "text_test.csv";
+  write_file_whole(path, std::string("# made by hand\nb,\"a\",c\n1, 2 ,x\n\n3,4\n"));
+  const NumberColumns read = read_number_columns(path, {"a", "b"});
+  EXPECT_THAT(read.header, ElementsAre("b", "a", "c"));
+  EXPECT_THAT(read.columns[0], ElementsAre(2.0, 4.0));
+  EXPECT_THAT(read.columns[1], ElementsAre(1.0, 3.0));
+  EXPECT_THAT(read.lines, ElementsAre(3, 5));
+  const auto message = [&](const std::string& name) {
+    try {
+      read_number_columns(path, {name});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(message("c"), HasSubstr("text_test.csv:3: c: found \"x\", expected a finite number"));
+  EXPECT_THAT(message("d"), HasSubstr("text_test.csv:2: found no column d"));
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace photorque
