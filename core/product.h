@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/estimate.h"
@@ -31,15 +32,50 @@ struct Map {
 };
 
 // Columns of equal length; the name of a column ends in its unit. Text columns (labels) come first.
+// Built by column name:
+//   Table table = Table::of("maxima", "Local maxima of the power", {"voltage_V", "power_W"});
+//   table.row().set("voltage_V", 31.2).set("power_W", 94.0);
 struct Table {
   std::string name;
   std::string title;
   struct Column {
     std::string name;
-    std::vector<double> values;
-    std::vector<std::string> texts;  // used instead of values when not empty
+    std::vector<double> values = {};
+    std::vector<std::string> texts = {};  // used instead of values when not empty
+    size_t size() const { return texts.empty() ? values.size() : texts.size(); }
   };
   std::vector<Column> columns;
+
+  // With these columns in this order, still empty.
+  static Table of(std::string name, std::string title,
+                  const std::vector<std::string>& column_names = {});
+
+  // Appended behind the others. std::logic_error for a name that is taken or, except in the first
+  // column, another length than the first column's.
+  Table& add(std::string column_name, std::vector<double> values);
+  Table& add(std::string column_name, std::vector<std::string> texts);
+
+  // One line of the table, to be filled in column by column. std::logic_error for a column that the
+  // table does not have and for one that is set twice or was left out of an earlier row.
+  class Row {
+   public:
+    Row& set(std::string_view column_name, double value);
+    Row& set(std::string_view column_name, std::string text);
+    Row& set(std::string_view column_name, const char* text);
+
+   private:
+    friend struct Table;
+    Row(Table& table, size_t index) : table_(&table), index_(index) {}
+    Column& cell_column(std::string_view column_name) const;
+    Table* table_;
+    size_t index_;
+  };
+  // A new last row.
+  Row row();
+
+  // std::logic_error if there is none of this name.
+  const Column& column(std::string_view column_name) const;
+  Column& column(std::string_view column_name);
 };
 
 // Curves in one pair of axes, or in several stacked ones that share x (time histories).
@@ -47,12 +83,18 @@ struct Plot {
   std::string name;
   std::string title;
   std::string x_label, y_label;
+  // Of a curve: the next of the palette, or one that has a meaning throughout a page.
+  enum class Colour { in_order, blue, vermilion, green, grey };
   struct Curve {
     std::string label;
     std::vector<double> x, y;
-    std::vector<double> y_error;  // one standard error; empty: none drawn
-    bool markers = false;         // points instead of a line
-    bool bars = false;            // bars 0.8 wide from zero instead; no errors drawn
+    std::vector<double> y_error = {};  // one standard error; empty: none drawn
+    bool markers = false;              // points instead of a line
+    bool bars = false;                 // bars 0.8 wide from zero instead; no errors drawn
+    bool dots = false;                 // small points without errors, for thousands of readings
+    bool dashed = false;
+    Colour colour = Colour::in_order;
+    double width = 1.6;  // of the line in points; dots are as wide as two lines
   };
   std::vector<Curve> curves;
   bool x_log = false, y_log = false;
@@ -60,8 +102,33 @@ struct Plot {
     std::string y_label;
     std::vector<Curve> curves;
     bool y_log = false;
+    std::vector<double> levels = {};  // dotted horizontal lines at these y
+    // The y axis fits the central 99.6 % of the values, so that one outlier does not flatten the
+    // rest.
+    bool robust_range = false;
   };
-  std::vector<Panel> below;  // further axes under the first
+  std::vector<Panel> below;         // further axes under the first
+  std::vector<double> levels = {};  // of the first axes, as Panel::levels
+  bool robust_range = false;        // of the first axes, as Panel::robust_range
+  struct Interval {
+    double from = 0.0, to = 0.0;
+  };
+  std::vector<Interval> shaded = {};  // of x, behind the curves of all axes
+  std::string shaded_label = {};      // in the first interval that has room for it
+};
+
+// Horizontal bars from zero, each with its number; negative ones to the left.
+struct BarChart {
+  std::string name;
+  std::string title;
+  std::string x_label;  // what the lengths are, with the unit in brackets
+  struct Bar {
+    std::string label;  // left of the bar
+    double value = 0.0;
+    std::string note = {};     // right of it
+    bool highlighted = false;  // stands out by colour and weight
+  };
+  std::vector<Bar> bars;
 };
 
 // Everything one step of the program found.

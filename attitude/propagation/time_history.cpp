@@ -115,7 +115,7 @@ Quantity exact(const std::string& name, double value) {
 }  // namespace
 
 TimeHistory::TimeHistory(const Dynamics& dynamics) {
-  for (const char* name : fixed_names) columns_.push_back({name, {}, {}});
+  for (const char* name : fixed_names) columns_.push_back({name});
   const auto& disturbances = dynamics.model().disturbances;
   // The second of a kind is told apart by its number.
   std::vector<std::string> labels;
@@ -128,7 +128,7 @@ TimeHistory::TimeHistory(const Dynamics& dynamics) {
   first_extra_ = columns_.size();
   for (size_t d = 0; d < disturbances.size(); ++d) {
     for (const ExtraState& state : disturbances[d].states) {
-      columns_.push_back({labels[d] + "_" + state.name, {}, {}});
+      columns_.push_back({labels[d] + "_" + state.name});
     }
   }
   first_torque_ = columns_.size();
@@ -137,7 +137,7 @@ TimeHistory::TimeHistory(const Dynamics& dynamics) {
     acting_.push_back(d);
     labels_.push_back(labels[d]);
     for (const char axis : {'x', 'y', 'z'}) {
-      columns_.push_back({"torque_" + labels[d] + "_" + axis + "_N_m", {}, {}});
+      columns_.push_back({"torque_" + labels[d] + "_" + axis + "_N_m"});
     }
   }
 }
@@ -168,10 +168,9 @@ Product TimeHistory::product(const std::vector<Event>& events,
   };
   const std::vector<double>& t = values(time);
   product.tables.push_back({"time_history", "Attitude, rates, charge and torques", columns_});
-  Table happened{"events", "What happened", {{"event", {}, {}}, {"t_s", {}, {}}}};
+  Table happened = Table::of("events", "What happened", {"event", "t_s"});
   for (const Event& event : events) {
-    happened.columns[0].texts.push_back(event.name);
-    happened.columns[1].values.push_back(event.time_s);
+    happened.row().set("event", event.name).set("t_s", event.time_s);
   }
   if (!events.empty()) product.tables.push_back(happened);
 

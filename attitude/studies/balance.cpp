@@ -199,30 +199,29 @@ BalanceResult balance(const BalanceRun& run) {
 }
 
 Product balance_product(const BalanceRun& run, const BalanceResult& result) {
-  const auto column = [](const std::string& name, const Vec3& v) {
-    return Table::Column{name, {v.x(), v.y(), v.z()}, {}};
-  };
+  const auto components = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
   Product product;
-  Table axes{"balance", "Centre of mass from the centre of rotation, body axes", {}};
-  axes.columns.push_back({"axis", {}, {"x", "y", "z"}});
-  axes.columns.push_back(column("offset_m", result.offset_body_m));
-  axes.columns.push_back(column("sigma_m", result.sigma_m));
-  axes.columns.push_back(column("left_by_steps_m", result.command.left_over_m));
-  axes.columns.push_back(column("published_resolution_m", Vec3::Constant(published_resolution_m)));
+  Table axes = Table::of("balance", "Centre of mass from the centre of rotation, body axes");
+  axes.add("axis", std::vector<std::string>{"x", "y", "z"})
+      .add("offset_m", components(result.offset_body_m))
+      .add("sigma_m", components(result.sigma_m))
+      .add("left_by_steps_m", components(result.command.left_over_m))
+      .add("published_resolution_m", components(Vec3::Constant(published_resolution_m)));
   product.tables.push_back(axes);
 
-  Table masses{"moving_masses", "Moves of the balancing masses", {}};
-  masses.columns = {{"mass", {}, {}},        {"direction_x", {}, {}}, {"direction_y", {}, {}},
-                    {"direction_z", {}, {}}, {"steps", {}, {}},       {"travel_m", {}, {}}};
+  Table masses =
+      Table::of("moving_masses", "Moves of the balancing masses",
+                {"mass", "direction_x", "direction_y", "direction_z", "steps", "travel_m"});
   for (size_t i = 0; i < run.masses.size(); ++i) {
     const MovingMass& mass = run.masses[i];
     const double steps = static_cast<double>(result.command.steps[i]);
-    masses.columns[0].texts.push_back(std::to_string(i + 1));
-    for (int k = 0; k < 3; ++k) {
-      masses.columns[static_cast<size_t>(1 + k)].values.push_back(mass.direction_body[k]);
-    }
-    masses.columns[4].values.push_back(steps);
-    masses.columns[5].values.push_back(steps * mass.pitch_m());
+    masses.row()
+        .set("mass", std::to_string(i + 1))
+        .set("direction_x", mass.direction_body.x())
+        .set("direction_y", mass.direction_body.y())
+        .set("direction_z", mass.direction_body.z())
+        .set("steps", steps)
+        .set("travel_m", steps * mass.pitch_m());
   }
   product.tables.push_back(masses);
 

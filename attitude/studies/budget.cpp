@@ -183,33 +183,31 @@ PaperLight read_light(const Settings& settings) {
 Table budget_table(const Budget& budget) {
   std::map<std::string, PaperFigure> paper;
   for (const PaperFigure& figure : paper_figures()) paper[figure.quantity] = figure;
-  Table::Column name{"disturbance", {}, {}}, figure_name{"paper_figure", {}, {}};
-  std::array<Table::Column, 3> torque;
-  for (int k = 0; k < 3; ++k) torque[k].name = std::string("torque_") + "xyz"[k] + "_N_m";
-  Table::Column size{"torque_N_m", {}, {}}, fraction{"share_of_sum", {}, {}},
-      minute{"angle_1_min_deg", {}, {}}, hour{"angle_1_h_deg", {}, {}},
-      day{"angle_1_day_deg", {}, {}}, published{"paper_N_m", {}, {}}, ratio{"ratio", {}, {}};
+  Table table = Table::of("budget", "Disturbance torques at the state, largest first",
+                          {"disturbance", "paper_figure", "torque_x_N_m", "torque_y_N_m",
+                           "torque_z_N_m", "torque_N_m", "share_of_sum", "angle_1_min_deg",
+                           "angle_1_h_deg", "angle_1_day_deg", "paper_N_m", "ratio"});
   double sum_N_m = 0.0;
   for (const BudgetEntry& e : budget.entries) sum_N_m += e.torque_body_N_m.norm();
   for (const BudgetEntry& e : budget.entries) {
     const double torque_N_m = e.torque_body_N_m.norm();
     const std::string figure = figure_of_kind(e.kind);
-    name.texts.push_back(e.name);
-    figure_name.texts.push_back(figure.empty() ? "-" : figure);
-    for (int k = 0; k < 3; ++k) torque[k].values.push_back(e.torque_body_N_m[k]);
-    size.values.push_back(torque_N_m);
-    fraction.values.push_back(sum_N_m > 0.0 ? torque_N_m / sum_N_m : 0.0);
-    minute.values.push_back(e.angle_after_minute_rad / degree_rad);
-    hour.values.push_back(e.angle_after_hour_rad / degree_rad);
-    day.values.push_back(e.angle_after_day_rad / degree_rad);
     const double paper_N_m = figure.empty() ? std::nan("") : paper.at(figure).published;
-    published.values.push_back(paper_N_m);
-    ratio.values.push_back(torque_N_m / paper_N_m);
+    table.row()
+        .set("disturbance", e.name)
+        .set("paper_figure", figure.empty() ? "-" : figure)
+        .set("torque_x_N_m", e.torque_body_N_m.x())
+        .set("torque_y_N_m", e.torque_body_N_m.y())
+        .set("torque_z_N_m", e.torque_body_N_m.z())
+        .set("torque_N_m", torque_N_m)
+        .set("share_of_sum", sum_N_m > 0.0 ? torque_N_m / sum_N_m : 0.0)
+        .set("angle_1_min_deg", e.angle_after_minute_rad / degree_rad)
+        .set("angle_1_h_deg", e.angle_after_hour_rad / degree_rad)
+        .set("angle_1_day_deg", e.angle_after_day_rad / degree_rad)
+        .set("paper_N_m", paper_N_m)
+        .set("ratio", torque_N_m / paper_N_m);
   }
-  return {"budget",
-          "Disturbance torques at the state, largest first",
-          {name, figure_name, torque[0], torque[1], torque[2], size, fraction, minute, hour, day,
-           published, ratio}};
+  return table;
 }
 
 Plot tilt_plot(const Budget& budget) {

@@ -29,37 +29,35 @@ Plot elastic_plot() {
 }
 
 Table figures_table(const std::vector<PaperFigure>& figures) {
-  Table::Column quantity{"quantity", {}, {}}, section{"section", {}, {}}, why{"why", {}, {}};
-  Table::Column published{"published", {}, {}}, ours{"ours", {}, {}}, ratio{"ratio", {}, {}},
-      as_published{"ours_as_published", {}, {}};
+  Table table =
+      Table::of("paper_figures", "Figures of the paper beside ours",
+                {"quantity", "section", "why", "published", "ours", "ratio", "ours_as_published"});
   for (const PaperFigure& f : figures) {
-    quantity.texts.push_back(f.quantity);
-    section.texts.push_back(f.section);
-    why.texts.push_back(f.why);
-    published.values.push_back(f.published);
-    ours.values.push_back(f.ours);
-    ratio.values.push_back(f.ours / f.published);
-    as_published.values.push_back(f.as_published);
+    table.row()
+        .set("quantity", f.quantity)
+        .set("section", f.section)
+        .set("why", f.why)
+        .set("published", f.published)
+        .set("ours", f.ours)
+        .set("ratio", f.ours / f.published)
+        .set("ours_as_published", f.as_published);
   }
-  return {"paper_figures",
-          "Figures of the paper beside ours",
-          {quantity, section, why, published, ours, ratio, as_published}};
+  return table;
 }
 
 Table sensitivities_table(const std::vector<PaperSensitivity>& all) {
-  Table::Column quantity{"quantity", {}, {}}, input{"assumed", {}, {}};
-  Table::Column value{"value", {}, {}}, exponent{"exponent", {}, {}},
-      wanted{"value_for_published", {}, {}};
+  Table table =
+      Table::of("paper_sensitivities", "How the figures move with what the paper leaves out",
+                {"quantity", "assumed", "value", "exponent", "value_for_published"});
   for (const PaperSensitivity& s : all) {
-    quantity.texts.push_back(s.quantity);
-    input.texts.push_back(s.input);
-    value.values.push_back(s.value);
-    exponent.values.push_back(s.exponent);
-    wanted.values.push_back(s.value_for_published);
+    table.row()
+        .set("quantity", s.quantity)
+        .set("assumed", s.input)
+        .set("value", s.value)
+        .set("exponent", s.exponent)
+        .set("value_for_published", s.value_for_published);
   }
-  return {"paper_sensitivities",
-          "How the figures move with what the paper leaves out",
-          {quantity, input, value, exponent, wanted}};
+  return table;
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/report/chart.h"
+#include "core/text/display.h"
+#include "diagnosis/report/charts.h"
 #include "diagnosis/report/style.h"
 #include "diagnosis/report/text.h"
 
@@ -24,7 +25,8 @@ std::string row(const std::vector<std::string>& cells, const std::string& cell =
 
 std::string joined(const std::vector<std::string>& names, const std::string& between) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : between) + html(spoken(name));
+  for (const std::string& name : names)
+    text += (text.empty() ? "" : between) + xml_text(spoken(name));
   return text;
 }
 
@@ -69,14 +71,14 @@ std::string head(const Diagnosis& d, const std::string& title) {
                     : d.verdict == Verdict::missing_physics
                         ? Face{"found", "◆", "Missing physics found"}
                         : Face{"open", "?", "Not explained by known physics"};
-  std::string page = tag("p", html(title), "title");
+  std::string page = tag("p", xml_text(title), "title");
   page +=
       tag("div", std::string("<span aria-hidden=\"true\">") + face.sign + "</span> " + face.words,
           std::string("verdict ") + face.css);
-  page += tag("h1", html(d.sentence));
+  page += tag("h1", xml_text(d.sentence));
   page += headline_figures(d);
   for (const std::string& warning : d.warnings) {
-    page += tag("p", "<b>Check first:</b> " + html(warning), "warning");
+    page += tag("p", "<b>Check first:</b> " + xml_text(warning), "warning");
   }
   return tag("header", page);
 }
@@ -108,9 +110,9 @@ std::string parameter_table(const std::vector<FittedParameter>& parameters) {
 }
 
 std::string effect_card(const FoundEffect& effect) {
-  std::string card = tag("h3", html(spoken(effect.kind)) + " <small>probability " +
+  std::string card = tag("h3", xml_text(spoken(effect.kind)) + " <small>probability " +
                                    percent(effect.probability) + "</small>");
-  card += tag("p", html(effect.explanation));
+  card += tag("p", xml_text(effect.explanation));
   card += parameter_table(effect.parameters);
   if (!effect.indistinguishable_from.empty()) {
     card += tag("p",
@@ -125,7 +127,7 @@ std::string manoeuvres(const Diagnosis& d) {
   if (d.manoeuvres.empty()) return "";
   std::string list;
   for (const Manoeuvre& m : d.manoeuvres) {
-    std::string item = html(m.text) + ".";
+    std::string item = xml_text(m.text) + ".";
     if (!m.separates.empty()) item += " <i>Separates " + joined(m.separates, ", ") + ".</i>";
     if (m.log_evidence_expected > 0.0) {
       item += " Expected lead of the right one: " + html_number(m.log_evidence_expected, 2) +
@@ -143,45 +145,18 @@ std::string effects(const Diagnosis& d) {
   return tag("section", section + manoeuvres(d));
 }
 
-std::string empirical(const Diagnosis& d) {
-  std::string section;
-  static const char* const colours[] = {report_colour::after, report_colour::before,
-                                        report_colour::good};
+std::string empirical(const Diagnosis& d, const ChartDrawer& draw) {
+  if (d.empirical.empty()) return "";
+  std::string section = tag("h2", "The part that no known law explains");
   for (const EmpiricalTorque& torque : d.empirical) {
-    LineChart chart{.y_label = "torque [N m]",
-                    .x_label = html(spoken(torque.variable)) + " [" + torque.unit + "]",
-                    .height = 200.0,
-                    .levels = {0.0}};
-    for (int k = 0; k < 3; ++k) {
-      ChartLine line{.colour = colours[k], .x = torque.at, .width = 2.0};
-      for (const Vec3& t : torque.torque_N_m) line.y.push_back(t[k]);
-      for (const Vec3& s : torque.standard_error_N_m) line.error.push_back(s[k]);
-      chart.lines.push_back(line);
-    }
-    const std::string axes = torque.about_lab_axes ? "lab" : "body";
-    section +=
-        tag("p", "Torque about " + axes + " <b style=\"color:" + colours[0] +
-                     "\">x</b>, <b style=\"color:" + colours[1] +
-                     "\">y</b> and <b style=\"color:" + colours[2] + "\">z</b> as a function of " +
-                     html(spoken(torque.variable)) + ", fitted without any law; bands are ± 1 σ.");
-    section += line_chart_svg(chart, "Empirical torque over " + torque.variable);
+    section += tag("p", "Torque as a function of " + xml_text(spoken(torque.variable)) +
+                            ", fitted without any law; bands are ± 1 σ.");
+    section += draw.plot(empirical_plot(torque));
   }
-  if (section.empty()) return "";
-  return tag("section", tag("h2", "The part that no known law explains") + section);
+  return tag("section", section);
 }
 
-std::string dependence(const Where& where) {
-  if (where.depends_on.empty()) return "";
-  std::vector<Bar> bars;
-  for (const auto& d : where.depends_on) {
-    bars.push_back({spoken(d.variable), 100.0 * d.strength, "", bars.empty()});
-  }
-  return tag("h3", "What the difference depends on") +
-         bar_chart_svg(bars, "share explained by a function of this alone [%]",
-                       "Dependence of the difference");
-}
-
-std::string where_section(const Where& where) {
+std::string where_section(const Where& where, const ChartDrawer& draw) {
   std::string facts;
   if (!where.intervals_s.empty()) {
     std::string text;
@@ -195,105 +170,47 @@ std::string where_section(const Where& where) {
     facts += tag("li", "In the band from " + html_number(where.band_Hz->from, 2) + " to " +
                            html_number(where.band_Hz->to, 2) + " Hz.");
   }
-  std::vector<Bar> bars;
-  for (const auto& c : where.channels) {
-    bars.push_back({c.name, c.chi2_per_sample, "", c.chi2_per_sample > 1.5});
-  }
-  std::string section = tag("h2", "Where recording and belief part");
+  std::string section = tag("h2", "Where the recordings differ from the nominal model");
   if (!facts.empty()) section += tag("ul", facts);
-  if (!bars.empty()) {
-    section += bar_chart_svg(bars, "χ² per reading under what was believed (1 is noise)",
-                             "Misfit of every channel before");
+  if (!where.channels.empty()) section += draw.bars(misfit_chart(where));
+  if (!where.depends_on.empty()) {
+    section += tag("h3", "What the difference depends on") + draw.bars(dependence_chart(where));
   }
-  return tag("section", section + dependence(where));
+  return tag("section", section);
 }
 
-std::string ranking(const Diagnosis& d) {
+std::string ranking(const Diagnosis& d, const ChartDrawer& draw) {
   if (d.alternatives.empty()) return "";
-  std::vector<std::string> chosen;
-  for (const FoundEffect& effect : d.effects) chosen.push_back(effect.kind);
-  std::ranges::sort(chosen);
-  std::vector<Bar> bars;
-  constexpr size_t most = 14;
-  constexpr double ruled_out = -50.0;
-  for (const Alternative& a : d.alternatives) {
-    if (bars.size() == most) break;
-    // Explanations that the recordings rule out would only flatten the rest.
-    if (a.log_evidence_relative < ruled_out && !a.chosen) continue;
-    std::vector<std::string> kinds = a.kinds;
-    std::ranges::sort(kinds);
-    std::string label;
-    for (const std::string& k : a.kinds) label += (label.empty() ? "" : " + ") + spoken(k);
-    if (!a.label.empty()) label = spoken(a.label);
-    if (label.empty()) label = "nothing missing";
-    // Beside a bar that is as long as the best one's, only the difference says something.
-    const double behind = d.alternatives.front().log_evidence_relative - a.log_evidence_relative;
-    std::string note = behind > 0.0 ? "−" + plain_number(behind) + " to the best" : "";
-    if (!a.remark.empty()) {
-      note = spoken(a.remark);
-    } else if (a.holdout_chi2_per_sample) {
-      note +=
-          (note.empty() ? "" : "; ") + ("χ² held out " + plain_number(*a.holdout_chi2_per_sample));
-    }
-    const bool named = d.verdict != Verdict::unexplained && kinds == chosen && a.label.empty();
-    const bool is_chosen = a.chosen || named;
-    bars.push_back({label, a.log_evidence_relative, note, is_chosen});
-  }
-  return tag(
-      "section",
-      tag("h2", "Ranking of the alternatives") +
-          tag("p", std::string("Further right is better; a lead of 3 makes the odds 20 to 1.") +
-                       (d.verdict == Verdict::unexplained
-                            ? " No name was chosen: the model that was kept is bold and blue."
-                            : " The chosen one is bold and blue.")) +
-          bar_chart_svg(bars, "log evidence over “nothing missing”",
-                        "Log evidence of the alternatives"));
+  const std::string chosen =
+      d.verdict == Verdict::unexplained
+          ? " No name was chosen: the model that is reported is bold and blue."
+          : " The chosen one is bold and blue.";
+  return tag("section",
+             tag("h2", "Ranking of the alternatives") +
+                 tag("p", "Further right is better; a lead of 3 makes the odds 20 to 1." + chosen) +
+                 draw.bars(ranking_chart(d)));
 }
 
-std::string channel_charts(const ChannelSeries& channel, const RecordingSeries& recording) {
-  std::vector<std::pair<double, double>> shaded;
-  for (const auto& i : recording.held_out_s) shaded.emplace_back(i.from, i.to);
-  const std::string title = channel.label.empty() ? channel.name : channel.label;
-  std::string svg;
-  if (!channel.measured.empty()) {
-    LineChart overlay{.y_label = "[" + channel.unit + "]",
-                      .height = 150.0,
-                      .with_x_axis = false,
-                      .shaded = shaded,
-                      .shade_label = "held out, never fitted",
-                      .robust_range = true};
-    overlay.lines = {{report_colour::measured, channel.time_s, channel.measured, true},
-                     {report_colour::before, channel.time_s, channel.before, false, true},
-                     {report_colour::after, channel.time_s, channel.after}};
-    svg += line_chart_svg(overlay, title + " over time");
-  }
-  LineChart residual{.y_label = "residual [" + channel.residual_unit + "]",
-                     .x_label = "time [s]",
-                     .height = 105.0,
-                     .shaded = shaded,
-                     .robust_range = true};
-  if (channel.noise > 0.0) residual.levels = {-2.0 * channel.noise, 2.0 * channel.noise};
-  residual.lines = {
-      {report_colour::before, channel.time_s, channel.residual_before, false, false, 1.0},
-      {report_colour::after, channel.time_s, channel.residual_after, false, false, 1.0}};
-  svg += line_chart_svg(residual, "Residuals of " + title);
-  return tag("figure", tag("figcaption", html(title)) + svg);
+std::string channel_figure(const ChannelSeries& channel, const RecordingSeries& recording,
+                           const ChartDrawer& draw) {
+  const Plot plot = channel_plot(channel, recording);
+  return tag("figure", tag("figcaption", xml_text(plot.title)) + draw.plot(plot));
 }
 
-std::string overlays(const Diagnosis& d) {
+std::string overlays(const Diagnosis& d, const ChartDrawer& draw) {
   if (d.series.empty()) return "";
-  std::string section = tag("h2", "Readings, and what the model says");
+  std::string section = tag("h2", "Readings and models");
   section += tag("p",
                  std::string("<span class=\"key dots\"></span> measured &emsp;"
-                             "<span class=\"key before\"></span> as believed &emsp;"
+                             "<span class=\"key before\"></span> nominal model &emsp;"
                              "<span class=\"key after\"></span> with what was found &emsp;"
                              "<span class=\"key shade\"></span> held out, never fitted &emsp;"
                              "<span class=\"key level\"></span> ± 2 σ of one reading"),
                  "legend");
   for (const RecordingSeries& recording : d.series) {
-    section += tag("h3", html(recording.recording));
+    section += tag("h3", xml_text(recording.recording));
     for (const ChannelSeries& channel : recording.channels) {
-      section += channel_charts(channel, recording);
+      section += channel_figure(channel, recording, draw);
     }
   }
   return tag("section", section);
@@ -301,7 +218,7 @@ std::string overlays(const Diagnosis& d) {
 
 std::string priors(const Diagnosis& d) {
   if (d.priors_refined.empty()) return "";
-  return tag("section", tag("h2", "What was believed, after these recordings") +
+  return tag("section", tag("h2", "What wnominal model, after these recordings") +
                             parameter_table(d.priors_refined));
 }
 
@@ -310,7 +227,7 @@ std::string holdout_table(const Holdout& holdout) {
   std::string rows = row({"Channel", "RMS before", "RMS after"}, "th");
   for (const auto& [channel, before] : holdout.rms_before) {
     const auto after = holdout.rms_after.find(channel);
-    rows += row({html(channel), html_number(before),
+    rows += row({xml_text(channel), html_number(before),
                  after == holdout.rms_after.end() ? "–" : html_number(after->second)});
   }
   return tag("section", tag("h2", "Prediction of data to which no parameter was fitted") +
@@ -324,10 +241,10 @@ std::string data_section(const DataQuality& data) {
   std::string rows = row({"Rows in the files", count(data.rows)});
   rows += row({"Rows used", count(data.used)});
   for (const auto& [reason, n] : data.rejected) {
-    rows += row({"Left out: " + html(spoken(reason)), count(n)});
+    rows += row({"Left out: " + xml_text(spoken(reason)), count(n)});
   }
   for (const auto& [reason, n] : data.repaired) {
-    rows += row({"Mended: " + html(spoken(reason)), count(n)});
+    rows += row({"Repaired: " + xml_text(spoken(reason)), count(n)});
   }
   rows += row({"Median interval", html_number(data.median_interval_s) + " s"});
   rows += row({"Jitter (1 σ)", html_number(data.jitter_s, 2) + " s"});
@@ -337,16 +254,17 @@ std::string data_section(const DataQuality& data) {
 
 }  // namespace
 
-std::string report_html(const Diagnosis& d, const std::string& title,
-                        const Provenance& provenance) {
+std::string report_html(const Diagnosis& d, const std::string& title, const Provenance& provenance,
+                        const ChartDrawer& draw) {
   std::string page = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  page += "<title>Diagnosis of " + html(title) + "</title>\n<style>" + report_style +
+  page += "<title>Diagnosis of " + xml_text(title) + "</title>\n<style>" + report_style +
           "</style>\n</head>\n<body>\n<main>\n";
-  page += head(d, title) + effects(d) + empirical(d) + where_section(d.where) + ranking(d);
+  page += head(d, title) + effects(d) + empirical(d, draw) + where_section(d.where, draw) +
+          ranking(d, draw);
   if (d.holdout) page += holdout_table(*d.holdout);
-  page += overlays(d) + priors(d) + data_section(d.data);
-  page += tag("footer", html(provenance.one_line()));
+  page += overlays(d, draw) + priors(d) + data_section(d.data);
+  page += tag("footer", xml_text(provenance.one_line()));
   return page + "</main>\n</body>\n</html>\n";
 }
 

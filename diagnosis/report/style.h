@@ -39,15 +39,7 @@ th, td { padding: 4px 26px 4px 0; border-bottom: 1px solid #e7eaed; vertical-ali
 sup { line-height: 0; }
 figure { margin: 18px 0 22px; }
 figcaption { font-weight: 600; font-size: 15px; margin-bottom: 2px; }
-svg { display: block; width: 100%; height: auto; }
-svg text { font: 12px system-ui, "Segoe UI", "Helvetica Neue", "DejaVu Sans", sans-serif;
-  fill: #1b1f24; }
-svg text.note { fill: #4a525b; }
-svg text.chosen { font-weight: 650; }
-svg .grid { stroke: #d5d9de; stroke-width: 0.6; }
-svg .tick { stroke: #1b1f24; stroke-width: 1; }
-svg .frame { fill: none; stroke: #8a939d; stroke-width: 1; }
-svg .level { stroke: #1b1f24; stroke-width: 0.9; stroke-dasharray: 2 4; }
+svg.chart { display: block; width: 100%; height: auto; }
 .legend { max-width: none; font-size: 14px; }
 .key { display: inline-block; width: 26px; height: 0; vertical-align: middle;
   border-top: 3px solid; }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/settings/settings.h"
+#include "core/text/display.h"
 
 namespace photorque {
 namespace {
@@ -30,13 +31,6 @@ std::string integer(int value) {
   return (value < 0 ? "−" : "") + std::to_string(std::abs(value));
 }
 
-std::string superscript(int number) {
-  static const char* const digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = number < 0 ? "⁻" : "";
-  for (const char c : std::to_string(std::abs(number))) text += digits[c - '0'];
-  return text;
-}
-
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
   for (size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
     text.replace(at, from.size(), to);
@@ -45,29 +39,6 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 
 }  // namespace
 
-std::string html(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += static_cast<unsigned char>(c) < 32 ? ' ' : c;
-    }
-  }
-  return escaped;
-}
-
 std::string html_number(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   if (value == 0.0) return "0";
@@ -75,14 +46,6 @@ std::string html_number(double value, int digits) {
   const int exponent = magnitude(value);
   return fixed(value / std::pow(10.0, exponent), digits - 1) + "&nbsp;×&nbsp;10<sup>" +
          integer(exponent) + "</sup>";
-}
-
-std::string plain_number(double value, int digits) {
-  if (!std::isfinite(value)) return "–";
-  if (value == 0.0) return "0";
-  if (reads_plain(value)) return fixed(value, std::max(0, digits - 1 - magnitude(value)));
-  const int exponent = magnitude(value);
-  return fixed(value / std::pow(10.0, exponent), digits - 1) + "×10" + superscript(exponent);
 }
 
 std::string html_estimate(double value, double sigma) {
@@ -109,7 +72,7 @@ std::string spoken(std::string name) {
 std::string spoken_key(const std::string& key) {
   std::string stem = unit_of_key(key).stem;
   if (stem.empty()) stem = key;
-  return html(spoken(stem));
+  return xml_text(spoken(stem));
 }
 
 std::string spoken_unit(const std::string& key) {
@@ -122,7 +85,7 @@ std::string spoken_unit(const std::string& key) {
   replace_all(unit, "rad_s", "rad/s");
   replace_all(unit, "N_m_s²", "N m s²");
   replace_all(unit, "m_s²", "m/s²");
-  return html(spoken(unit));
+  return xml_text(spoken(unit));
 }
 
 }  // namespace photorque

@@ -2,12 +2,8 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 namespace photorque {
-
-// `text` as content of an element or attribute.
-std::string html(std::string_view text);
 
 // "−1.13 × 10<sup>−9</sup>": `digits` significant ones, a true minus sign, and a power of ten
 // outside of [1e-3, 1e5). "–" for what is not finite.
@@ -22,8 +18,5 @@ std::string spoken_key(const std::string& key);
 std::string spoken_unit(const std::string& key);
 // "magnetic_dipole" as "magnetic dipole".
 std::string spoken(std::string name);
-
-// Plain text with superscripts, for SVG: "2.5×10⁻⁶".
-std::string plain_number(double value, int digits = 3);
 
 }  // namespace photorque

@@ -1,13 +1,12 @@
 #include "images/drawing/axis.h"
 
+#include "core/text/display.h"
 #include "images/drawing/page_layout.h"
-#include "images/drawing/text.h"
 
 namespace photorque {
 namespace {
 
 constexpr double gap = 3.0;
-constexpr Rgb ink = {0.13, 0.13, 0.13};
 
 std::string label_with_power(const std::string& label, int exponent) {
   if (exponent == 0) return label;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "images/drawing/canvas.h"
+#include "images/canvas/canvas.h"
 #include "images/drawing/ticks.h"
 
 namespace photorque {

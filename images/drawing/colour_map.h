@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/product.h"
-#include "images/drawing/colour.h"
+#include "images/canvas/colour.h"
 
 namespace photorque {
 

@@ -27,11 +27,9 @@ void require_consistent(const Map& map) {
 }
 
 void require_consistent(const Table& table) {
-  const auto rows = [](const Table::Column& column) {
-    return column.texts.empty() ? column.values.size() : column.texts.size();
-  };
   for (const Table::Column& column : table.columns) {
-    require_count(table.name + "." + column.name, "rows", rows(column), rows(table.columns[0]));
+    require_count(table.name + "." + column.name, "rows", column.size(),
+                  table.columns.front().size());
   }
 }
 

@@ -1,9 +1,9 @@
 #include "images/drawing/map_picture.h"
 
+#include "core/text/display.h"
 #include "images/drawing/consistency.h"
 #include "images/drawing/map_grid.h"
 #include "images/drawing/page_layout.h"
-#include "images/drawing/text.h"
 
 namespace photorque {
 namespace {
@@ -13,9 +13,8 @@ constexpr double tallest = 400.0;
 constexpr double largest_ratio = 8.0;
 constexpr double shortest_colour_bar = 150.0;
 constexpr double narrowest_page = 400.0;
-constexpr Rgb ink = {0.13, 0.13, 0.13};
 
-struct Layout {
+struct MapLayout {
   PageBox grid;  // whole points, so that cells meet pixels exactly
   Axis x, y;
   ColourBar bar;
@@ -37,8 +36,8 @@ PageBox grid_size(const Map& map) {
   return {0.0, 0.0, std::round(width), std::round(width / ratio)};
 }
 
-Layout layout_of(const Map& map, const Provenance& provenance) {
-  Layout layout;
+MapLayout map_layout(const Map& map, const Provenance& provenance) {
+  MapLayout layout;
   layout.grid = grid_size(map);
   layout.x = horizontal_axis({map.x_low, map.x_high}, false, map.x_label, layout.grid.width);
   layout.y = vertical_axis({map.y_low, map.y_high}, false, map.y_label, layout.grid.height);
@@ -82,7 +81,7 @@ void draw_hatching(Canvas& canvas, const PageBox& box) {
 
 MapPicture map_picture(const Map& map, const Provenance& provenance) {
   require_consistent(map);
-  const Layout layout = layout_of(map, provenance);
+  const MapLayout layout = map_layout(map, provenance);
   Canvas canvas = Canvas::of_pixels(
       layout.width, std::ceil(layout.text.page_height(layout.body_height)), pixels_per_point);
   const auto pixels = [](double points) {

@@ -3,8 +3,8 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
-#include "images/drawing/canvas.h"
-#include "images/drawing/picture.h"
+#include "images/canvas/canvas.h"
+#include "images/canvas/picture.h"
 
 namespace photorque {
 

@@ -1,6 +1,6 @@
 #include "images/drawing/page_layout.h"
 
-#include "images/drawing/text.h"
+#include "core/text/display.h"
 
 namespace photorque {
 namespace {
@@ -133,14 +133,14 @@ void draw_colour_bar(Canvas& canvas, const ColourBar& bar, const PagePoint& top_
   }
   const PageBox box{top_left.x, top_left.y, bar_thickness, height};
   canvas.image(box, 1, static_cast<int>(colours.size()), colours);
-  canvas.outline(box, {{0.13, 0.13, 0.13}, 0.8});
+  canvas.outline(box, {ink, 0.8});
   TextStyle style = tick_style;
   canvas.text(unit_with_power(bar.unit, bar.axis.ticks.exponent), {box.x, box.y - 0.6 * style.size},
               style);
   style.level = TextLevel::middle;
   for (size_t i = 0; i < bar.axis.ticks.values.size(); ++i) {
     const double y = box.bottom() - height * bar.axis.fraction(bar.axis.ticks.values[i]);
-    canvas.line({box.right(), y}, {box.right() + tick_length, y}, {{0.13, 0.13, 0.13}, 0.8});
+    canvas.line({box.right(), y}, {box.right() + tick_length, y}, {ink, 0.8});
     canvas.text(bar.axis.ticks.labels[i], {box.right() + tick_length + 3.0, y}, style);
   }
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "images/canvas/canvas.h"
 #include "images/drawing/axis.h"
-#include "images/drawing/canvas.h"
 #include "images/drawing/colour_map.h"
 
 namespace photorque {

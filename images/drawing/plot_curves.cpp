@@ -7,7 +7,6 @@
 namespace photorque {
 namespace {
 
-constexpr double resolution = 0.5;  // points on the page
 constexpr double marker_radius = 2.4;
 constexpr double legend_row = 16.0;
 constexpr double legend_sample = 24.0;
@@ -40,8 +39,8 @@ void draw_band(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve
   const auto lower = pieces_of(panel, curve, -1.0);
   if (upper.size() != lower.size()) return;  // one side leaves a logarithmic axis
   for (size_t i = 0; i < upper.size(); ++i) {
-    std::vector<PagePoint> polygon = thinned(upper[i], resolution);
-    const std::vector<PagePoint> back = thinned(lower[i], resolution);
+    std::vector<PagePoint> polygon = thinned(upper[i], panel.resolution);
+    const std::vector<PagePoint> back = thinned(lower[i], panel.resolution);
     polygon.insert(polygon.end(), back.rbegin(), back.rend());
     canvas.fill(polygon, colour, 0.22);
   }
@@ -62,10 +61,8 @@ void draw_markers(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& cu
   for (size_t i = 0; i < curve.x.size(); ++i) {
     const PagePoint point = panel.at(curve.x[i], curve.y[i]);
     if (!drawable_point(point) || std::abs(point.x) > 1e6 || std::abs(point.y) > 1e6) continue;
-    if (!taken.emplace(std::llround(point.x / resolution), std::llround(point.y / resolution))
-             .second) {
-      continue;
-    }
+    const auto cell = [&](double x) { return std::llround(x / panel.resolution); };
+    if (!taken.emplace(cell(point.x), cell(point.y)).second) continue;
     if (!curve.y_error.empty()) {
       const PagePoint low = panel.at(curve.x[i], curve.y[i] - curve.y_error[i]);
       const PagePoint high = panel.at(curve.x[i], curve.y[i] + curve.y_error[i]);
@@ -75,15 +72,33 @@ void draw_markers(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& cu
   }
 }
 
+// Points between gaps are drawn as dots, runs of them at once.
 void draw_lines(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
                 const Stroke& stroke) {
+  std::vector<PagePoint> lone;
+  const auto draw_lone = [&] {
+    if (!lone.empty()) canvas.discs(lone, 0.8 * stroke.width, stroke.colour);
+    lone.clear();
+  };
   for (const std::vector<PagePoint>& piece : pieces_of(panel, curve, 0.0)) {
     if (piece.size() == 1) {
-      canvas.disc(piece.front(), 0.8 * stroke.width, stroke.colour);
+      lone.push_back(piece.front());
     } else {
-      canvas.line(thinned(piece, resolution), stroke);
+      draw_lone();
+      canvas.line(thinned(piece, panel.resolution), stroke);
     }
   }
+  draw_lone();
+}
+
+// Gaps do not matter.
+void draw_dots(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve,
+               const Stroke& stroke) {
+  std::vector<PagePoint> points;
+  for (const std::vector<PagePoint>& piece : pieces_of(panel, curve, 0.0)) {
+    points.insert(points.end(), piece.begin(), piece.end());
+  }
+  canvas.discs(thinned(points, panel.resolution), stroke.width, stroke.colour);
 }
 
 // The bar over the i-th point; nothing for values that cannot be shown.
@@ -127,7 +142,8 @@ bool covers_a_curve(const ChartPanel& panel, const PageBox& box) {
     for (const double errors : {0.0, 1.0, -1.0}) {
       if (errors != 0.0 && curve.y_error.empty()) continue;
       for (const std::vector<PagePoint>& piece : pieces_of(panel, curve, errors)) {
-        const std::vector<PagePoint> line = curve.markers ? piece : thinned(piece, resolution);
+        const std::vector<PagePoint> line =
+            curve.markers ? piece : thinned(piece, panel.resolution);
         for (size_t i = 0; i < line.size(); ++i) {
           const PagePoint& from = curve.markers || i == 0 ? line[i] : line[i - 1];
           if (meets(box, from, line[i])) return true;
@@ -138,6 +154,23 @@ bool covers_a_curve(const ChartPanel& panel, const PageBox& box) {
   return false;
 }
 
+// What stands beside a curve's name in the legend; `left` is the middle of its left side.
+void draw_sample(Canvas& canvas, const Plot::Curve& curve, const Stroke& stroke,
+                 const PagePoint& left) {
+  const double middle_x = left.x + 0.5 * legend_sample;
+  if (curve.bars) {
+    constexpr double side = 10.0;
+    canvas.fill(PageBox{left.x + 0.5 * (legend_sample - side), left.y - 0.5 * side, side, side},
+                stroke.colour);
+  } else if (curve.markers) {
+    canvas.disc({middle_x, left.y}, marker_radius, stroke.colour);
+  } else if (curve.dots) {
+    canvas.disc({middle_x, left.y}, stroke.width, stroke.colour);
+  } else {
+    canvas.line(left, {left.x + legend_sample, left.y}, stroke);
+  }
+}
+
 }  // namespace
 
 Stroke curve_stroke(size_t index) {
@@ -146,6 +179,30 @@ Stroke curve_stroke(size_t index) {
   const std::array<std::vector<double>, 3> dashes = {{{}, {6.0, 3.0}, {1.5, 2.5}}};
   return {rgb_from_hex(colours[index % colours.size()]), 1.6, 1.0,
           dashes[(index / colours.size()) % dashes.size()]};
+}
+
+Stroke curve_stroke(const Plot::Curve& curve, size_t index) {
+  Stroke stroke = curve_stroke(index);
+  switch (curve.colour) {
+    case Plot::Colour::in_order:
+      break;
+    case Plot::Colour::blue:
+      stroke = curve_stroke(0);
+      break;
+    case Plot::Colour::vermilion:
+      stroke = curve_stroke(1);
+      break;
+    case Plot::Colour::green:
+      stroke = curve_stroke(2);
+      break;
+    case Plot::Colour::grey:
+      stroke.colour = rgb_from_hex(0x5C5C5C);
+      stroke.dashes.clear();
+      break;
+  }
+  stroke.width = curve.width;
+  if (curve.dashed) stroke.dashes = {6.0, 4.0};
+  return stroke;
 }
 
 PagePoint ChartPanel::at(double x_value, double y_value) const {
@@ -180,18 +237,21 @@ void draw_curves(Canvas& canvas, const ChartPanel& panel) {
   canvas.clipped(panel.frame, [&] {
     for (size_t i = 0; i < panel.curves.size(); ++i) {
       const Plot::Curve& curve = panel.curves[i];
-      if (!curve.bars && !curve.markers && !curve.y_error.empty()) {
-        draw_band(canvas, panel, curve, curve_stroke(i).colour);
+      if (!curve.bars && !curve.markers && !curve.dots && !curve.y_error.empty()) {
+        draw_band(canvas, panel, curve, curve_stroke(curve, i).colour);
       }
     }
     for (size_t i = 0; i < panel.curves.size(); ++i) {
       const Plot::Curve& curve = panel.curves[i];
+      const Stroke stroke = curve_stroke(curve, i);
       if (curve.bars) {
-        draw_bars(canvas, panel, curve, curve_stroke(i).colour);
+        draw_bars(canvas, panel, curve, stroke.colour);
       } else if (curve.markers) {
-        draw_markers(canvas, panel, curve, curve_stroke(i).colour);
+        draw_markers(canvas, panel, curve, stroke.colour);
+      } else if (curve.dots) {
+        draw_dots(canvas, panel, curve, stroke);
       } else {
-        draw_lines(canvas, panel, curve, curve_stroke(i));
+        draw_lines(canvas, panel, curve, stroke);
       }
     }
   });
@@ -200,7 +260,7 @@ void draw_curves(Canvas& canvas, const ChartPanel& panel) {
 Legend legend_of(const std::vector<Plot::Curve>& curves, double widest) {
   Legend legend;
   for (size_t i = 0; i < curves.size(); ++i) {
-    if (curves[i].label.empty()) continue;
+    if (curves[i].label.empty() || curves[i].x.empty()) continue;
     legend.curves.push_back(i);
     legend.width = std::max(legend.width, text_width(curves[i].label, tick_style));
   }
@@ -231,17 +291,7 @@ void draw_legend(Canvas& canvas, const ChartPanel& panel, const Legend& legend,
   double y = top_left.y + 0.6 * legend_padding + 0.5 * legend_row;
   for (const size_t index : legend.curves) {
     const Plot::Curve& curve = panel.curves[index];
-    const Stroke stroke = curve_stroke(index);
-    const double x = top_left.x + legend_padding;
-    if (curve.bars) {
-      constexpr double side = 10.0;
-      canvas.fill(PageBox{x + 0.5 * (legend_sample - side), y - 0.5 * side, side, side},
-                  stroke.colour);
-    } else if (curve.markers) {
-      canvas.disc({x + 0.5 * legend_sample, y}, marker_radius, stroke.colour);
-    } else {
-      canvas.line({x, y}, {x + legend_sample, y}, stroke);
-    }
+    draw_sample(canvas, curve, curve_stroke(curve, index), {top_left.x + legend_padding, y});
     TextStyle style = tick_style;
     style.level = TextLevel::middle;
     const double room = top_left.x + legend.width - 0.5 * legend_padding - text_x;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/product.h"
+#include "images/canvas/canvas.h"
 #include "images/drawing/axis.h"
-#include "images/drawing/canvas.h"
 
 namespace photorque {
 
@@ -14,12 +14,15 @@ namespace photorque {
 // the same with dashes. Source: M. Okabe and K. Ito, "Color Universal Design" (2008); their yellow
 // is left out because it is lost on white.
 Stroke curve_stroke(size_t index);
+// The same for a curve that may have a colour, width and dashes of its own; `index` is its place.
+Stroke curve_stroke(const Plot::Curve& curve, size_t index);
 
 // One pair of axes on the page.
 struct ChartPanel {
   PageBox frame;
   Axis x, y;
   std::vector<Plot::Curve> curves;
+  double resolution = 0.5;  // points on the page: what is drawn differs by less
 
   // Where a pair of values stands on the page; NaN for what cannot be shown.
   PagePoint at(double x_value, double y_value) const;
@@ -38,7 +41,7 @@ void draw_curves(Canvas& canvas, const ChartPanel& panel);
 
 // The box of a legend. Empty when no curve has a label.
 struct Legend {
-  std::vector<size_t> curves;  // those with labels
+  std::vector<size_t> curves;  // those with labels and points
   double width = 0.0;
   double height = 0.0;
 };

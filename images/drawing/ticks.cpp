@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "images/drawing/text.h"
+#include "core/text/display.h"
 
 namespace photorque {
 namespace {

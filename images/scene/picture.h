@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/provenance.h"
-#include "images/drawing/picture.h"
+#include "images/canvas/picture.h"
 #include "images/scene/shading.h"
 
 namespace photorque {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/vector.h"
+#include "images/canvas/picture.h"
 #include "images/drawing/colour_map.h"
-#include "images/drawing/picture.h"
 
 namespace photorque {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "images/drawing/picture.h"
+#include "images/canvas/picture.h"
 
 namespace photorque {
 

@@ -1,7 +1,7 @@
 #include "images/writers/map_channels.h"
 
+#include "core/text/display.h"
 #include "images/drawing/consistency.h"
-#include "images/drawing/text.h"
 #include "images/writers/metadata.h"
 
 namespace photorque {

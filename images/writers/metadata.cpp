@@ -1,6 +1,6 @@
 #include "images/writers/metadata.h"
 
-#include "images/drawing/text.h"
+#include "core/text/display.h"
 
 namespace photorque {
 

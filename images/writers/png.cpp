@@ -1,9 +1,9 @@
 // Maps and plots as PNG pictures for people.
 //
 // "Description" is JSON with unit, extents and provenance.
+#include "core/text/display.h"
 #include "images/drawing/map_picture.h"
 #include "images/drawing/plot_picture.h"
-#include "images/drawing/text.h"
 #include "images/writers/image_file.h"
 #include "images/writers/kind.h"
 #include "images/writers/map_channels.h"

@@ -3,8 +3,8 @@
 // <title> holds the title, <desc> the provenance for people, <metadata> the same as JSON.
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/display.h"
 #include "images/drawing/plot_picture.h"
-#include "images/drawing/text.h"
 #include "images/writers/kind.h"
 #include "images/writers/metadata.h"
 

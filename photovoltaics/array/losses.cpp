@@ -47,23 +47,19 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
 
 Product loss_product(const std::vector<LossStage>& stages) {
   Product product;
-  Table table{"losses",
-              "From the light to the load",
-              {{"stage", {}, {}},
-               {"lost_to", {}, {}},
-               {"power_W", {}, {}},
-               {"lost_W", {}, {}},
-               {"kept", {}, {}}}};
+  Table table = Table::of("losses", "From the light to the load",
+                          {"stage", "lost_to", "power_W", "lost_W", "kept"});
   Plot plot{
       "loss_waterfall", "Power left after each loss", "stage", "power [W]", {}, false, false, {}};
   for (size_t i = 0; i < stages.size(); ++i) {
     const LossStage& stage = stages[i];
     const double before_W = i == 0 ? stage.power_W : stages[i - 1].power_W;
-    table.columns[0].texts.push_back(stage.name);
-    table.columns[1].texts.push_back(i == 0 ? "-" : stage.loss);
-    table.columns[2].values.push_back(stage.power_W);
-    table.columns[3].values.push_back(before_W - stage.power_W);
-    table.columns[4].values.push_back(before_W > 0 ? stage.power_W / before_W : 0.0);
+    table.row()
+        .set("stage", stage.name)
+        .set("lost_to", i == 0 ? "-" : stage.loss)
+        .set("power_W", stage.power_W)
+        .set("lost_W", before_W - stage.power_W)
+        .set("kept", before_W > 0 ? stage.power_W / before_W : 0.0);
     const std::string number = std::to_string(i + 1);
     plot.curves.push_back({number + " " + stage.name,
                            {static_cast<double>(i + 1)},
@@ -100,18 +96,15 @@ Uniformity uniformity(const ArrayResult& array, std::span<const int> cells) {
 }
 
 Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring) {
-  Table table{"uniformity",
-              "How even the light is",
-              {{"cells", {}, {}},
-               {"mean_W_m2", {}, {}},
-               {"minimum_over_mean", {}, {}},
-               {"variation", {}, {}}}};
+  Table table = Table::of("uniformity", "How even the light is",
+                          {"cells", "mean_W_m2", "minimum_over_mean", "variation"});
   const auto add = [&](const std::string& name, const std::vector<int>& cells) {
     const Uniformity u = uniformity(array, cells);
-    table.columns[0].texts.push_back(name);
-    table.columns[1].values.push_back(u.mean_W_m2);
-    table.columns[2].values.push_back(u.minimum_over_mean);
-    table.columns[3].values.push_back(u.variation);
+    table.row()
+        .set("cells", name)
+        .set("mean_W_m2", u.mean_W_m2)
+        .set("minimum_over_mean", u.minimum_over_mean)
+        .set("variation", u.variation);
   };
   std::vector<int> all(array.cell_light_W.size());
   std::iota(all.begin(), all.end(), 0);

@@ -29,45 +29,45 @@ std::vector<double> products(const std::vector<double>& a, const std::vector<dou
 
 Table point_table(const std::string& name, const std::string& title,
                   const std::vector<ArrayPoint>& points) {
-  Table table{name, title, {{"voltage_V", {}, {}}, {"current_A", {}, {}}, {"power_W", {}, {}}}};
+  Table table = Table::of(name, title, {"voltage_V", "current_A", "power_W"});
   for (const ArrayPoint& p : points) {
-    table.columns[0].values.push_back(p.voltage_V);
-    table.columns[1].values.push_back(p.current_A);
-    table.columns[2].values.push_back(p.power_W());
+    table.row()
+        .set("voltage_V", p.voltage_V)
+        .set("current_A", p.current_A)
+        .set("power_W", p.power_W());
   }
   return table;
 }
 
 Table cell_table(const ArrayResult& result) {
-  Table table{"cells", "Cells at the maximum power point", {}};
+  Table table = Table::of("cells", "Cells at the maximum power point");
   std::vector<double> index, irradiance;
   for (size_t i = 0; i < result.cell_light_W.size(); ++i) {
     index.push_back(static_cast<double>(i));
     irradiance.push_back(result.cell_light_W[i] / result.cell_area_m2[i]);
   }
-  table.columns = {{"cell", index, {}},
-                   {"irradiance_W_m2", irradiance, {}},
-                   {"photocurrent_A", result.cell_photocurrent_A, {}},
-                   {"voltage_V", result.cells.voltages_V, {}},
-                   {"current_A", result.cells.currents_A, {}},
-                   {"power_W", products(result.cells.voltages_V, result.cells.currents_A), {}}};
+  table.add("cell", index)
+      .add("irradiance_W_m2", irradiance)
+      .add("photocurrent_A", result.cell_photocurrent_A)
+      .add("voltage_V", result.cells.voltages_V)
+      .add("current_A", result.cells.currents_A)
+      .add("power_W", products(result.cells.voltages_V, result.cells.currents_A));
   if (result.cell_centre_m.empty()) return table;
-  Table::Column u{"centre_u_m", {}, {}}, v{"centre_v_m", {}, {}};
+  std::vector<double> u_m, v_m;
   for (const Vec2& centre : result.cell_centre_m) {
-    u.values.push_back(centre.x());
-    v.values.push_back(centre.y());
+    u_m.push_back(centre.x());
+    v_m.push_back(centre.y());
   }
-  table.columns.insert(table.columns.end(), {u, v});
-  return table;
+  return table.add("centre_u_m", u_m).add("centre_v_m", v_m);
 }
 
 void add_plots(const ArrayResult& result, const Table& iv, Product& product) {
-  const auto& v = iv.columns[0].values;
+  const auto& v = iv.column("voltage_V").values;
   Plot current{"iv_curve", "Current of the array", "voltage [V]", "current [A]", {}, false, false,
                {}};
-  current.curves.push_back({"array", v, iv.columns[1].values, {}, false});
+  current.curves.push_back({"array", v, iv.column("current_A").values, {}, false});
   Plot power{"pv_curve", "Power of the array", "voltage [V]", "power [W]", {}, false, false, {}};
-  power.curves.push_back({"array", v, iv.columns[2].values, {}, false});
+  power.curves.push_back({"array", v, iv.column("power_W").values, {}, false});
   Plot::Curve peaks{"local maxima", {}, {}, {}, true};
   for (const ArrayPoint& p : result.maxima) {
     peaks.x.push_back(p.voltage_V);

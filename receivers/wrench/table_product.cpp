@@ -41,20 +41,21 @@ std::string letter(int axis) {
 
 Table rows(const WrenchTable& table, const std::string& name) {
   const AngleNames names = angle_names(table);
-  Table result{"wrench_table_" + name, "Force and torque of light on " + name + ", body frame", {}};
-  Table::Column polar{names.polar + "_deg", {}, {}}, around{names.around + "_deg", {}, {}};
+  Table result =
+      Table::of("wrench_table_" + name, "Force and torque of light on " + name + ", body frame",
+                {names.around + "_deg", names.polar + "_deg"});
   for (const double around_rad : table.around_rad) {
     for (const double polar_rad : table.polar_rad) {
-      around.values.push_back(stated_deg(around_rad));
-      polar.values.push_back(stated_deg(polar_rad));
+      result.row()
+          .set(names.around + "_deg", stated_deg(around_rad))
+          .set(names.polar + "_deg", stated_deg(polar_rad));
     }
   }
-  result.columns = {std::move(around), std::move(polar)};
   const auto add = [&](const std::string& stem, const char* unit, const std::vector<Vec3>& values) {
     for (int axis = 0; axis < 3; ++axis) {
-      Table::Column column{stem + "_" + letter(axis) + "_" + unit, {}, {}};
-      for (const Vec3& value : values) column.values.push_back(value[axis]);
-      result.columns.push_back(std::move(column));
+      std::vector<double> components;
+      for (const Vec3& value : values) components.push_back(value[axis]);
+      result.add(stem + "_" + letter(axis) + "_" + unit, components);
     }
   };
   for (const VectorColumn& c : vector_columns(table)) add(c.name, c.unit_suffix, *c.value);

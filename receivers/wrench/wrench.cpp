@@ -49,9 +49,9 @@ std::string component(const std::string& kind, int axis) {
 void add_columns(Table& table, const std::vector<WrenchEstimate>& wrenches, const std::string& kind,
                  const std::string& unit, const std::function<Vec3(const WrenchEstimate&)>& value) {
   for (int axis = 0; axis < 3; ++axis) {
-    Table::Column column{component(kind, axis) + "_" + unit, {}, {}};
-    for (const WrenchEstimate& wrench : wrenches) column.values.push_back(value(wrench)[axis]);
-    table.columns.push_back(std::move(column));
+    std::vector<double> components;
+    for (const WrenchEstimate& wrench : wrenches) components.push_back(value(wrench)[axis]);
+    table.add(component(kind, axis) + "_" + unit, components);
   }
 }
 
@@ -135,7 +135,8 @@ std::vector<Quantity> wrench_quantities(const WrenchEstimate& wrench, const std:
 
 Table wrench_rows(const std::vector<WrenchEstimate>& wrenches,
                   const std::vector<std::string>& names, const std::string& name) {
-  Table table{"wrench_" + name, "Force and torque of light on " + name, {{"part", {}, names}}};
+  Table table = Table::of("wrench_" + name, "Force and torque of light on " + name);
+  table.add("part", names);
   using W = WrenchEstimate;
   add_columns(table, wrenches, "force", "N", [](const W& w) { return w.mean.force_N; });
   add_columns(table, wrenches, "torque", "N_m", [](const W& w) { return w.mean.torque_N_m; });

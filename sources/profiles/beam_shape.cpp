@@ -162,16 +162,16 @@ std::vector<Group> different_emitters(std::span<const Beam> beams) {
 
 Table beam_shape_table(std::span<const Beam> beams) {
   const std::vector<Group> groups = different_emitters(beams);
-  Table table{"beam_shapes", "Angular shape of every source", {{"source", {}, {}}}};
+  Table table = Table::of("beam_shapes", "Angular shape of every source", {"source"});
   std::vector<BeamShape> shapes;
   for (const Group& group : groups) {
-    table.columns[0].texts.push_back(group.first->name);
+    table.row().set("source", group.first->name);
     shapes.push_back(describe(*group.first->emitter));
   }
   const auto add = [&](const std::string& name, const auto& value_of) {
-    Table::Column column{name, {}, {}};
-    for (size_t i = 0; i < groups.size(); ++i) column.values.push_back(value_of(i));
-    table.columns.push_back(std::move(column));
+    std::vector<double> values;
+    for (size_t i = 0; i < groups.size(); ++i) values.push_back(value_of(i));
+    table.add(name, values);
   };
   const auto add_angle = [&](const std::string& name, double BeamShape::*angle_rad) {
     add(name, [&](size_t i) { return shapes[i].*angle_rad / degree_rad; });

@@ -26,7 +26,7 @@ const std::vector<std::pair<std::string, std::string>> only_place = {
     {"draco/", "scenes/gltf/file"},
     {"meshoptimizer", "scenes/gltf/file"},
     {"OpenImageIO/", "images/writers"},
-    {"cairo", "images/drawing"},
+    {"cairo", "images/canvas"},
     {"CLI/", "tools"},
     {"zlib.h", "attitude/recordings"},
     {"pugixml", "sources/photometry"},

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "images/drawing/colour.h"
+#include "images/canvas/colour.h"
 #include "images/drawing/colour_map.h"
 
 namespace photorque {

@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <regex>
 
+#include "images/drawing/bar_chart.h"
 #include "images/drawing/plot_curves.h"
+#include "images/drawing/plot_layout.h"
 #include "images/drawing/plot_picture.h"
 #include "tests/images/sample_product.h"
 
@@ -212,6 +215,123 @@ TEST(PlotSvg, StaysSmallForLongHistories) {
     plot.curves[0].y.push_back(std::sin(1e-4 * i) + 0.01 * (i % 7));
   }
   EXPECT_LT(plot_svg(plot, {}).size(), 300000u);
+}
+
+// Numbers "x y" of every path that is stroked in `colour`.
+std::vector<std::pair<double, double>> points_in(const std::string& svg,
+                                                 const std::string& colour) {
+  static const std::regex path(R"re(<path d="([^"]*)"[^>]*stroke="(#[0-9a-f]{6})")re");
+  static const std::regex pair(R"([ML](-?[0-9.]+) (-?[0-9.]+))");
+  std::vector<std::pair<double, double>> all;
+  for (std::sregex_iterator p(svg.begin(), svg.end(), path), end; p != end; ++p) {
+    if ((*p)[2] != colour) continue;
+    const std::string d = (*p)[1];
+    for (std::sregex_iterator it(d.begin(), d.end(), pair); it != end; ++it) {
+      all.emplace_back(std::stod((*it)[1]), std::stod((*it)[2]));
+    }
+  }
+  return all;
+}
+const std::string blue_hex = "#0072b2";
+
+TEST(PlotHtml, KeepsASpikeThatOneOfAHundredThousandSamplesHolds) {
+  Plot plot;
+  Plot::Curve line;
+  for (int i = 0; i < 100000; ++i) {
+    line.x.push_back(i);
+    line.y.push_back(i == 54321 ? 1.0 : 0.0);
+  }
+  plot.curves = {line};
+  const auto drawn = points_in(plot_html(plot), blue_hex);
+  EXPECT_LT(drawn.size(), 5000u);
+  const auto [top, foot] =
+      std::ranges::minmax_element(drawn, {}, [](const auto& p) { return p.second; });
+  const PlotLayout layout = plot_layout(plot, {.right = html_chart_width, .first_height = 160.0});
+  const double scale = layout.panels[0].y.fraction(1.0) - layout.panels[0].y.fraction(0.0);
+  EXPECT_NEAR(foot->second - top->second, 160.0 * scale, 0.2);
+}
+
+TEST(PlotHtml, BreaksTheLineAtAGap) {
+  Plot plot = constant_plot();
+  plot.curves[0].x = {0, 1, 2, 3, 4};
+  plot.curves[0].y = {1, 2, std::nan(""), 2, 1};
+  const std::string svg = plot_html(plot);
+  size_t lines = 0;
+  for (size_t at = 0; (at = svg.find(blue_hex, at)) != std::string::npos; ++at) ++lines;
+  EXPECT_EQ(lines, 2u);
+}
+
+// Ids, links and namespaces of several charts in one page would clash or lead outside of it.
+TEST(PlotHtml, HoldsTextAndNothingThatClashesInAPage) {
+  Plot plot = constant_plot();
+  plot.title = "Rate <1 & more";
+  plot.x_label = "time [s]";
+  plot.shaded = {{0.5, 1.0}};
+  plot.shaded_label = "held out";
+  const std::string svg = plot_html(plot);
+  EXPECT_THAT(svg, ::testing::StartsWith("<svg class=\"chart\""));
+  EXPECT_THAT(svg, ::testing::HasSubstr("<title>Rate &lt;1 &amp; more</title>"));
+  EXPECT_THAT(svg, ::testing::HasSubstr(">time [s]</text>"));
+  EXPECT_THAT(svg, ::testing::HasSubstr(">held out</text>"));
+  for (const char* outside : {" id=", "href", "http", "url("}) {
+    EXPECT_THAT(svg, ::testing::Not(::testing::HasSubstr(outside))) << outside;
+  }
+}
+
+TEST(PlotHtml, SizeDoesNotGrowWithTheRecording) {
+  const auto with_samples = [](int count) {
+    Plot plot;
+    plot.curves.resize(2);
+    plot.curves[1].dots = true;
+    for (Plot::Curve& curve : plot.curves) {
+      for (int i = 0; i < count; ++i) {
+        curve.x.push_back(i);
+        curve.y.push_back(std::sin(12345.678 * i));
+      }
+    }
+    return plot_html(plot).size();
+  };
+  EXPECT_LT(with_samples(400000), 1.5 * static_cast<double>(with_samples(20000)));
+}
+
+// 1000 values from 0 to 1 and two outliers, which an axis for all of them would go to.
+TEST(PlotLayout, RobustRangeLeavesOutOutliersButNoLevel) {
+  Plot plot;
+  plot.curves.resize(1);
+  for (int i = 0; i < 1000; ++i) {
+    plot.curves[0].x.push_back(i);
+    plot.curves[0].y.push_back(i == 500 ? 1e6 : i == 600 ? -1e6 : 0.001 * i);
+  }
+  plot.robust_range = true;
+  plot.levels = {-2.0};
+  const AxisRange range = plot_layout(plot, {.right = 600.0}).panels.at(0).y.range;
+  EXPECT_NEAR(range.high, 1.0, 0.2);
+  EXPECT_NEAR(range.low, -2.0, 0.2);
+}
+
+TEST(BarChartHtml, LengthsAreProportionalAndNegativeBarsGoLeft) {
+  const BarChart chart{
+      "n",
+      "Evidence",
+      "log evidence",
+      {{"best", 40.0, "", true}, {"half", 20.0, "−20 to the best"}, {"worse", -10.0}}};
+  const std::string svg = bar_chart_html(chart);
+  static const std::regex rect(R"re(<rect x="([-0-9.]+)" y="[^"]*" width="([0-9.]+)")re");
+  std::vector<std::pair<double, double>> bars;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), rect), end; it != end; ++it) {
+    bars.emplace_back(std::stod((*it)[1]), std::stod((*it)[2]));
+  }
+  ASSERT_EQ(bars.size(), 3u);
+  EXPECT_NEAR(bars[0].second / bars[1].second, 2.0, 1e-3);
+  EXPECT_NEAR(bars[1].second / bars[2].second, 2.0, 1e-3);
+  EXPECT_NEAR(bars[0].first, bars[1].first, 0.02);
+  EXPECT_NEAR(bars[2].first + bars[2].second, bars[0].first, 0.02);
+  EXPECT_THAT(svg, ::testing::HasSubstr(">−10.0</text>"));
+}
+
+TEST(Legend, NamesNoCurveWithoutPoints) {
+  const std::vector<Plot::Curve> curves = {{"seen", {0.0, 1.0}, {1.0, 2.0}}, {"empty", {}, {}}};
+  EXPECT_EQ(legend_of(curves, 170.0).curves, std::vector<size_t>{0});
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <random>
 
+#include "core/text/display.h"
 #include "images/drawing/axis.h"
-#include "images/drawing/text.h"
 #include "images/drawing/ticks.h"
 
 namespace photorque {

@@ -23,16 +23,9 @@ const Table& table_named(const Product& product, const std::string& name) {
   return *table;
 }
 
-const Table::Column& column_named(const Table& table, const std::string& name) {
-  for (const Table::Column& column : table.columns) {
-    if (column.name == name) return column;
-  }
-  throw NumericalError("the table " + table.name + " has no column " + name);
-}
-
 void print_reasons(const Console& console, const Table& figures) {
-  const auto& quantity = column_named(figures, "quantity").texts;
-  const auto& why = column_named(figures, "why").texts;
+  const auto& quantity = figures.column("quantity").texts;
+  const auto& why = figures.column("why").texts;
   console.heading("Why");
   for (size_t i = 0; i < quantity.size(); ++i) console.line("  " + quantity[i] + ": " + why[i]);
 }
@@ -42,7 +35,7 @@ void print_air(const Console& console, const Table& parts) {
   print_table(console, parts,
               {{"part", "part"},
                {"torque [N m]", "torque_N_m"},
-               {"share", "share"},
+               {"fraction", "share"},
                {"Reynolds", "reynolds"},
                {"transition", "transition_reynolds"},
                {"law holds", "law_holds"}});
@@ -64,7 +57,7 @@ void run_budget(const CommandLine& line) {
   print_table(console, table_named(product, "budget"),
               {{"disturbance", "disturbance"},
                {"torque [N m]", "torque_N_m"},
-               {"share", "share_of_sum"},
+               {"fraction", "share_of_sum"},
                {"1 min [deg]", "angle_1_min_deg"},
                {"1 h [deg]", "angle_1_h_deg"},
                {"1 day [deg]", "angle_1_day_deg"},

@@ -6,6 +6,8 @@
 #include "diagnosis/report/improved.h"
 #include "diagnosis/report/json.h"
 #include "diagnosis/report/page.h"
+#include "images/drawing/bar_chart.h"
+#include "images/drawing/plot_picture.h"
 #include "tools/runs/attitude_run.h"
 
 namespace photorque {
@@ -72,7 +74,8 @@ void run_diagnose(const CommandLine& line) {
   const std::string json = diagnosis_json(diagnosis, provenance);
   const std::string improved =
       improved_experiment(read_file(line.experiment), diagnosis, fs::absolute(out));
-  const std::string report = report_html(diagnosis, line.experiment.stem().string(), provenance);
+  const std::string report = report_html(diagnosis, line.experiment.stem().string(), provenance,
+                                         {plot_html, bar_chart_html});
   write_file_whole(out / "improved.toml", improved);
   write_file_whole(out / "report.html", report);
   write_file_whole(out / "diagnosis.json", json);

@@ -105,14 +105,14 @@ struct Row {
 
 Product parameter_product(const std::vector<Row>& rows) {
   Product product;
-  Table table{"parameters",
-              "Fitted parameters",
-              {{"parameter", {}, {}}, {"value", {}, {}}, {"standard_error", {}, {}}}};
+  Table table =
+      Table::of("parameters", "Fitted parameters", {"parameter", "value", "standard_error"});
   for (const Row& row : rows) {
     product.quantities.push_back({row.name, row.estimate});
-    table.columns[0].texts.push_back(row.name);
-    table.columns[1].values.push_back(row.estimate.value);
-    table.columns[2].values.push_back(row.estimate.standard_error);
+    table.row()
+        .set("parameter", row.name)
+        .set("value", row.estimate.value)
+        .set("standard_error", row.estimate.standard_error);
   }
   product.tables.push_back(table);
   return product;

@@ -84,7 +84,7 @@ int run(int argc, char** argv) {
           ->allow_extra_args(false);
     }
     if (verb.takes_holdouts) {
-      command->add_option("--holdout", line.holdouts, "A recording kept back to judge by; as above")
+      command->add_option("--holdout", line.holdouts, "A recording held out: never fitted, it judges the finding; as above")
           ->allow_extra_args(false);
     }
     if (verb.takes_cases) {

@@ -14,7 +14,7 @@ void print_run(const Console& console, const PropagationRun& run, const Propagat
   console.line("Disturbances");
   for (const Disturbance& disturbance : run.model.disturbances)
     console.line("  " + disturbance.kind);
-  console.heading("Flight");
+  console.heading("Trajectory");
   const PlatformState& end = result.states.back();
   const auto row = [&](const std::string& name, double value, const std::string& unit) {
     console.line("  " + name + std::string(24 - name.size(), ' ') + show(value) + " " + unit);

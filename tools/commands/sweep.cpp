@@ -85,16 +85,19 @@ std::vector<Quantity> read_figures(const std::filesystem::path& summary) {
 }
 
 // The value of an axis as a column: numbers where all are numbers.
-Table::Column axis_column(const SweepPlan& plan, size_t axis) {
-  Table::Column column{plan.axes[axis].key, {}, {}};
+void add_axis(Table& table, const SweepPlan& plan, size_t axis) {
+  std::vector<double> numbers;
+  std::vector<std::string> texts;
   for (size_t d = 0; d < plan.designs(); ++d) {
     const std::string& text = plan.value(d, axis);
-    column.values.push_back(number_in(text).value_or(std::numeric_limits<double>::quiet_NaN()));
-    column.texts.push_back(text);
+    if (const auto number = number_in(text)) numbers.push_back(*number);
+    texts.push_back(text);
   }
-  const bool numbers = std::ranges::none_of(column.values, [](double v) { return std::isnan(v); });
-  (numbers ? column.texts.clear() : column.values.clear());
-  return column;
+  if (numbers.size() == texts.size()) {
+    table.add(plan.axes[axis].key, numbers);
+  } else {
+    table.add(plan.axes[axis].key, texts);
+  }
 }
 
 std::vector<std::string> chosen_figures(const SweepPlan& plan, const std::vector<Quantity>& first) {
@@ -102,22 +105,28 @@ std::vector<std::string> chosen_figures(const SweepPlan& plan, const std::vector
   for (const Quantity& q : first) names.push_back(q.name);
   if (plan.figures.empty()) return names;
   for (const std::string& name : plan.figures) {
+    if (std::ranges::count(plan.figures, name) > 1) {
+      throw InputError({}, "sweep.figures", '"' + name + "\" twice", "every figure once");
+    }
     if (std::ranges::find(names, name) == names.end()) {
-      const std::string weak_evidence = nearest(name, {names.begin(), names.end()});
+      const std::string suggestion = nearest(name, {names.begin(), names.end()});
       throw InputError({}, "sweep.figures", '"' + name + '"',
-                       weak_evidence.empty()
+                       suggestion.empty()
                            ? "a figure of the command's summary.json"
-                           : "a figure of the summary, perhaps \"" + weak_evidence + '"');
+                           : "a figure of the summary, perhaps \"" + suggestion + '"');
     }
   }
   return plan.figures;
 }
 
+constexpr const char* error_suffix = "_standard_error";
+
 // Against the last axis, a curve for every combination of the others; of random plans, points.
-Plot figure_plot(const SweepPlan& plan, const Table& table, size_t column) {
+Plot figure_plot(const SweepPlan& plan, const Table& table, const std::string& figure) {
   const size_t axes = plan.axes.size();
-  const Table::Column& x = table.columns[axes];
-  const Table::Column& y = table.columns[column];
+  const Table::Column& x = table.column(plan.axes.back().key);
+  const Table::Column& y = table.column(figure);
+  const Table::Column& error = table.column(figure + error_suffix);
   Plot plot{"sweep_" + y.name, y.name + " over " + x.name, x.name, y.name, {}, false, false, {}};
   const size_t along = plan.grid ? plan.axes.back().values.size() : plan.designs();
   for (size_t begin = 0; begin < plan.designs(); begin += along) {
@@ -129,7 +138,7 @@ Plot figure_plot(const SweepPlan& plan, const Table& table, size_t column) {
     for (size_t d = begin; d < begin + along; ++d) {
       curve.x.push_back(x.values[d]);
       curve.y.push_back(y.values[d]);
-      curve.y_error.push_back(table.columns[column + 1].values[d]);
+      curve.y_error.push_back(error.values[d]);
     }
     plot.curves.push_back(std::move(curve));
   }
@@ -138,33 +147,26 @@ Plot figure_plot(const SweepPlan& plan, const Table& table, size_t column) {
 
 Product sweep_product(const SweepPlan& plan, const std::vector<std::vector<Quantity>>& designs) {
   const std::vector<std::string> names = chosen_figures(plan, designs.front());
-  Table table{"sweep", "What " + plan.verb + " gave, design by design", {}};
-  table.columns.push_back({"design", {}, {}});
-  for (size_t d = 0; d < designs.size(); ++d) {
-    table.columns[0].values.push_back(static_cast<double>(d + 1));
-  }
-  for (size_t axis = 0; axis < plan.axes.size(); ++axis) {
-    table.columns.push_back(axis_column(plan, axis));
-  }
+  Table table = Table::of("sweep", "What " + plan.verb + " gave, design by design", {"design"});
+  for (size_t d = 0; d < designs.size(); ++d) table.row().set("design", static_cast<double>(d + 1));
+  for (size_t axis = 0; axis < plan.axes.size(); ++axis) add_axis(table, plan, axis);
   for (const std::string& name : names) {
-    Table::Column value{name, {}, {}}, error{name + "_standard_error", {}, {}};
+    std::vector<double> values, errors;
     for (const std::vector<Quantity>& figures : designs) {
       const auto it = std::ranges::find(figures, name, &Quantity::name);
       const double nan = std::numeric_limits<double>::quiet_NaN();
-      value.values.push_back(it == figures.end() ? nan : it->estimate.value);
-      error.values.push_back(it == figures.end() ? nan : it->estimate.standard_error);
+      values.push_back(it == figures.end() ? nan : it->estimate.value);
+      errors.push_back(it == figures.end() ? nan : it->estimate.standard_error);
     }
-    table.columns.push_back(std::move(value));
-    table.columns.push_back(std::move(error));
+    table.add(name, values).add(name + error_suffix, errors);
   }
   Product product;
-  const size_t first_figure = plan.axes.size() + 1;
   constexpr size_t max_curves = 12;
   const size_t curves = plan.grid ? plan.designs() / plan.axes.back().values.size() : 1;
   const bool plots = !plan.figures.empty() && curves <= max_curves &&
-                     !table.columns[plan.axes.size()].values.empty();
-  for (size_t k = 0; plots && k < names.size(); ++k) {
-    product.plots.push_back(figure_plot(plan, table, first_figure + 2 * k));
+                     !table.column(plan.axes.back().key).values.empty();
+  if (plots) {
+    for (const std::string& name : names) product.plots.push_back(figure_plot(plan, table, name));
   }
   product.quantities.push_back({"designs", {static_cast<double>(designs.size()), 0.0}});
   product.tables.push_back(std::move(table));

@@ -14,27 +14,26 @@ namespace {
 class PowerTable {
  public:
   explicit PowerTable(bool with_array) {
-    table_ = {"power_over_attitude", "Power over tilt and heading", {}};
-    for (const char* name : {"tilt_deg", "heading_deg", "on_receiver_W", "on_receiver_error_W"}) {
-      table_.columns.push_back({name, {}, {}});
-    }
-    if (with_array) {
-      for (const char* name : {"electric_W", "electric_error_W"})
-        table_.columns.push_back({name, {}, {}});
-    }
+    std::vector<std::string> columns = {"tilt_deg", "heading_deg", "on_receiver_W",
+                                        "on_receiver_error_W"};
+    if (with_array) columns.insert(columns.end(), {"electric_W", "electric_error_W"});
+    table_ = Table::of("power_over_attitude", "Power over tilt and heading", columns);
   }
   void add(double tilt_rad, double heading_rad, const Estimate& light,
            const std::optional<Estimate>& electric) {
-    std::vector<double> row = {stated_deg(tilt_rad), stated_deg(heading_rad), light.value,
-                               light.standard_error};
-    if (electric) row.insert(row.end(), {electric->value, electric->standard_error});
-    for (size_t c = 0; c < row.size(); ++c) table_.columns[c].values.push_back(row[c]);
+    Table::Row row = table_.row();
+    row.set("tilt_deg", stated_deg(tilt_rad)).set("heading_deg", stated_deg(heading_rad));
+    row.set("on_receiver_W", light.value).set("on_receiver_error_W", light.standard_error);
+    if (!electric) return;
+    row.set("electric_W", electric->value).set("electric_error_W", electric->standard_error);
   }
   const Table& table() const { return table_; }
 
-  // Curves over the tilt, one per heading.
-  Plot plot(size_t headings, size_t tilts, size_t column, const std::string& name,
+  // Curves over the tilt, one per heading, of the columns `stem`_W and `stem`_error_W.
+  Plot plot(size_t headings, size_t tilts, const std::string& stem, const std::string& name,
             const std::string& title) const {
+    const auto& power_W = table_.column(stem + "_W").values;
+    const auto& error_W = table_.column(stem + "_error_W").values;
     Plot plot;
     plot.name = name;
     plot.title = title;
@@ -44,11 +43,11 @@ class PowerTable {
       Plot::Curve curve;
       for (size_t t = 0; t < tilts; ++t) {
         const size_t row = h * tilts + t;
-        curve.x.push_back(table_.columns[0].values[row]);
-        curve.y.push_back(table_.columns[column].values[row]);
-        curve.y_error.push_back(table_.columns[column + 1].values[row]);
+        curve.x.push_back(table_.column("tilt_deg").values[row]);
+        curve.y.push_back(power_W[row]);
+        curve.y_error.push_back(error_W[row]);
       }
-      curve.label = "heading " + show(table_.columns[1].values[h * tilts]) + " deg";
+      curve.label = "heading " + show(table_.column("heading_deg").values[h * tilts]) + " deg";
       plot.curves.push_back(std::move(curve));
     }
     return plot;
@@ -94,11 +93,11 @@ void map_over_attitude(const CommandLine& line, Console& console, OpticalRun& ru
 
   Product product = wrench_table_product(wrenches, "body");
   product.tables.push_back(powers.table());
-  product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), 2,
+  product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), "on_receiver",
                                       "power_on_receiver_over_tilt",
                                       "Light on " + run.experiment().receivers[flux_map].name));
   if (array) {
-    product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), 4,
+    product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), "electric",
                                         "electric_power_over_tilt", "Electric power of the array"));
   }
   console.heading("Torque about the centre of rotation, body frame");

@@ -32,7 +32,7 @@ std::string ruler(size_t columns) {
 }
 
 std::string headline(const std::vector<CaseScore>& scores) {
-  std::string text = row({"question", "right", "share", "95 % interval", "aim"}) + ruler(5);
+  std::string text = row({"question", "right", "fraction", "95 % interval", "aim"}) + ruler(5);
   for (const ProofRow& r : proof_rows(scores)) {
     const double fraction = static_cast<double>(r.fraction.hits) / r.fraction.of;
     text +=
@@ -101,7 +101,7 @@ std::string proof_markdown(const ProofSet& set) {
   text += headline(set.scores) + "\n" + figures(set.scores) + "\n";
   text += "Stated probability of every effect named, beside how often the name was right:\n\n" +
           table_markdown(proof_reliability(set.scores), "%.3g") + "\n";
-  text += "By what was concealed:\n\n" + table_markdown(proof_by_kind(set.scores), "%.0f") + "\n";
+  text += "By the injected effect:\n\n" + table_markdown(proof_by_kind(set.scores), "%.0f") + "\n";
   return text + "What went wrong:\n\n" + wrong_cases(set.scores);
 }
 

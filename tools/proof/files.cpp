@@ -134,7 +134,7 @@ Json number_or_array(const std::vector<double>& numbers) {
 std::string injected_experiment(const InjectedCase& c, bool told_truth) {
   const InjectedPriors& priors = c.priors;
   const auto& inertia = c.world.inertia_kg_m2;
-  std::string text = "# What is believed about this platform and its laboratory.\n[platform]\n";
+  std::string text = "# The nominal model of this platform and its laboratory.\n[platform]\n";
   text += "topology = \"" + c.topology + "\"\n";
   text += print("mass_kg = %.6g\n", c.world.mass_kg);
   text += print("inertia_kg_m2 = [[%.6g, 0, 0], [0, %.6g, 0], [0, 0, %.6g]]\n", inertia[0][0],

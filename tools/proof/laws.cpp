@@ -180,7 +180,7 @@ const std::vector<LawEntry>& laws() {
 const LawEntry& law_of(const std::string& kind) {
   const auto found =
       std::ranges::find_if(laws(), [&](const LawEntry& law) { return law.kind == kind; });
-  if (found == laws().end()) throw NumericalError("no concealed law is called " + kind);
+  if (found == laws().end()) throw NumericalError("no injected law is called " + kind);
   return *found;
 }
 
@@ -189,7 +189,7 @@ Numbers numbers_of(const InjectedEffect& effect) {
   for (const std::string& key : law_of(effect.kind).keys) {
     const auto found = effect.parameters.find(key);
     if (found == effect.parameters.end()) {
-      throw NumericalError("the concealed " + effect.kind + " has no " + key);
+      throw NumericalError("the injected " + effect.kind + " has no " + key);
     }
     numbers.insert(numbers.end(), found->second.begin(), found->second.end());
   }

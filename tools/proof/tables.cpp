@@ -100,18 +100,18 @@ std::vector<ProofRow> proof_rows(const std::vector<CaseScore>& scores) {
 }
 
 Table proof_summary(const std::vector<CaseScore>& scores) {
-  Table table{"proof", "What the diagnoses got right", {}};
-  table.columns = {{"question", {}, {}}, {"aim", {}, {}},    {"hits", {}, {}},   {"of", {}, {}},
-                   {"share", {}, {}},    {"low_95", {}, {}}, {"high_95", {}, {}}};
+  Table table = Table::of("proof", "What the diagnoses got right",
+                          {"question", "aim", "hits", "of", "share", "low_95", "high_95"});
   for (const ProofRow& row : proof_rows(scores)) {
-    table.columns[0].texts.push_back(row.question);
-    table.columns[1].texts.push_back(row.aim.empty() ? "-" : row.aim);
     const double of = row.fraction.of;
-    size_t i = 2;
-    for (const double x : {static_cast<double>(row.fraction.hits), of, row.fraction.hits / of,
-                           row.fraction.low(), row.fraction.high()}) {
-      table.columns[i++].values.push_back(x);
-    }
+    table.row()
+        .set("question", row.question)
+        .set("aim", row.aim.empty() ? "-" : row.aim)
+        .set("hits", row.fraction.hits)
+        .set("of", of)
+        .set("share", row.fraction.hits / of)
+        .set("low_95", row.fraction.low())
+        .set("high_95", row.fraction.high());
   }
   return table;
 }
@@ -133,53 +133,54 @@ Table proof_by_kind(const std::vector<CaseScore>& scores) {
     count.wrong_name += s.wrong_name ? 1 : 0;
     count.unanswered += s.answered ? 0 : 1;
   }
-  Table table{"proof_by_kind", "By what was concealed", {}};
-  table.columns = {{"concealed", {}, {}}, {"shown", {}, {}},          {"right", {}, {}},
-                   {"too_weak", {}, {}},  {"too_weak_right", {}, {}}, {"wrong_name", {}, {}},
-                   {"unanswered", {}, {}}};
+  Table table = Table::of(
+      "proof_by_kind", "By the injected effect",
+      {"concealed", "shown", "right", "too_weak", "too_weak_right", "wrong_name", "unanswered"});
   for (const auto& [name, c] : counts) {
-    table.columns[0].texts.push_back(name);
-    size_t i = 1;
-    for (const double x : {c.shown, c.right, c.below, c.below_right, c.wrong_name, c.unanswered}) {
-      table.columns[i++].values.push_back(x);
-    }
+    table.row()
+        .set("concealed", name)
+        .set("shown", c.shown)
+        .set("right", c.right)
+        .set("too_weak", c.below)
+        .set("too_weak_right", c.below_right)
+        .set("wrong_name", c.wrong_name)
+        .set("unanswered", c.unanswered);
   }
   return table;
 }
 
 Table proof_cases(const std::vector<CaseScore>& scores) {
-  Table table{"proof_cases", "Every case", {}};
-  const std::vector<std::string> texts = {"case", "true_verdict", "concealed", "verdict", "named"};
-  const std::vector<std::string> numbers = {
-      "right",        "right_within_group", "chi2_gain", "confidence",
-      "holdout_chi2", "oracle_chi2",        "pulls_rms", "wall_s"};
-  for (const auto& name : texts) table.columns.push_back({name, {}, {}});
-  for (const auto& name : numbers) table.columns.push_back({name, {}, {}});
+  Table table = Table::of(
+      "proof_cases", "Every case",
+      {"case", "true_verdict", "concealed", "verdict", "named", "right", "right_within_group",
+       "chi2_gain", "confidence", "holdout_chi2", "oracle_chi2", "pulls_rms", "wall_s"});
   for (const CaseScore& s : scores) {
-    size_t i = 0;
-    for (const std::string& text :
-         {s.name, s.true_verdict, joined(s.true_kinds),
-          s.answered ? s.verdict : std::string("no answer"), joined(s.kinds)}) {
-      table.columns[i++].texts.push_back(text);
-    }
     double squares = 0.0;
     for (const double pull : s.pulls) squares += pull * pull;
     const double rms = std::sqrt(squares / static_cast<double>(s.pulls.size()));
-    for (const double x : {s.right ? 1.0 : 0.0, s.right_within_group ? 1.0 : 0.0, s.chi2_gain,
-                           s.confidence, s.holdout_chi2, s.oracle_chi2, rms, s.wall_s}) {
-      table.columns[i++].values.push_back(x);
-    }
+    table.row()
+        .set("case", s.name)
+        .set("true_verdict", s.true_verdict)
+        .set("concealed", joined(s.true_kinds))
+        .set("verdict", s.answered ? s.verdict : std::string("no answer"))
+        .set("named", joined(s.kinds))
+        .set("right", s.right ? 1.0 : 0.0)
+        .set("right_within_group", s.right_within_group ? 1.0 : 0.0)
+        .set("chi2_gain", s.chi2_gain)
+        .set("confidence", s.confidence)
+        .set("holdout_chi2", s.holdout_chi2)
+        .set("oracle_chi2", s.oracle_chi2)
+        .set("pulls_rms", rms)
+        .set("wall_s", s.wall_s);
   }
   return table;
 }
 
 Table proof_reliability(const std::vector<CaseScore>& scores) {
   const std::vector<double> edges = {0.0, 0.5, 0.8, 0.95, 0.99, 1.0};
-  Table table{"proof_reliability", "Stated probability of a name, and how often it was right", {}};
-  for (const char* name :
-       {"from", "to", "names", "mean_stated", "share_right", "low_95", "high_95"}) {
-    table.columns.push_back({name, {}, {}});
-  }
+  Table table =
+      Table::of("proof_reliability", "Stated probability of a name, and how often it was right",
+                {"from", "to", "names", "mean_stated", "share_right", "low_95", "high_95"});
   for (size_t bin = 0; bin + 1 < edges.size(); ++bin) {
     Fraction fraction;
     double stated = 0.0;
@@ -193,12 +194,15 @@ Table proof_reliability(const std::vector<CaseScore>& scores) {
       }
     }
     if (fraction.of == 0) continue;
-    size_t i = 0;
     const double n = fraction.of;
-    for (const double x : {edges[bin], edges[bin + 1], n, stated / n, fraction.hits / n,
-                           fraction.low(), fraction.high()}) {
-      table.columns[i++].values.push_back(x);
-    }
+    table.row()
+        .set("from", edges[bin])
+        .set("to", edges[bin + 1])
+        .set("names", n)
+        .set("mean_stated", stated / n)
+        .set("share_right", fraction.hits / n)
+        .set("low_95", fraction.low())
+        .set("high_95", fraction.high());
   }
   return table;
 }

@@ -46,24 +46,21 @@ CellTables tables_for(const ArrayPower& array, const ArrayResult& result,
 
 Product tracker_product(const std::vector<TrackerRun>& runs) {
   Product product;
-  Table table{"trackers",
-              "Trackers while the platform moves",
-              {{"tracker", {}, {}},
-               {"efficiency", {}, {}},
-               {"false_maximum_s", {}, {}},
-               {"energy_J", {}, {}},
-               {"best_energy_J", {}, {}}}};
+  Table table =
+      Table::of("trackers", "Trackers while the platform moves",
+                {"tracker", "efficiency", "false_maximum_s", "energy_J", "best_energy_J"});
   Plot plot{
       "tracking", "Trackers while the platform moves", "time [s]", "power [W]", {}, false, false,
       {}};
   Plot::Panel voltage{"voltage [V]", {}, false};
   for (const TrackerRun& run : runs) {
     const std::string name = name_of(run.tracker.kind);
-    table.columns[0].texts.push_back(name);
-    table.columns[1].values.push_back(run.efficiency);
-    table.columns[2].values.push_back(run.false_maximum_s);
-    table.columns[3].values.push_back(run.energy_J);
-    table.columns[4].values.push_back(run.best_energy_J);
+    table.row()
+        .set("tracker", name)
+        .set("efficiency", run.efficiency)
+        .set("false_maximum_s", run.false_maximum_s)
+        .set("energy_J", run.energy_J)
+        .set("best_energy_J", run.best_energy_J);
     if (plot.curves.empty()) {
       plot.curves.push_back({"global maximum", run.time_s, run.best_W, {}, false});
       voltage.curves.push_back({"global maximum", run.time_s, run.best_V, {}, false});
@@ -130,11 +127,11 @@ void print_losses(const Console& console, const std::vector<LossStage>& stages) 
 
 void print_uniformity(const Console& console, const Table& table) {
   console.heading("How even the light is");
-  for (size_t i = 0; i < table.columns[0].texts.size(); ++i) {
-    console.line("  " + padded(table.columns[0].texts[i], 12) + "mean " +
-                 show(table.columns[1].values[i]) + " W/m², least over mean " +
-                 show(table.columns[2].values[i]) + ", variation " +
-                 show_percent(table.columns[3].values[i]));
+  const auto& cells = table.column("cells").texts;
+  for (size_t i = 0; i < cells.size(); ++i) {
+    console.line("  " + padded(cells[i], 12) + "mean " + show(table.column("mean_W_m2").values[i]) +
+                 " W/m², least over mean " + show(table.column("minimum_over_mean").values[i]) +
+                 ", variation " + show_percent(table.column("variation").values[i]));
   }
 }
 
@@ -184,8 +181,7 @@ Product layout_report(const Console& console, const ArrayPower& array, const Cel
                (gap > 1e-9 ? " (" + show_percent(gap) + " more)" : "") + "; " +
                std::to_string(found.tried) + " tried");
   std::string wiring = "[";
-  Table table{
-      "layout", "Best wiring found", {{"cell", {}, {}}, {"string", {}, {}}, {"substring", {}, {}}}};
+  Table table = Table::of("layout", "Best wiring found", {"cell", "string", "substring"});
   for (size_t s = 0; s < found.wiring.strings.size(); ++s) {
     wiring += s ? ", [" : "[";
     for (size_t b = 0; b < found.wiring.strings[s].substrings.size(); ++b) {
@@ -193,9 +189,10 @@ Product layout_report(const Console& console, const ArrayPower& array, const Cel
       const auto& rows = found.wiring.strings[s].substrings[b].rows;
       for (size_t r = 0; r < rows.size(); ++r) {
         wiring += (r ? ", " : "") + std::to_string(rows[r][0]);
-        table.columns[0].values.push_back(rows[r][0]);
-        table.columns[1].values.push_back(static_cast<double>(s + 1));
-        table.columns[2].values.push_back(static_cast<double>(b + 1));
+        table.row()
+            .set("cell", rows[r][0])
+            .set("string", static_cast<double>(s + 1))
+            .set("substring", static_cast<double>(b + 1));
       }
       wiring += "]";
     }

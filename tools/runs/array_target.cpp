@@ -52,15 +52,9 @@ void print_requirements(const Console& console, const ArrayTarget& target,
 Table tilted_table(const Console& console, const ArrayTarget& target,
                    const std::vector<PublishedFigure>& published, const ArrayResult& result,
                    double tilt_rad) {
-  Table table{"target",
-              "Published powers of the tilted array",
-              {{"quantity", {}, {}},
-               {"tilt_deg", {}, {}},
-               {"published_W", {}, {}},
-               {"cosine_W", {}, {}},
-               {"further_factor", {}, {}},
-               {"ours_W", {}, {}},
-               {"our_further_factor", {}, {}}}};
+  Table table = Table::of("target", "Published powers of the tilted array",
+                          {"quantity", "tilt_deg", "published_W", "cosine_W", "further_factor",
+                           "ours_W", "our_further_factor"});
   for (const PublishedFigure& figure : published) {
     const auto ours_W = power_of(result, figure.quantity);
     constexpr double edge_on = 1e-6;
@@ -77,29 +71,23 @@ Table tilted_table(const Console& console, const ArrayTarget& target,
                     show(result.power_W.value) + " W, " + show(result.power_W.value / cosine_W)
               : ""));
     const double none = std::nan("");
-    table.columns[0].texts.push_back(figure.quantity);
-    for (const auto& [column, value] : {std::pair{1, degrees},
-                                        {2, figure.value},
-                                        {3, cosine_W},
-                                        {4, figure.value / cosine_W},
-                                        {5, here ? *ours_W : none},
-                                        {6, here ? *ours_W / cosine_W : none}}) {
-      table.columns[static_cast<size_t>(column)].values.push_back(value);
-    }
+    table.row()
+        .set("quantity", figure.quantity)
+        .set("tilt_deg", degrees)
+        .set("published_W", figure.value)
+        .set("cosine_W", cosine_W)
+        .set("further_factor", figure.value / cosine_W)
+        .set("ours_W", here ? *ours_W : none)
+        .set("our_further_factor", here ? *ours_W / cosine_W : none);
   }
   return table;
 }
 
 Table known_cell_table(const Console& console, const ArrayDesign& design, const LossInputs& light,
                        double irradiance_W_m2) {
-  Table known{"known_cells",
-              "Known cells in this light",
-              {{"cell", {}, {}},
-               {"irradiance_W_m2", {}, {}},
-               {"open_circuit_V", {}, {}},
-               {"fill_factor", {}, {}},
-               {"eqe_voc_ff_V", {}, {}},
-               {"efficiency", {}, {}}}};
+  Table known = Table::of(
+      "known_cells", "Known cells in this light",
+      {"cell", "irradiance_W_m2", "open_circuit_V", "fill_factor", "eqe_voc_ff_V", "efficiency"});
   for (const double irradiance : {1000.0, irradiance_W_m2}) {
     if (!(irradiance > 0.0)) continue;  // no light falls on the array
     console.line("  known cells at " + show(irradiance) + " W/m²:");
@@ -107,14 +95,13 @@ Table known_cell_table(const Console& console, const ArrayDesign& design, const 
              irradiance, light.photon_V, light.quantum_efficiency, design.temperature_K)) {
       console.line("    " + padded(f.name, 30) + "EQE V_oc FF " +
                    padded(show(f.product_V) + " V", 12) + show_percent(f.efficiency));
-      known.columns[0].texts.push_back(f.name);
-      for (const auto& [column, value] : {std::pair{1, irradiance},
-                                          {2, f.open_circuit_V},
-                                          {3, f.fill_factor},
-                                          {4, f.product_V},
-                                          {5, f.efficiency}}) {
-        known.columns[static_cast<size_t>(column)].values.push_back(value);
-      }
+      known.row()
+          .set("cell", f.name)
+          .set("irradiance_W_m2", irradiance)
+          .set("open_circuit_V", f.open_circuit_V)
+          .set("fill_factor", f.fill_factor)
+          .set("eqe_voc_ff_V", f.product_V)
+          .set("efficiency", f.efficiency);
     }
   }
   return known;
@@ -122,15 +109,12 @@ Table known_cell_table(const Console& console, const ArrayDesign& design, const 
 
 Table sensitivity_table(const Console& console, const ArrayDesign& design,
                         const ArrayResult& result) {
-  Table table{"sensitivities",
-              "What changes the power",
-              {{"change", {}, {}}, {"power_W", {}, {}}, {"relative", {}, {}}}};
+  Table table =
+      Table::of("sensitivities", "What changes the power", {"change", "power_W", "relative"});
   console.line("  what changes the power:");
   for (const ArraySensitivity& s : sensitivities(design, result)) {
     console.line("    " + padded(s.change, 34) + show_percent(s.relative));
-    table.columns[0].texts.push_back(s.change);
-    table.columns[1].values.push_back(s.power_W);
-    table.columns[2].values.push_back(s.relative);
+    table.row().set("change", s.change).set("power_W", s.power_W).set("relative", s.relative);
   }
   return table;
 }
@@ -151,7 +135,7 @@ Product target_report(const Console& console, const ArrayTarget& target,
   Product product;
   print_requirements(console, target, result, light);
   Table tilted = tilted_table(console, target, published, result, tilt_rad);
-  if (!tilted.columns[0].texts.empty()) product.tables.push_back(std::move(tilted));
+  if (!tilted.column("quantity").texts.empty()) product.tables.push_back(std::move(tilted));
   const double irradiance = result.power_on_cells_W.value / result.area_of_cells_m2;
   product.tables.push_back(known_cell_table(console, design, light, irradiance));
   product.tables.push_back(sensitivity_table(console, design, result));

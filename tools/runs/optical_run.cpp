@@ -153,12 +153,14 @@ Product OpticalRun::product(const OpticalResult& result) const {
     product.quantities.push_back({"direct_on_" + direct.name + "_W", direct.gathered_W});
     product.quantities.push_back({"direct_by_rays_on_" + direct.name + "_W", direct.rays_W});
   }
-  Table parts{"absorbed_by_part", "Power absorbed by each part", {}};
-  parts.columns = {{"part", {}, {}}, {"absorbed_W", {}, {}}, {"standard_error_W", {}, {}}};
+  Table parts = Table::of("absorbed_by_part", "Power absorbed by each part",
+                          {"part", "absorbed_W", "standard_error_W"});
   for (size_t i = 0; i < power_balance.absorbed_by_instance_W.size(); ++i) {
-    parts.columns[0].texts.push_back(experiment_.scene.instances[i].path);
-    parts.columns[1].values.push_back(power_balance.absorbed_by_instance_W[i].value);
-    parts.columns[2].values.push_back(power_balance.absorbed_by_instance_W[i].standard_error);
+    const Estimate& absorbed_W = power_balance.absorbed_by_instance_W[i];
+    parts.row()
+        .set("part", experiment_.scene.instances[i].path)
+        .set("absorbed_W", absorbed_W.value)
+        .set("standard_error_W", absorbed_W.standard_error);
   }
   product.tables = {beam_shape_table(experiment_.beams), std::move(parts)};
   for (size_t i = 0; i < experiment_.receivers.size(); ++i) {

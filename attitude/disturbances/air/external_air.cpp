@@ -175,24 +175,24 @@ std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts) {
 }
 
 Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_rad_s) {
-  Table table{"external_air", "External air by part", {}};
-  Table::Column name{"part", {}, {}}, law{"law_holds", {}, {}};
-  Table::Column torque{"torque_N_m", {}, {}}, fraction{"share", {}, {}},
-      reynolds{"reynolds", {}, {}}, transition{"transition_reynolds", {}, {}};
+  Table table =
+      Table::of("external_air", "External air by part",
+                {"part", "law_holds", "torque_N_m", "share", "reynolds", "transition_reynolds"});
   const double whole_N_m = air_coefficients(parts, air).torque_N_m(rate_rad_s);
   for (const AirPart& part : parts) {
     const AirFlow flow = air_flow(part, air, rate_rad_s);
     const double torque_N_m = air_coefficients(part, air).torque_N_m(rate_rad_s);
-    name.texts.push_back(part.name);
-    law.texts.emplace_back(flow.laminar_law_holds()                   ? "yes"
-                           : flow.reynolds > flow.transition_reynolds ? "no: turbulent"
-                                                                      : "no: creeping");
-    torque.values.push_back(torque_N_m);
-    fraction.values.push_back(whole_N_m > 0.0 ? torque_N_m / whole_N_m : 0.0);
-    reynolds.values.push_back(flow.reynolds);
-    transition.values.push_back(flow.transition_reynolds);
+    const char* const law_holds = flow.laminar_law_holds()                   ? "yes"
+                                  : flow.reynolds > flow.transition_reynolds ? "no: turbulent"
+                                                                             : "no: creeping";
+    table.row()
+        .set("part", part.name)
+        .set("law_holds", law_holds)
+        .set("torque_N_m", torque_N_m)
+        .set("share", whole_N_m > 0.0 ? torque_N_m / whole_N_m : 0.0)
+        .set("reynolds", flow.reynolds)
+        .set("transition_reynolds", flow.transition_reynolds);
   }
-  table.columns = {name, law, torque, fraction, reynolds, transition};
   return table;
 }
 

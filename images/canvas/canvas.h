@@ -1,4 +1,4 @@
-// A page to draw on: the same calls make pixels or SVG. The only place that knows cairo.
+// A page to draw on: the same calls make pixels, SVG files or SVG inside of an HTML page.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "images/drawing/colour.h"
-#include "images/drawing/picture.h"
+#include "images/canvas/colour.h"
+#include "images/canvas/picture.h"
 
 namespace photorque {
 
@@ -27,6 +27,9 @@ struct PageBox {
   PagePoint centre() const { return {x + 0.5 * width, y + 0.5 * height}; }
 };
 
+// Of text, frames and axes.
+inline constexpr Rgb ink = {0.13, 0.13, 0.13};
+
 struct Stroke {
   Rgb colour;
   double width = 1.0;
@@ -40,7 +43,7 @@ enum class TextLevel { baseline, middle };  // middle: of capital letters
 
 struct TextStyle {
   double size = 11.0;
-  Rgb colour = {0.13, 0.13, 0.13};
+  Rgb colour = ink;
   bool bold = false;
   TextAlign align = TextAlign::left;
   TextLevel level = TextLevel::baseline;
@@ -58,6 +61,9 @@ class Canvas {
   static Canvas of_pixels(double width, double height, double scale);
   // A white page of vectors.
   static Canvas of_vectors(double width, double height);
+  // Vectors on a transparent ground as an <svg> element for the inside of an HTML page: text stays
+  // text, nothing has an id, so that one page can hold many. `title` is for screen readers.
+  static Canvas of_html(double width, double height, const std::string& title);
   Canvas(Canvas&&) noexcept;
   Canvas& operator=(Canvas&&) noexcept;
   ~Canvas();
@@ -65,6 +71,7 @@ class Canvas {
   void fill(const PageBox& box, const Rgb& colour, double opacity = 1.0);
   void fill(std::span<const PagePoint> polygon, const Rgb& colour, double opacity = 1.0);
   void disc(const PagePoint& centre, double radius, const Rgb& colour);
+  void discs(std::span<const PagePoint> centres, double radius, const Rgb& colour);
   void line(std::span<const PagePoint> points, const Stroke& stroke);
   void line(const PagePoint& from, const PagePoint& to, const Stroke& stroke);
   void outline(const PageBox& box, const Stroke& stroke);
@@ -80,12 +87,14 @@ class Canvas {
     end_clip();
   }
 
-  // The result, once; the canvas can then only be destroyed.
+  // The result, once; the canvas can then only be destroyed. NumericalError for what this canvas
+  // is not made of.
   Picture finish_pixels();
   std::string finish_svg();
 
+  struct Page;  // what a kind of canvas can draw: page.h
+
  private:
-  struct Page;
   explicit Canvas(std::unique_ptr<Page> page);
   void begin_clip(const PageBox& box);
   void end_clip();

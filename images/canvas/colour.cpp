@@ -1,4 +1,4 @@
-#include "images/drawing/colour.h"
+#include "images/canvas/colour.h"
 
 namespace photorque {
 namespace {

@@ -1,12 +1,14 @@
-#include "images/drawing/canvas.h"
-
+// Pages of pixels and of vectors, drawn by cairo. The only file that knows it.
 #include <cairo-svg.h>
 #include <cairo.h>
 
 #include "core/errors.h"
-#include "images/drawing/text.h"
+#include "core/text/display.h"
+#include "images/canvas/page.h"
 
 namespace photorque {
+namespace {
+
 struct CairoDelete {
   void operator()(cairo_t* context) const { cairo_destroy(context); }
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
@@ -15,8 +17,6 @@ struct CairoDelete {
 };
 template <class T>
 using CairoOwner = std::unique_ptr<T, CairoDelete>;
-
-namespace {
 
 void check(cairo_status_t status) {
   if (status != CAIRO_STATUS_SUCCESS) {
@@ -85,91 +85,89 @@ std::string with_own_surface_numbers(const std::string& svg) {
   return result.append(svg, position);
 }
 
-}  // namespace
+class CairoPage final : public Canvas::Page {
+ public:
+  // A white page of pixels, `scale` pixels per point.
+  CairoPage(double width, double height, double scale);
+  // A white page of vectors.
+  CairoPage(double width, double height);
 
-struct Canvas::Page {
-  std::string svg;  // outlives the surface that writes to it
-  CairoOwner<cairo_surface_t> surface;
-  CairoOwner<cairo_t> context;
+  void fill(const PageBox& box, const Rgb& colour, double opacity) override;
+  void fill(std::span<const PagePoint> polygon, const Rgb& colour, double opacity) override;
+  void discs(std::span<const PagePoint> centres, double radius, const Rgb& colour) override;
+  void line(std::span<const PagePoint> points, const Stroke& stroke) override;
+  void outline(const PageBox& box, const Stroke& stroke) override;
+  void text(const std::string& clean, const PagePoint& at, const TextStyle& style) override;
+  void image(const PageBox& box, int width, int height, std::span<const uint32_t> argb) override;
+  void begin_clip(const PageBox& box) override;
+  void end_clip() override;
+  Picture finish_pixels() override;
+  std::string finish_svg() override;
 
-  cairo_t* get() const { return context.get(); }
-  void start(double width, double height) {
-    check(cairo_surface_status(surface.get()));
-    context.reset(cairo_create(surface.get()));
-    cairo_set_line_join(get(), CAIRO_LINE_JOIN_ROUND);
-    set_colour(get(), {1.0, 1.0, 1.0}, 1.0);
-    cairo_rectangle(get(), 0.0, 0.0, width, height);
-    cairo_fill(get());
-  }
+ private:
+  void start(double width, double height);
+
+  std::string svg_;  // outlives the surface that writes to it
+  CairoOwner<cairo_surface_t> surface_;
+  CairoOwner<cairo_t> context_;
 };
 
-double text_width(const std::string& text, const TextStyle& style) {
-  const CairoOwner<cairo_surface_t> surface(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
-  const CairoOwner<cairo_t> context(cairo_create(surface.get()));
-  set_font(context.get(), style);
-  return width_of(context.get(), clean_text(text));
+CairoPage::CairoPage(double width, double height, double scale)
+    : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
+                                          static_cast<int>(std::lround(width * scale)),
+                                          static_cast<int>(std::lround(height * scale)))) {
+  cairo_surface_set_device_scale(surface_.get(), scale, scale);
+  start(width, height);
 }
 
-Canvas::Canvas(std::unique_ptr<Page> page) : page_(std::move(page)) {}
-Canvas::Canvas(Canvas&&) noexcept = default;
-Canvas& Canvas::operator=(Canvas&&) noexcept = default;
-Canvas::~Canvas() = default;
-
-Canvas Canvas::of_pixels(double width, double height, double scale) {
-  auto page = std::make_unique<Page>();
-  page->surface.reset(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
-                                                 static_cast<int>(std::lround(width * scale)),
-                                                 static_cast<int>(std::lround(height * scale))));
-  cairo_surface_set_device_scale(page->surface.get(), scale, scale);
-  page->start(width, height);
-  return Canvas(std::move(page));
+CairoPage::CairoPage(double width, double height)
+    : surface_(cairo_svg_surface_create_for_stream(&append_bytes, &svg_, width, height)) {
+  start(width, height);
 }
 
-Canvas Canvas::of_vectors(double width, double height) {
-  auto page = std::make_unique<Page>();
-  page->surface.reset(
-      cairo_svg_surface_create_for_stream(&append_bytes, &page->svg, width, height));
-  page->start(width, height);
-  return Canvas(std::move(page));
+void CairoPage::start(double width, double height) {
+  check(cairo_surface_status(surface_.get()));
+  context_.reset(cairo_create(surface_.get()));
+  cairo_set_line_join(context_.get(), CAIRO_LINE_JOIN_ROUND);
+  set_colour(context_.get(), {1.0, 1.0, 1.0}, 1.0);
+  cairo_rectangle(context_.get(), 0.0, 0.0, width, height);
+  cairo_fill(context_.get());
 }
 
-void Canvas::fill(const PageBox& box, const Rgb& colour, double opacity) {
-  set_colour(page_->get(), colour, opacity);
-  cairo_rectangle(page_->get(), box.x, box.y, box.width, box.height);
-  cairo_fill(page_->get());
+void CairoPage::fill(const PageBox& box, const Rgb& colour, double opacity) {
+  set_colour(context_.get(), colour, opacity);
+  cairo_rectangle(context_.get(), box.x, box.y, box.width, box.height);
+  cairo_fill(context_.get());
 }
 
-void Canvas::fill(std::span<const PagePoint> polygon, const Rgb& colour, double opacity) {
-  trace_path(page_->get(), polygon);
-  cairo_close_path(page_->get());
-  set_colour(page_->get(), colour, opacity);
-  cairo_fill(page_->get());
+void CairoPage::fill(std::span<const PagePoint> polygon, const Rgb& colour, double opacity) {
+  trace_path(context_.get(), polygon);
+  cairo_close_path(context_.get());
+  set_colour(context_.get(), colour, opacity);
+  cairo_fill(context_.get());
 }
 
-void Canvas::disc(const PagePoint& centre, double radius, const Rgb& colour) {
-  cairo_new_path(page_->get());
-  cairo_arc(page_->get(), centre.x, centre.y, radius, 0.0, 2.0 * std::numbers::pi);
-  set_colour(page_->get(), colour, 1.0);
-  cairo_fill(page_->get());
+void CairoPage::discs(std::span<const PagePoint> centres, double radius, const Rgb& colour) {
+  set_colour(context_.get(), colour, 1.0);
+  for (const PagePoint& centre : centres) {
+    cairo_new_path(context_.get());
+    cairo_arc(context_.get(), centre.x, centre.y, radius, 0.0, 2.0 * std::numbers::pi);
+    cairo_fill(context_.get());
+  }
 }
 
-void Canvas::line(std::span<const PagePoint> points, const Stroke& stroke) {
-  trace_path(page_->get(), points);
-  stroke_path(page_->get(), stroke);
+void CairoPage::line(std::span<const PagePoint> points, const Stroke& stroke) {
+  trace_path(context_.get(), points);
+  stroke_path(context_.get(), stroke);
 }
 
-void Canvas::line(const PagePoint& from, const PagePoint& to, const Stroke& stroke) {
-  line(std::array{from, to}, stroke);
+void CairoPage::outline(const PageBox& box, const Stroke& stroke) {
+  cairo_rectangle(context_.get(), box.x, box.y, box.width, box.height);
+  stroke_path(context_.get(), stroke);
 }
 
-void Canvas::outline(const PageBox& box, const Stroke& stroke) {
-  cairo_rectangle(page_->get(), box.x, box.y, box.width, box.height);
-  stroke_path(page_->get(), stroke);
-}
-
-void Canvas::text(const std::string& text, const PagePoint& at, const TextStyle& style) {
-  const std::string clean = clean_text(text);
-  cairo_t* const context = page_->get();
+void CairoPage::text(const std::string& clean, const PagePoint& at, const TextStyle& style) {
+  cairo_t* const context = context_.get();
   set_font(context, style);
   constexpr double capital_height = 0.729;  // of DejaVu Sans, in ems
   const double shift = style.align == TextAlign::left    ? 0.0
@@ -186,7 +184,7 @@ void Canvas::text(const std::string& text, const PagePoint& at, const TextStyle&
   cairo_new_path(context);
 }
 
-void Canvas::image(const PageBox& box, int width, int height, std::span<const uint32_t> argb) {
+void CairoPage::image(const PageBox& box, int width, int height, std::span<const uint32_t> argb) {
   const CairoOwner<cairo_surface_t> cells(
       cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
   check(cairo_surface_status(cells.get()));
@@ -204,7 +202,7 @@ void Canvas::image(const PageBox& box, int width, int height, std::span<const ui
     }
   }
   cairo_surface_mark_dirty(cells.get());
-  cairo_t* const context = page_->get();
+  cairo_t* const context = context_.get();
   cairo_save(context);
   cairo_translate(context, box.x, box.y);
   cairo_scale(context, box.width / width, box.height / height);
@@ -215,19 +213,19 @@ void Canvas::image(const PageBox& box, int width, int height, std::span<const ui
   cairo_restore(context);
 }
 
-void Canvas::begin_clip(const PageBox& box) {
-  cairo_save(page_->get());
-  cairo_rectangle(page_->get(), box.x, box.y, box.width, box.height);
-  cairo_clip(page_->get());
+void CairoPage::begin_clip(const PageBox& box) {
+  cairo_save(context_.get());
+  cairo_rectangle(context_.get(), box.x, box.y, box.width, box.height);
+  cairo_clip(context_.get());
 }
 
-void Canvas::end_clip() {
-  cairo_restore(page_->get());
+void CairoPage::end_clip() {
+  cairo_restore(context_.get());
 }
 
-Picture Canvas::finish_pixels() {
-  check(cairo_status(page_->get()));
-  cairo_surface_t* const surface = page_->surface.get();
+Picture CairoPage::finish_pixels() {
+  check(cairo_status(context_.get()));
+  cairo_surface_t* const surface = surface_.get();
   cairo_surface_flush(surface);
   const unsigned char* const bytes = cairo_image_surface_get_data(surface);
   if (bytes == nullptr) throw NumericalError("drawing failed: not a canvas of pixels");
@@ -247,12 +245,29 @@ Picture Canvas::finish_pixels() {
   return picture;
 }
 
-std::string Canvas::finish_svg() {
-  check(cairo_status(page_->get()));
-  page_->context.reset();
-  cairo_surface_finish(page_->surface.get());
-  check(cairo_surface_status(page_->surface.get()));
-  return with_own_surface_numbers(page_->svg);
+std::string CairoPage::finish_svg() {
+  check(cairo_status(context_.get()));
+  context_.reset();
+  cairo_surface_finish(surface_.get());
+  check(cairo_surface_status(surface_.get()));
+  return with_own_surface_numbers(svg_);
+}
+
+}  // namespace
+
+double text_width(const std::string& text, const TextStyle& style) {
+  const CairoOwner<cairo_surface_t> surface(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+  const CairoOwner<cairo_t> context(cairo_create(surface.get()));
+  set_font(context.get(), style);
+  return width_of(context.get(), clean_text(text));
+}
+
+Canvas Canvas::of_pixels(double width, double height, double scale) {
+  return Canvas(std::make_unique<CairoPage>(width, height, scale));
+}
+
+Canvas Canvas::of_vectors(double width, double height) {
+  return Canvas(std::make_unique<CairoPage>(width, height));
 }
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-#include "images/drawing/text.h"
+#include "core/text/display.h"
 
 #include <charconv>
 

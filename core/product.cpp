@@ -1,0 +1,87 @@
+#include "core/product.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace photorque {
+namespace {
+
+// Of a table that may be constant; null if there is none.
+template <class T>
+auto* column_in(T& table, std::string_view name) {
+  const auto found = std::ranges::find(table.columns, name, &Table::Column::name);
+  return found == table.columns.end() ? nullptr : &*found;
+}
+
+std::logic_error fault(const Table& table, std::string_view column, const std::string& what) {
+  return std::logic_error("table " + table.name + ", column " + std::string(column) + ": " + what);
+}
+
+Table& append(Table& table, Table::Column column) {
+  if (column_in(table, column.name) != nullptr) throw fault(table, column.name, "added twice");
+  if (!table.columns.empty() && column.size() != table.columns.front().size()) {
+    throw fault(table, column.name, "not as long as the first column");
+  }
+  table.columns.push_back(std::move(column));
+  return table;
+}
+
+// Of a table that may be constant.
+template <class T>
+auto& required_column(T& table, std::string_view name) {
+  auto* const found = column_in(table, name);
+  if (found == nullptr) throw fault(table, name, "there is none of this name");
+  return *found;
+}
+
+}  // namespace
+
+Table Table::of(std::string name, std::string title, const std::vector<std::string>& column_names) {
+  Table table{std::move(name), std::move(title), {}};
+  for (const std::string& column_name : column_names) table.add(column_name, std::vector<double>{});
+  return table;
+}
+
+Table& Table::add(std::string column_name, std::vector<double> values) {
+  return append(*this, {std::move(column_name), std::move(values), {}});
+}
+
+Table& Table::add(std::string column_name, std::vector<std::string> texts) {
+  return append(*this, {std::move(column_name), {}, std::move(texts)});
+}
+
+Table::Column& Table::Row::cell_column(std::string_view column_name) const {
+  Column& column = table_->column(column_name);
+  if (column.size() != index_) throw fault(*table_, column_name, "set twice, or left out before");
+  return column;
+}
+
+Table::Row& Table::Row::set(std::string_view column_name, double value) {
+  cell_column(column_name).values.push_back(value);
+  return *this;
+}
+
+Table::Row& Table::Row::set(std::string_view column_name, std::string text) {
+  cell_column(column_name).texts.push_back(std::move(text));
+  return *this;
+}
+
+Table::Row& Table::Row::set(std::string_view column_name, const char* text) {
+  return set(column_name, std::string(text));
+}
+
+Table::Row Table::row() {
+  size_t rows = 0;
+  for (const Column& column : columns) rows = std::max(rows, column.size());
+  return {*this, rows};
+}
+
+const Table::Column& Table::column(std::string_view column_name) const {
+  return required_column(*this, column_name);
+}
+
+Table::Column& Table::column(std::string_view column_name) {
+  return required_column(*this, column_name);
+}
+
+}  // namespace photorque
