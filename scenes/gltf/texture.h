@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "raytrace/scene.h"
 #include "scenes/gltf/file/document.h"
+#include "scenes/gltf/picture.h"
 
 namespace photorque::gltf {
 

@@ -1,5 +1,9 @@
 #include "core/numerics/vector_math.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+
 #include "core/constants.h"
 #include "core/numerics/random.h"
 #include "core/numerics/sobol.h"

@@ -1,4 +1,4 @@
-// Recordings with an injected effect, made by an independent simulator (tests/data/cases): the
+// Recordings with an injected effect, made by simulators that share no code with the program: the
 // verdict and the names must be right.
 #include <gtest/gtest.h>
 
@@ -9,13 +9,14 @@
 #include "diagnosis/attitude/diagnose.h"
 #include "scenes/experiment/toml_reader.h"
 #include "tests/outside.h"
+#include "tools/proof/case.h"
+#include "tools/proof/files.h"
+#include "tools/proof/recipes.h"
 
 namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path cases = outside::reference_data("cases");
 
 Diagnosis diagnose_case(const fs::path& folder) {
   const Settings settings(
@@ -27,10 +28,8 @@ Diagnosis diagnose_case(const fs::path& folder) {
                   recording("run2.csv.gz"));
 }
 
-class InjectedCase : public testing::TestWithParam<const char*> {};
-
-TEST_P(InjectedCase, IsNamedRightly) {
-  const fs::path folder = cases / GetParam();
+// Diagnoses the case in `folder` and compares with its truth.json.
+void expect_named_rightly(const fs::path& folder) {
   const nlohmann::json truth = nlohmann::json::parse(read_file(folder / "truth.json"));
   const Diagnosis found = diagnose_case(folder);
   EXPECT_EQ(name_of(found.verdict), truth["verdict"]) << found.sentence;
@@ -47,9 +46,58 @@ TEST_P(InjectedCase, IsNamedRightly) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfAnotherProgram, InjectedCase,
+class CaseOfAnotherProgram : public testing::TestWithParam<const char*> {};
+
+// By a simulator in another language.
+TEST_P(CaseOfAnotherProgram, IsNamedRightly) {
+  expect_named_rightly(outside::reference_data("cases") / GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CaseOfAnotherProgram,
                          testing::Values("01", "02", "03", "04", "05", "06", "07", "08", "09", "10",
                                          "11", "12"),
+                         [](const auto& one) { return std::string(one.param); });
+
+// A plan with one case of every kind and shorter runs than docs/proof.md has.
+InjectedPlan short_plan() {
+  InjectedPlan plan;
+  plan.per_kind = 1;
+  plan.none = 1;
+  plan.pairs = 0;
+  plan.outside = 1;
+  plan.duration_s = 150.0;
+  plan.holdout_s = 100.0;
+  plan.rates_Hz = {10.0};
+  return plan;
+}
+
+// Where the plan has the case that conceals `kind`, or nothing ("none"): that comes first, then the
+// catalogue, then the laws outside of it.
+size_t place_of(const std::string& kind) {
+  if (kind == "none") return 0;
+  size_t inside = 1, outside = case_count(short_plan());
+  for (const injected::Recipe& r : injected::recipes()) outside -= r.outside ? 1 : 0;
+  for (const injected::Recipe& r : injected::recipes()) {
+    if (r.kind == kind) return r.outside ? outside : inside;
+    ++(r.outside ? outside : inside);
+  }
+  throw std::logic_error(kind);
+}
+
+class DrawnCase : public testing::TestWithParam<const char*> {};
+
+// As `prove` does it: drawn, written, read, diagnosed and scored.
+TEST_P(DrawnCase, IsNamedRightly) {
+  const InjectedCase drawn = draw_case(short_plan(), place_of(GetParam()));
+  ASSERT_TRUE(drawn.name.starts_with(GetParam())) << drawn.name;
+  const fs::path folder = fs::path(testing::TempDir()) / "drawn_case";
+  write_injected_case(drawn, folder);
+  expect_named_rightly(folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(Some, DrawnCase,
+                         testing::Values("none", "magnetic_dipole", "attitude_latency",
+                                         "gyro_scale", "heading_cogging"),
                          [](const auto& one) { return std::string(one.param); });
 
 }  // namespace

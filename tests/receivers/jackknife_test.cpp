@@ -29,8 +29,8 @@ TEST(Jackknife, SquaresLoseTheirBias) {
 
 TEST(Jackknife, MeanBinsAverageReplicates) {
   const std::vector<double> mean = mean_bins(sums);
-  EXPECT_NEAR(mean[0], 3.0, 1e-15);
-  EXPECT_NEAR(mean[1], 5.0, 1e-15);
+  EXPECT_DOUBLE_EQ(mean[0], 3.0);
+  EXPECT_DOUBLE_EQ(mean[1], 5.0);
 }
 
 }  // namespace

@@ -107,8 +107,8 @@ TEST(SurfaceGrid, SquareOnItsCornerFillsCellsByHalves) {
   ASSERT_EQ(grid.bins(), 16u);
   for (size_t bin = 0; bin < 16; ++bin) EXPECT_NEAR(grid.area_m2[bin], expected[bin], 1e-14);
   EXPECT_EQ(grid.area_m2[0], 0.0);
-  EXPECT_NEAR(grid.u_low, -1.0, 1e-15);
-  EXPECT_NEAR(grid.v_high, 1.0, 1e-15);
+  EXPECT_DOUBLE_EQ(grid.u_low, -1.0);
+  EXPECT_DOUBLE_EQ(grid.v_high, 1.0);
 }
 
 TEST(SurfaceGrid, TurnedSquareKeepsItsArea) {
@@ -196,7 +196,7 @@ TEST(SurfaceGrid, MirroredInstanceKeepsItsFront) {
   const SurfaceGrid grid = grid_over(scene_of(plate(0, 1, 0, 1), mirror), 2, 2);
   EXPECT_LT((grid.normal_body - Vec3::UnitZ()).norm(), 1e-15);
   EXPECT_NEAR(grid.total_area_m2(), 6.0, 1e-12);
-  EXPECT_NEAR(grid.u_low, -2.0, 1e-15);
+  EXPECT_DOUBLE_EQ(grid.u_low, -2.0);
 }
 
 TEST(SurfaceGrid, TextureBinsHoldTheAreaThatMapsThere) {

@@ -73,8 +73,9 @@ TEST(TorqueMap, BinsSumToTheWrenchAboutTheSamePoint) {
   const WrenchEstimate expected = wrench.total(sums_of(wrench, replicates));
   for (size_t axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<Eigen::Index>(axis);
-    EXPECT_NEAR(map.total_N_m[axis].value, expected.mean.torque_N_m[k], 1e-15);
-    EXPECT_NEAR(map.total_N_m[axis].standard_error, expected.torque_error_N_m()[k], 1e-15);
+    // Added in another order: up to 900 numbers below 1, each sum rounded by 1e-16 at most.
+    EXPECT_NEAR(map.total_N_m[axis].value, expected.mean.torque_N_m[k], 1e-14);
+    EXPECT_NEAR(map.total_N_m[axis].standard_error, expected.torque_error_N_m()[k], 1e-14);
     double sum = 0.0;
     for (const Estimate& bin : map.per_bin_N_m[axis]) sum += bin.value;
     EXPECT_NEAR(sum, expected.mean.torque_N_m[k], 1e-14);

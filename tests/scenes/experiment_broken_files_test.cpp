@@ -1,5 +1,8 @@
 // Every way to get an experiment file wrong gives one line that says where and what to write
 // instead.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <fstream>
 

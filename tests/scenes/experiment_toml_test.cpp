@@ -1,6 +1,8 @@
 // TOML into settings, and overrides from the command line.
 #include "scenes/experiment/toml_reader.h"
 
+#include <gtest/gtest.h>
+
 namespace photorque {
 namespace {
 

@@ -1,6 +1,9 @@
 // glTF models made in memory, for tests.
 #pragma once
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <functional>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,8 @@
 // Whether a mesh encloses a volume.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <map>
 #include <string>
 #include <utility>

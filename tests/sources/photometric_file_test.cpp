@@ -136,6 +136,7 @@ void expect_equal(const PhotometricFile& a, const PhotometricFile& b) {
   EXPECT_EQ(a.table.closed, b.table.closed);
   ASSERT_EQ(a.table.polar_rad.size(), b.table.polar_rad.size());
   ASSERT_EQ(a.table.planes(), b.table.planes());
+  // Radian, degree and radian again: two units in the last place of π and of 2π.
   for (size_t i = 0; i < a.table.polar_rad.size(); ++i) {
     EXPECT_NEAR(a.table.polar_rad[i], b.table.polar_rad[i], 1e-15);
   }

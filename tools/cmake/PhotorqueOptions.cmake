@@ -47,6 +47,11 @@ add_compile_options(-fno-math-errno -fno-trapping-math)
 set(PHOTORQUE_FP_CONTRACT "fast" CACHE STRING "-ffp-contract: fast, off")
 add_compile_options(-ffp-contract=${PHOTORQUE_FP_CONTRACT})
 
+option(PHOTORQUE_SANITIZE_THREADS "ThreadSanitizer (not together with the two others)" OFF)
+if(PHOTORQUE_SANITIZE_THREADS)
+  add_compile_options(-fsanitize=thread -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=thread)
+endif()
 if(PHOTORQUE_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
                       -fno-omit-frame-pointer)
