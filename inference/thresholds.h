@@ -141,9 +141,6 @@ struct Thresholds {
     double bound_sigma = 2.0;
     // Change of a principal moment of inertia, as a fraction: nobody weighs a platform that badly.
     double max_inertia_change = 0.4;
-    // Sum of drag coefficients [N m s] below which a bearing would drive: the sum of a nominal
-    // coefficient and a fitted change of it rounds to less than this.
-    double min_drag_N_m_s = -1e-6;
   } objection;
 
   // The verdict.

@@ -2,10 +2,34 @@
 
 #include <algorithm>
 
+#include "core/errors.h"
+
 namespace photorque {
 
+namespace {
+
+// The same quantity, perhaps written in another unit than the one that its law names.
+bool is_same_quantity(const std::string& written, std::string_view key) {
+  const KeyUnit a = unit_of_key(written), b = unit_of_key(key);
+  return a.stem == b.stem && (a.dimension == b.dimension || a.unit.empty() || b.unit.empty());
+}
+
+}  // namespace
+
+const std::vector<DisturbanceKind>& disturbance_kinds() {
+  static const std::vector<DisturbanceKind> kinds = all_disturbance_kinds();
+  return kinds;
+}
+
+const DisturbanceKind* find_kind(const std::string& name) {
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    if (kind.name == name) return &kind;
+  }
+  return nullptr;
+}
+
 Disturbance read_disturbance(const Settings& settings, const DisturbanceContext& context) {
-  const std::vector<DisturbanceKind> kinds = all_disturbance_kinds();
+  const std::vector<DisturbanceKind>& kinds = disturbance_kinds();
   std::vector<std::string> names;
   for (const DisturbanceKind& kind : kinds) names.push_back(kind.name);
   const DisturbanceKind& kind = kinds[settings.choice("kind", names)];
@@ -44,6 +68,49 @@ Disturbance make_disturbance_of(
   Disturbance disturbance = read_disturbance(settings, context);
   settings.finish();
   return disturbance;
+}
+
+size_t index_of(const Disturbance& disturbance, std::string_view key) {
+  const Parameters& all = disturbance.parameters;
+  auto found = std::find_if(all.begin(), all.end(), [&](const auto& p) { return p.key == key; });
+  if (found == all.end()) {
+    found = std::find_if(all.begin(), all.end(),
+                         [&](const auto& p) { return is_same_quantity(p.key, key); });
+  }
+  if (found != all.end()) return static_cast<size_t>(found - all.begin());
+  throw NumericalError(disturbance.kind + " has no parameter " + std::string(key));
+}
+
+Parameter& parameter_of(Disturbance& disturbance, std::string_view key) {
+  return disturbance.parameters[index_of(disturbance, key)];
+}
+
+const Parameter& parameter_of(const Disturbance& disturbance, std::string_view key) {
+  return disturbance.parameters[index_of(disturbance, key)];
+}
+
+Vec3 vector_of(const Disturbance& disturbance, std::string_view key) {
+  const size_t first = index_of(disturbance, key);
+  const Parameters& p = disturbance.parameters;
+  return {p.at(first).value, p.at(first + 1).value, p.at(first + 2).value};
+}
+
+void set_vector(Disturbance& disturbance, std::string_view key, const Vec3& value_SI) {
+  const size_t first = index_of(disturbance, key);
+  for (size_t k = 0; k < 3; ++k) {
+    disturbance.parameters.at(first + k).value = value_SI[static_cast<Eigen::Index>(k)];
+  }
+}
+
+const ExtraState& state_of(const Disturbance& disturbance, std::string_view name) {
+  for (const ExtraState& state : disturbance.states) {
+    if (state.name == name) return state;
+  }
+  throw NumericalError(disturbance.kind + " has no state " + std::string(name));
+}
+
+ExtraState& state_of(Disturbance& disturbance, std::string_view name) {
+  return const_cast<ExtraState&>(state_of(std::as_const(disturbance), name));
 }
 
 }  // namespace photorque

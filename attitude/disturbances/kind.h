@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "attitude/disturbances/screening.h"
+#include "attitude/injection/injection.h"
 #include "attitude/model/disturbance.h"
 
 namespace photorque {
@@ -15,16 +17,34 @@ struct DisturbanceContext {
   const Environment& environment;
 };
 
+// What `budget` says about a kind.
+struct BudgetTraits {
+  std::string paper_figure = {};    // its published figure, by name (paper_figures.h); empty: none
+  std::string reason_against = {};  // why it is not ranked; empty: it is
+};
+
+// Everything that is known about a kind of disturbance stands in its own file; nobody else knows
+// its name.
 struct DisturbanceKind {
   std::string name;     // "bearing_drag"
   std::string summary;  // one sentence of physics
   // Builds the disturbance from its table. InputError for what is missing or out of range; the
   // caller has read `kind`, and complains about keys that nobody read.
-  Disturbance (*read)(const Settings& settings, const DisturbanceContext& context);
+  Disturbance (*read)(const Settings& settings, const DisturbanceContext& context) = nullptr;
+  Screening screening = {};
+  injected::Injection injection = {};
+  BudgetTraits budget = {};
+  // The table of [sensors] that may hold the kind's key as well; empty: no error of an instrument.
+  std::string instrument = {};
+  bool has_eclipses = false;  // the light may fail, which a run reports
 };
 
 // All kinds, generated from CMakeLists.txt.
 std::vector<DisturbanceKind> all_disturbance_kinds();
+// The same, made once.
+const std::vector<DisturbanceKind>& disturbance_kinds();
+// The kind of that name; null if there is none (an empirical law has no kind).
+const DisturbanceKind* find_kind(const std::string& name);
 
 // One [[disturbance]]: the kind that `kind` names. InputError for an unknown kind.
 Disturbance read_disturbance(const Settings& settings, const DisturbanceContext& context);
@@ -37,5 +57,17 @@ std::vector<Disturbance> read_disturbances(const Settings& root, const Disturban
 Disturbance make_disturbance_of(
     const std::string& kind, const std::vector<std::pair<std::string, std::vector<double>>>& values,
     const DisturbanceContext& context);
+
+// The first number of `key`, which may be written in another unit than the parameter's own; for
+// copies that are edited. NumericalError if the disturbance has no such parameter.
+size_t index_of(const Disturbance& disturbance, std::string_view key);
+Parameter& parameter_of(Disturbance& disturbance, std::string_view key);
+const Parameter& parameter_of(const Disturbance& disturbance, std::string_view key);
+// Three numbers of one key.
+Vec3 vector_of(const Disturbance& disturbance, std::string_view key);
+void set_vector(Disturbance& disturbance, std::string_view key, const Vec3& value_SI);
+// The state of that name.
+ExtraState& state_of(Disturbance& disturbance, std::string_view name);
+const ExtraState& state_of(const Disturbance& disturbance, std::string_view name);
 
 }  // namespace photorque

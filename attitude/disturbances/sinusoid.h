@@ -6,6 +6,9 @@
 
 namespace photorque {
 
+// One standard deviation of an angle that may be anything.
+constexpr double phase_scale = 1.8;
+
 // sin(2π f t + φ).
 template <class T>
 T sinusoid(const T& time_s, const T& frequency_Hz, const T& phase_rad) {
@@ -13,9 +16,10 @@ T sinusoid(const T& time_s, const T& frequency_Hz, const T& phase_rad) {
 }
 
 // `phase` in radians, or phase_deg; 0 when neither is given.
-inline Parameters phase_parameter(const Settings& settings) {
-  return settings.has("phase") ? scalar_parameter(settings, "phase")
-                               : scalar_parameter_or(settings, "phase_rad", 0.0);
+inline PlacedParameters phase_parameter(const Settings& settings, ScalarKey phase) {
+  return settings.has(phase.name)
+             ? scalar_parameter(settings, phase)
+             : scalar_parameter_or(settings, ScalarKey{"phase_rad", phase.first}, 0.0);
 }
 
 }  // namespace photorque

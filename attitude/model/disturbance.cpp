@@ -1,5 +1,7 @@
 #include "attitude/model/disturbance.h"
 
+#include <stdexcept>
+
 namespace photorque {
 namespace {
 
@@ -15,25 +17,26 @@ std::string written_key(const Settings& settings, const std::string& key) {
 
 }  // namespace
 
-Parameters scalar_parameter(const Settings& settings, const std::string& key, Range range) {
-  const Uncertain x = settings.uncertain(key, range);
-  return {{key, -1, x.value, x.sigma}};
+PlacedParameters scalar_parameter(const Settings& settings, ScalarKey key, Range range) {
+  const Uncertain x = settings.uncertain(key.name, range);
+  return {key.first, {{key.name, -1, x.value, x.sigma}}};
 }
 
-Parameters scalar_parameter_or(const Settings& settings, const std::string& key,
-                               double otherwise_SI, Range range) {
-  if (settings.has(key)) return scalar_parameter(settings, key, range);
-  return {{key, -1, otherwise_SI, 0.0}};
+PlacedParameters scalar_parameter_or(const Settings& settings, ScalarKey key, double otherwise_SI,
+                                     Range range) {
+  if (settings.has(key.name)) return scalar_parameter(settings, key, range);
+  return {key.first, {{key.name, -1, otherwise_SI, 0.0}}};
 }
 
-Parameters vector_parameter(const Settings& settings, const std::string& key) {
-  const UncertainVec3 v = settings.uncertain_vector(key);
+PlacedParameters vector_parameter(const Settings& settings, VectorKey key) {
+  const UncertainVec3 v = settings.uncertain_vector(key.name);
   Parameters all;
-  for (int i = 0; i < 3; ++i) all.push_back({key, i, v.value[i], v.sigma[i]});
-  return all;
+  for (int i = 0; i < 3; ++i) all.push_back({key.name, i, v.value[i], v.sigma[i]});
+  return {key.first, all};
 }
 
-Parameters array_parameter(const Settings& settings, const std::string& key, size_t size) {
+PlacedParameters array_parameter(const Settings& settings, const std::string& key, size_t size,
+                                 int first) {
   const auto require_size = [&](const std::vector<double>& x) {
     if (x.size() != size) {
       throw settings.error(key, "an array of " + std::to_string(x.size()),
@@ -54,7 +57,7 @@ Parameters array_parameter(const Settings& settings, const std::string& key, siz
   for (size_t i = 0; i < size; ++i) {
     all.push_back({key, static_cast<int>(i), factor * value[i], factor * sigma[i]});
   }
-  return all;
+  return {first, all};
 }
 
 size_t count_as_written(const Settings& settings, const std::string& key) {
@@ -79,12 +82,20 @@ std::filesystem::path file_of(const Settings& settings, const std::string& key) 
   return experiment.parent_path() / settings.text(key);
 }
 
-Parameters fixed_parameter(const std::string& key, std::span<const double> values_SI) {
+PlacedParameters fixed_parameter(const std::string& key, std::span<const double> values_SI,
+                                 int first) {
   Parameters all;
   for (size_t i = 0; i < values_SI.size(); ++i) {
     all.push_back({key, values_SI.size() == 1 ? -1 : static_cast<int>(i), values_SI[i], 0.0});
   }
-  return all;
+  return {first, all};
+}
+
+void append(Parameters& parameters, const PlacedParameters& group) {
+  if (static_cast<size_t>(group.first) != parameters.size()) {
+    throw std::logic_error("a law looks for " + group.parameters.front().key + " elsewhere");
+  }
+  parameters.insert(parameters.end(), group.parameters.begin(), group.parameters.end());
 }
 
 }  // namespace photorque

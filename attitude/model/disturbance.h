@@ -9,22 +9,40 @@
 //   namespace photorque {
 //   namespace {
 //
+//   constexpr ScalarKey coefficient{"coefficient_N_m_s"};
+//
 //   // T = −c ω.
 //   struct BearingDrag final : TorqueLaw<BearingDrag> {
 //     template <class T>
 //     Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-//       return -own.parameter(0) * now.rate_body_rad_s;
+//       return -own[coefficient] * now.rate_body_rad_s;
 //     }
 //   };
+//
+//   Disturbance read(const Settings& settings, const DisturbanceContext&) {
+//     return make_disturbance<BearingDrag>(
+//         {scalar_parameter(settings, coefficient, Range::not_negative())});
+//   }
+//
+//   // The same for `prove`, on plain numbers (attitude/injection/injection.h).
+//   injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+//     return [c = effect.number(coefficient.name)](const injected::Surroundings& s) {
+//       return injected::times(-c, s.rate);
+//     };
+//   }
 //
 //   }  // namespace
 //
 //   DisturbanceKind bearing_drag_kind() {
-//     return {"bearing_drag", "viscous drag of the bearing's air film, linear in the rate",
-//             [](const Settings& settings, const DisturbanceContext&) {
-//               return make_disturbance<BearingDrag>(
-//                   {scalar_parameter(settings, "coefficient_N_m_s", Range::not_negative())});
-//             }};
+//     return {.name = "bearing_drag",
+//             .summary = "viscous drag of the bearing's air film, linear in the rate",
+//             .read = read,
+//             .screening = {.parametrisations = {{"a sentence for the report",
+//                                                 {EffectKey::number(coefficient.name, 2e-5)}}}},
+//             .injection = {.draw = injected::fixed_size(coefficient.name, 1e-5),
+//                           .torque = plain_torque,
+//                           .strength = coefficient.name,
+//                           .step = 1e-8}};
 //   }
 //
 //   }  // namespace photorque
@@ -144,6 +162,27 @@ struct ExtraState {
   Vec3 per_body_rate = Vec3::Zero();
 };
 
+// Where the numbers of one key stand among a law's parameters. A law names its keys in their order,
+//   constexpr VectorKey torque_N_m{"torque_N_m"};
+//   constexpr ScalarKey frequency_Hz{"frequency_Hz", torque_N_m.end()};
+// and reads them by these names, own[frequency_Hz], which costs no more than an index.
+template <int size>
+struct KeyOf {
+  const char* name;
+  int first = 0;
+
+  constexpr int end() const { return first + size; }
+};
+using ScalarKey = KeyOf<1>;
+using VectorKey = KeyOf<3>;
+using MatrixKey = KeyOf<9>;  // row by row
+
+// A state of its own, and which of them.
+struct StateKey {
+  const char* name;
+  int index = 0;
+};
+
 // What belongs to one disturbance alone.
 template <class T>
 struct ParametersAndStates {
@@ -151,16 +190,23 @@ struct ParametersAndStates {
   const T* states;  // of the ExtraStates that it declared
   T* state_rates;   // to be set: d/dt of each
 
-  const T& parameter(int index) const { return parameters[index]; }
-  Vec3Of<T> vector(int first) const {
-    return {parameters[first], parameters[first + 1], parameters[first + 2]};
+  const T& operator[](ScalarKey key) const { return parameters[key.first]; }
+  Vec3Of<T> operator[](VectorKey key) const {
+    return {parameters[key.first], parameters[key.first + 1], parameters[key.first + 2]};
   }
-  // Nine parameters, row by row.
-  Mat3Of<T> matrix(int first) const {
+  Mat3Of<T> operator[](MatrixKey key) const {
     Mat3Of<T> m;
-    for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = parameters[first + i];
+    for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = parameters[key.first + i];
     return m;
   }
+  // One number of an array of any length.
+  template <int size>
+  const T& element(KeyOf<size> key, int index) const {
+    return parameters[key.first + index];
+  }
+
+  const T& state(StateKey key) const { return states[key.index]; }
+  T& rate_of(StateKey key) const { return state_rates[key.index]; }
 };
 
 // An instant at which a law jumps. The propagator ends a step there exactly.
@@ -236,29 +282,39 @@ struct Disturbance {
 // Parameters from settings, in SI, with their sigma. A missing key is an InputError, or
 // `otherwise_SI` with sigma 0 where that is given.
 using Parameters = std::vector<Parameter>;
-Parameters scalar_parameter(const Settings& settings, const std::string& key, Range range = {});
-Parameters scalar_parameter_or(const Settings& settings, const std::string& key,
-                               double otherwise_SI, Range range = {});
-Parameters vector_parameter(const Settings& settings, const std::string& key);
+// Where they are to stand is checked by make_disturbance().
+struct PlacedParameters {
+  int first = 0;
+  Parameters parameters;
+};
+PlacedParameters scalar_parameter(const Settings& settings, ScalarKey key, Range range = {});
+PlacedParameters scalar_parameter_or(const Settings& settings, ScalarKey key, double otherwise_SI,
+                                     Range range = {});
+PlacedParameters vector_parameter(const Settings& settings, VectorKey key);
 // `size` numbers, e.g. the six of a symmetric matrix.
-Parameters array_parameter(const Settings& settings, const std::string& key, size_t size);
+PlacedParameters array_parameter(const Settings& settings, const std::string& key, size_t size,
+                                 int first = 0);
 // How many numbers the user wrote for `key`: 0 for a single number, the length of an array, nine
 // for three rows of three; looks into { value = …, sigma = … }.
 size_t count_as_written(const Settings& settings, const std::string& key);
 // The file that `key` names; a relative path counts from the experiment file.
 std::filesystem::path file_of(const Settings& settings, const std::string& key);
 // Parameters that were not written but computed (a compliance from a beam's dimensions).
-Parameters fixed_parameter(const std::string& key, std::span<const double> values_SI);
+PlacedParameters fixed_parameter(const std::string& key, std::span<const double> values_SI,
+                                 int first = 0);
+
+// `parameters` and those of `group` behind them; std::logic_error where the law looks for them
+// elsewhere.
+void append(Parameters& parameters, const PlacedParameters& group);
 
 // The parameters of all groups in order, and a law built from `law_arguments`.
 template <class LawType, class... Arguments>
-Disturbance make_disturbance(std::initializer_list<Parameters> groups, Stage stage = Stage::torque,
-                             std::vector<ExtraState> states = {}, Arguments&&... law_arguments) {
+Disturbance make_disturbance(std::initializer_list<PlacedParameters> groups,
+                             Stage stage = Stage::torque, std::vector<ExtraState> states = {},
+                             Arguments&&... law_arguments) {
   Disturbance d;
   d.stage = stage;
-  for (const Parameters& group : groups) {
-    d.parameters.insert(d.parameters.end(), group.begin(), group.end());
-  }
+  for (const PlacedParameters& group : groups) append(d.parameters, group);
   d.states = std::move(states);
   d.law = std::make_shared<const LawType>(std::forward<Arguments>(law_arguments)...);
   return d;

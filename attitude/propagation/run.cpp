@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 
+#include "attitude/disturbances/kind.h"
 #include "attitude/environment/epoch.h"
 #include "attitude/propagation/time_history.h"
 #include "core/transform.h"
@@ -82,7 +83,8 @@ std::vector<EventFunction> events_of(const Dynamics& dynamics) {
     events.back().ends_run = false;
   }
   for (const Disturbance& d : dynamics.model().disturbances) {
-    if (d.kind == "orbit") events.push_back(eclipse_event(dynamics));
+    const DisturbanceKind* kind = find_kind(d.kind);
+    if (kind != nullptr && kind->has_eclipses) events.push_back(eclipse_event(dynamics));
   }
   return events;
 }

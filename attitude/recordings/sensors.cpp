@@ -21,17 +21,14 @@ Quat turn(const Vec3& rotation_rad) {
   return angle == 0.0 ? Quat::Identity() : Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
 }
 
-// The errors of an instrument by the key that switches each on.
+// The errors of an instrument, each switched on by the key that its kind screens.
 void read_errors(const Settings& settings, const DisturbanceContext& context,
-                 std::initializer_list<std::pair<const char*, const char*>> kind_by_key,
-                 std::vector<Disturbance>& errors) {
-  const std::vector<DisturbanceKind> kinds = all_disturbance_kinds();
-  for (const auto& [key, name] : kind_by_key) {
-    if (!settings.has(key)) continue;
-    const auto kind = std::find_if(kinds.begin(), kinds.end(),
-                                   [name = name](const auto& k) { return k.name == name; });
-    errors.push_back(kind->read(settings, context));
-    errors.back().kind = kind->name;
+                 const std::string& instrument, std::vector<Disturbance>& errors) {
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    if (kind.instrument != instrument) continue;
+    if (!settings.has(kind.screening.parametrisations.front().keys.front().key)) continue;
+    errors.push_back(kind.read(settings, context));
+    errors.back().kind = kind.name;
   }
 }
 
@@ -62,9 +59,7 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
       throw s.error("noise_arcsec", "a negative number", "numbers >= 0");
     }
     camera.rate_Hz = s.number_or("rate_Hz", 0.0, not_negative);
-    read_errors(s, context,
-                {{"latency_s", "attitude_latency"}, {"misalignment_rad", "camera_misalignment"}},
-                sensors.errors);
+    read_errors(s, context, "camera", sensors.errors);
   }
   if (settings.has("gyro")) {
     const Settings s = settings.table("gyro");
@@ -72,11 +67,7 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
     gyro.noise_rad_s = s.number_or("noise_rad_s", 0.0, not_negative);
     gyro.bias_drift_rad_s_1_s = s.number_or("bias_drift", 0.0, not_negative);
     gyro.rate_Hz = s.number_or("rate_Hz", 0.0, not_negative);
-    read_errors(s, context,
-                {{"bias_rad_s", "gyro_bias"},
-                 {"scale", "gyro_scale"},
-                 {"misalignment_rad", "gyro_misalignment"}},
-                sensors.errors);
+    read_errors(s, context, "gyro", sensors.errors);
   }
   if (settings.has("encoder")) {
     sensors.encoder.emplace().resolution_rad =

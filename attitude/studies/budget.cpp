@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "attitude/disturbances/kind.h"
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "core/transform.h"
@@ -13,14 +14,10 @@ namespace {
 
 constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;
 
-// The paper's figure for a kind of disturbance, by the name of the figure; empty if it has none.
-std::string figure_of_kind(const std::string& kind) {
-  if (kind == "stepper_quantization") return "stepper_torque_N_m";
-  if (kind == "air_friction") return "lumped_drag_at_1_rpm_N_m";
-  if (kind == "air_pressure_drag") return "cfd_drag_at_1_rpm_N_m";
-  if (kind == "radiation_pressure") return "radiation_torque_at_30_deg_N_m";
-  if (kind == "battery_discharge") return "battery_torque_N_m";
-  return "";
+// What the kind's file says; a disturbance made otherwise has neither figure nor exception.
+BudgetTraits traits_of(const std::string& kind) {
+  const DisturbanceKind* known = find_kind(kind);
+  return known == nullptr ? BudgetTraits{} : known->budget;
 }
 
 std::vector<std::string> names_of(const std::vector<Disturbance>& disturbances) {
@@ -160,7 +157,7 @@ std::vector<AirPart> read_own_air_parts(const Settings& root) {
   holder.value = SettingsNode::Table{{"disturbance", root.raw("disturbance")}};
   const Settings own(std::make_shared<const SettingsNode>(std::move(holder)));
   for (const Settings& disturbance : own.tables("disturbance")) {
-    if (!disturbance.text("kind").starts_with("air_") || !disturbance.has("part")) continue;
+    if (!disturbance.has("part")) continue;
     const std::vector<AirPart> parts = read_air_parts(disturbance.tables("part"));
     all.insert(all.end(), parts.begin(), parts.end());
   }
@@ -191,7 +188,7 @@ Table budget_table(const Budget& budget) {
   for (const BudgetEntry& e : budget.entries) sum_N_m += e.torque_body_N_m.norm();
   for (const BudgetEntry& e : budget.entries) {
     const double torque_N_m = e.torque_body_N_m.norm();
-    const std::string figure = figure_of_kind(e.kind);
+    const std::string figure = traits_of(e.kind).paper_figure;
     const double paper_N_m = figure.empty() ? std::nan("") : paper.at(figure).published;
     table.row()
         .set("disturbance", e.name)
@@ -255,8 +252,7 @@ Budget make_budget(AttitudeModel model, const PlatformState& state) {
   const Mat3 inverse_inertia = budget.model.platform.inertia_kg_m2.inverse();
   for (size_t d = 0; d < acting.size(); ++d) {
     const Disturbance& disturbance = budget.model.disturbances[d];
-    // An orbit is where the others act.
-    if (disturbance.stage == Stage::measurement || disturbance.kind == "orbit") continue;
+    if (!traits_of(disturbance.kind).reason_against.empty()) continue;
     const double acceleration_rad_s2 = (inverse_inertia * acting[d].mean_body_N_m).norm();
     const auto angle_after = [&](double t_s) { return 0.5 * acceleration_rad_s2 * t_s * t_s; };
     budget.entries.push_back({budget.model.disturbances[d].kind, names[d],

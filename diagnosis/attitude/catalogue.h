@@ -1,5 +1,5 @@
 // The effects that may be missing: every kind of disturbance that a recording can reveal, with what
-// is known about its parameters before looking.
+// is known about its parameters before looking. What is known stands in the kinds' own files.
 #pragma once
 
 #include <string>
@@ -9,21 +9,12 @@
 
 namespace photorque {
 
-// One key of an effect.
-struct EffectKey {
-  std::string key;            // as in an experiment file, SI
-  std::vector<double> start;  // where a fit begins; its size is the number of components
-  double scale = 1.0;         // size to be expected: the width of the prior
-  double lowest = -1e308;     // bounds of physics
-  double highest = 1e308;
-  bool searched = false;  // enters nonlinearly: several starts are tried
-};
-
+// One parametrisation of a kind.
 struct Effect {
   std::string kind;
-  std::vector<EffectKey> keys;
-  std::string explanation;  // one sentence for the report
-  std::string needs = {};   // a channel without which it cannot be told: "command", "charge"
+  std::vector<EffectKey> keys;  // scaled to the platform
+  std::string explanation;      // one sentence for the report
+  Screening how = {};           // what else the kind's file says about looking for it
 };
 
 // All effects that can be missing from this platform's model, scaled to its mass and inertia.
@@ -31,8 +22,5 @@ std::vector<Effect> catalogue(const Platform& platform);
 
 // The disturbance with every parameter at its start.
 Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& context);
-
-// Which key a parameter of that disturbance belongs to.
-const EffectKey& key_of(const Effect& effect, const Parameter& parameter);
 
 }  // namespace photorque

@@ -18,7 +18,8 @@ bool is_significant(const Trial& t, const Candidates& all,
                     const std::vector<double>& significance) {
   for (size_t i = 0; i < t.candidates.size(); ++i) {
     const Candidate& c = all[t.candidates[i]];
-    if (c.start.parameters.empty() || c.effect.kind == "flexible_mode") continue;
+    // Without a strength that enters linearly its size is no number of standard deviations.
+    if (!c.has_linear_strength()) continue;
     if (significance[i] < all.limits.decision.min_significance) return false;
   }
   return true;

@@ -5,6 +5,16 @@
 namespace photorque {
 namespace {
 
+// All coefficients of a law are numbers of one key.
+constexpr const char* coefficient = "coefficient";
+
+constexpr ScalarKey numbered(int index) {
+  return {coefficient, index};
+}
+constexpr VectorKey vector_from(int first) {
+  return {coefficient, first};
+}
+
 // sin and cos of `order` times the heading, about the vertical.
 class HeadingHarmonic final : public TorqueLaw<HeadingHarmonic> {
  public:
@@ -21,11 +31,12 @@ class HeadingHarmonic final : public TorqueLaw<HeadingHarmonic> {
       s = s * c1 + c * s1;
       c = next;
     }
-    const T size_N_m = own.parameter(0) * c + own.parameter(1) * s;
+    const T size_N_m = own[of_cosine] * c + own[of_sine] * s;
     return size_N_m * now.lab_from_body.row(2).transpose();
   }
 
  private:
+  static constexpr ScalarKey of_cosine = numbered(0), of_sine = numbered(1);
   int order_;
 };
 
@@ -43,12 +54,13 @@ class TiltPower final : public TorqueLaw<TiltPower> {
     const T square = lean[0] * lean[0] + lean[1] * lean[1];
     T factor = power_ % 2 == 1 ? T(1.0) : sqrt(square + T(1e-12));
     for (int k = 0; k < (power_ - 1) / 2; ++k) factor = factor * square;
-    const T righting = own.parameter(0) * factor;
-    const T turning = own.parameter(1) * factor * sqrt(square + T(1e-12));
+    const T righting = own[along_lean] * factor;
+    const T turning = own[about_vertical] * factor * sqrt(square + T(1e-12));
     return righting * lean + turning * up;
   }
 
  private:
+  static constexpr ScalarKey along_lean = numbered(0), about_vertical = numbered(1);
   static constexpr double tilt_unit = 0.1;  // coefficients are torques at this tilt
   int power_;
 };
@@ -63,7 +75,7 @@ class RatePower final : public TorqueLaw<RatePower> {
     const Vec3Of<T> w = now.rate_body_rad_s / T(rate_unit_rad_s);
     const T factor = pow(length(w) + T(1e-3), power_ - 1.0);
     const Vec3Of<T> shaped = factor * w;
-    return -own.vector(0).cwiseProduct(shaped);
+    return -own[vector_from(0)].cwiseProduct(shaped);
   }
 
  private:
@@ -82,7 +94,7 @@ class TimeCosines final : public TorqueLaw<TimeCosines> {
     Vec3Of<T> sum = Vec3Of<T>::Constant(T(0.0));
     for (int j = 0; j < count_; ++j) {
       const T bounce = cos(now.time_s * T(angular_frequency_ * (first_ + j)));
-      sum += bounce * own.vector(3 * j);
+      sum += bounce * own[vector_from(3 * j)];
     }
     return sum;
   }
@@ -100,11 +112,13 @@ class TimeDecay final : public TorqueLaw<TimeDecay> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const T fade = exp(-now.time_s * T(rate_1_s_));
-    const T vertical = fade * own.parameter(3);
-    return fade * own.vector(0) + vertical * now.lab_from_body.row(2).transpose();
+    const T vertical = fade * own[about_vertical];
+    return fade * own[fixed_to_body] + vertical * now.lab_from_body.row(2).transpose();
   }
 
  private:
+  static constexpr VectorKey fixed_to_body = vector_from(0);
+  static constexpr ScalarKey about_vertical = numbered(fixed_to_body.end());
   double rate_1_s_;
 };
 
@@ -118,7 +132,7 @@ class ChargePower final : public TorqueLaw<ChargePower> {
     T factor = T(1.0);
     const T fraction = now.charge_drawn_C / T(charge_C_);
     for (int k = 0; k < power_; ++k) factor = factor * fraction;
-    return factor * own.vector(0);
+    return factor * own[vector_from(0)];
   }
 
  private:
@@ -128,16 +142,19 @@ class ChargePower final : public TorqueLaw<ChargePower> {
 
 // What the actuators give beyond the command and its multiples: its square, and cross talk.
 class CommandMatrix final : public TorqueLaw<CommandMatrix> {
+  static constexpr ScalarKey of_square = numbered(6);
+
  public:
+  // The other six are the matrix but for its diagonal, row by row.
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T>& c = now.command_body_N_m;
-    const Vec3Of<T> across(own.parameter(0) * c[1] + own.parameter(1) * c[2],
-                           own.parameter(2) * c[0] + own.parameter(3) * c[2],
-                           own.parameter(4) * c[0] + own.parameter(5) * c[1]);
+    const Vec3Of<T> across(own[numbered(0)] * c[1] + own[numbered(1)] * c[2],
+                           own[numbered(2)] * c[0] + own[numbered(3)] * c[2],
+                           own[numbered(4)] * c[0] + own[numbered(5)] * c[1]);
     const T size = length(c) / T(1e-4);
     const Vec3Of<T> squared = size * c;
-    return across + own.parameter(6) * squared;
+    return across + own[of_square] * squared;
   }
 };
 
@@ -147,7 +164,7 @@ EmpiricalLaw law(const std::string& variable, const std::string& description, si
   const std::vector<double> zeros(coefficients, 0.0);
   EmpiricalLaw result{
       variable, description,
-      make_disturbance<LawType>({fixed_parameter("coefficient", zeros)}, Stage::torque, {},
+      make_disturbance<LawType>({fixed_parameter(coefficient, zeros)}, Stage::torque, {},
                                 std::forward<Arguments>(arguments)...),
       scale};
   result.disturbance.kind = "empirical_" + variable;

@@ -15,17 +15,22 @@ namespace {
 // looks as wide as its damping: enough of it for the grid of frequencies.
 constexpr double scanned_damping = 0.08;
 
+// An appendage begins by turning with the body, its rate being counted about its axis.
+void set_axis(Disturbance& d, const Vec3& unit) {
+  set_vector(d, "axis", unit);
+  state_of(d, "rate_rad_s").per_body_rate = unit;
+}
+
 // Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.
 ScoreGroup appendages(const Disturbance& start, double frequency_Hz) {
   ScoreGroup group;
-  group.parameters = {5};
+  group.parameters = {static_cast<int>(index_of(start, "inertia_kg_m2"))};
   for (const Vec3& axis :
        {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)}) {
-    Disturbance d = with_parameter(with_parameter(start, 3, frequency_Hz), 4, scanned_damping);
-    const Vec3 unit = axis.normalized();
-    for (int k = 0; k < 3; ++k) d.parameters[static_cast<size_t>(k)].value = unit[k];
-    d.states[1].per_body_rate = unit;
-    d.parameters[5].value *= 1e-3;
+    Disturbance d = with_parameter(start, "frequency_Hz", frequency_Hz);
+    parameter_of(d, "damping").value = scanned_damping;
+    parameter_of(d, "inertia_kg_m2").value *= 1e-3;
+    set_axis(d, axis.normalized());
     group.disturbances.push_back(std::move(d));
   }
   return group;
@@ -33,7 +38,7 @@ ScoreGroup appendages(const Disturbance& start, double frequency_Hz) {
 
 std::vector<Vec3> axes_of(const ScoreGroup& group) {
   std::vector<Vec3> axes;
-  for (const Disturbance& d : group.disturbances) axes.push_back(d.states[1].per_body_rate);
+  for (const Disturbance& d : group.disturbances) axes.push_back(vector_of(d, "axis"));
   return axes;
 }
 
@@ -58,7 +63,7 @@ Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& ine
   if (score.estimate.size() != 6) return best;
   Mat3 sum = Mat3::Zero();
   for (size_t i = 0; i < 6; ++i) {
-    const Vec3& axis = group.disturbances[i].states[1].per_body_rate;
+    const Vec3 axis = vector_of(group.disturbances[i], "axis");
     sum += score.estimate[static_cast<Eigen::Index>(i)] * axis * axis.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(sum);
@@ -73,13 +78,11 @@ Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& ine
     const double whole_kg_m2 = axis.dot(inertia_kg_m2 * axis);
     const double fraction = std::min(along / curvature / whole_kg_m2, 0.5);
     best.start = group.disturbances.front();
-    auto& parameters = best.start.parameters;
-    for (int k = 0; k < 3; ++k) parameters[static_cast<size_t>(k)].value = axis[k];
-    best.start.states[1].per_body_rate = axis;
+    set_axis(best.start, axis);
     // The platform's recoil makes a heavy appendage swing faster than with the platform held.
-    parameters[3].value *= std::sqrt(1.0 - fraction);
-    parameters[4].value = 0.04;
-    parameters[5].value = fraction * whole_kg_m2;
+    parameter_of(best.start, "frequency_Hz").value *= std::sqrt(1.0 - fraction);
+    parameter_of(best.start, "damping").value = 0.04;
+    parameter_of(best.start, "inertia_kg_m2").value = fraction * whole_kg_m2;
   }
   return best;
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <set>
 
+#include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/parallel.h"
@@ -68,9 +68,13 @@ constexpr const char* longer = "record longer, at larger tilt and over a wider r
 
 // What follows the battery's charge shows by its current alone, whatever the start.
 bool is_told_by_charge(const std::string& kind, const std::string& rival) {
-  const std::set<std::string> kinds = {"battery_discharge", "mass_shift", "static_unbalance"};
-  return kinds.contains(kind) && kinds.contains(rival) &&
-         (kind == "battery_discharge" || rival == "battery_discharge");
+  const auto says = [](const std::string& one, const std::string& other) {
+    const DisturbanceKind* known = find_kind(one);
+    return known != nullptr && std::ranges::any_of(known->screening.alike, [&](const Likeness& l) {
+             return l.kind == other && l.told_apart_by == Requirement::charge;
+           });
+  };
+  return says(kind, rival) || says(rival, kind);
 }
 
 // The first run from another start as the trial predicts it, without noise.

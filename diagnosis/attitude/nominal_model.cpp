@@ -1,5 +1,7 @@
 #include "diagnosis/attitude/nominal_model.h"
 
+#include "attitude/disturbances/kind.h"
+
 namespace photorque {
 
 Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs) {
@@ -8,10 +10,11 @@ Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Obs
   std::vector<double> own;
   for (size_t d = 0; d < h.model.disturbances.size(); ++d) {
     const Disturbance& disturbance = h.model.disturbances[d];
+    const DisturbanceKind* kind = find_kind(disturbance.kind);
+    const bool per_run = kind != nullptr && kind->screening.per_recording;
     for (size_t p = 0; p < disturbance.parameters.size(); ++p) {
       const Parameter& parameter = disturbance.parameters[p];
       if (!(parameter.sigma > 0.0)) continue;
-      const bool per_run = disturbance.kind == "gyro_bias";
       h.free.push_back({d, static_cast<int>(p), parameter.value, parameter.sigma, per_run});
       if (per_run) own.push_back(parameter.value);
     }

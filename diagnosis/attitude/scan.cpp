@@ -67,16 +67,25 @@ void add_power(const Prediction& prediction, const Observation& seen, Spectrum& 
   for (const std::vector<double>& channel : channels) add_power(channel, seen, spectrum);
 }
 
-// The jump in the centre of mass at each of a grid of instants.
-std::vector<Start> mass_shift_starts(const Candidate& c, const Trial& parent,
-                                     const std::vector<Observation>& runs,
-                                     const Thresholds::Scoring& limits) {
+// The key of an effect that need not be searched: the strength of what jumps or swings.
+const std::string& strength_of(const Candidate& c) {
+  const std::vector<EffectKey>& keys = c.effect.keys;
+  const auto found = std::ranges::find_if(keys, [](const EffectKey& k) { return !k.searched; });
+  if (found == keys.end()) throw NumericalError(c.label + " has no strength");
+  return found->key;
+}
+
+// What begins at each of a grid of instants.
+std::vector<Start> instant_starts(const Candidate& c, const Trial& parent,
+                                  const std::vector<Observation>& runs,
+                                  const Thresholds::Scoring& limits) {
   constexpr size_t count = 30;
   const double last_s = end_s(runs), first_s = runs.front().time_s.front();
+  const std::string& strength = strength_of(c);
   std::vector<ScoreGroup> groups;
   for (size_t i = 1; i < count; ++i) {
     const double at_s = first_s + (last_s - first_s) * static_cast<double>(i) / count;
-    groups.push_back({{with_parameter(c.start, 0, at_s)}, {1, 2, 3}});
+    groups.push_back({{with_parameter(c.start, "time_s", at_s)}, indices_of(c.start, strength, 3)});
   }
   const std::vector<Score> scores = score(parent.fit, runs, groups);
   std::vector<double> gain;
@@ -85,9 +94,7 @@ std::vector<Start> mass_shift_starts(const Candidate& c, const Trial& parent,
   for (const size_t i : peaks(gain, 2)) {
     if (gain[i] < limits.min_scan_gain) continue;
     Disturbance d = groups[i].disturbances.front();
-    for (Eigen::Index k = 0; k < scores[i].estimate.size() && k < 3; ++k) {
-      d.parameters[static_cast<size_t>(1 + k)].value = scores[i].estimate[k];
-    }
+    if (scores[i].estimate.size() == 3) set_vector(d, strength, scores[i].estimate);
     starts.push_back({d, gain[i]});
   }
   return starts;
@@ -99,9 +106,15 @@ double slowest_line_Hz(const std::vector<Observation>& runs) {
   return std::min(0.2, 100.0 / span_s(runs));
 }
 
+// Both phases of a tone, of which the strengths are wanted.
+ScoreGroup sine_and_cosine(const Disturbance& tone, const std::string& strength, double f_Hz) {
+  const Disturbance sine = with_parameter(tone, "frequency_Hz", f_Hz);
+  return {{sine, with_parameter(sine, "phase", pi / 2)}, indices_of(tone, strength, 3)};
+}
+
 // Frequencies below slowest_line_Hz() at which a sinusoid of this kind would gain most.
-std::vector<double> slow_frequencies_Hz(const Disturbance& tone, const Fit& at,
-                                        const std::vector<Observation>& runs,
+std::vector<double> slow_frequencies_Hz(const Disturbance& tone, const std::string& strength,
+                                        const Fit& at, const std::vector<Observation>& runs,
                                         const Thresholds::Scoring& limits) {
   constexpr size_t most = 2;
   const double step_Hz = 0.7 / span_s(runs);
@@ -109,8 +122,7 @@ std::vector<double> slow_frequencies_Hz(const Disturbance& tone, const Fit& at,
   std::vector<ScoreGroup> groups;
   for (double f_Hz = step_Hz; f_Hz < slowest_line_Hz(runs); f_Hz += step_Hz) {
     frequency_Hz.push_back(f_Hz);
-    const Disturbance sine = with_parameter(tone, 3, f_Hz);
-    groups.push_back({{sine, with_parameter(sine, 4, pi / 2)}, {0, 1, 2}});
+    groups.push_back(sine_and_cosine(tone, strength, f_Hz));
   }
   std::vector<double> gain;
   for (const Score& s : score(at, runs, groups)) gain.push_back(s.gain);
@@ -128,13 +140,14 @@ std::vector<Start> sinusoid_starts(const Candidate& c, const Trial& parent,
                                    const std::vector<Observation>& slow_runs,
                                    const std::vector<double>& lines_Hz,
                                    const Thresholds::Scoring& limits) {
-  std::vector<double> frequencies_Hz = slow_frequencies_Hz(c.start, parent.fit, slow_runs, limits);
+  const std::string& strength = strength_of(c);
+  std::vector<double> frequencies_Hz =
+      slow_frequencies_Hz(c.start, strength, parent.fit, slow_runs, limits);
   frequencies_Hz.insert(frequencies_Hz.end(), lines_Hz.begin(), lines_Hz.end());
   std::vector<ScoreGroup> groups;
   std::vector<Score> scores;
   for (const double f_Hz : frequencies_Hz) {
-    const Disturbance sine = with_parameter(c.start, 3, f_Hz);
-    groups.push_back({{sine, with_parameter(sine, 4, pi / 2)}, {0, 1, 2}});
+    groups.push_back(sine_and_cosine(c.start, strength, f_Hz));
     // Each alone: fast ones make short steps for all that share their pass.
     scores.push_back(score(parent.fit, runs, {groups.back()}).front());
   }
@@ -151,8 +164,8 @@ std::vector<Start> sinusoid_starts(const Candidate& c, const Trial& parent,
                                                 Eigen::ComputeThinU | Eigen::ComputeThinV);
     const Vec3 vector = svd.singularValues()[0] * svd.matrixU().col(0);
     Disturbance d = groups[i].disturbances.front();
-    for (int k = 0; k < 3; ++k) d.parameters[static_cast<size_t>(k)].value = vector[k];
-    d.parameters[4].value = std::atan2(svd.matrixV()(1, 0), svd.matrixV()(0, 0));
+    set_vector(d, strength, vector);
+    parameter_of(d, "phase").value = std::atan2(svd.matrixV()(1, 0), svd.matrixV()(0, 0));
     starts.push_back({d, scores[i].gain});
   }
   return starts;
@@ -200,13 +213,15 @@ std::vector<Start> starts_of(const Candidate& candidate, const Trial& parent,
                              const std::vector<Observation>& slow_runs,
                              const std::vector<double>& lines_Hz,
                              const Thresholds::Scoring& limits) {
-  const std::string& kind = candidate.effect.kind;
-  if (kind == "mass_shift") return mass_shift_starts(candidate, parent, slow_runs, limits);
-  if (kind == "periodic_torque" || kind == "floor_vibration") {
-    return sinusoid_starts(candidate, parent, runs, slow_runs, lines_Hz, limits);
-  }
-  if (kind == "flexible_mode") {
-    return flexible_mode_starts(candidate.start, parent.fit, runs, slow_runs, limits);
+  switch (candidate.effect.how.scan) {
+    case Scan::instant:
+      return instant_starts(candidate, parent, slow_runs, limits);
+    case Scan::frequency:
+      return sinusoid_starts(candidate, parent, runs, slow_runs, lines_Hz, limits);
+    case Scan::mode:
+      return flexible_mode_starts(candidate.start, parent.fit, runs, slow_runs, limits);
+    case Scan::nothing:
+      break;
   }
   return {{candidate.start}};
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
+#include "attitude/disturbances/kind.h"
 #include "diagnosis/attitude/fit.h"
 
 namespace photorque {
@@ -32,10 +34,18 @@ inline std::vector<size_t> peaks(const std::vector<double>& value, size_t most) 
   return found;
 }
 
-inline Disturbance with_parameter(const Disturbance& like, size_t parameter, double value) {
+inline Disturbance with_parameter(const Disturbance& like, std::string_view key, double value) {
   Disturbance d = like;
-  d.parameters[parameter].value = value;
+  parameter_of(d, key).value = value;
   return d;
+}
+
+// Indices of the parameters of one key with so many components.
+inline std::vector<int> indices_of(const Disturbance& d, std::string_view key, size_t components) {
+  const auto first = static_cast<int>(index_of(d, key));
+  std::vector<int> all;
+  for (size_t k = 0; k < components; ++k) all.push_back(first + static_cast<int>(k));
+  return all;
 }
 
 }  // namespace photorque

@@ -132,9 +132,7 @@ std::vector<Trial> extend_near(const Trial& parent, const Candidates& all,
   });
   std::vector<Task> slow, fast;
   for (size_t i = 0; i < worth_it.size(); ++i) {
-    const std::string& kind = all[worth_it[i]].effect.kind;
-    const bool is_fast =
-        kind == "periodic_torque" || kind == "floor_vibration" || kind == "flexible_mode";
+    const bool is_fast = all[worth_it[i]].effect.how.fast;
     for (const Start& start : starts[i]) {
       if (start.gain < hopeful.min_gain) continue;
       (is_fast ? fast : slow).push_back({worth_it[i], start.disturbance});

@@ -163,17 +163,30 @@ double inertia_change(const Trial& trial, const Candidates& all) {
   const Vec3 nominal = nominal_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
   double largest = 0.0;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
-    if (all[trial.candidates[i]].effect.kind != "inertia_error") continue;
-    const auto& delta = trial.fit.best.model.disturbances[trial.disturbances[i]].parameters;
-    Mat3 found = nominal_kg_m2;
-    for (Eigen::Index k = 0; k < 3; ++k) found(k, k) += delta[static_cast<size_t>(k)].value;
-    found(1, 0) += delta[3].value;
-    found(2, 0) += delta[4].value;
-    found(2, 1) += delta[5].value;
+    const auto change_kg_m2 = all[trial.candidates[i]].effect.how.inertia_change_kg_m2;
+    if (change_kg_m2 == nullptr) continue;
+    const Mat3 found =
+        nominal_kg_m2 + change_kg_m2(trial.fit.best.model.disturbances[trial.disturbances[i]]);
     const Vec3 moments = found.selfadjointView<Eigen::Lower>().eigenvalues();
     largest = std::max(largest, (moments - nominal).cwiseQuotient(nominal).cwiseAbs().maxCoeff());
   }
   return largest;
+}
+
+// A kind that the nominal model has as well may be corrected downwards, but not below what physics
+// allows of the sum.
+std::string sum_objection(const AttitudeModel& model) {
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    const std::optional<LeastSum>& least = kind.screening.least_sum;
+    if (!least) continue;
+    double sum = 0.0;
+    for (const Disturbance& d : model.disturbances) {
+      if (d.kind != kind.name) continue;
+      for (const Parameter& p : d.parameters) sum += p.value;
+    }
+    if (sum < least->lowest) return least->objection;
+  }
+  return "";
 }
 
 std::string objection_to(const Trial& trial, const Candidates& all) {
@@ -200,15 +213,7 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
     return "a principal moment of inertia would change by " +
            std::to_string(static_cast<int>(std::lround(100.0 * change))) + " %";
   }
-  double drag = 0.0;
-  bool has_drag = false;
-  for (const Disturbance& d : trial.fit.best.model.disturbances) {
-    if (d.kind != "bearing_drag") continue;
-    has_drag = true;
-    for (const Parameter& p : d.parameters) drag += p.value;
-  }
-  if (has_drag && drag < limits.min_drag_N_m_s) return "the bearing's drag would feed energy";
-  return "";
+  return sum_objection(trial.fit.best.model);
 }
 
 double significance(const Trial& trial, const Candidates& all, size_t which) {
@@ -265,12 +270,22 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
       has_commands = has_commands || held.command_body_N_m.norm() > 0.0;
     }
   }
+  const auto has_channel = [&](Requirement channel) {
+    switch (channel) {
+      case Requirement::command:
+        return has_commands;
+      case Requirement::charge:
+        return charge_C != 0.0;
+      case Requirement::field:
+        return nominal.model.environment.magnetic_field_lab_T.norm() > 0.0;
+      case Requirement::none:
+        break;
+    }
+    return true;
+  };
   Candidates all{{}, limits};
   for (const Effect& effect : catalogue(nominal.model.platform)) {
-    if (effect.needs == "command" && !has_commands) continue;
-    if (effect.needs == "charge" && charge_C == 0.0) continue;
-    const bool field = nominal.model.environment.magnetic_field_lab_T.norm() > 0.0;
-    if (!field && (effect.kind == "magnetic_dipole" || effect.kind == "eddy_damping")) continue;
+    if (!has_channel(effect.how.needs)) continue;
     // A law without parameters acts already or not.
     const auto& acting = nominal.model.disturbances;
     const bool acts = std::any_of(acting.begin(), acting.end(),

@@ -26,6 +26,10 @@ struct Candidate {
   std::vector<bool> searched;
 
   bool empirical() const { return !variable.empty(); }
+  // Whether a parameter need not be searched.
+  bool has_linear_strength() const {
+    return std::any_of(searched.begin(), searched.end(), [](bool b) { return !b; });
+  }
   // Whether a score test can predict what its fit gains.
   bool is_linear() const {
     return !start.parameters.empty() &&

@@ -19,13 +19,13 @@ namespace {
 struct Offset final : LawOf<Offset> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    now.move_mass(active_from(now.time_s, values_of_start(own)) * own.vector(0));
+    now.move_mass(active_from(now.time_s, values_of_start(own)) * own[VectorKey{"p"}]);
   }
   static double values_of_start(const ParametersAndStates<Lanes>& own) {
-    return own.parameter(3)[0];
+    return own[ScalarKey{"p", 3}][0];
   }
   static double values_of_start(const ParametersAndStates<DualLanes>& own) {
-    return own.parameter(3).value[0];
+    return own[ScalarKey{"p", 3}].value[0];
   }
   std::vector<Switch> switches(std::span<const Parameter> p, double, double) const override {
     return {{p[3].value, 3}};
@@ -37,7 +37,7 @@ struct Drag final : TorqueLaw<Drag> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T>& w = now.rate_body_rad_s;
-    return -(own.parameter(0) + own.parameter(1) * pow(length(w), 0.5)) * w;
+    return -(own[ScalarKey{"p", 0}] + own[ScalarKey{"p", 1}] * pow(length(w), 0.5)) * w;
   }
 };
 
@@ -46,7 +46,7 @@ struct Drag final : TorqueLaw<Drag> {
 struct SprungWheel final : LawOf<SprungWheel> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    const T &inertia = own.parameter(0), &stiffness = own.parameter(1);
+    const T &inertia = own[ScalarKey{"p", 0}], &stiffness = own[ScalarKey{"p", 1}];
     const Vec3Of<T> axis(T(1.0), T(0.0), T(0.0));
     now.detach_inertia(inertia * (axis * axis.transpose()));
     const T spring = stiffness * own.states[1];

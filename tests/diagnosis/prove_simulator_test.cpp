@@ -6,9 +6,7 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/propagation/run.h"
-#include "tools/proof/draw.h"
 #include "tools/proof/motion.h"
-#include "tools/proof/vectors.h"
 
 namespace photorque {
 namespace {

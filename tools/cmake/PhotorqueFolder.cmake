@@ -63,4 +63,6 @@ ${calls}  };
 }  // namespace photorque
 " @ONLY)
   set(${folder}_KINDS ${files} ${generated} PARENT_SCOPE)
+  set(${folder}_REGISTRY ${generated} PARENT_SCOPE)
+  set_property(GLOBAL PROPERTY photorque_words_${type} ${ARGN})
 endfunction()

@@ -4,10 +4,8 @@
 #include <cmath>
 
 #include "core/errors.h"
-#include "tools/proof/draw.h"
 #include "tools/proof/information.h"
 #include "tools/proof/recipes.h"
-#include "tools/proof/vectors.h"
 
 namespace photorque {
 namespace {
@@ -59,9 +57,9 @@ void draw_priors(RandomDraw& draw, InjectedCase& c, const std::vector<Recipe>& r
   priors.gyro_bias_sigma_rad_s = 1e-3;
   // An effect that could hide in an uncertain nominal model is injected where that nominal model is
   // exact.
-  if (injects("static_unbalance")) priors.offset_sigma_m = {};
-  if (injects("bearing_drag")) priors.drag_sigma_N_m_s = 0.0;
-  if (injects("gyro_bias")) priors.gyro_bias_sigma_rad_s = 0.0;
+  if (injects(nominal_unbalance)) priors.offset_sigma_m = {};
+  if (injects(nominal_drag)) priors.drag_sigma_N_m_s = 0.0;
+  if (injects(nominal_gyro_bias)) priors.gyro_bias_sigma_rad_s = 0.0;
   c.world.offset_m = plus(priors.offset_m, by_component(priors.offset_sigma_m, draw.normals(1.0)));
   c.world.drag_N_m_s = std::max(0.2 * priors.drag_N_m_s,
                                 priors.drag_N_m_s + priors.drag_sigma_N_m_s * draw.normal());
@@ -101,8 +99,9 @@ std::vector<InjectedCommand> draw_commands(RandomDraw& draw, double duration_s, 
 void draw_runs(RandomDraw& draw, InjectedCase& c, const InjectedPlan& plan,
                const std::vector<Recipe>& recipes) {
   const auto any = [&](auto member) { return std::ranges::any_of(recipes, member); };
-  const bool torques = any([](const Recipe& r) { return r.needs_commands; }) || draw.chance(0.2);
-  const bool still = any([](const Recipe& r) { return r.needs_small_turns; });
+  const bool torques =
+      any([](const Recipe& r) { return r.injection.needs_commands; }) || draw.chance(0.2);
+  const bool still = any([](const Recipe& r) { return r.injection.needs_small_turns; });
   const double durations_s[] = {plan.duration_s, plan.holdout_s};
   for (size_t i = 0; i < 2; ++i) {
     InjectedRun& run = c.runs[i];
@@ -148,7 +147,8 @@ double fit_strength(InjectedCase& c, size_t index, const Recipe& recipe, double 
   for (int round = 0; round < 3; ++round) {
     gain = own_gain(c, index, recipe.outside);
     if (c.world.effects[index].parameters.empty() || !(gain > 0.0)) break;
-    const double by = std::clamp(std::sqrt(wanted / gain), 1e-4 / total, recipe.most / total);
+    const double by =
+        std::clamp(std::sqrt(wanted / gain), 1e-4 / total, recipe.injection.max_factor / total);
     scale_effect(c.world.effects[index], by);
     total *= by;
     if (std::abs(by - 1.0) < 0.02) break;
@@ -185,9 +185,11 @@ struct Choice {
   int number = 0;  // within its kind
 };
 
-// A torque about the vertical is a draught too: both together are one effect.
-bool is_part_of(const std::string& kind, const std::string& other) {
-  return kind == "turbine_torque" && other == "room_draft";
+// Whether both together are one effect: a torque about the vertical is a draught too.
+bool is_part_of(const Recipe& recipe, const Recipe& other) {
+  return std::ranges::any_of(recipe.screening.alike, [&](const Likeness& l) {
+    return l.kind == other.kind && l.told_apart_by == Requirement::none;
+  });
 }
 
 Choice choose(const InjectedPlan& plan, size_t index) {
@@ -203,7 +205,7 @@ Choice choose(const InjectedPlan& plan, size_t index) {
   }
   i -= plan.per_kind * static_cast<int>(inside.size());
   if (i < plan.pairs) {
-    std::erase_if(inside, [](const Recipe& r) { return !r.pairs; });
+    std::erase_if(inside, [](const Recipe& r) { return !r.injection.pairs; });
     RandomDraw draw(plan.seed, 1000003 + static_cast<uint64_t>(i));
     const auto count = static_cast<int>(inside.size());
     Recipe a, b;
@@ -211,7 +213,7 @@ Choice choose(const InjectedPlan& plan, size_t index) {
       const int first = draw.below(count), second = first + 1 + draw.below(count - 1);
       a = inside[static_cast<size_t>(first)];
       b = inside[static_cast<size_t>(second % count)];
-    } while (is_part_of(a.kind, b.kind) || is_part_of(b.kind, a.kind));
+    } while (is_part_of(a, b) || is_part_of(b, a));
     return {"pair", a.kind + "+" + b.kind, {a, b}, i};
   }
   i -= plan.pairs;
@@ -262,7 +264,11 @@ bool attempt(InjectedCase& c, const InjectedPlan& plan, const Choice& choice, ui
   c.sensors.camera_every = draw.chance(0.3) ? 2 : 1;
   c.sensors.dirty = draw.chance(plan.dirty_fraction);
   draw_runs(draw, c, plan, choice.recipes);
-  for (const Recipe& r : choice.recipes) c.world.effects.push_back(r.draw(draw, c));
+  const ExampleConditions conditions{c.runs[0].duration_s, c.world.inertia_kg_m2,
+                                     0.25 * c.sensors.rate_Hz / c.sensors.camera_every};
+  for (const Recipe& r : choice.recipes) {
+    c.world.effects.push_back({r.kind, r.injection.draw(draw, conditions)});
+  }
   const double wanted = wanted_gain(draw, choice);
   c.chi2_gain = choice.recipes.empty() ? 0.0 : 1e300;
   for (size_t i = 0; i < choice.recipes.size(); ++i) {

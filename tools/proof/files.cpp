@@ -7,8 +7,7 @@
 
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
-#include "tools/proof/draw.h"
-#include "tools/proof/vectors.h"
+#include "tools/proof/recipes.h"
 
 namespace photorque {
 namespace {
@@ -143,11 +142,11 @@ std::string injected_experiment(const InjectedCase& c, bool told_truth) {
   text += "magnetic_field_T = " + array_text(c.world.magnetic_field_T) +
           "   # lab axes: east, north, up\n";
   text += print("latitude_deg = %.6g\n", c.world.latitude_rad * 180.0 / pi);
-  text += "\n[[disturbance]]\nkind = \"static_unbalance\"\noffset_m = " +
+  text += "\n[[disturbance]]\nkind = \"" + std::string(nominal_unbalance) + "\"\noffset_m = " +
           with_sigma(array_text(priors.offset_m), array_text(priors.offset_sigma_m),
                      priors.offset_sigma_m[0] == 0.0) +
           "\n";
-  text += "\n[[disturbance]]\nkind = \"bearing_drag\"\ncoefficient_N_m_s = " +
+  text += "\n[[disturbance]]\nkind = \"" + std::string(nominal_drag) + "\"\ncoefficient_N_m_s = " +
           with_sigma(print("%.6g", priors.drag_N_m_s), print("%.3g", priors.drag_sigma_N_m_s),
                      priors.drag_sigma_N_m_s == 0.0) +
           "\n";

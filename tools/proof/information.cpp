@@ -5,7 +5,7 @@
 
 #include "core/constants.h"
 #include "core/numerics/random.h"
-#include "tools/proof/vectors.h"
+#include "tools/proof/recipes.h"
 
 namespace photorque {
 namespace {
@@ -17,39 +17,24 @@ constexpr double start_s = -0.5;  // see files.cpp
 constexpr double step_s = 0.05;
 constexpr double arcsecond = pi / 180.0 / 3600.0;
 
-// A small amount of each number of a kind, SI, for differences.
-struct Nudge {
-  std::string kind, key;
-  size_t size;
-  double by;
-};
-const std::vector<Nudge>& nudges() {
-  static const std::vector<Nudge> all = {
-      {"static_unbalance", "offset_m", 3, 1e-8},
-      {"battery_discharge", "shift_m_per_Ah", 3, 1e-8},
-      {"elastic_sag", "compliance_s2", 3, 1e-9},
-      {"bearing_drag", "coefficient_N_m_s", 1, 1e-8},
-      {"turbine_torque", "torque_N_m", 1, 1e-9},
-      {"dry_friction", "torque_N_m", 1, 1e-9},
-      {"air_friction", "coefficient", 1, 1e-8},
-      {"air_pressure_drag", "coefficient_N_m_s2", 1, 1e-7},
-      {"room_draft", "torque_lab_N_m", 3, 1e-9},
-      {"magnetic_dipole", "dipole_A_m2", 3, 1e-5},
-      {"eddy_damping", "coefficient_N_m_s_per_T2", 1, 1.0},
-      {"rotor_momentum", "momentum_N_m_s", 3, 1e-7},
-      {"tether", "stiffness_N_m_per_rad", 1, 1e-8},
-      {"inertia_error", "delta_kg_m2", 6, 1e-6},
-      {"gravity_tilt", "tilt_rad", 2, 1e-6},
-      {"attitude_latency", "latency_s", 1, 1e-4},
-      {"gyro_bias", "bias_rad_s", 3, 1e-6},
-      {"gyro_scale", "scale", 3, 1e-5},
-      {"gyro_misalignment", "misalignment_rad", 3, 1e-5},
-      {"camera_misalignment", "misalignment_rad", 3, 1e-6},
-      {"actuator_gain", "gain_error", 1, 1e-4},
-      {"gravity_gradient", "", 0, 1.0},
-      {"earth_rotation", "", 0, 1.0},
-  };
+// Kinds whose readings change in proportion to all their numbers, or that have none, those that
+// always act first: the order of columns decides the last digits of a gain.
+std::vector<Recipe> linear_recipes() {
+  std::vector<Recipe> all;
+  for (const Recipe& r : recipes()) {
+    const bool strong = r.injection.step > 0.0, whole = r.injection.strength.empty();
+    if (!r.outside && r.screening.scan == Scan::nothing && (strong || whole)) all.push_back(r);
+  }
+  std::ranges::stable_sort(all, {}, [](const Recipe& r) {
+    if (r.injection.strength.empty()) return 2;
+    return r.screening.needs == Requirement::command ? 1 : 0;
+  });
   return all;
+}
+
+// Kinds that act at one frequency.
+bool is_tone(const Recipe& recipe) {
+  return recipe.screening.scan == Scan::frequency;
 }
 
 }  // namespace
@@ -144,7 +129,7 @@ Eigen::VectorXd InjectedInformation::change_by(size_t index, double fraction) co
   InjectedWorld world = case_.world;
   InjectedEffect& effect = world.effects[index];
   // What an appendage does is not in proportion to its inertia, which also moves its resonance.
-  if (effect.parameters.empty() || effect.kind == "flexible_mode") {
+  if (effect.parameters.empty() || !recipe_of(effect.kind).is_proportional()) {
     world.effects.erase(world.effects.begin() + static_cast<ptrdiff_t>(index));
     fraction = 1.0;
   } else {
@@ -161,34 +146,33 @@ Eigen::MatrixXd InjectedInformation::columns_of(const std::string& kind) const {
     world.effects.push_back(effect);
     columns.emplace_back(difference(sample(world, start)) / by);
   };
-  const auto add_tone = [&](const std::string& name, const std::string& key, double by,
-                            const InjectedEffect& acting) {
+  const Recipe& recipe = recipe_of(kind);
+  const std::string& strength = recipe.injection.strength;
+  const double by = recipe.injection.step;
+  const auto add_tone = [&](const InjectedEffect& acting) {
     for (size_t k = 0; k < 6; ++k) {
       std::vector<double> numbers(3, 0.0);
       numbers[k % 3] = by;
-      add({name,
-           {{key, numbers},
+      add({kind,
+           {{strength, numbers},
             {"frequency_Hz", acting.parameters.at("frequency_Hz")},
             {"phase", {k < 3 ? 0.0 : 0.5 * pi}}}},
           by);
     }
   };
-  for (const Nudge& nudge : nudges()) {
-    if (nudge.kind != kind) continue;
-    if (nudge.size == 0) add({kind, {}}, 1.0);
-    for (size_t k = 0; k < nudge.size; ++k) {
-      std::vector<double> numbers(nudge.size, 0.0);
-      numbers[k] = nudge.by;
-      add({kind, {{nudge.key, numbers}}}, nudge.by);
+  for (const Recipe& linear : linear_recipes()) {
+    if (linear.kind != kind) continue;
+    const size_t size = linear.strengths();
+    if (size == 0) add({kind, {}}, 1.0);
+    for (size_t k = 0; k < size; ++k) {
+      std::vector<double> numbers(size, 0.0);
+      numbers[k] = by;
+      add({kind, {{strength, numbers}}}, by);
     }
   }
   // A tone is searched at the frequency of the one that acts.
   for (const InjectedEffect& acting : case_.world.effects) {
-    if (kind == "periodic_torque" && acting.kind == "floor_vibration") {
-      add_tone(kind, "torque_N_m", 1e-8, acting);
-    } else if (kind == "floor_vibration" && acting.kind == "periodic_torque") {
-      add_tone(kind, "acceleration_m_s2", 1e-4, acting);
-    }
+    if (acting.kind != kind && is_tone(recipe) && is_tone(recipe_of(acting.kind))) add_tone(acting);
   }
   Eigen::MatrixXd matrix(6 * static_cast<Eigen::Index>(times_s_.size()),
                          static_cast<Eigen::Index>(columns.size()));
@@ -223,20 +207,23 @@ std::vector<std::string> InjectedInformation::competitors() const {
     commanded = commanded || length(c.torque_N_m) > 0.0;
   }
   std::vector<std::string> kinds;
-  for (const Nudge& nudge : nudges()) {
-    const std::string& kind = nudge.kind;
-    const InjectedPriors& priors = case_.priors;
-    // A tether jumps where the shortest way back changes side.
-    const bool cannot = (kind == "tether" && turns) || (kind == "actuator_gain" && !commanded) ||
+  const InjectedPriors& priors = case_.priors;
+  for (const Recipe& recipe : linear_recipes()) {
+    const std::string& kind = recipe.kind;
+    // What pulls back jumps where the shortest way back changes side.
+    const bool cannot = (recipe.injection.needs_small_turns && turns) ||
+                        (recipe.screening.needs == Requirement::command && !commanded) ||
                         // Uncertain priors are nuisances already.
-                        (kind == "static_unbalance" && priors.offset_sigma_m[0] > 0.0) ||
-                        (kind == "bearing_drag" && priors.drag_sigma_N_m_s > 0.0) ||
-                        (kind == "gyro_bias" && priors.gyro_bias_sigma_rad_s > 0.0);
+                        (kind == nominal_unbalance && priors.offset_sigma_m[0] > 0.0) ||
+                        (kind == nominal_drag && priors.drag_sigma_N_m_s > 0.0) ||
+                        (kind == nominal_gyro_bias && priors.gyro_bias_sigma_rad_s > 0.0);
     if (!cannot) kinds.push_back(kind);
   }
   for (const InjectedEffect& acting : case_.world.effects) {
-    if (acting.kind == "floor_vibration") kinds.emplace_back("periodic_torque");
-    if (acting.kind == "periodic_torque") kinds.emplace_back("floor_vibration");
+    if (!is_tone(recipe_of(acting.kind))) continue;
+    for (const Recipe& other : recipes()) {
+      if (is_tone(other) && other.kind != acting.kind) kinds.push_back(other.kind);
+    }
   }
   return kinds;
 }

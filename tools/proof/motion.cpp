@@ -2,47 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <set>
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "tools/proof/laws.h"
+#include "tools/proof/recipes.h"
 
 namespace photorque {
 namespace {
 
 using namespace injected;
 
-constexpr double earth_rate_1_s = 7.292115e-5;
 constexpr size_t state_size = 10;  // attitude 4, rate 3, charge [Ah], appendage's angle and rate
 using State = std::array<double, state_size>;
 
-struct Acting {
-  Numbers numbers;
-  TorqueFunction torque;
-};
-
-// An appendage on a spring: angle beside the body, and its absolute rate.
-struct Appendage {
-  Triple axis = {};
-  double angular_frequency_1_s = 0.0, damping = 0.0, inertia_kg_m2 = 0.0;
-};
+// The platform, its laboratory and its instruments as the effects change them.
+PlainPlatform changed(const InjectedWorld& world) {
+  PlainPlatform platform{.inertia = world.inertia_kg_m2,
+                         .gravity_lab = {0, 0, -world.gravity_m_s2},
+                         .latitude_rad = world.latitude_rad};
+  for (const InjectedEffect& effect : world.effects) {
+    const Injection& law = recipe_of(effect.kind).injection;
+    if (law.alter != nullptr) law.alter(effect, platform);
+  }
+  return platform;
+}
 
 class Equations {
  public:
-  explicit Equations(const InjectedWorld& world) : world_(world), inertia_(world.inertia_kg_m2) {
-    gravity_lab_ = {0, 0, -world.gravity_m_s2};
-    acting_.push_back({{world.drag_N_m_s}, law_of("bearing_drag").torque});
-    acting_.push_back({numbers_of({"static_unbalance",
-                                   {{"offset_m", {world.offset_m.begin(), world.offset_m.end()}}}}),
-                       law_of("static_unbalance").torque});
+  explicit Equations(const InjectedWorld& world) : world_(world), platform_(changed(world)) {
+    const Recipe &drag = recipe_of(nominal_drag), &unbalance = recipe_of(nominal_unbalance);
+    add({drag.kind, {{drag.injection.strength, {world.drag_N_m_s}}}});
+    add({unbalance.kind, {{unbalance.injection.strength, list(world.offset_m)}}});
     for (const InjectedEffect& effect : world.effects) add(effect);
-    own_inertia_ = inertia_;
-    if (appendage_) {
-      const Triple& a = appendage_->axis;
+    own_inertia_ = platform_.inertia;
+    if (const std::optional<Appendage>& appendage = platform_.appendage) {
+      const Triple& a = appendage->axis;
       for (size_t i = 0; i < 3; ++i) {
-        own_inertia_[i] = minus(own_inertia_[i], times(appendage_->inertia_kg_m2 * a[i], a));
+        own_inertia_[i] = minus(own_inertia_[i], times(appendage->inertia_kg_m2 * a[i], a));
       }
     }
     inverse_ = inverse(own_inertia_);
@@ -52,23 +48,23 @@ class Equations {
     State y = {};
     std::copy(start.attitude.begin(), start.attitude.end(), y.begin());
     std::copy(start.rate_rad_s.begin(), start.rate_rad_s.end(), y.begin() + 4);
-    if (appendage_) y[9] = dot(appendage_->axis, start.rate_rad_s);
+    if (platform_.appendage) y[9] = dot(platform_.appendage->axis, start.rate_rad_s);
     return y;
   }
 
   State rates(double time_s, const State& y, const InjectedCommand& command) const {
     const Surroundings now = surroundings(time_s, y, command);
     Triple torque = command.torque_N_m;
-    for (const Acting& a : acting_) torque = plus(torque, a.torque(a.numbers, now));
+    for (const PlainTorque& acting : acting_) torque = plus(torque, acting(now));
     const Quaternion spin = product(now.attitude, {0, now.rate[0], now.rate[1], now.rate[2]});
     State d = {};
     for (size_t i = 0; i < 4; ++i) d[i] = 0.5 * spin[i];
     d[7] = command.battery_current_A / 3600.0;
-    const Triple earth = to_body(now.attitude, earth_lab_);
+    const Triple earth = to_body(now.attitude, platform_.earth_lab);
     const Triple inertial = plus(now.rate, earth);
     Triple momentum = times(own_inertia_, inertial);
-    if (appendage_) {
-      const Appendage& a = *appendage_;
+    if (platform_.appendage) {
+      const Appendage& a = *platform_.appendage;
       d[8] = y[9] - dot(a.axis, now.rate);
       const double pull =
           a.angular_frequency_1_s * (a.angular_frequency_1_s * y[8] + 2.0 * a.damping * d[8]);
@@ -88,11 +84,12 @@ class Equations {
     InjectedContext moment;
     moment.time_s = time_s;
     moment.attitude = normalised({y[0], y[1], y[2], y[3]});
-    moment.camera = product(moment.attitude, quaternion_of(camera_turn_));
+    moment.camera = product(moment.attitude, quaternion_of(platform_.camera_turn));
     moment.rate_rad_s = {y[4], y[5], y[6]};
-    const Triple sensed = plus(moment.rate_rad_s, to_body(moment.attitude, earth_lab_));
-    moment.gyro_rad_s = plus(plus(sensed, by_component(gyro_scale_, sensed)),
-                             plus(cross(gyro_turn_, sensed), plus(world_.gyro_bias_rad_s, bias_)));
+    const Triple sensed = plus(moment.rate_rad_s, to_body(moment.attitude, platform_.earth_lab));
+    moment.gyro_rad_s = plus(plus(sensed, by_component(platform_.gyro_scale, sensed)),
+                             plus(cross(platform_.gyro_turn, sensed),
+                                  plus(world_.gyro_bias_rad_s, platform_.gyro_bias)));
     return moment;
   }
 
@@ -100,13 +97,9 @@ class Equations {
   std::vector<double> jumps(double from_s, double to_s) const {
     std::vector<double> all;
     for (const InjectedEffect& effect : world_.effects) {
-      if (effect.kind == "mass_shift") all.push_back(effect.parameters.at("time_s")[0]);
-      if (effect.kind != "pulsed_torque") continue;
-      const double period_s = effect.parameters.at("period_s")[0];
-      for (double t = std::floor(from_s / period_s) * period_s; t < to_s; t += period_s) {
-        all.push_back(t);
-        all.push_back(t + period_s / 3.0);
-      }
+      const Injection& law = recipe_of(effect.kind).injection;
+      if (law.jumps_s == nullptr) continue;
+      for (const double t : law.jumps_s(effect, from_s, to_s)) all.push_back(t);
     }
     std::erase_if(all, [&](double t) { return t <= from_s || t >= to_s; });
     return all;
@@ -114,30 +107,8 @@ class Equations {
 
  private:
   void add(const InjectedEffect& effect) {
-    const LawEntry& law = law_of(effect.kind);
-    const Numbers p = numbers_of(effect);
-    if (law.torque != nullptr) acting_.push_back({p, law.torque});
-    const auto vector = [&] { return Triple{p[0], p[1], p[2]}; };
-    if (effect.kind == "earth_rotation") {
-      earth_lab_ = {0.0, earth_rate_1_s * std::cos(world_.latitude_rad),
-                    earth_rate_1_s * std::sin(world_.latitude_rad)};
-    } else if (effect.kind == "inertia_error") {
-      const Matrix delta = {{{p[0], p[3], p[4]}, {p[3], p[1], p[5]}, {p[4], p[5], p[2]}}};
-      for (size_t i = 0; i < 3; ++i) inertia_[i] = plus(inertia_[i], delta[i]);
-    } else if (effect.kind == "gravity_tilt") {
-      const Quaternion turn = quaternion_of({p[0], p[1], 0.0});
-      gravity_lab_ = to_body(conjugate(turn), gravity_lab_);
-    } else if (effect.kind == "flexible_mode") {
-      appendage_ = Appendage{times(1.0 / length(vector()), vector()), 2.0 * pi * p[3], p[4], p[5]};
-    } else if (effect.kind == "gyro_bias") {
-      bias_ = vector();
-    } else if (effect.kind == "gyro_scale") {
-      gyro_scale_ = vector();
-    } else if (effect.kind == "gyro_misalignment") {
-      gyro_turn_ = vector();
-    } else if (effect.kind == "camera_misalignment") {
-      camera_turn_ = vector();
-    }
+    const Injection& law = recipe_of(effect.kind).injection;
+    if (law.torque != nullptr) acting_.push_back(law.torque(effect));
   }
 
   Surroundings surroundings(double time_s, const State& y, const InjectedCommand& command) const {
@@ -148,22 +119,20 @@ class Equations {
     s.charge_Ah = y[7];
     s.mass_kg = world_.mass_kg;
     s.offset_m = world_.offset_m;
-    s.inertia = inertia_;
-    s.gravity = to_body(s.attitude, gravity_lab_);
-    s.gravity_level = gravity_lab_;
+    s.inertia = platform_.inertia;
+    s.gravity = to_body(s.attitude, platform_.gravity_lab);
+    s.gravity_level = platform_.gravity_lab;
     s.gravity_m_s2 = world_.gravity_m_s2;
     s.field = to_body(s.attitude, world_.magnetic_field_T);
-    s.up = to_body(s.attitude, times(-1.0 / world_.gravity_m_s2, gravity_lab_));
+    s.up = to_body(s.attitude, times(-1.0 / world_.gravity_m_s2, platform_.gravity_lab));
     s.command_N_m = command.torque_N_m;
     return s;
   }
 
   InjectedWorld world_;
-  Matrix inertia_, own_inertia_ = {}, inverse_ = {};
-  Triple gravity_lab_ = {}, earth_lab_ = {};
-  Triple bias_ = {}, gyro_scale_ = {}, gyro_turn_ = {}, camera_turn_ = {};
-  std::optional<Appendage> appendage_;
-  std::vector<Acting> acting_;
+  PlainPlatform platform_;
+  Matrix own_inertia_ = {}, inverse_ = {};
+  std::vector<PlainTorque> acting_;
 };
 
 State along(const State& y, double by, const State& d) {
@@ -191,28 +160,22 @@ State step(const Equations& equations, const InjectedCommand& command, double t,
 
 std::vector<std::string> injected_kinds() {
   std::vector<std::string> names;
-  for (const LawEntry& law : laws()) names.push_back(law.kind);
+  for (const Recipe& recipe : recipes()) names.push_back(recipe.kind);
   return names;
 }
 
 bool is_outside_catalogue(const std::string& kind) {
-  return !law_of(kind).in_catalogue;
+  return recipe_of(kind).outside;
 }
 
 void scale_effect(InjectedEffect& effect, double by) {
-  static const std::set<std::string> shape = {"time_s", "frequency_Hz", "phase",    "damping",
-                                              "axis",   "periods",      "period_s", "seed"};
-  for (auto& [key, numbers] : effect.parameters) {
-    if (shape.contains(key)) continue;
-    for (double& number : numbers) number *= by;
-  }
+  const auto strength = effect.parameters.find(recipe_of(effect.kind).injection.strength);
+  if (strength == effect.parameters.end()) return;
+  for (double& number : strength->second) number *= by;
 }
 
 double injected_latency_s(const InjectedWorld& world) {
-  for (const InjectedEffect& effect : world.effects) {
-    if (effect.kind == "attitude_latency") return effect.parameters.at("latency_s")[0];
-  }
-  return 0.0;
+  return changed(world).camera_latency_s;
 }
 
 std::vector<InjectedContext> injected_motion(const InjectedWorld& world,

@@ -1,26 +1,19 @@
 // The moving platform of `prove`: what really happens in an injected case.
 //
 // A second implementation of the catalogue, so that `diagnose` is not tried on its own equations.
-// It shares no code with folder attitude: the laws are written again in plain arithmetic, every
-// case is integrated by the classical Runge–Kutta method with fixed steps, and nothing is
+// Each kind's file holds its law twice (attitude/injection), the second time in plain arithmetic;
+// every case is integrated by the classical Runge–Kutta method with fixed steps, and nothing is
 // differentiated. Shared are the formulas themselves (the catalogue and its conventions), physical
 // constants, and the hash that makes random numbers.
 #pragma once
 
 #include <array>
-#include <map>
 #include <string>
 #include <vector>
 
+#include "attitude/injection/injection.h"
+
 namespace photorque {
-
-using Triple = std::array<double, 3>;
-
-// An effect with its numbers in SI units, keys as in an experiment file.
-struct InjectedEffect {
-  std::string kind;
-  std::map<std::string, std::vector<double>> parameters;
-};
 
 // What holds from its time to the next.
 struct InjectedCommand {
@@ -56,16 +49,11 @@ struct InjectedContext {
   Triple gyro_rad_s = {};
 };
 
-// Kinds that act here: the catalogue but for radiation_pressure (which needs a traced table) and
-// stepper_quantization (which is an offset like any other), and five laws outside of it:
-//   heading_cogging (torque_N_m, periods, phase): about the vertical, n periods a turn of heading;
-//   tilt_cubed (coefficient_N_m): pulls back with the cube of the tilt;
-//   slow_random_torque (torque_N_m[3] rms about lab axes, time_s correlation, seed);
-//   exponential_decay (torque_N_m[3] body, time_s);
-//   pulsed_torque (torque_N_m[3] body, period_s): on for the first third of each period.
+// Kinds that act here: those of the registry whose files say how they are injected, and the laws of
+// outside.h.
 std::vector<std::string> injected_kinds();
 bool is_outside_catalogue(const std::string& kind);
-// Multiplies what makes the effect strong: torques, offsets, gains, not times or frequencies.
+// Multiplies what makes the effect strong (Injection::strength), not times or frequencies.
 void scale_effect(InjectedEffect& effect, double by);
 double injected_latency_s(const InjectedWorld& world);
 

@@ -1,29 +1,36 @@
-// How each injected effect is drawn.
+// All that can be injected: the kinds of disturbance whose files say how, and the laws outside of
+// the catalogue.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "tools/proof/case.h"
-#include "tools/proof/draw.h"
+#include "attitude/disturbances/screening.h"
+#include "attitude/injection/injection.h"
 
 namespace photorque::injected {
 
 struct Recipe {
   std::string kind;
-  // The effect at a size that is plausible in a laboratory; the strength is then fitted to what the
-  // readings shall show.
-  std::function<InjectedEffect(RandomDraw&, const InjectedCase&)> draw;
-  double most = 30.0;  // times that size at most
-  bool needs_commands = false;
-  bool needs_small_turns = false;
-  bool pairs = false;  // may stand in a pair
-  bool outside = false;
-  std::string depends_on = {};
+  Injection injection;
+  Screening screening = {};     // of a kind of disturbance
+  bool outside = false;         // of the catalogue
+  std::string depends_on = {};  // of a law outside of it
+
+  // Whether its readings change in proportion to its strength.
+  bool is_proportional() const;
+  size_t strengths() const;  // numbers of the strength
 };
 
-// One per kind of injected_kinds().
-std::vector<Recipe> recipes();
+// The registry's kinds in its order, then the outside laws.
+const std::vector<Recipe>& recipes();
+// NumericalError for an unknown kind.
+const Recipe& recipe_of(const std::string& kind);
+
+// What the nominal model of every injected case has: their numbers stand in InjectedWorld and
+// InjectedPriors, and files.cpp writes them into the experiment.
+inline constexpr const char* nominal_unbalance = "static_unbalance";
+inline constexpr const char* nominal_drag = "bearing_drag";
+inline constexpr const char* nominal_gyro_bias = "gyro_bias";
 
 }  // namespace photorque::injected

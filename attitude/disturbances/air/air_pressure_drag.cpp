@@ -9,28 +9,49 @@
 namespace photorque {
 namespace {
 
+constexpr ScalarKey braking{"coefficient_N_m_s2"};
+
 struct AirPressureDrag final : TorqueLaw<AirPressureDrag> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return -own.parameter(0) * length(now.rate_body_rad_s) * now.rate_body_rad_s;
+    return -own[braking] * length(now.rate_body_rad_s) * now.rate_body_rad_s;
   }
 };
 
-Parameters coefficient(const Settings& settings, const Environment& environment) {
-  const std::string key = "coefficient_N_m_s2";
-  if (!settings.has("part")) return scalar_parameter(settings, key, Range::not_negative());
+PlacedParameters coefficient(const Settings& settings, const Environment& environment) {
+  if (!settings.has("part")) return scalar_parameter(settings, braking, Range::not_negative());
   const Air air{environment.air_density_kg_m3, environment.air_viscosity_Pa_s};
   const double k = air_coefficients(read_air_parts(settings.tables("part")), air).form_N_m_s2;
-  return fixed_parameter(key, {&k, 1});
+  return fixed_parameter(braking.name, {&k, 1});
+}
+
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  return make_disturbance<AirPressureDrag>({coefficient(settings, context.environment)});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [k = effect.number(braking.name)](const Surroundings& s) {
+    return times(-k * length(s.rate), s.rate);
+  };
 }
 
 }  // namespace
 
 DisturbanceKind air_pressure_drag_kind() {
-  return {"air_pressure_drag", "form drag of the surrounding air, square of the rate",
-          [](const Settings& settings, const DisturbanceContext& context) {
-            return make_disturbance<AirPressureDrag>({coefficient(settings, context.environment)});
-          }};
+  return {.name = "air_pressure_drag",
+          .summary = "form drag of the surrounding air, square of the rate",
+          .read = read,
+          .screening = {.parametrisations =
+                            {{"form drag of the surrounding air brakes with the square of the rate",
+                              {EffectKey::not_negative(braking.name, 1e-3)}}}},
+          .injection = {.draw = injected::fixed_size(braking.name, 5e-4),
+                        .torque = plain_torque,
+                        .strength = braking.name,
+                        .step = 1e-7,
+                        .pairs = true},
+          .budget = {.paper_figure = "cfd_drag_at_1_rpm_N_m"}};
 }
 
 }  // namespace photorque

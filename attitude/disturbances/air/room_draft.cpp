@@ -7,20 +7,41 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey torque_lab{"torque_lab_N_m"};
+
 struct RoomDraft final : TorqueLaw<RoomDraft> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return now.to_body(own.vector(0));
+    return now.to_body(own[torque_lab]);
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<RoomDraft>({vector_parameter(settings, torque_lab)});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [steady_N_m = effect.triple(torque_lab.name)](const Surroundings& s) {
+    return injected::to_body(s.attitude, steady_N_m);
+  };
+}
 
 }  // namespace
 
 DisturbanceKind room_draft_kind() {
-  return {"room_draft", "a steady draught: a torque constant in the lab",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<RoomDraft>({vector_parameter(settings, "torque_lab_N_m")});
-          }};
+  return {.name = "room_draft",
+          .summary = "a steady draught: a torque constant in the lab",
+          .read = read,
+          .screening = {.parametrisations =
+                            {{"a steady draught exerts a torque that is constant in the laboratory",
+                              {EffectKey::vector(torque_lab.name, 5e-6)}}}},
+          .injection = {.draw = injected::random_direction(torque_lab.name, 5e-6),
+                        .torque = plain_torque,
+                        .strength = torque_lab.name,
+                        .step = 1e-9,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

@@ -14,17 +14,25 @@
 namespace photorque {
 namespace {
 
+// Below this sum of coefficients a bearing would drive; a nominal coefficient and a fitted change
+// of it that cancel it round to more than this.
+constexpr double min_sum_N_m_s = -1e-6;
+
+constexpr ScalarKey coefficient{"coefficient_N_m_s"};
+constexpr ScalarKey about_axis{"axial_N_m_s"};
+constexpr ScalarKey across_axis{"transverse_N_m_s", about_axis.end()};
+
 struct IsotropicDrag final : TorqueLaw<IsotropicDrag> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return -own.parameter(0) * now.rate_body_rad_s;
+    return -own[coefficient] * now.rate_body_rad_s;
   }
 };
 
 struct SocketDrag final : TorqueLaw<SocketDrag> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    const T axial = own.parameter(0), transverse = own.parameter(1);
+    const T axial = own[about_axis], transverse = own[across_axis];
     const Vec3Of<T> axis_body = now.lab_from_body.row(2).transpose();
     const T spin = axis_body.dot(now.rate_body_rad_s);
     return -transverse * now.rate_body_rad_s - (axial - transverse) * spin * axis_body;
@@ -69,22 +77,39 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   if (settings.has("socket")) {
     const FilmDrag drag = read_socket_drag(settings.table("socket"), context);
     return make_disturbance<SocketDrag>(
-        {fixed_parameter("axial_N_m_s", {&drag.axial_N_m_s, 1}),
-         fixed_parameter("transverse_N_m_s", {&drag.transverse_N_m_s, 1})});
+        {fixed_parameter(about_axis.name, {&drag.axial_N_m_s, 1}),
+         fixed_parameter(across_axis.name, {&drag.transverse_N_m_s, 1}, across_axis.first)});
   }
-  if (settings.has("axial_N_m_s")) {
+  if (settings.has(about_axis.name)) {
     return make_disturbance<SocketDrag>(
-        {scalar_parameter(settings, "axial_N_m_s", Range::not_negative()),
-         scalar_parameter(settings, "transverse_N_m_s", Range::not_negative())});
+        {scalar_parameter(settings, about_axis, Range::not_negative()),
+         scalar_parameter(settings, across_axis, Range::not_negative())});
   }
   return make_disturbance<IsotropicDrag>(
-      {scalar_parameter(settings, "coefficient_N_m_s", Range::not_negative())});
+      {scalar_parameter(settings, coefficient, Range::not_negative())});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [c = effect.number(coefficient.name)](const Surroundings& s) { return times(-c, s.rate); };
 }
 
 }  // namespace
 
 DisturbanceKind bearing_drag_kind() {
-  return {"bearing_drag", "viscous drag of the bearing's air film, linear in the rate", read};
+  return {
+      .name = "bearing_drag",
+      .summary = "viscous drag of the bearing's air film, linear in the rate",
+      .read = read,
+      .screening = {.parametrisations = {{"the bearing's viscous drag differs from what is "
+                                          "believed, beyond the uncertainty stated",
+                                          {EffectKey::number(coefficient.name, 2e-5)}}},
+                    .least_sum = LeastSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
+      .injection = {.draw = injected::fixed_size(coefficient.name, 1e-5),
+                    .torque = plain_torque,
+                    .strength = coefficient.name,
+                    .step = 1e-8}};
 }
 
 }  // namespace photorque

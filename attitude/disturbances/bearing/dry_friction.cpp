@@ -8,6 +8,8 @@
 namespace photorque {
 namespace {
 
+constexpr ScalarKey friction{"torque_N_m"};
+
 class DryFriction final : public TorqueLaw<DryFriction> {
  public:
   explicit DryFriction(double creep_rate_rad_s) : creep_rate_rad_s_(creep_rate_rad_s) {}
@@ -16,22 +18,41 @@ class DryFriction final : public TorqueLaw<DryFriction> {
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T>& w = now.rate_body_rad_s;
     const T speed = sqrt(w.dot(w) + T(creep_rate_rad_s_ * creep_rate_rad_s_));
-    return -(own.parameter(0) / speed) * w;
+    return -(own[friction] / speed) * w;
   }
 
  private:
   double creep_rate_rad_s_;
 };
 
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<DryFriction>(
+      {scalar_parameter(settings, friction, Range::not_negative())}, Stage::torque, {},
+      settings.number_or("creep_rate_rad_s", 1e-6, Range::positive()));
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [size_N_m = effect.number(friction.name)](const Surroundings& s) {
+    const double rate = length(s.rate);
+    return rate > 0.0 ? times(-size_N_m / rate, s.rate) : Triple{};
+  };
+}
+
 }  // namespace
 
 DisturbanceKind dry_friction_kind() {
-  return {"dry_friction", "rubbing contact: a torque against the motion, whatever the rate",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<DryFriction>(
-                {scalar_parameter(settings, "torque_N_m", Range::not_negative())}, Stage::torque,
-                {}, settings.number_or("creep_rate_rad_s", 1e-6, Range::positive()));
-          }};
+  return {.name = "dry_friction",
+          .summary = "rubbing contact: a torque against the motion, whatever the rate",
+          .read = read,
+          .screening =
+              {.parametrisations = {{"something rubs: a torque of constant size against the motion",
+                                     {EffectKey::not_negative(friction.name, 5e-6)}}}},
+          .injection = {.draw = injected::fixed_size(friction.name, 3e-6),
+                        .torque = plain_torque,
+                        .strength = friction.name,
+                        .step = 1e-9}};
 }
 
 }  // namespace photorque

@@ -7,20 +7,42 @@
 namespace photorque {
 namespace {
 
+constexpr ScalarKey torque_up{"torque_N_m"};
+
 struct TurbineTorque final : TorqueLaw<TurbineTorque> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return own.parameter(0) * now.lab_from_body.row(2).transpose();
+    return own[torque_up] * now.lab_from_body.row(2).transpose();
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<TurbineTorque>({scalar_parameter(settings, torque_up)});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [size_N_m = effect.number(torque_up.name)](const Surroundings& s) {
+    return times(size_N_m, s.up);
+  };
+}
 
 }  // namespace
 
 DisturbanceKind turbine_torque_kind() {
-  return {"turbine_torque", "swirling exhaust of the bearing turns the platform about the vertical",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<TurbineTorque>({scalar_parameter(settings, "torque_N_m")});
-          }};
+  return {.name = "turbine_torque",
+          .summary = "swirling exhaust of the bearing turns the platform about the vertical",
+          .read = read,
+          .screening = {.parametrisations = {{"the bearing's exhaust drives the platform about the "
+                                              "vertical with a constant torque",
+                                              {EffectKey::number(torque_up.name, 5e-6)}}},
+                        .alike = {{"room_draft"}}},
+          .injection = {.draw = injected::either_sign(torque_up.name, 3e-6),
+                        .torque = plain_torque,
+                        .strength = torque_up.name,
+                        .step = 1e-9,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

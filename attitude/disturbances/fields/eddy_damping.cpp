@@ -10,23 +10,45 @@
 namespace photorque {
 namespace {
 
+constexpr ScalarKey damping{"coefficient_N_m_s_per_T2"};
+
 struct EddyDamping final : TorqueLaw<EddyDamping> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T>& B_T = now.magnetic_field_body_T;
     const Vec3Of<T> swept = now.rate_body_rad_s.cross(B_T);
-    return own.parameter(0) * swept.cross(B_T);
+    return own[damping] * swept.cross(B_T);
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<EddyDamping>(
+      {scalar_parameter(settings, damping, Range::not_negative())});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [k = effect.number(damping.name)](const Surroundings& s) {
+    return times(k, cross(cross(s.rate, s.field), s.field));
+  };
+}
 
 }  // namespace
 
 DisturbanceKind eddy_damping_kind() {
-  return {"eddy_damping", "eddy currents brake what turns across the ambient field",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<EddyDamping>(
-                {scalar_parameter(settings, "coefficient_N_m_s_per_T2", Range::not_negative())});
-          }};
+  return {.name = "eddy_damping",
+          .summary = "eddy currents brake what turns across the ambient field",
+          .read = read,
+          .screening = {.parametrisations =
+                            {{"eddy currents brake rotation across the ambient magnetic field",
+                              {EffectKey::not_negative(damping.name, 2e4)}}},
+                        .needs = Requirement::field},
+          .injection = {.draw = injected::fixed_size(damping.name, 5e3),
+                        .torque = plain_torque,
+                        .strength = damping.name,
+                        .step = 1.0,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

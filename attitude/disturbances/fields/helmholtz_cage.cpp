@@ -16,6 +16,8 @@
 namespace photorque {
 namespace {
 
+constexpr ScalarKey gain_error{"gain_error"};
+
 class HelmholtzCage final : public LawOf<HelmholtzCage> {
  public:
   explicit HelmholtzCage(TimeSeries wanted_lab_T) : wanted_lab_T_(std::move(wanted_lab_T)) {}
@@ -24,7 +26,7 @@ class HelmholtzCage final : public LawOf<HelmholtzCage> {
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const Vec3Of<T> missing_T =
         wanted_lab_T_.sample(now.time_s) - now.environment.magnetic_field_lab_T.template cast<T>();
-    now.magnetic_field_lab_T += (1.0 + own.parameter(0)) * missing_T;
+    now.magnetic_field_lab_T += (1.0 + own[gain_error]) * missing_T;
   }
 
   std::vector<Switch> switches(std::span<const Parameter>, double from_s,
@@ -57,15 +59,21 @@ TimeSeries read_wanted_field_T(const Settings& settings) {
   return TimeSeries({0.0, 1.0}, {field_lab_T, field_lab_T});
 }
 
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<HelmholtzCage>({scalar_parameter_or(settings, gain_error, 0.0)},
+                                         Stage::conditions, {}, read_wanted_field_T(settings));
+}
+
 }  // namespace
 
 DisturbanceKind helmholtz_cage_kind() {
-  return {"helmholtz_cage", "coils around the platform set the magnetic field",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<HelmholtzCage>(
-                {scalar_parameter_or(settings, "gain_error", 0.0)}, Stage::conditions, {},
-                read_wanted_field_T(settings));
-          }};
+  return {.name = "helmholtz_cage",
+          .summary = "coils around the platform set the magnetic field",
+          .read = read,
+          .screening =
+              {.reason_against =
+                   "the coils are a part of the laboratory that is set, not one that is forgotten"},
+          .injection = {.reason_against = "diagnose does not screen it"}};
 }
 
 }  // namespace photorque

@@ -8,26 +8,49 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey moment{"dipole_A_m2"};
+
 struct MagneticDipole final : TorqueLaw<MagneticDipole> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return own.vector(0).cross(now.magnetic_field_body_T);
+    return own[moment].cross(now.magnetic_field_body_T);
   }
 };
 
-Parameters dipole(const Settings& settings) {
-  if (!settings.has("loop")) return vector_parameter(settings, "dipole_A_m2");
+PlacedParameters dipole(const Settings& settings) {
+  if (!settings.has("loop")) return vector_parameter(settings, moment);
   const Vec3 sum_A_m2 = dipole_A_m2(read_current_loops(settings.tables("loop")));
-  return fixed_parameter("dipole_A_m2", {sum_A_m2.data(), 3});
+  return fixed_parameter(moment.name, {sum_A_m2.data(), 3});
+}
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<MagneticDipole>({dipole(settings)});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [m_A_m2 = effect.triple(moment.name)](const Surroundings& s) {
+    return cross(m_A_m2, s.field);
+  };
 }
 
 }  // namespace
 
 DisturbanceKind magnetic_dipole_kind() {
-  return {"magnetic_dipole", "current loops and remanent steel turn towards the ambient field",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<MagneticDipole>({dipole(settings)});
-          }};
+  return {.name = "magnetic_dipole",
+          .summary = "current loops and remanent steel turn towards the ambient field",
+          .read = read,
+          .screening =
+              {.parametrisations =
+                   {{"a residual magnetic dipole of the platform turns towards the ambient field",
+                     {EffectKey::vector(moment.name, 0.05)}}},
+               .needs = Requirement::field},
+          .injection = {.draw = injected::random_direction(moment.name, 0.03),
+                        .torque = plain_torque,
+                        .strength = moment.name,
+                        .step = 1e-5,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

@@ -76,8 +76,13 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind orbit_kind() {
-  return {"orbit", "a circular orbit around the Earth: free fall, gradient, field and shadow",
-          read};
+  return {.name = "orbit",
+          .summary = "a circular orbit around the Earth: free fall, gradient, field and shadow",
+          .read = read,
+          .screening = {.reason_against = "where a platform is, is known"},
+          .injection = {.reason_against = "diagnose does not screen it"},
+          .budget = {.reason_against = "an orbit is where the others act"},
+          .has_eclipses = true};
 }
 
 }  // namespace photorque

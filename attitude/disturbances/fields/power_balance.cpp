@@ -9,12 +9,17 @@
 //
 // Where the battery's capacity is known its controller tapers the current exponentially within the
 // last per cent or so: a full battery takes no more, an empty one gives no more.
+#include <cmath>
+
 #include <algorithm>
 
 #include "attitude/disturbances/kind.h"
 
 namespace photorque {
 namespace {
+
+constexpr ScalarKey load{"load_W"};
+constexpr ScalarKey array_scale{"array_scale", load.end()};
 
 // A monotone cubic through points (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984)
 // 300): smooth, and without a maximum that the points do not have.
@@ -63,14 +68,13 @@ class PowerBalance final : public LawOf<PowerBalance> {
  public:
   explicit PowerBalance(MonotoneCurve power_W) : power_W_(std::move(power_W)) {}
 
-  // Parameters: load, scale.
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const T at_tilt_W =
         from_values(half_tilt_sine_squared(now), [this](double x) { return power_W_.at(x); });
-    now.array_power_W += own.parameter(1) * now.illumination * at_tilt_W;
+    now.array_power_W += own[array_scale] * now.illumination * at_tilt_W;
     if (now.current_is_measured) return;
-    T current_A = (own.parameter(0) - now.array_power_W) / now.platform.battery_voltage_V;
+    T current_A = (own[load] - now.array_power_W) / now.platform.battery_voltage_V;
     if (now.platform.battery_capacity_C) {
       current_A *= controller(now.charge_drawn_C, current_A, *now.platform.battery_capacity_C);
     }
@@ -113,16 +117,24 @@ MonotoneCurve read_curve(const Settings& settings) {
   return {x, power_W};
 }
 
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<PowerBalance>(
+      {scalar_parameter(settings, load, Range::not_negative()),
+       scalar_parameter_or(settings, array_scale, 1.0, Range::not_negative())},
+      Stage::torque, {}, read_curve(settings));
+}
+
 }  // namespace
 
 DisturbanceKind power_balance_kind() {
-  return {"power_balance", "the battery gives what the load takes and the array does not deliver",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<PowerBalance>(
-                {scalar_parameter(settings, "load_W", Range::not_negative()),
-                 scalar_parameter_or(settings, "array_scale", 1.0, Range::not_negative())},
-                Stage::torque, {}, read_curve(settings));
-          }};
+  return {
+      .name = "power_balance",
+      .summary = "the battery gives what the load takes and the array does not deliver",
+      .read = read,
+      .screening =
+          {.reason_against =
+               "acts on the battery alone; of the motion nothing shows it but battery_discharge"},
+      .injection = {.reason_against = "diagnose does not screen it"}};
 }
 
 }  // namespace photorque

@@ -13,6 +13,8 @@
 namespace photorque {
 namespace {
 
+constexpr ScalarKey factor{"scale"};
+
 // f(x, y) with its derivatives, from lanes of numbers.
 Lanes combine(const Lanes&, const Lanes&, const Lanes& f, const Lanes&, const Lanes&) {
   return f;
@@ -35,7 +37,7 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
     const Vec3Of<T> light = tilt ? Vec3Of<T>(now.lab_from_body.row(2).transpose())
                                  : now.to_body(sun_direction_lab_.template cast<T>());
     const T x = light.x() + hair, y = light.y(), across = sqrt(x * x + y * y);
-    return own.parameter(0) * now.illumination *
+    return own[factor] * now.illumination *
            (tilt ? look_up<T>(atan2(across, light.z()), atan2(-y, -x))
                  : look_up<T>(atan2(light.z(), across), atan2(y, x)));
   }
@@ -72,7 +74,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
       throw settings.error("sun_direction_lab", "a zero vector", "a direction");
     }
   }
-  return make_disturbance<RadiationPressure>({scalar_parameter_or(settings, "scale", 1.0)},
+  return make_disturbance<RadiationPressure>({scalar_parameter_or(settings, factor, 1.0)},
                                              Stage::torque, {}, surface,
                                              sun_direction_lab.normalized());
 }
@@ -80,7 +82,12 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind radiation_pressure_kind() {
-  return {"radiation_pressure", "light pushes on what it falls on", read};
+  return {.name = "radiation_pressure",
+          .summary = "light pushes on what it falls on",
+          .read = read,
+          .screening = {.reason_against = "needs a table that torque-map traces for this platform"},
+          .injection = {.reason_against = "needs a traced table"},
+          .budget = {.paper_figure = "radiation_torque_at_30_deg_N_m"}};
 }
 
 }  // namespace photorque

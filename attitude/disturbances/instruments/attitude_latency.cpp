@@ -4,21 +4,41 @@
 namespace photorque {
 namespace {
 
+constexpr ScalarKey latency{"latency_s"};
+
 struct AttitudeLatency final : LawOf<AttitudeLatency> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    now.camera_delay_s += own.parameter(0);
+    now.camera_delay_s += own[latency];
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<AttitudeLatency>({scalar_parameter(settings, latency)},
+                                           Stage::measurement);
+}
+
+// The law again, for `prove`.
+void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
+  platform.camera_latency_s = effect.number(latency.name);
+}
 
 }  // namespace
 
 DisturbanceKind attitude_latency_kind() {
-  return {"attitude_latency", "the camera reports an attitude that is already past",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<AttitudeLatency>({scalar_parameter(settings, "latency_s")},
-                                                     Stage::measurement);
-          }};
+  return {.name = "attitude_latency",
+          .summary = "the camera reports an attitude that is already past",
+          .read = read,
+          .screening = {.parametrisations = {{"the camera reports an attitude that is already past",
+                                              {EffectKey::not_negative(latency.name, 0.1)}}}},
+          .injection = {.draw = injected::fixed_size(latency.name, 0.05),
+                        .alter = plain_change,
+                        .strength = latency.name,
+                        .step = 1e-4,
+                        .max_factor = 6.0,
+                        .pairs = true},
+          .budget = {.reason_against = "an error of an instrument: no torque"},
+          .instrument = "camera"};
 }
 
 }  // namespace photorque

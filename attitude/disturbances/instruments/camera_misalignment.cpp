@@ -4,23 +4,43 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey turn{"misalignment_rad"};
+
 // The attitude seen is q ⊗ exp(m/2) for the rotation vector m, in body axes, from the true to the
 // seen body axes.
 struct CameraMisalignment final : LawOf<CameraMisalignment> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    now.camera_error_rad += own.vector(0);
+    now.camera_error_rad += own[turn];
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<CameraMisalignment>({vector_parameter(settings, turn)},
+                                              Stage::measurement);
+}
+
+// The law again, for `prove`.
+void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
+  platform.camera_turn = effect.triple(turn.name);
+}
 
 }  // namespace
 
 DisturbanceKind camera_misalignment_kind() {
-  return {"camera_misalignment", "the camera's target is mounted at a small angle to the body axes",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<CameraMisalignment>(
-                {vector_parameter(settings, "misalignment_rad")}, Stage::measurement);
-          }};
+  return {.name = "camera_misalignment",
+          .summary = "the camera's target is mounted at a small angle to the body axes",
+          .read = read,
+          .screening = {.parametrisations =
+                            {{"the camera's target is mounted at a small angle to the body axes",
+                              {EffectKey::vector(turn.name, 5e-3)}}}},
+          .injection = {.draw = injected::random_direction(turn.name, 0.01),
+                        .alter = plain_change,
+                        .strength = turn.name,
+                        .step = 1e-6,
+                        .max_factor = 3.0},
+          .budget = {.reason_against = "an error of an instrument: no torque"},
+          .instrument = "camera"};
 }
 
 }  // namespace photorque

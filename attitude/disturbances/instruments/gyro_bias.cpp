@@ -4,21 +4,41 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey bias{"bias_rad_s"};
+
 struct GyroBias final : LawOf<GyroBias> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    now.gyro_error_rad_s += own.vector(0);
+    now.gyro_error_rad_s += own[bias];
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<GyroBias>({vector_parameter(settings, bias)}, Stage::measurement);
+}
+
+// The law again, for `prove`.
+void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
+  platform.gyro_bias = effect.triple(bias.name);
+}
 
 }  // namespace
 
 DisturbanceKind gyro_bias_kind() {
-  return {"gyro_bias", "the gyro reads a constant rate at rest",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<GyroBias>({vector_parameter(settings, "bias_rad_s")},
-                                              Stage::measurement);
-          }};
+  return {
+      .name = "gyro_bias",
+      .summary = "the gyro reads a constant rate at rest",
+      .read = read,
+      .screening = {.parametrisations =
+                        {{"the gyro reads a constant rate at rest, beyond the uncertainty stated",
+                          {EffectKey::vector(bias.name, 5e-3)}}},
+                    .per_recording = true},
+      .injection = {.draw = injected::random_direction(bias.name, 1e-3),
+                    .alter = plain_change,
+                    .strength = bias.name,
+                    .step = 1e-6},
+      .budget = {.reason_against = "an error of an instrument: no torque"},
+      .instrument = "gyro"};
 }
 
 }  // namespace photorque

@@ -4,23 +4,43 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey turn{"misalignment_rad"};
+
 // reading − ω = m × ω for a mounting rotation vector m of the body axes against the gyro's: first
 // order, good to |m|²/2.
 struct GyroMisalignment final : LawOf<GyroMisalignment> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    now.gyro_error_rad_s += own.vector(0).cross(now.inertial_rate_body_rad_s);
+    now.gyro_error_rad_s += own[turn].cross(now.inertial_rate_body_rad_s);
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<GyroMisalignment>({vector_parameter(settings, turn)}, Stage::measurement);
+}
+
+// The law again, for `prove`.
+void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
+  platform.gyro_turn = effect.triple(turn.name);
+}
 
 }  // namespace
 
 DisturbanceKind gyro_misalignment_kind() {
-  return {"gyro_misalignment", "the gyro is mounted at a small angle to the body axes",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<GyroMisalignment>(
-                {vector_parameter(settings, "misalignment_rad")}, Stage::measurement);
-          }};
+  return {
+      .name = "gyro_misalignment",
+      .summary = "the gyro is mounted at a small angle to the body axes",
+      .read = read,
+      .screening = {.parametrisations = {{"the gyro is mounted at a small angle to the body axes",
+                                          {EffectKey::vector(turn.name, 0.01)}}}},
+      .injection = {.draw = injected::random_direction(turn.name, 0.01),
+                    .alter = plain_change,
+                    .strength = turn.name,
+                    .step = 1e-5,
+                    .max_factor = 3.0,
+                    .pairs = true},
+      .budget = {.reason_against = "an error of an instrument: no torque"},
+      .instrument = "gyro"};
 }
 
 }  // namespace photorque

@@ -4,24 +4,44 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey scale{"scale"};
+
 // reading − ω = s_i ω_i on each axis.
 struct GyroScale final : LawOf<GyroScale> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     for (int i = 0; i < 3; ++i) {
-      now.gyro_error_rad_s[i] += own.parameter(i) * now.inertial_rate_body_rad_s[i];
+      now.gyro_error_rad_s[i] += own.element(scale, i) * now.inertial_rate_body_rad_s[i];
     }
   }
 };
 
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<GyroScale>({vector_parameter(settings, scale)}, Stage::measurement);
+}
+
+// The law again, for `prove`.
+void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
+  platform.gyro_scale = effect.triple(scale.name);
+}
+
 }  // namespace
 
 DisturbanceKind gyro_scale_kind() {
-  return {"gyro_scale", "the gyro's axes read too much or too little, in proportion to the rate",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<GyroScale>({vector_parameter(settings, "scale")},
-                                               Stage::measurement);
-          }};
+  return {
+      .name = "gyro_scale",
+      .summary = "the gyro's axes read too much or too little, in proportion to the rate",
+      .read = read,
+      .screening = {.parametrisations =
+                        {{"the gyro's axes read too much or too little in proportion to the rate",
+                          {EffectKey::vector(scale.name, 0.02)}}}},
+      .injection = {.draw = injected::random_direction(scale.name, 0.01),
+                    .alter = plain_change,
+                    .strength = scale.name,
+                    .step = 1e-5,
+                    .pairs = true},
+      .budget = {.reason_against = "an error of an instrument: no torque"},
+      .instrument = "gyro"};
 }
 
 }  // namespace photorque

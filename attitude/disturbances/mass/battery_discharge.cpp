@@ -12,14 +12,16 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey shift{"shift_m_per_Ah"};
+
 struct BatteryDischarge final : LawOf<BatteryDischarge> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    now.move_mass(now.charge_drawn_C * own.vector(0));
+    now.move_mass(now.charge_drawn_C * own[shift]);
   }
 };
 
-Parameters shift_from_cells(const Settings& settings, double platform_mass_kg) {
+PlacedParameters shift_from_cells(const Settings& settings, double platform_mass_kg) {
   std::vector<BatteryCell> cells;
   for (const Settings& s : settings.tables("cell")) {
     BatteryCell cell;
@@ -30,19 +32,43 @@ Parameters shift_from_cells(const Settings& settings, double platform_mass_kg) {
   const bool rounded = settings.choice_or("lithium", {"exact", "rounded"}, 0) == 1;
   const Vec3 shift_m_C =
       com_shift_m_C(cells, platform_mass_kg, rounded ? lithium_as_published_kg_C : lithium_kg_C);
-  return fixed_parameter("shift_m_per_Ah", {shift_m_C.data(), 3});
+  return fixed_parameter(shift.name, {shift_m_C.data(), 3});
+}
+
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  return make_disturbance<BatteryDischarge>(
+      {settings.has("cell") ? shift_from_cells(settings, context.platform.mass_kg)
+                            : vector_parameter(settings, shift)},
+      Stage::mass);
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [shift_m_per_Ah = effect.triple(shift.name)](const Surroundings& s) {
+    return s.weight_at(times(s.charge_Ah, shift_m_per_Ah));
+  };
 }
 
 }  // namespace
 
 DisturbanceKind battery_discharge_kind() {
-  return {"battery_discharge", "lithium moves inside the battery as it discharges",
-          [](const Settings& settings, const DisturbanceContext& context) {
-            return make_disturbance<BatteryDischarge>(
-                {settings.has("cell") ? shift_from_cells(settings, context.platform.mass_kg)
-                                      : vector_parameter(settings, "shift_m_per_Ah")},
-                Stage::mass);
-          }};
+  return {.name = "battery_discharge",
+          .summary = "lithium moves inside the battery as it discharges",
+          .read = read,
+          .screening =
+              {.parametrisations =
+                   {{"the centre of mass moves in proportion to the charge drawn from the battery",
+                     {EffectKey::vector(shift.name, 3e-6)}}},
+               .needs = Requirement::charge,
+               .alike = {{"mass_shift", Requirement::charge},
+                         {"static_unbalance", Requirement::charge}}},
+          .injection = {.draw = injected::random_direction(shift.name, 2e-6),
+                        .torque = plain_torque,
+                        .strength = shift.name,
+                        .step = 1e-8,
+                        .pairs = true},
+          .budget = {.paper_figure = "battery_torque_N_m"}};
 }
 
 }  // namespace photorque

@@ -11,6 +11,9 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey diagonal{"compliance_s2"};
+constexpr MatrixKey compliance{diagonal.name};
+
 template <class T>
 Vec3Of<T> gravity_change(const EvaluationContext<T>& now) {
   return now.gravity_body_m_s2 - now.gravity_lab_m_s2;  // at zero attitude both axes agree
@@ -19,14 +22,14 @@ Vec3Of<T> gravity_change(const EvaluationContext<T>& now) {
 struct DiagonalSag final : LawOf<DiagonalSag> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    now.move_mass(own.vector(0).cwiseProduct(gravity_change(now)));
+    now.move_mass(own[diagonal].cwiseProduct(gravity_change(now)));
   }
 };
 
 struct MatrixSag final : LawOf<MatrixSag> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    now.move_mass(own.matrix(0) * gravity_change(now));
+    now.move_mass(own[compliance] * gravity_change(now));
   }
 };
 
@@ -50,27 +53,51 @@ Mat3 read_compliance_s2(const Settings& settings, double platform_mass_kg) {
                             static_cast<int>(s.integer("count", 1, 1000))},
         platform_mass_kg);
   }
-  const Mat3 compliance_s2 = settings.matrix3("compliance_s2");
+  const Mat3 compliance_s2 = settings.matrix3(compliance.name);
   if ((compliance_s2 - compliance_s2.transpose()).norm() > 1e-9 * compliance_s2.norm()) {
-    throw settings.error("compliance_s2", "a matrix that is not symmetric", "a symmetric matrix");
+    throw settings.error(compliance.name, "a matrix that is not symmetric", "a symmetric matrix");
   }
   return compliance_s2;
+}
+
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  const bool computed = settings.has("dumbbell") || settings.has("tabletop");
+  if (!computed && count_as_written(settings, diagonal.name) == 3) {
+    return make_disturbance<DiagonalSag>({vector_parameter(settings, diagonal)}, Stage::mass);
+  }
+  const Mat3 compliance_s2 = read_compliance_s2(settings, context.platform.mass_kg);
+  return make_disturbance<MatrixSag>({fixed_parameter(compliance.name, {compliance_s2.data(), 9})},
+                                     Stage::mass);
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [compliance_s2 = effect.triple(diagonal.name)](const Surroundings& s) {
+    return s.weight_at(by_component(compliance_s2, minus(s.gravity, s.gravity_level)));
+  };
+}
+
+injected::EffectNumbers draw_example(injected::RandomDraw& draw,
+                                     const injected::ExampleConditions&) {
+  return {{diagonal.name,
+           {draw.uniform(0.2e-7, 1e-7), draw.uniform(0.2e-7, 1e-7), draw.uniform(0.2e-7, 1e-7)}}};
 }
 
 }  // namespace
 
 DisturbanceKind elastic_sag_kind() {
-  return {"elastic_sag", "the structure bends differently at every tilt",
-          [](const Settings& settings, const DisturbanceContext& context) {
-            const bool computed = settings.has("dumbbell") || settings.has("tabletop");
-            if (!computed && count_as_written(settings, "compliance_s2") == 3) {
-              return make_disturbance<DiagonalSag>({vector_parameter(settings, "compliance_s2")},
-                                                   Stage::mass);
-            }
-            const Mat3 compliance_s2 = read_compliance_s2(settings, context.platform.mass_kg);
-            return make_disturbance<MatrixSag>(
-                {fixed_parameter("compliance_s2", {compliance_s2.data(), 9})}, Stage::mass);
-          }};
+  return {.name = "elastic_sag",
+          .summary = "the structure bends differently at every tilt",
+          .read = read,
+          .screening = {.parametrisations =
+                            {{"the structure bends under its weight, differently at every tilt",
+                              {EffectKey::vector(diagonal.name, 5e-7)}}}},
+          .injection = {.draw = draw_example,
+                        .torque = plain_torque,
+                        .strength = diagonal.name,
+                        .step = 1e-9,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

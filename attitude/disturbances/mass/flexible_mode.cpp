@@ -11,47 +11,97 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey direction{"axis"};
+constexpr ScalarKey frequency{"frequency_Hz", direction.end()};
+constexpr ScalarKey damping{"damping", frequency.end()};
+constexpr ScalarKey inertia{"inertia_kg_m2", damping.end()};
+constexpr StateKey angle{"angle_rad", 0};
+constexpr StateKey rate{"rate_rad_s", 1};
+
 struct FlexibleMode final : LawOf<FlexibleMode> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    const Vec3Of<T> direction = own.vector(0);
-    const Vec3Of<T> axis = direction / length(direction);
-    const T angular_frequency = 2.0 * pi * own.parameter(3);
-    const T& damping = own.parameter(4);
-    const T& inertia = own.parameter(5);
-    const T angle = own.states[0], rate = own.states[1];
+    const Vec3Of<T> along = own[direction];
+    const Vec3Of<T> axis = along / length(along);
+    const T angular_frequency = 2.0 * pi * own[frequency];
+    const T& J = own[inertia];
+    const T phi = own.state(angle), sigma = own.state(rate);
 
-    const T angle_rate = rate - axis.dot(now.rate_body_rad_s);
-    const T pull = angular_frequency * angular_frequency * angle +
-                   2.0 * damping * angular_frequency * angle_rate;
-    own.state_rates[0] = angle_rate;
-    own.state_rates[1] = -pull;
+    const T phi_rate = sigma - axis.dot(now.rate_body_rad_s);
+    const T pull = angular_frequency * angular_frequency * phi +
+                   2.0 * own[damping] * angular_frequency * phi_rate;
+    own.rate_of(angle) = phi_rate;
+    own.rate_of(rate) = -pull;
 
-    const Vec3Of<T> momentum = inertia * rate * axis;
-    now.torque_body_N_m += inertia * pull * axis - now.rate_body_rad_s.cross(momentum);
+    const Vec3Of<T> momentum = J * sigma * axis;
+    now.torque_body_N_m += J * pull * axis - now.rate_body_rad_s.cross(momentum);
     const Mat3Of<T> about_axis = axis * axis.transpose();
-    now.detach_inertia(inertia * about_axis);
+    now.detach_inertia(J * about_axis);
   }
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
-  const Parameters axis = vector_parameter(settings, "axis");
-  const Vec3 direction(axis[0].value, axis[1].value, axis[2].value);
-  if (!(direction.norm() > 0.0)) throw settings.error("axis", "a zero vector", "a direction");
-  const Vec3 unit = direction.normalized();
+  const PlacedParameters axis = vector_parameter(settings, direction);
+  const Parameters& a = axis.parameters;
+  const Vec3 along(a[0].value, a[1].value, a[2].value);
+  if (!(along.norm() > 0.0)) throw settings.error(direction.name, "a zero vector", "a direction");
+  const Vec3 unit = along.normalized();
   const double whole_kg_m2 = unit.dot(context.platform.inertia_kg_m2 * unit);
   const Range part_of_whole{0.0, whole_kg_m2, true, true};
   return make_disturbance<FlexibleMode>(
-      {axis, scalar_parameter(settings, "frequency_Hz", Range::positive()),
-       scalar_parameter(settings, "damping", Range::not_negative()),
-       scalar_parameter(settings, "inertia_kg_m2", part_of_whole)},
-      Stage::torque, {{.name = "angle_rad"}, {.name = "rate_rad_s", .per_body_rate = unit}});
+      {axis, scalar_parameter(settings, frequency, Range::positive()),
+       scalar_parameter(settings, damping, Range::not_negative()),
+       scalar_parameter(settings, inertia, part_of_whole)},
+      Stage::torque, {{.name = angle.name}, {.name = rate.name, .per_body_rate = unit}});
+}
+
+// The law again, for `prove`.
+void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
+  using namespace injected;
+  const Triple along = effect.triple(direction.name);
+  platform.appendage =
+      Appendage{times(1.0 / length(along), along), 2.0 * pi * effect.number(frequency.name),
+                effect.number(damping.name), effect.number(inertia.name)};
+}
+
+injected::EffectNumbers draw_example(injected::RandomDraw& draw,
+                                     const injected::ExampleConditions& conditions) {
+  const Triple axis = draw.direction();
+  double about_axis_kg_m2 = 0.0;
+  for (size_t k = 0; k < 3; ++k) {
+    about_axis_kg_m2 += axis[k] * axis[k] * conditions.inertia_kg_m2[k][k];
+  }
+  return {{direction.name, injected::list(axis)},
+          {frequency.name, {draw.log_uniform(0.15, 1.5)}},
+          {damping.name, {draw.log_uniform(0.005, 0.05)}},
+          {inertia.name, {0.05 * about_axis_kg_m2}}};
 }
 
 }  // namespace
 
 DisturbanceKind flexible_mode_kind() {
-  return {"flexible_mode", "an appendage or liquid swings against the body", read};
+  return {
+      .name = "flexible_mode",
+      .summary = "an appendage or liquid swings against the body",
+      .read = read,
+      .screening = {.parametrisations =
+                        {{"an appendage or a liquid swings against the body",
+                          {{direction.name,
+                            {0.0, 0.0, 1.0},
+                            0.6,
+                            -EffectKey::unbounded,
+                            EffectKey::unbounded,
+                            true},
+                           EffectKey::shape(frequency.name, 0.5, 1.0, 1e-3, 100.0),
+                           EffectKey::shape(damping.name, 0.02, 0.05, 0.0, 2.0),
+                           {inertia.name, {0.01}, 0.05, 0.0, EffectKey::unbounded, true, true}}}},
+                    .scan = Scan::mode,
+                    .fast = true},
+      .injection = {.draw = draw_example,
+                    .alter = plain_change,
+                    .strength = inertia.name,
+                    .max_factor = 6.0,
+                    .needs_commands = true}};
 }
 
 }  // namespace photorque

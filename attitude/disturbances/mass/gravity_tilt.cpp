@@ -6,10 +6,13 @@
 namespace photorque {
 namespace {
 
+constexpr ScalarKey about_x{"tilt_rad"};
+constexpr ScalarKey about_y{about_x.name, about_x.end()};
+
 struct GravityTilt final : LawOf<GravityTilt> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    const Vec3Of<T> turn(own.parameter(0), own.parameter(1), T(0.0));
+    const Vec3Of<T> turn(own[about_x], own[about_y], T(0.0));
     const T angle = length(turn);
     const Vec3Of<T> axis = turn / angle;
     const T cosine = cos(angle), sine = sin(angle);
@@ -20,14 +23,36 @@ struct GravityTilt final : LawOf<GravityTilt> {
   }
 };
 
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<GravityTilt>({array_parameter(settings, about_x.name, 2)},
+                                       Stage::conditions);
+}
+
+// The law again, for `prove`.
+void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
+  using namespace injected;
+  const std::vector<double>& tilt_rad = effect.numbers(about_x.name, 2);
+  const Quaternion turn = quaternion_of({tilt_rad[0], tilt_rad[1], 0.0});
+  platform.gravity_lab = injected::to_body(conjugate(turn), platform.gravity_lab);
+}
+
+injected::EffectNumbers draw_example(injected::RandomDraw& draw,
+                                     const injected::ExampleConditions&) {
+  return {{about_x.name, {2e-3 * draw.normal(), 2e-3 * draw.normal()}}};
+}
+
 }  // namespace
 
 DisturbanceKind gravity_tilt_kind() {
-  return {"gravity_tilt", "the camera that defines the vertical is not level",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<GravityTilt>({array_parameter(settings, "tilt_rad", 2)},
-                                                 Stage::conditions);
-          }};
+  return {.name = "gravity_tilt",
+          .summary = "the camera that defines the vertical is not level",
+          .read = read,
+          .screening =
+              {.parametrisations =
+                   {{"gravity does not point along the camera's vertical: the camera is not level",
+                     {{about_x.name, {0.0, 0.0}, 5e-3}}}}},
+          .injection = {
+              .draw = draw_example, .alter = plain_change, .strength = about_x.name, .step = 1e-6}};
 }
 
 }  // namespace photorque

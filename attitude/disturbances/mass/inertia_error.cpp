@@ -6,6 +6,9 @@
 namespace photorque {
 namespace {
 
+// xx, yy, zz, xy, xz, yz.
+constexpr KeyOf<6> delta{"delta_kg_m2"};
+
 template <class T>
 Mat3Of<T> symmetric(const T& xx, const T& yy, const T& zz, const T& xy, const T& xz, const T& yz) {
   Mat3Of<T> m;
@@ -16,25 +19,67 @@ Mat3Of<T> symmetric(const T& xx, const T& yy, const T& zz, const T& xy, const T&
 struct InertiaError final : LawOf<InertiaError> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    const T* d = own.parameters;
-    now.change_inertia(symmetric<T>(d[0], d[1], d[2], d[3], d[4], d[5]));
+    const auto d = [&](int i) { return own.element(delta, i); };
+    now.change_inertia(symmetric<T>(d(0), d(1), d(2), d(3), d(4), d(5)));
   }
 };
 
+Mat3 as_matrix(const Parameters& d) {
+  return symmetric(d[0].value, d[1].value, d[2].value, d[3].value, d[4].value, d[5].value);
+}
+
+Mat3 inertia_change_kg_m2(const Disturbance& error) {
+  return as_matrix(error.parameters);
+}
+
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
-  const std::string key = "delta_kg_m2";
-  const Parameters d = array_parameter(settings, key, 6);
-  const Mat3 delta_kg_m2 =
-      symmetric(d[0].value, d[1].value, d[2].value, d[3].value, d[4].value, d[5].value);
+  const std::string key = delta.name;
+  const PlacedParameters six = array_parameter(settings, key, 6);
+  const Mat3 delta_kg_m2 = as_matrix(six.parameters);
   check_inertia(context.platform.inertia_kg_m2 + delta_kg_m2, settings.raw(key).where,
                 settings.name() + "." + key + " with the platform's inertia");
-  return make_disturbance<InertiaError>({d}, Stage::conditions);
+  return make_disturbance<InertiaError>({six}, Stage::conditions);
+}
+
+// The law again, for `prove`.
+void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
+  using namespace injected;
+  const std::vector<double>& d = effect.numbers(delta.name, 6);
+  const Matrix change = {{{d[0], d[3], d[4]}, {d[3], d[1], d[5]}, {d[4], d[5], d[2]}}};
+  for (size_t i = 0; i < 3; ++i) platform.inertia[i] = plus(platform.inertia[i], change[i]);
+}
+
+injected::EffectNumbers draw_example(injected::RandomDraw& draw,
+                                     const injected::ExampleConditions& conditions) {
+  std::vector<double> change_kg_m2;
+  double mean_kg_m2 = 0.0;
+  for (size_t k = 0; k < 3; ++k) {
+    const double own_kg_m2 = conditions.inertia_kg_m2[k][k];
+    change_kg_m2.push_back(0.01 * draw.uniform(-1.0, 1.0) * own_kg_m2);
+    mean_kg_m2 += own_kg_m2 / 3.0;
+  }
+  for (int k = 0; k < 3; ++k) change_kg_m2.push_back(0.005 * draw.uniform(-1.0, 1.0) * mean_kg_m2);
+  return {{delta.name, change_kg_m2}};
 }
 
 }  // namespace
 
 DisturbanceKind inertia_error_kind() {
-  return {"inertia_error", "the moments or products of inertia are not those believed", read};
+  return {.name = "inertia_error",
+          .summary = "the moments or products of inertia are not those believed",
+          .read = read,
+          .screening = {.parametrisations =
+                            {{"the moments or products of inertia differ from those believed",
+                              {{.key = delta.name,
+                                .start = {0, 0, 0, 0, 0, 0},
+                                .scale = 0.03,
+                                .times_inertia = true}}}},
+                        .inertia_change_kg_m2 = inertia_change_kg_m2},
+          .injection = {.draw = draw_example,
+                        .alter = plain_change,
+                        .strength = delta.name,
+                        .step = 1e-6,
+                        .max_factor = 5.0}};
 }
 
 }  // namespace photorque

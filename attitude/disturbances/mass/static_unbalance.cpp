@@ -7,21 +7,42 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey offset{"offset_m"};
+
 struct StaticUnbalance final : LawOf<StaticUnbalance> {
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
-    now.move_mass(own.vector(0));
+    now.move_mass(own[offset]);
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<StaticUnbalance>({vector_parameter(settings, offset)}, Stage::mass);
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [offset_m = effect.triple(offset.name)](const Surroundings& s) {
+    return s.weight_at(offset_m);
+  };
+}
 
 }  // namespace
 
 DisturbanceKind static_unbalance_kind() {
-  return {"static_unbalance", "the centre of mass does not lie in the centre of rotation",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<StaticUnbalance>({vector_parameter(settings, "offset_m")},
-                                                     Stage::mass);
-          }};
+  return {
+      .name = "static_unbalance",
+      .summary = "the centre of mass does not lie in the centre of rotation",
+      .read = read,
+      .screening =
+          {.parametrisations =
+               {{"the centre of mass lies elsewhere than believed, beyond the uncertainty stated",
+                 {EffectKey::vector(offset.name, 5e-6)}}}},
+      .injection = {.draw = injected::random_direction(offset.name, 1e-6),
+                    .torque = plain_torque,
+                    .strength = offset.name,
+                    .step = 1e-8}};
 }
 
 }  // namespace photorque

@@ -12,6 +12,9 @@
 namespace photorque {
 namespace {
 
+// One number for each mass.
+constexpr ScalarKey rounding{"rounding_steps"};
+
 class StepperQuantization final : public LawOf<StepperQuantization> {
  public:
   explicit StepperQuantization(std::vector<Vec3> com_step_m) : com_step_m_(std::move(com_step_m)) {}
@@ -21,7 +24,7 @@ class StepperQuantization final : public LawOf<StepperQuantization> {
     Vec3Of<T> offset_m = Vec3Of<T>::Constant(T(0.0));
     for (size_t i = 0; i < com_step_m_.size(); ++i) {
       for (int k = 0; k < 3; ++k) {
-        offset_m[k] += com_step_m_[i][k] * own.parameter(static_cast<int>(i));
+        offset_m[k] += com_step_m_[i][k] * own.element(rounding, static_cast<int>(i));
       }
     }
     now.move_mass(offset_m);
@@ -31,7 +34,7 @@ class StepperQuantization final : public LawOf<StepperQuantization> {
   std::vector<Vec3> com_step_m_;
 };
 
-Parameters worst_rounding(const std::vector<MovingMass>& masses) {
+PlacedParameters worst_rounding(const std::vector<MovingMass>& masses) {
   std::vector<double> steps(masses.size(), 0.0);
   for (size_t i = 0; i < masses.size(); ++i) {
     bool parallel_to_earlier = false;
@@ -41,29 +44,36 @@ Parameters worst_rounding(const std::vector<MovingMass>& masses) {
     }
     if (!parallel_to_earlier) steps[i] = 0.5;
   }
-  return fixed_parameter("rounding_steps", steps);
+  return fixed_parameter(rounding.name, steps);
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const std::vector<MovingMass> masses = read_moving_masses(settings);
-  Parameters rounding = settings.has("rounding_steps")
-                            ? array_parameter(settings, "rounding_steps", masses.size())
-                            : worst_rounding(masses);
+  const PlacedParameters steps = settings.has(rounding.name)
+                                     ? array_parameter(settings, rounding.name, masses.size())
+                                     : worst_rounding(masses);
   std::vector<Vec3> com_step_m;
   for (size_t i = 0; i < masses.size(); ++i) {
-    if (std::abs(rounding[i].value) > 0.5) {
-      throw settings.error("rounding_steps", std::to_string(rounding[i].value),
+    if (std::abs(steps.parameters[i].value) > 0.5) {
+      throw settings.error(rounding.name, std::to_string(steps.parameters[i].value),
                            "numbers in [-0.5, 0.5]");
     }
     com_step_m.push_back(masses[i].com_step_m(context.platform.mass_kg));
   }
-  return make_disturbance<StepperQuantization>({rounding}, Stage::mass, {}, com_step_m);
+  return make_disturbance<StepperQuantization>({steps}, Stage::mass, {}, com_step_m);
 }
 
 }  // namespace
 
 DisturbanceKind stepper_quantization_kind() {
-  return {"stepper_quantization", "balancing masses can only stand at whole steps", read};
+  return {.name = "stepper_quantization",
+          .summary = "balancing masses can only stand at whole steps",
+          .read = read,
+          .screening =
+              {.reason_against =
+                   "an offset of the centre of mass like any other: found as static_unbalance"},
+          .injection = {.reason_against = "an offset of the centre of mass like any other"},
+          .budget = {.paper_figure = "stepper_torque_N_m"}};
 }
 
 }  // namespace photorque

@@ -6,30 +6,58 @@
 namespace photorque {
 namespace {
 
+constexpr ScalarKey common_gain{"gain_error"};
+constexpr VectorKey axis_gain{common_gain.name};
+
 struct CommonGain final : TorqueLaw<CommonGain> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return own.parameter(0) * now.command_body_N_m;
+    return own[common_gain] * now.command_body_N_m;
   }
 };
 
 struct AxisGain final : TorqueLaw<AxisGain> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return own.vector(0).cwiseProduct(now.command_body_N_m);
+    return own[axis_gain].cwiseProduct(now.command_body_N_m);
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  if (count_as_written(settings, common_gain.name) > 0) {
+    return make_disturbance<AxisGain>({vector_parameter(settings, axis_gain)});
+  }
+  return make_disturbance<CommonGain>({scalar_parameter(settings, common_gain)});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [error = effect.number(common_gain.name)](const Surroundings& s) {
+    return times(error, s.command_N_m);
+  };
+}
 
 }  // namespace
 
 DisturbanceKind actuator_gain_kind() {
-  return {"actuator_gain", "actuators give more or less torque than commanded",
-          [](const Settings& settings, const DisturbanceContext&) {
-            if (count_as_written(settings, "gain_error") > 0) {
-              return make_disturbance<AxisGain>({vector_parameter(settings, "gain_error")});
-            }
-            return make_disturbance<CommonGain>({scalar_parameter(settings, "gain_error")});
-          }};
+  return {.name = "actuator_gain",
+          .summary = "actuators give more or less torque than commanded",
+          .read = read,
+          .screening =
+              {.parametrisations =
+                   {{"the actuators give more or less torque than commanded",
+                     {EffectKey::number(common_gain.name, 0.2)}},
+                    {"the actuators give more or less torque than commanded, each axis its own",
+                     {EffectKey::vector(common_gain.name, 0.2)}}},
+               .needs = Requirement::command},
+          .injection = {.draw = injected::either_sign(common_gain.name, 0.1),
+                        .torque = plain_torque,
+                        .strength = common_gain.name,
+                        .step = 1e-4,
+                        .max_factor = 4.0,
+                        .needs_commands = true,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

@@ -8,6 +8,8 @@
 //   accelerogram_file: a CSV with t_s, acceleration_x_m_s2, …_y_…, …_z_… in lab axes, at rest
 //     outside its time; the path is relative to the experiment's file.
 // The last two take scale (default 1). The floor moves without turning.
+#include <cmath>
+
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/motion/vibration.h"
 #include "attitude/disturbances/sinusoid.h"
@@ -15,6 +17,11 @@
 
 namespace photorque {
 namespace {
+
+constexpr VectorKey shaking{"acceleration_m_s2"};
+constexpr ScalarKey frequency{"frequency_Hz", shaking.end()};
+constexpr ScalarKey phase{"phase", frequency.end()};
+constexpr ScalarKey factor{"scale"};  // of a spectrum and of a record
 
 template <class T>
 Vec3Of<T> shaken(const EvaluationContext<T>& now, const Vec3Of<T>& acceleration_lab_m_s2) {
@@ -26,7 +33,7 @@ struct ToneVibration final : TorqueLaw<ToneVibration> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const Vec3Of<T> acceleration_m_s2 =
-        sinusoid(now.time_s, own.parameter(3), own.parameter(4)) * own.vector(0);
+        sinusoid(now.time_s, own[frequency], own[phase]) * own[shaking];
     return shaken(now, acceleration_m_s2);
   }
 };
@@ -44,7 +51,7 @@ class SpectrumVibration final : public TorqueLaw<SpectrumVibration> {
                   sinusoid(now.time_s, T(tone.frequency_Hz), T(tone.phase_rad[k]));
       }
     }
-    const Vec3Of<T> acceleration_m_s2 = own.parameter(0) * sum;
+    const Vec3Of<T> acceleration_m_s2 = own[factor] * sum;
     return shaken(now, acceleration_m_s2);
   }
 
@@ -59,8 +66,7 @@ class RecordedVibration final : public TorqueLaw<RecordedVibration> {
 
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    const Vec3Of<T> acceleration_m_s2 =
-        own.parameter(0) * acceleration_lab_m_s2_.sample(now.time_s);
+    const Vec3Of<T> acceleration_m_s2 = own[factor] * acceleration_lab_m_s2_.sample(now.time_s);
     return shaken(now, acceleration_m_s2);
   }
 
@@ -96,7 +102,7 @@ Disturbance read_spectrum(const Settings& settings) {
   const auto tones = static_cast<int>(s.integer_or("tones", 32, 1, 10000));
   const auto seed = static_cast<uint64_t>(s.integer_or("seed", 1, 0, INT64_MAX));
   return make_disturbance<SpectrumVibration>(
-      {scalar_parameter_or(settings, "scale", 1.0, Range::not_negative())}, Stage::torque, {},
+      {scalar_parameter_or(settings, factor, 1.0, Range::not_negative())}, Stage::torque, {},
       tones_of_spectrum(points, tones, seed));
 }
 
@@ -104,22 +110,51 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   if (settings.has("spectrum")) return read_spectrum(settings);
   if (settings.has("accelerogram_file")) {
     return make_disturbance<RecordedVibration>(
-        {scalar_parameter_or(settings, "scale", 1.0, Range::not_negative())}, Stage::torque, {},
+        {scalar_parameter_or(settings, factor, 1.0, Range::not_negative())}, Stage::torque, {},
         read_time_series(file_of(settings, "accelerogram_file"),
                          {"acceleration_x_m_s2", "acceleration_y_m_s2", "acceleration_z_m_s2"},
                          TimeSeries::Outside::zero));
   }
   return make_disturbance<ToneVibration>(
-      {vector_parameter(settings, "acceleration_m_s2"),
-       scalar_parameter(settings, "frequency_Hz", Range::not_negative()),
-       phase_parameter(settings)});
+      {vector_parameter(settings, shaking),
+       scalar_parameter(settings, frequency, Range::not_negative()),
+       phase_parameter(settings, phase)});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [amplitude_m_s2 = effect.triple(shaking.name), f_Hz = effect.number(frequency.name),
+          phi = effect.number(phase.name)](const Surroundings& s) {
+    const double now = std::sin(2.0 * pi * f_Hz * s.time_s + phi);
+    return times(-s.mass_kg * now,
+                 cross(s.offset_m, injected::to_body(s.attitude, amplitude_m_s2)));
+  };
+}
+
+injected::EffectNumbers draw_example(injected::RandomDraw& draw,
+                                     const injected::ExampleConditions& conditions) {
+  return {{shaking.name, injected::list(injected::times(0.05, draw.direction()))},
+          {frequency.name, {injected::tone_Hz(draw, conditions)}},
+          {phase.name, {draw.uniform(-3.1, 3.1)}}};
 }
 
 }  // namespace
 
 DisturbanceKind floor_vibration_kind() {
-  return {"floor_vibration", "the floor shakes the bearing under a centre of mass that is off",
-          read};
+  return {
+      .name = "floor_vibration",
+      .summary = "the floor shakes the bearing under a centre of mass that is off",
+      .read = read,
+      .screening = {.parametrisations =
+                        {{"the floor shakes the bearing under a centre of mass that is off",
+                          {EffectKey::vector(shaking.name, 0.1),
+                           EffectKey::shape(frequency.name, 1.0, 5.0, 0.0, 100.0),
+                           EffectKey::shape(phase.name, 0.0, phase_scale, -EffectKey::unbounded)}}},
+                    .scan = Scan::frequency,
+                    .fast = true},
+      .injection = {
+          .draw = draw_example, .torque = plain_torque, .strength = shaking.name, .step = 1e-4}};
 }
 
 }  // namespace photorque

@@ -1,29 +1,67 @@
 // A sinusoidal torque in body axes: T = T₀ sin(2π f t + φ).
 //
 // torque_N_m[3], frequency_Hz, phase [rad] (or phase_deg; default 0).
+#include <cmath>
+
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/sinusoid.h"
 
 namespace photorque {
 namespace {
 
+constexpr VectorKey amplitude{"torque_N_m"};
+constexpr ScalarKey frequency{"frequency_Hz", amplitude.end()};
+constexpr ScalarKey phase{"phase", frequency.end()};
+
 struct PeriodicTorque final : TorqueLaw<PeriodicTorque> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return sinusoid(now.time_s, own.parameter(3), own.parameter(4)) * own.vector(0);
+    return sinusoid(now.time_s, own[frequency], own[phase]) * own[amplitude];
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<PeriodicTorque>(
+      {vector_parameter(settings, amplitude),
+       scalar_parameter(settings, frequency, Range::not_negative()),
+       phase_parameter(settings, phase)});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [size_N_m = effect.triple(amplitude.name), f_Hz = effect.number(frequency.name),
+          phi = effect.number(phase.name)](const Surroundings& s) {
+    return times(std::sin(2.0 * pi * f_Hz * s.time_s + phi), size_N_m);
+  };
+}
+
+injected::EffectNumbers draw_example(injected::RandomDraw& draw,
+                                     const injected::ExampleConditions& conditions) {
+  return {{amplitude.name, injected::list(injected::times(5e-5, draw.direction()))},
+          {frequency.name, {injected::tone_Hz(draw, conditions)}},
+          {phase.name, {draw.uniform(-3.1, 3.1)}}};
+}
 
 }  // namespace
 
 DisturbanceKind periodic_torque_kind() {
-  return {"periodic_torque", "something on board shakes at one frequency",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<PeriodicTorque>(
-                {vector_parameter(settings, "torque_N_m"),
-                 scalar_parameter(settings, "frequency_Hz", Range::not_negative()),
-                 phase_parameter(settings)});
-          }};
+  return {
+      .name = "periodic_torque",
+      .summary = "something on board shakes at one frequency",
+      .read = read,
+      .screening = {.parametrisations = {{"something on board shakes the platform at one frequency",
+                                          {EffectKey::vector(amplitude.name, 5e-5),
+                                           EffectKey::shape(frequency.name, 1.0, 5.0, 0.0, 100.0),
+                                           EffectKey::shape(phase.name, 0.0, phase_scale,
+                                                            -EffectKey::unbounded)}}},
+                    .scan = Scan::frequency,
+                    .fast = true},
+      .injection = {.draw = draw_example,
+                    .torque = plain_torque,
+                    .strength = amplitude.name,
+                    .step = 1e-8,
+                    .pairs = true}};
 }
 
 }  // namespace photorque

@@ -6,20 +6,41 @@
 namespace photorque {
 namespace {
 
+constexpr VectorKey momentum{"momentum_N_m_s"};
+
 struct RotorMomentum final : TorqueLaw<RotorMomentum> {
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
-    return own.vector(0).cross(now.inertial_rate_body_rad_s);
+    return own[momentum].cross(now.inertial_rate_body_rad_s);
   }
 };
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<RotorMomentum>({vector_parameter(settings, momentum)});
+}
+
+// The law again, for `prove`.
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  using namespace injected;
+  return [h_N_m_s = effect.triple(momentum.name)](const Surroundings& s) {
+    return cross(h_N_m_s, s.rate);
+  };
+}
 
 }  // namespace
 
 DisturbanceKind rotor_momentum_kind() {
-  return {"rotor_momentum", "a spinning part resists being turned",
-          [](const Settings& settings, const DisturbanceContext&) {
-            return make_disturbance<RotorMomentum>({vector_parameter(settings, "momentum_N_m_s")});
-          }};
+  return {.name = "rotor_momentum",
+          .summary = "a spinning part resists being turned",
+          .read = read,
+          .screening =
+              {.parametrisations = {{"a spinning part on board couples the axes like a gyroscope",
+                                     {EffectKey::vector(momentum.name, 5e-3)}}}},
+          .injection = {.draw = injected::random_direction(momentum.name, 2e-3),
+                        .torque = plain_torque,
+                        .strength = momentum.name,
+                        .step = 1e-7,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

@@ -13,11 +13,21 @@
 //
 // Source of the feedback law: B. Wie, H. Weiss, A. Arapostathis, J. Guid. Control Dyn. 12 (1989)
 // 375.
+#include <array>
+
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 
 namespace photorque {
 namespace {
+
+constexpr ScalarKey gain_on_angle{"gain_N_m_per_rad"};
+constexpr ScalarKey gain_on_rate{"gain_N_m_s", gain_on_angle.end()};
+constexpr ScalarKey viscous{"viscous_N_m_s", gain_on_rate.end()};
+constexpr ScalarKey dry{"dry_N_m", viscous.end()};
+// Absolute axial rate of each wheel.
+constexpr std::array<StateKey, 3> wheel = {
+    {{"wheel_x_rad_s", 0}, {"wheel_y_rad_s", 1}, {"wheel_z_rad_s", 2}}};
 
 // x for |x| far below `limit`, ±limit far above: 1.5 % short at half the limit, smooth.
 template <class T>
@@ -47,21 +57,21 @@ class WheelControl final : public LawOf<WheelControl> {
  public:
   explicit WheelControl(const WheelSettings& settings) : settings_(settings) {}
 
-  // Parameters: k_p, k_d, viscous, dry. States: absolute axial rate of each wheel.
   template <class T>
   void apply(const ParametersAndStates<T>& own, EvaluationContext<T>& now) const {
     const double inertia = settings_.wheel_inertia_kg_m2;
     const Vec3Of<T> wanted_N_m = feedback(own, now);
     Vec3Of<T> momentum, on_wheel;
     for (int k = 0; k < 3; ++k) {
-      const T relative = own.states[k] - now.rate_body_rad_s[k];
+      const T& spin = own.state(wheel[size_t(k)]);
+      const T relative = spin - now.rate_body_rad_s[k];
       const T fraction = relative / settings_.largest_rate_rad_s;
       const T motor = saturated(T(-wanted_N_m[k]), settings_.largest_torque_N_m);
       // A motor cannot speed up a wheel that is at its largest rate in that direction.
       const T forward = where_at_least(values(motor), 0.0, T(1.0), T(-1.0));
       on_wheel[k] = motor * headroom(T(fraction * forward)) - friction(own, relative);
-      momentum[k] = inertia * own.states[k];
-      own.state_rates[k] = on_wheel[k] / inertia;
+      momentum[k] = inertia * spin;
+      own.rate_of(wheel[size_t(k)]) = on_wheel[k] / inertia;
     }
     now.torque_body_N_m -= on_wheel + now.inertial_rate_body_rad_s.cross(momentum);
     now.detach_inertia(Mat3(inertia * Mat3::Identity()).template cast<T>());
@@ -73,15 +83,15 @@ class WheelControl final : public LawOf<WheelControl> {
     const QuatOf<T> error = settings_.lab_from_target.conjugate().template cast<T>() * now.attitude;
     const T shortest = where_at_least(values(error.w()), 0.0, T(1.0), T(-1.0));
     const Vec3Of<T> off = now.rate_body_rad_s - settings_.target_rate_body_rad_s.template cast<T>();
-    return T(-2.0 * shortest * own.parameter(0)) * error.vec() - own.parameter(1) * off;
+    return T(-2.0 * shortest * own[gain_on_angle]) * error.vec() - own[gain_on_rate] * off;
   }
 
   template <class T>
   T friction(const ParametersAndStates<T>& own, const T& relative) const {
     // Dry friction turns over within this rate, a wheel's creep.
     constexpr double creep_rad_s = 0.1;
-    return own.parameter(2) * relative +
-           own.parameter(3) * relative / sqrt(relative * relative + creep_rad_s * creep_rad_s);
+    return own[viscous] * relative +
+           own[dry] * relative / sqrt(relative * relative + creep_rad_s * creep_rad_s);
   }
 
   WheelSettings settings_;
@@ -100,23 +110,28 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   wheels.largest_rate_rad_s = settings.number("largest_rate_rad_s", Range::positive());
   std::vector<ExtraState> states;
   for (int k = 0; k < 3; ++k) {
-    states.push_back({.name = std::string("wheel_") + "xyz"[k] + "_rad_s",
+    states.push_back({.name = wheel[size_t(k)].name,
                       .initial = 0.0,
                       .scale = wheels.largest_rate_rad_s,
                       .per_body_rate = Vec3::Unit(k)});
   }
   return make_disturbance<WheelControl>(
-      {scalar_parameter(settings, "gain_N_m_per_rad", Range::not_negative()),
-       scalar_parameter(settings, "gain_N_m_s", Range::not_negative()),
-       scalar_parameter_or(settings, "viscous_N_m_s", 0.0, Range::not_negative()),
-       scalar_parameter_or(settings, "dry_N_m", 0.0, Range::not_negative())},
+      {scalar_parameter(settings, gain_on_angle, Range::not_negative()),
+       scalar_parameter(settings, gain_on_rate, Range::not_negative()),
+       scalar_parameter_or(settings, viscous, 0.0, Range::not_negative()),
+       scalar_parameter_or(settings, dry, 0.0, Range::not_negative())},
       Stage::torque, std::move(states), wheels);
 }
 
 }  // namespace
 
 DisturbanceKind wheel_control_kind() {
-  return {"wheel_control", "reaction wheels turn the platform to a target attitude", read};
+  return {.name = "wheel_control",
+          .summary = "reaction wheels turn the platform to a target attitude",
+          .read = read,
+          .screening = {.reason_against = "a controller is known to whoever switched it on; its "
+                                          "torque stands in the commands"},
+          .injection = {.reason_against = "diagnose does not screen it"}};
 }
 
 }  // namespace photorque

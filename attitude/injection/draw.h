@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "attitude/injection/vectors.h"
 #include "core/constants.h"
 #include "core/numerics/random.h"
-#include "tools/proof/vectors.h"
 
 namespace photorque::injected {
 

@@ -1,0 +1,88 @@
+// What is known of a kind of disturbance as an effect that a model may lack: what a fit assumes
+// about its parameters before looking, and how `diagnose` has to look for it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "attitude/model/disturbance.h"
+
+namespace photorque {
+
+// One key of an effect, SI.
+struct EffectKey {
+  static constexpr double unbounded = 1e308;
+
+  std::string key;             // as in an experiment file
+  std::vector<double> start;   // where a fit begins; its size is the number of components
+  double scale = 1.0;          // size to be expected: the width of the prior
+  double lowest = -unbounded;  // bounds of physics
+  double highest = unbounded;
+  bool searched = false;  // enters nonlinearly: several starts are tried
+  // Start and scale are multiples of the platform's mean moment of inertia.
+  bool times_inertia = false;
+
+  // A strength of either sign, one that cannot be negative, and one for each body axis.
+  static EffectKey number(const std::string& key, double scale) { return {key, {0.0}, scale}; }
+  static EffectKey not_negative(const std::string& key, double scale) {
+    return {key, {0.0}, scale, 0.0};
+  }
+  static EffectKey vector(const std::string& key, double scale) {
+    return {key, {0.0, 0.0, 0.0}, scale};
+  }
+  // A shape (a frequency, an instant) whose starts a scan has to find.
+  static EffectKey shape(const std::string& key, double start, double scale, double lowest,
+                         double highest = unbounded) {
+    return {key, {start}, scale, lowest, highest, true};
+  }
+};
+
+// One set of parameters with which an effect can be fitted: of one kind there may be several.
+struct Parametrisation {
+  std::string explanation;  // one sentence for the report
+  std::vector<EffectKey> keys;
+};
+
+// What must be there for an effect to show at all: torques commanded, a current, a magnetic field.
+enum class Requirement { none, command, charge, field };
+
+// What has to be scanned before a fit can find it.
+enum class Scan {
+  nothing,
+  instant,    // key "time_s"
+  frequency,  // keys "frequency_Hz" and "phase"
+  mode,       // keys "frequency_Hz", "damping", "axis" and "inertia_kg_m2"
+};
+
+// Another kind whose effect has the same form.
+struct Likeness {
+  std::string kind;
+  // The channel that alone tells them apart, whatever the start of a run; none: one is contained in
+  // the other, and both together are one effect.
+  Requirement told_apart_by = Requirement::none;
+};
+
+// All disturbances of one kind in a model, the nominal one and its correction of either sign, must
+// not sum to less than this: their parameters, SI.
+struct LeastSum {
+  double lowest = 0.0;
+  std::string objection;  // what the report says of a model that does
+};
+
+struct Screening {
+  // How `diagnose` fits the effect; none: it does not, for the reason that follows.
+  std::vector<Parametrisation> parametrisations = {};
+  std::string reason_against = {};
+  Requirement needs = Requirement::none;
+  Scan scan = Scan::nothing;
+  bool fast = false;           // acts within averages of the readings: fitted to all of them
+  bool per_recording = false;  // has another value after every switching on
+  // By how much a fitted disturbance changes the platform's inertia, of which there is a limit to
+  // what can be believed; null: not at all.
+  Mat3 (*inertia_change_kg_m2)(const Disturbance&) = nullptr;
+  std::optional<LeastSum> least_sum = {};
+  std::vector<Likeness> alike = {};
+};
+
+}  // namespace photorque

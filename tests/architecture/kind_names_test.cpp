@@ -1,0 +1,77 @@
+// Nobody but its own file knows a kind of disturbance by name: others ask for what is known of it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path source_root = PHOTORQUE_SOURCE_DIR;
+
+// Files outside a kind's own that hold its name in quotes, and why.
+const std::map<std::string, std::set<std::string>> allowed = {
+    // What `balance` measures is this very kind.
+    {"attitude/studies/balance.cpp", {"static_unbalance"}},
+    // Kinds of the same form, named by one of the two.
+    {"attitude/disturbances/bearing/turbine_torque.cpp", {"room_draft"}},
+    {"attitude/disturbances/mass/battery_discharge.cpp", {"mass_shift", "static_unbalance"}},
+    // A key of that table's name.
+    {"attitude/disturbances/fields/helmholtz_cage.cpp", {"orbit"}},
+    // The nominal model of every injected case, once.
+    {"tools/proof/recipes.h", {"static_unbalance", "bearing_drag", "gyro_bias"}},
+    // A field of truth.json.
+    {"tools/proof/files.cpp", {"gyro_bias"}},
+};
+
+std::string text_without_comments(const fs::path& file) {
+  static const std::regex comment(R"(//[^\n]*)");
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return std::regex_replace(text.str(), comment, "");
+}
+
+// Name and own file of every kind, from the folder's list of words.
+std::map<std::string, std::string> kinds_of_the_list() {
+  static const std::regex word(R"(disturbances/[a-z]+/([a-z_]+)(?!\.cpp|[a-z_]))");
+  std::ifstream in(source_root / "attitude/CMakeLists.txt");
+  std::ostringstream text;
+  text << in.rdbuf();
+  const std::string list = text.str().substr(0, text.str().find("photorque_folder"));
+  std::map<std::string, std::string> kinds;
+  for (std::sregex_iterator it(list.begin(), list.end(), word), end; it != end; ++it) {
+    kinds[(*it)[1]] = "attitude/" + it->str() + ".cpp";
+  }
+  return kinds;
+}
+
+TEST(KindNames, StandInTheKindsOwnFileAlone) {
+  static const std::regex quoted(R"re("([a-z_]+)")re");
+  const std::map<std::string, std::string> kinds = kinds_of_the_list();
+  ASSERT_GT(kinds.size(), 30u);
+  std::map<std::string, std::set<std::string>> found;
+  for (const std::string folder : {"attitude", "diagnosis", "inference", "tools"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(source_root / folder)) {
+      const std::string file = fs::relative(entry.path(), source_root).generic_string();
+      const fs::path extension = entry.path().extension();
+      // A benchmark runs what it always ran.
+      if ((extension != ".h" && extension != ".cpp") || file.starts_with("tools/benchmarks/")) {
+        continue;
+      }
+      const std::string text = text_without_comments(entry.path());
+      for (std::sregex_iterator it(text.begin(), text.end(), quoted), end; it != end; ++it) {
+        const auto kind = kinds.find((*it)[1]);
+        if (kind != kinds.end() && kind->second != file) found[file].insert(kind->first);
+      }
+    }
+  }
+  EXPECT_EQ(found, allowed);
+}
+
+}  // namespace

@@ -1,0 +1,167 @@
+// The registry of disturbances against those who use it: what `diagnose` screens, `prove` injects,
+// `budget` ranks and docs/disturbances.md documents. Every exception is named here, and its reason
+// stands in the kind's own file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "attitude/studies/budget.h"
+#include "diagnosis/attitude/catalogue.h"
+#include "tests/attitude/disturbance_bench.h"
+#include "tests/kinds/kind_table.h"
+#include "tools/proof/recipes.h"
+
+namespace photorque {
+namespace {
+
+using Names = std::set<std::string>;
+
+// What a recording of motion cannot reveal, or nobody can forget: see the reasons in their files.
+const Names not_screened = {"helmholtz_cage",       "orbit",
+                            "power_balance",        "radiation_pressure",
+                            "stepper_quantization", "wheel_control"};
+// Instruments exert no torque; an orbit is where others do.
+const Names not_ranked = {"attitude_latency",  "camera_misalignment", "gyro_bias",
+                          "gyro_misalignment", "gyro_scale",          "orbit"};
+
+Names all_names() {
+  Names names;
+  for (const DisturbanceKind& kind : disturbance_kinds()) names.insert(kind.name);
+  return names;
+}
+
+Names without(Names names, const Names& some) {
+  for (const std::string& name : some) EXPECT_EQ(names.erase(name), 1u) << name;
+  return names;
+}
+
+TEST(KindRegistry, DiagnoseScreensAllButTheExceptions) {
+  Names screened;
+  for (const Effect& effect : catalogue(bench_model().platform)) screened.insert(effect.kind);
+  EXPECT_EQ(screened, without(all_names(), not_screened));
+}
+
+TEST(KindRegistry, ProveInjectsWhatDiagnoseScreens) {
+  Names drawn;
+  for (const injected::Recipe& recipe : injected::recipes()) {
+    if (!recipe.outside) drawn.insert(recipe.kind);
+  }
+  EXPECT_EQ(drawn, without(all_names(), not_screened));
+}
+
+TEST(KindRegistry, EveryExceptionHasAReasonAndNothingElse) {
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    const Screening& s = kind.screening;
+    EXPECT_NE(s.parametrisations.empty(), s.reason_against.empty()) << kind.name;
+    EXPECT_NE(kind.injection.draw == nullptr, kind.injection.reason_against.empty()) << kind.name;
+    EXPECT_EQ(!kind.budget.reason_against.empty(), not_ranked.contains(kind.name)) << kind.name;
+  }
+}
+
+TEST(KindRegistry, LikenessesNameKinds) {
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    for (const Likeness& like : kind.screening.alike) {
+      EXPECT_NE(find_kind(like.kind), nullptr) << kind.name << " is like " << like.kind;
+    }
+  }
+}
+
+// What a fit assumes fits the law: its keys make the disturbance, and each starts within bounds.
+TEST(KindRegistry, TheKeysOfAFitAreThoseOfTheLaw) {
+  const AttitudeModel model = bench_model();
+  for (const Effect& effect : catalogue(model.platform)) {
+    const Disturbance d = disturbance_of(effect, {model.platform, model.environment});
+    size_t numbers = 0;
+    for (const EffectKey& key : effect.keys) {
+      numbers += key.start.size();
+      EXPECT_NO_THROW(index_of(d, key.key)) << effect.kind << "." << key.key;
+      EXPECT_GT(key.scale, 0.0) << effect.kind << "." << key.key;
+      for (const double start : key.start) {
+        EXPECT_GE(start, key.lowest) << effect.kind << "." << key.key;
+        EXPECT_LE(start, key.highest) << effect.kind << "." << key.key;
+      }
+    }
+    EXPECT_EQ(numbers, d.parameters.size()) << effect.kind;
+  }
+}
+
+// An example of `prove` has the keys of the first parametrisation, within its bounds, at a size
+// that the prior of `diagnose` thinks possible.
+TEST(KindRegistry, ExamplesHaveTheKeysOfAFit) {
+  injected::RandomDraw draw(1, 1);
+  const injected::ExampleConditions conditions{
+      400.0, {{{0.11, 0, 0}, {0, 0.12, 0}, {0, 0, 0.19}}}, 2.5};
+  const std::vector<Effect> effects = catalogue(bench_model().platform);
+  for (const injected::Recipe& recipe : injected::recipes()) {
+    if (recipe.outside) continue;
+    const auto effect = std::ranges::find(effects, recipe.kind, &Effect::kind);
+    ASSERT_NE(effect, effects.end()) << recipe.kind;
+    const injected::EffectNumbers example = recipe.injection.draw(draw, conditions);
+    ASSERT_EQ(example.size(), effect->keys.size()) << recipe.kind;
+    for (const EffectKey& key : effect->keys) {
+      ASSERT_TRUE(example.contains(key.key)) << recipe.kind << "." << key.key;
+      ASSERT_EQ(example.at(key.key).size(), key.start.size()) << recipe.kind << "." << key.key;
+      for (const double value : example.at(key.key)) {
+        EXPECT_GE(value, key.lowest) << recipe.kind << "." << key.key;
+        EXPECT_LE(value, key.highest) << recipe.kind << "." << key.key;
+        if (!key.searched) {
+          EXPECT_LT(std::abs(value), 4.0 * key.scale) << recipe.kind << "." << key.key;
+        }
+      }
+    }
+    const bool has_strength = example.contains(recipe.injection.strength);
+    EXPECT_EQ(has_strength, !effect->keys.empty()) << recipe.kind;
+  }
+}
+
+TEST(KindRegistry, BudgetRanksAllButTheExceptions) {
+  AttitudeModel model = bench_model();
+  Names made;
+  for (const Effect& effect : catalogue(model.platform)) {
+    if (!made.insert(effect.kind).second) continue;
+    model.disturbances.push_back(disturbance_of(effect, {model.platform, model.environment}));
+  }
+  Names ranked;
+  const PlatformState state = Dynamics(model).initial_state();
+  for (const BudgetEntry& entry : make_budget(model, state).entries) ranked.insert(entry.kind);
+  for (const std::string& kind : made) {
+    EXPECT_EQ(ranked.contains(kind), !not_ranked.contains(kind)) << kind;
+  }
+}
+
+std::string page() {
+  std::ifstream file(PHOTORQUE_SOURCE_DIR "/docs/disturbances.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// The table of the page is this very text; after a change copy it from the build folder.
+TEST(KindRegistry, ThePageHasTheRegistrysOwnTable) {
+  const std::string table = kind_table(disturbance_kinds());
+  std::ofstream(PHOTORQUE_BINARY_DIR "/kind_table.md") << table;
+  EXPECT_THAT(page(), testing::HasSubstr(table));
+}
+
+// Beside it each kind has rows of keys, with every key that a fit knows.
+TEST(KindRegistry, ThePageListsEveryKey) {
+  const std::string text = page();
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    const size_t bold = text.find("| **`" + kind.name + "`**");
+    const size_t row = bold != std::string::npos ? bold : text.find("| `" + kind.name + "` | `");
+    ASSERT_NE(row, std::string::npos) << kind.name;
+    const size_t end = std::min(text.find("| **`", row + 5), text.find("\n\n", row));
+    for (const Parametrisation& p : kind.screening.parametrisations) {
+      for (const EffectKey& key : p.keys) {
+        const std::string section = text.substr(row, end - row);
+        EXPECT_THAT(section, testing::HasSubstr("`" + key.key + "`")) << kind.name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,21 @@
+// A kind of receiver that the program does not have: it counts hits.
+#include "receivers/kind.h"
+
+namespace photorque {
+namespace {
+
+class HitCounter final : public Receiver {
+ public:
+  size_t bins() const override { return 1; }
+  void score(const Hits& hits, std::span<double> sums) const override { sums[0] += hits.count; }
+  Product product(const BinSums&) const override { return {}; }
+};
+
+}  // namespace
+
+ReceiverKind added_receiver_kind() {
+  return {"added_receiver", "Counts hits",
+          [](const Settings&, const Scene&) { return std::make_unique<HitCounter>(); }};
+}
+
+}  // namespace photorque

@@ -1,0 +1,17 @@
+// A kind of source that the program does not have.
+#include "sources/kind.h"
+
+namespace photorque {
+namespace {
+
+std::vector<Beam> make(const Settings& settings, const SourceContext&) {
+  return {Beam{settings.text("name"), nullptr, {}, {}}};
+}
+
+}  // namespace
+
+SourceKind added_source_kind() {
+  return {"added_source", "A beam with a name and nothing else", make, {}};
+}
+
+}  // namespace photorque

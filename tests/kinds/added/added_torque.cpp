@@ -1,0 +1,43 @@
+// A kind of disturbance that the program does not have: a torque about body x that grows with the
+// charge drawn. All that anybody knows about it stands here.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+constexpr ScalarKey growth{"torque_N_m"};
+
+struct AddedTorque final : TorqueLaw<AddedTorque> {
+  template <class T>
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    const T charge_Ah = now.charge_drawn_C / 3600.0;
+    return {own[growth] * charge_Ah, T(0.0), T(0.0)};
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<AddedTorque>({scalar_parameter(settings, growth)});
+}
+
+injected::PlainTorque plain_torque(const InjectedEffect& effect) {
+  return [size_N_m = effect.number(growth.name)](const injected::Surroundings& s) {
+    return injected::Triple{size_N_m * s.charge_Ah, 0.0, 0.0};
+  };
+}
+
+}  // namespace
+
+DisturbanceKind added_torque_kind() {
+  return {.name = "added_torque",
+          .summary = "a torque about body x in proportion to the charge drawn",
+          .read = read,
+          .screening = {.parametrisations = {{"something grows with the charge drawn",
+                                              {EffectKey::number(growth.name, 1e-4)}}},
+                        .needs = Requirement::charge},
+          .injection = {.draw = injected::either_sign(growth.name, 1e-4),
+                        .torque = plain_torque,
+                        .strength = growth.name,
+                        .step = 1e-8}};
+}
+
+}  // namespace photorque
