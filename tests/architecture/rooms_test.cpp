@@ -2,19 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <regex>
-#include <set>
-#include <sstream>
+#include "tests/architecture/tree.h"
 
 namespace {
 
-namespace fs = std::filesystem;
-
-const fs::path root = PHOTORQUE_SOURCE_DIR;
+using namespace photorque::tree;
 
 // Headers of a library and the one folder that may include them.
 const std::vector<std::pair<std::string, std::string>> only_place = {
@@ -32,52 +24,11 @@ const std::vector<std::pair<std::string, std::string>> only_place = {
     {"pugixml", "sources/photometry"},
 };
 
-// Folders of sources, as ARCHITECTURE.md's first column names them.
-const std::vector<std::string> top_folders = {"core",          "raytrace", "sources",  "receivers",
-                                              "photovoltaics", "images",   "attitude", "inference",
-                                              "diagnosis",     "scenes",   "tools"};
-
 struct Include {
   fs::path file;
   std::string header;
   bool quoted;
 };
-
-bool is_source(const fs::path& file) {
-  return file.extension() == ".h" || file.extension() == ".cpp";
-}
-
-// The sources of a folder and of all rooms below it.
-std::vector<fs::path> sources_of(const std::string& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
-    if (is_source(entry.path())) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-// The room a file lies in, such as "raytrace/tracing".
-std::string room_of(const fs::path& file) {
-  return fs::relative(file.parent_path(), root).generic_string();
-}
-
-// Whether `room` is `place` or lies below it.
-bool lies_in(const std::string& room, const std::string& place) {
-  return room == place || room.starts_with(place + "/");
-}
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-std::string without_comments(const std::string& text) {
-  static const std::regex comment(R"(//[^\n]*)");
-  return std::regex_replace(text, comment, "");
-}
 
 std::vector<Include> includes_of(const std::string& folder) {
   static const std::regex pattern(R"(#include\s+([<"])([^>"]+)[>"])");
@@ -89,12 +40,6 @@ std::vector<Include> includes_of(const std::string& folder) {
     }
   }
   return all;
-}
-
-// The text without comments and string literals, so that prose does not count as code.
-std::string code_of(const fs::path& file) {
-  static const std::regex noise(R"(//[^\n]*|/\*[^]*?\*/|"(\\.|[^"\\\n])*")");
-  return std::regex_replace(text_of(file), noise, " ");
 }
 
 // What ARCHITECTURE.md says: each row `| room | purpose | what it includes |` of its tables whose
@@ -278,15 +223,82 @@ TEST(Rooms, RandomnessComesFromCore) {
   }
 }
 
-TEST(Rooms, InterfacesHaveAtMostThreeVirtualFunctions) {
-  static const std::regex pure(R"(\)\s*(const\s*)?=\s*0\s*;)");
-  for (const char* header : {"raytrace/emitter.h", "raytrace/receiver.h", "images/writers/writer.h",
-                             "attitude/model/disturbance.h"}) {
-    const std::string code = code_of(root / header);
-    const auto count =
-        std::distance(std::sregex_iterator(code.begin(), code.end(), pure), std::sregex_iterator());
-    EXPECT_GE(count, 1) << header;
-    EXPECT_LE(count, 3) << header;
+// Where the block that opens at or after `from` closes.
+size_t end_of_block(const std::string& code, size_t from) {
+  int depth = 0;
+  for (size_t i = code.find('{', from); i < code.size(); ++i) {
+    if (code[i] == '{') ++depth;
+    if (code[i] == '}' && --depth == 0) return i;
+  }
+  return code.size();
+}
+
+struct Interface {
+  std::string header;
+  std::vector<std::string> functions;  // virtual ones, destructors aside, in order
+};
+
+// Every class of the sources that declares a virtual function.
+std::map<std::string, Interface> interfaces_of_the_sources() {
+  static const std::regex type(R"(\b(?:class|struct)\s+([A-Z]\w*)\b(?!::)[^;{}()]*\{)");
+  static const std::regex function(R"(\bvirtual\s+(?!~)[^;{}]*?\b(\w+)\s*\()");
+  std::map<std::string, Interface> interfaces;
+  for (const fs::path& file : all_sources()) {
+    const std::string code = code_of(file);
+    for (std::sregex_iterator it(code.begin(), code.end(), type), end; it != end; ++it) {
+      const auto begin = static_cast<size_t>(it->position());
+      const std::string body = code.substr(begin, end_of_block(code, begin) - begin);
+      Interface found{fs::relative(file, root).generic_string(), {}};
+      for (std::sregex_iterator f(body.begin(), body.end(), function); f != end; ++f) {
+        found.functions.push_back((*f)[1]);
+      }
+      if (!found.functions.empty()) interfaces.emplace((*it)[1], found);
+    }
+  }
+  return interfaces;
+}
+
+// The page's rows `| `Name` | function, function | `header` |`.
+std::map<std::string, Interface> interfaces_of_the_page() {
+  static const std::regex row(R"(\n\| `([A-Z]\w*)` \| ([^|\n]*) \| `([a-z/_0-9.]+)`)");
+  static const std::regex name(R"(`(\w+)`)");
+  std::map<std::string, Interface> interfaces;
+  const std::string page = text_of(root / "ARCHITECTURE.md");
+  for (std::sregex_iterator it(page.begin(), page.end(), row), end; it != end; ++it) {
+    const std::string cell = (*it)[2];
+    Interface& told = interfaces[(*it)[1]];
+    told.header = (*it)[3];
+    for (std::sregex_iterator f(cell.begin(), cell.end(), name); f != end; ++f) {
+      told.functions.push_back((*f)[1]);
+    }
+  }
+  return interfaces;
+}
+
+TEST(Rooms, InterfacesAreThoseOfThePageWithAtMostThreeVirtualFunctions) {
+  const auto page = interfaces_of_the_page(), sources = interfaces_of_the_sources();
+  EXPECT_GE(sources.size(), 6u);
+  for (const auto& [name, found] : sources) {
+    EXPECT_LE(found.functions.size(), 3u) << name << " in " << found.header;
+    ASSERT_TRUE(page.contains(name)) << "ARCHITECTURE.md has no row for the interface " << name;
+    EXPECT_EQ(page.at(name).header, found.header) << name;
+    EXPECT_EQ(page.at(name).functions, found.functions) << name;
+  }
+  for (const auto& [name, told] : page) {
+    EXPECT_TRUE(sources.contains(name)) << name << " of ARCHITECTURE.md has no virtual function";
+  }
+}
+
+// Nobody multiplies what settings returned by a factor of units.
+TEST(Rooms, UnitsOfKeysAreConvertedInSettingsAlone) {
+  static const std::regex converted(
+      R"(\b(number|number_or|numbers|uncertain|vector3|vector3_or)\s*\([^;]*\)\s*[*/]\s*)"
+      R"((1e-?\d|0\.0*1\b|10+(\.0)?\b|3600|60(\.0)?\b|degree_rad|arcsecond_rad|pi\b))");
+  for (const fs::path& file : all_sources()) {
+    if (lies_in(room_of(file), "core/settings")) continue;
+    const std::string code = code_of(file);
+    std::smatch match;
+    EXPECT_FALSE(std::regex_search(code, match, converted)) << file << ": " << match.str();
   }
 }
 
