@@ -93,8 +93,8 @@ std::vector<std::string> rivals(const std::string& kind, const Trial& chosen,
 
 }  // namespace
 
-std::vector<FoundEffect> found_effects(const Decision& decision, const std::vector<Trial>& trials,
-                                       const Candidates& all) {
+std::vector<FoundEffect> found_effects(const inference::Decision& decision,
+                                       const std::vector<Trial>& trials, const Candidates& all) {
   const Trial& chosen = trials[decision.chosen];
   std::vector<FoundEffect> effects;
   for (size_t i = 0; i < chosen.candidates.size(); ++i) {
@@ -117,8 +117,8 @@ std::vector<FoundEffect> found_effects(const Decision& decision, const std::vect
   return effects;
 }
 
-std::vector<Alternative> alternatives(const Decision& decision, const std::vector<Trial>& trials,
-                                      const Candidates& all) {
+std::vector<Alternative> alternatives(const inference::Decision& decision,
+                                      const std::vector<Trial>& trials, const Candidates& all) {
   constexpr size_t most = 25;
   std::map<std::string, const Trial*> best;
   for (const Trial& t : trials) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/attitude/whiteness.h"
+#include "diagnosis/attitude/noise.h"
 
 namespace photorque {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "diagnosis/attitude/ringing.h"
 #include "diagnosis/attitude/scan_parts.h"
-#include "diagnosis/attitude/whiteness.h"
+#include "diagnosis/attitude/noise.h"
 
 namespace photorque {
 namespace {

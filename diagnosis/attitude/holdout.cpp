@@ -4,7 +4,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "diagnosis/attitude/whiteness.h"
+#include "diagnosis/attitude/noise.h"
 
 namespace photorque {
 namespace {

@@ -174,7 +174,8 @@ const Trial* stand_in(const std::string& kind, const std::string& rival, const T
 
 }  // namespace
 
-std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects, const Decision& decision,
+std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects,
+                                  const inference::Decision& decision,
                                   const std::vector<Trial>& trials, const Candidates& all,
                                   const std::vector<Observation>& runs, int threads) {
   const Trial& chosen = trials[decision.chosen];

@@ -1,8 +1,9 @@
 // Experiments that would tell apart what the recordings cannot.
 #pragma once
 
-#include "diagnosis/attitude/decide.h"
+#include "diagnosis/attitude/trial.h"
 #include "diagnosis/diagnosis.h"
+#include "inference/decide.h"
 
 namespace photorque {
 
@@ -10,7 +11,8 @@ namespace photorque {
 // other starts of the first run, each is propagated by the chosen trial, and the rival is fitted to
 // its exact readings together with the recordings that there are: half of what χ² gains is the
 // expected lead in log evidence. The start with the largest is proposed.
-std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects, const Decision& decision,
+std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects,
+                                  const inference::Decision& decision,
                                   const std::vector<Trial>& trials, const Candidates& all,
                                   const std::vector<Observation>& runs, int threads);
 

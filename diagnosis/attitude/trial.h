@@ -2,14 +2,13 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "diagnosis/attitude/catalogue.h"
 #include "diagnosis/attitude/empirical.h"
 #include "diagnosis/attitude/fit.h"
-#include "inference/thresholds.h"
+#include "inference/domain.h"
 
 namespace photorque {
 
@@ -48,20 +47,11 @@ struct Candidates {
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits = {});
 
-// The nominal model and some candidates.
-struct Trial {
-  std::vector<size_t> candidates;    // in the order in which they were added
-  std::vector<size_t> disturbances;  // where each stands in the model
+// The nominal model and some candidates. The evidence is Laplace's approximation (MacKay,
+// Information Theory, Inference, and Learning Algorithms, 2003, eq. 28.5).
+struct Trial : inference::Explanation {
+  std::vector<size_t> disturbances;  // where each candidate stands in the model
   Fit fit;
-  // Natural logarithm of the evidence but for a constant that all trials on the same runs share:
-  // Laplace's approximation (MacKay, Information Theory, Inference, and Learning Algorithms, 2003,
-  // eq. 28.5), with the prior probability of the candidates' names.
-  double log_evidence = 0.0;
-  // Of each candidate: the square root of θᵀ C⁻¹ θ over its parameters that are not searched.
-  std::vector<double> significance;
-  std::vector<double> joint_significance = {};  // with what was held out, where that was weighed
-  std::string objection;                        // why physics forbids it; empty: nothing
-  std::optional<double> holdout_chi2_per_sample = {};  // where it flew what was held out
 };
 
 Trial nominal_trial(const Fit& nominal, const Candidates& all);

@@ -1,0 +1,127 @@
+#include "diagnosis/attitude/domain.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+#include "diagnosis/attitude/averaging.h"
+#include "diagnosis/attitude/holdout.h"
+#include "diagnosis/attitude/noise.h"
+#include "diagnosis/attitude/screen.h"
+
+namespace photorque {
+namespace {
+
+static_assert(inference::Domain<AttitudeDomain>);
+
+inference::CandidateTraits traits_of(const Candidate& c) {
+  inference::CandidateTraits traits;
+  traits.name = c.label;
+  traits.is_empirical = c.empirical();
+  traits.is_linear = c.is_linear();
+  traits.is_fast = c.effect.how.fast;
+  traits.has_strength = c.has_linear_strength();
+  traits.parameters = c.start.parameters.size();
+  return traits;
+}
+
+FitSettings settings_of(const inference::Effort& effort) {
+  FitSettings settings;
+  settings.windows = effort.windows;
+  settings.max_iterations = effort.max_iterations;
+  return settings;
+}
+
+}  // namespace
+
+AttitudeDomain::AttitudeDomain(const Candidates& all) : all_(all) {
+  for (const Candidate& c : all.list) traits_.push_back(traits_of(c));
+}
+
+Trial AttitudeDomain::extend(const Trial& parent, size_t candidate, const Start& start,
+                             const Runs& runs, const Effort& effort) const {
+  return photorque::extend(parent, all_, candidate, start.disturbance, runs, settings_of(effort));
+}
+
+Trial AttitudeDomain::refit(const Trial& trial, const Runs& runs, const std::vector<Begin>& begins,
+                            const Effort& effort) const {
+  return photorque::refit(trial, all_, runs, begins, settings_of(effort));
+}
+
+Trial AttitudeDomain::refit_near(const Trial& trial, const Trial& other, const Runs& runs,
+                                 const Effort& effort) const {
+  return photorque::refit_near(trial, other, all_, runs, settings_of(effort));
+}
+
+Trial AttitudeDomain::predict(const Trial& trial, const Runs& runs) const {
+  Trial predicted = trial;
+  predicted.fit = propagate_model(trial.fit, runs, all_.limits);
+  return predicted;
+}
+
+std::vector<RunStart> AttitudeDomain::seen_begins(const Trial& trial, const Runs& runs) const {
+  return seen_starts(trial.fit.best, runs);
+}
+
+Trial AttitudeDomain::with_begins(Trial trial, const std::vector<Begin>& begins) const {
+  trial.fit.best.runs = begins;
+  return trial;
+}
+
+std::vector<double> AttitudeDomain::gains(const Trial& at, const std::vector<size_t>& candidates,
+                                          const Runs& runs) const {
+  std::vector<ScoreGroup> groups;
+  for (const size_t c : candidates) {
+    groups.push_back({all_[c].is_linear() ? std::vector<Disturbance>{all_[c].start}
+                                          : std::vector<Disturbance>{}});
+  }
+  std::vector<double> result;
+  for (const Score& s : score(at.fit, runs, groups)) result.push_back(s.gain);
+  return result;
+}
+
+Eigen::MatrixXd AttitudeDomain::pair_gains(const Trial& at, const std::vector<size_t>& candidates,
+                                           const Runs& runs) const {
+  std::vector<ScoreGroup> groups;
+  for (const size_t c : candidates) groups.push_back({{all_[c].start}});
+  return score_pairs(at.fit, runs, groups);
+}
+
+std::vector<std::vector<Start>> AttitudeDomain::starts(const Trial& parent,
+                                                       const std::vector<size_t>& candidates,
+                                                       const Runs& runs, const Runs& averages,
+                                                       int threads) const {
+  const std::vector<double> lines_Hz = line_frequencies_Hz(parent.fit, runs, limits().scoring);
+  std::vector<std::vector<Start>> result(candidates.size());
+  parallel_for(candidates.size(), threads, [&](size_t i) {
+    result[i] = starts_of(all_[candidates[i]], parent, runs, averages, lines_Hz, limits().scoring);
+  });
+  return result;
+}
+
+std::vector<Observation> AttitudeDomain::average(const Trial& about, const Runs& runs,
+                                                 size_t blocks) const {
+  return averaged_about(about.fit, runs, blocks);
+}
+
+std::vector<Observation> AttitudeDomain::cut(const Runs& runs, size_t pieces) const {
+  Runs result;
+  for (const Observation& seen : runs) {
+    for (size_t i = 0; i < pieces; ++i) {
+      const size_t first = i * seen.blocks() / pieces, last = (i + 1) * seen.blocks() / pieces;
+      if (first == last) continue;
+      Observation piece = seen.part(first, last);
+      const auto attitudes = std::count_if(piece.attitude_rows.begin(), piece.attitude_rows.end(),
+                                           [](double rows) { return rows > 0.0; });
+      if (static_cast<size_t>(attitudes) >= limits().search.min_readings_of_piece) {
+        result.push_back(std::move(piece));
+      }
+    }
+  }
+  return result;
+}
+
+double AttitudeDomain::excess_sigma(const Trial& trial, const Runs& runs) const {
+  return photorque::excess_sigma(trial.fit, runs, limits().noise);
+}
+
+}  // namespace photorque

@@ -1,0 +1,55 @@
+// Recordings of motion as the search for what is missing sees them (inference/domain.h): runs are
+// observations, candidates are effects of the catalogue and empirical laws.
+#pragma once
+
+#include "diagnosis/attitude/scan.h"
+#include "diagnosis/attitude/trial.h"
+#include "inference/domain.h"
+
+namespace photorque {
+
+class AttitudeDomain {
+ public:
+  using Trial = photorque::Trial;
+  using Run = Observation;
+  using Begin = RunStart;
+  using Start = photorque::Start;
+  using Runs = std::vector<Observation>;
+  using Effort = inference::Effort;
+
+  // `all` must outlive this.
+  explicit AttitudeDomain(const Candidates& all);
+
+  const std::vector<inference::CandidateTraits>& candidates() const { return traits_; }
+  const Thresholds& limits() const { return all_.limits; }
+  Start start_of(size_t candidate) const { return {all_[candidate].start}; }
+
+  Trial extend(const Trial& parent, size_t candidate, const Start& start, const Runs& runs,
+               const Effort& effort) const;
+  Trial refit(const Trial& trial, const Runs& runs, const std::vector<Begin>& begins,
+              const Effort& effort) const;
+  Trial refit_near(const Trial& trial, const Trial& other, const Runs& runs,
+                   const Effort& effort) const;
+  Trial predict(const Trial& trial, const Runs& runs) const;
+  std::vector<Begin> begins_of(const Trial& trial) const { return trial.fit.best.runs; }
+  std::vector<Begin> seen_begins(const Trial& trial, const Runs& runs) const;
+  Trial with_begins(Trial trial, const std::vector<Begin>& begins) const;
+
+  std::vector<double> gains(const Trial& at, const std::vector<size_t>& candidates,
+                            const Runs& runs) const;
+  Eigen::MatrixXd pair_gains(const Trial& at, const std::vector<size_t>& candidates,
+                             const Runs& runs) const;
+  std::vector<std::vector<Start>> starts(const Trial& parent, const std::vector<size_t>& candidates,
+                                         const Runs& runs, const Runs& averages, int threads) const;
+
+  Runs average(const Trial& about, const Runs& runs, size_t blocks) const;
+  // Each piece has complete attitudes enough for a start of its own.
+  Runs cut(const Runs& runs, size_t pieces) const;
+  double excess_sigma(const Trial& trial, const Runs& runs) const;
+
+ private:
+  const Candidates& all_;
+  std::vector<inference::CandidateTraits> traits_;
+};
+
+}  // namespace photorque

@@ -1,0 +1,81 @@
+#include "diagnosis/attitude/noise.h"
+
+#include <cmath>
+
+#include "core/errors.h"
+
+namespace photorque {
+
+std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs) {
+  PredictionOptions options;
+  options.keep_residuals = true;
+  std::vector<Prediction> all;
+  for (size_t run = 0; run < runs.size(); ++run) {
+    const Dynamics dynamics(fit.best.model_of(run, runs[run]));
+    all.push_back(predict(dynamics, fit.best.runs[run].initial, runs[run], {}, options));
+  }
+  return all;
+}
+
+std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals) {
+  std::vector<inference::ChannelResiduals> runs;
+  for (const Prediction& p : residuals) {
+    inference::ChannelResiduals channels(6);
+    for (const WhiteRow& row : p.residual) {
+      for (size_t k = 0; k < 6; ++k) {
+        const double white = row[static_cast<Eigen::Index>(k)];
+        if (std::isfinite(white)) channels[k].push_back(white);
+      }
+    }
+    runs.push_back(std::move(channels));
+  }
+  return runs;
+}
+
+double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
+                    const Thresholds::Noise& limits) {
+  try {
+    return inference::whiteness(channels_of(residuals_of(fit, runs)), limits).excess_sigma;
+  } catch (const NumericalError&) {
+    return limits.excess_unknown;
+  }
+}
+
+bool correct_noise(const inference::Whiteness& found, const Thresholds::Noise& limits,
+                   std::vector<Observation>& runs) {
+  bool any = false;
+  for (size_t k = 0; k < 6; ++k) {
+    const std::optional<double> factor = inference::noise_correction(found, k, limits);
+    if (!factor) continue;
+    any = true;
+    for (Observation& seen : runs) {
+      (k < 3 ? seen.noise.camera_rad[static_cast<Eigen::Index>(k)]
+             : seen.noise.gyro_rad_s[static_cast<Eigen::Index>(k - 3)]) *= *factor;
+    }
+  }
+  return any;
+}
+
+int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
+                      std::vector<Observation>& runs) {
+  int64_t dropped = 0;
+  const std::vector<inference::ChannelResiduals> all = channels_of(residuals);
+  for (size_t run = 0; run < runs.size(); ++run) {
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      // Neighbours are the next that were read: gaps and empty cells lie in between.
+      std::vector<size_t> rows;
+      for (size_t i = 0; i < residuals[run].residual.size(); ++i) {
+        if (std::isfinite(residuals[run].residual[i][k])) rows.push_back(i);
+      }
+      for (const size_t n : inference::outliers(all[run][static_cast<size_t>(k)], limits)) {
+        ++dropped;
+        // An attitude is right or wrong as a whole.
+        if (k < 3) runs[run].attitude_rows[rows[n]] = 0.0;
+        if (k >= 3) runs[run].gyro_rows[rows[n]][k - 3] = 0.0;
+      }
+    }
+  }
+  return dropped;
+}
+
+}  // namespace photorque

@@ -1,0 +1,29 @@
+// The noise of the readings: levels that are not as stated, readings that stand out.
+#pragma once
+
+#include "diagnosis/attitude/fit.h"
+#include "inference/whiteness.h"
+
+namespace photorque {
+
+// All whitened residuals of a fit, by run.
+std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs);
+
+// Their six channels (camera x, y, z, gyro x, y, z) without gaps, by run.
+std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals);
+
+// The structure that a fit leaves; huge where it cannot be propagated.
+double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
+                    const Thresholds::Noise& limits);
+
+// Gives every channel of the runs the noise that was found, where it is off beyond doubt. Returns
+// whether any was.
+bool correct_noise(const inference::Whiteness& found, const Thresholds::Noise& limits,
+                   std::vector<Observation>& runs);
+
+// Drops readings that stand out from what their neighbours' residuals lead to. Returns their
+// number.
+int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
+                      std::vector<Observation>& runs);
+
+}  // namespace photorque

@@ -1,0 +1,148 @@
+// The interface between the search for what is missing and the domain in which it searches.
+//
+// A domain has recordings ("runs"), a nominal model of them, and candidates: terms that may be
+// missing from that model. A trial is the nominal model with some of the candidates, fitted to the
+// runs. The flow is
+//
+//   residual -> score every candidate -> fit -> compare evidence -> weigh with what was held out
+//            -> decide
+//
+// (search.h, weigh.h, decide.h). How a trial is fitted, what its evidence is and what forbids it,
+// the domain alone knows.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <concepts>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inference/thresholds.h"
+
+namespace photorque::inference {
+
+// What the search has to know of a candidate.
+struct CandidateTraits {
+  // Candidates of one name are the same term in different parametrisations: it acts once.
+  std::string name;
+  // A smooth function without a law: it competes with the others, so that something unknown is not
+  // mistaken for one of them, but it names nothing.
+  bool is_empirical = false;
+  // Whether a score test can foretell what its fit gains.
+  bool is_linear = true;
+  // Whether it changes faster than averages show.
+  bool is_fast = false;
+  // Whether its size is a number of standard errors, so that its significance can be asked.
+  bool has_strength = true;
+  size_t parameters = 0;
+};
+
+// What a trial says, without what was fitted.
+struct Explanation {
+  std::vector<size_t> candidates;  // in the order in which they were added; none: the nominal model
+  // Natural logarithm of the evidence, with the prior odds of the candidates, but for a constant
+  // that all trials on the same runs share.
+  double log_evidence = 0.0;
+  // Of each candidate: √(θᵀ C⁻¹ θ) of the parameters in which it is linear.
+  std::vector<double> significance = {};
+  std::vector<double> joint_significance = {};  // with what was held out, where that was weighed
+  std::string objection = {};                   // why it is forbidden; empty: nothing
+  // Of its prediction of what was held out, where it was asked for.
+  std::optional<double> holdout_chi2_per_sample = {};
+};
+
+// How patiently is fitted: the fractions of each run that are fitted in turn, and the iterations
+// of each.
+struct Effort {
+  std::vector<double> windows = {1.0};
+  int max_iterations = 25;
+};
+
+// A fit as the search sees it: χ² with the priors, the number of residuals, χ² of the data over it.
+template <class F>
+concept Fitted = requires(const F& fit) {
+  { fit.chi2 } -> std::convertible_to<double>;
+  { fit.samples } -> std::convertible_to<int64_t>;
+  { fit.chi2_per_sample() } -> std::convertible_to<double>;
+};
+
+// A domain says what its trials, runs, starts and begins are. A Start is where the fit of a
+// candidate starts, with the gain (fall of χ²) that a scan foretells; infinite where nothing was
+// scanned. A Begin is where the fit of one run begins: its nuisances. All functions are const and
+// are called from several threads.
+template <class D>
+concept Domain = std::derived_from<typename D::Trial, Explanation> &&
+    Fitted<decltype(D::Trial::fit)> &&
+    requires(const D& domain, const typename D::Trial& trial, const typename D::Start& start,
+             const std::vector<typename D::Run>& runs, const std::vector<size_t>& candidates,
+             const std::vector<typename D::Begin>& begins, const Effort& effort, size_t count,
+             int threads) {
+  { domain.candidates() } -> std::same_as<const std::vector<CandidateTraits>&>;
+  { domain.limits() } -> std::same_as<const Thresholds&>;
+
+  // Where a fit of the candidate starts if nothing is scanned.
+  { domain.start_of(count) } -> std::same_as<typename D::Start>;
+  // A candidate more, fitted; `count` is its index.
+  { domain.extend(trial, count, start, runs, effort) } -> std::same_as<typename D::Trial>;
+  // The same trial on other or more runs, each from its begin.
+  { domain.refit(trial, runs, begins, effort) } -> std::same_as<typename D::Trial>;
+  // The same trial from where another on the same runs ended, in all that the two share.
+  { domain.refit_near(trial, trial, runs, effort) } -> std::same_as<typename D::Trial>;
+  // The trial's prediction of runs that it never saw: only nuisances are fitted.
+  { domain.predict(trial, runs) } -> std::same_as<typename D::Trial>;
+  { domain.begins_of(trial) } -> std::same_as<std::vector<typename D::Begin>>;
+  // Begins from what was read at the beginning of each run.
+  { domain.seen_begins(trial, runs) } -> std::same_as<std::vector<typename D::Begin>>;
+  // The same trial, to be fitted from there next.
+  { domain.with_begins(trial, begins) } -> std::same_as<typename D::Trial>;
+
+  // The fall of χ² that each candidate would bring (0 for those that are not linear), and that
+  // every two would bring together, each alone on the diagonal.
+  { domain.gains(trial, candidates, runs) } -> std::same_as<std::vector<double>>;
+  { domain.pair_gains(trial, candidates, runs) } -> std::same_as<Eigen::MatrixXd>;
+  // Starts of each candidate added to the trial: one, or the most promising of a scan over what
+  // is not linear. The second runs are averages of the first.
+  {
+    domain.starts(trial, candidates, runs, runs, threads)
+    } -> std::same_as<std::vector<std::vector<typename D::Start>>>;
+
+  // The runs averaged about the trial's prediction into about so many samples each.
+  { domain.average(trial, runs, count) } -> std::same_as<std::vector<typename D::Run>>;
+  // Each run in so many pieces; without those that hold too little to be fitted.
+  { domain.cut(runs, count) } -> std::same_as<std::vector<typename D::Run>>;
+  // Structure that the trial leaves (whiteness.h) [sigma].
+  { domain.excess_sigma(trial, runs) } -> std::convertible_to<double>;
+};
+
+// Indices of trials on the same runs, the largest evidence first.
+template <std::derived_from<Explanation> T>
+std::vector<size_t> by_evidence(const std::vector<T>& trials) {
+  std::vector<size_t> order(trials.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return trials[a].log_evidence > trials[b].log_evidence;
+  });
+  return order;
+}
+
+// Whether two sets of candidates are the same, in whatever order.
+inline bool same_candidates(const std::vector<size_t>& a, const std::vector<size_t>& b) {
+  return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
+}
+
+// Whether one of `among` is the same term as `candidate`.
+inline bool acts_already(const std::vector<size_t>& among, size_t candidate,
+                         const std::vector<CandidateTraits>& all) {
+  return std::any_of(among.begin(), among.end(),
+                     [&](size_t other) { return all[other].name == all[candidate].name; });
+}
+
+// Whether the derivatives of a trial say little, because its prediction is elsewhere.
+template <class Trial>
+bool has_diverged(const Trial& trial, const Thresholds& limits) {
+  return trial.fit.chi2_per_sample() > limits.diverged_chi2_per_sample;
+}
+
+}  // namespace photorque::inference

@@ -1,0 +1,220 @@
+// What the runs held out say about explanations that were found without them.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "inference/extend.h"
+
+namespace photorque::inference {
+
+// Trials within reach of the best by their evidence, and the nominal model.
+template <class Trial>
+std::vector<size_t> leaders_among(const std::vector<Trial>& trials,
+                                  const Thresholds::HeldOut& limits) {
+  const std::vector<size_t> order = by_evidence(trials);
+  std::vector<size_t> leaders;
+  for (const size_t i : order) {
+    if (!trials[i].objection.empty() || leaders.size() == limits.max_leaders) continue;
+    if (trials[i].log_evidence < trials[order.front()].log_evidence - limits.within) break;
+    leaders.push_back(i);
+  }
+  if (std::find(leaders.begin(), leaders.end(), 0u) == leaders.end()) leaders.push_back(0);
+  return leaders;
+}
+
+template <Domain D>
+class Weighing {
+ public:
+  using Trial = typename D::Trial;
+  using Runs = std::vector<typename D::Run>;
+
+  Weighing(const D& domain, const Runs& train, const Runs& held, int threads,
+           std::vector<Trial>& trials)
+      : domain_(domain),
+        limits_(domain.limits()),
+        train_(train),
+        held_(held),
+        threads_(threads),
+        trials_(trials),
+        all_runs_(train) {
+    all_runs_.insert(all_runs_.end(), held.begin(), held.end());
+  }
+
+  void run() {
+    const std::vector<size_t> places = leaders_among(trials_, limits_.held_out);
+    const double nominal = trials_.front().log_evidence;
+    const double gain = trials_[places.front()].log_evidence - nominal;
+    add_leaders(places);
+    const size_t found = trials_.size();
+    add_what_only_all_show(trials_.front().candidates);
+    add_what_only_all_show(best().candidates);
+    learn();
+    for (const Leader& leader : leaders_) {
+      Trial& trial = trials_[leader.at];
+      trial.log_evidence = leader.joint.log_evidence;
+      trial.joint_significance = leader.joint.significance;
+      if (trial.objection.empty()) trial.objection = leader.joint.objection;
+    }
+    keep_others_below(found, nominal, gain);
+  }
+
+ private:
+  // An explanation on the train runs, by its place among the trials, and on all runs.
+  struct Leader {
+    size_t at;
+    Trial joint;
+  };
+
+  void add_leaders(const std::vector<size_t>& places) {
+    leaders_.resize(places.size());
+    const int64_t samples = trials_.front().fit.samples;
+    parallel_for(places.size(), threads_, [&](size_t k) {
+      Trial& t = trials_[places[k]];
+      // Some were fitted to averages or pieces only.
+      if (t.fit.samples != samples) t = domain_.refit(t, train_, domain_.begins_of(t), {});
+      leaders_[k] = {places[k], fit_together(t)};
+    });
+    learn();
+  }
+
+  Trial fit_together(Trial& t) const {
+    const Trial held = predict_held(t);
+    auto begins = domain_.begins_of(t);
+    for (auto& begin : domain_.begins_of(held)) begins.push_back(std::move(begin));
+    return domain_.refit(t, all_runs_, begins, patient(limits_));
+  }
+
+  // Keeps how well the trial predicts what was held out.
+  Trial predict_held(Trial& t) const {
+    Trial held = domain_.predict(t, held_);
+    if (std::isfinite(held.fit.chi2)) t.holdout_chi2_per_sample = held.fit.chi2_per_sample();
+    return held;
+  }
+
+  void learn() {
+    std::vector<Trial> joint;
+    for (Leader& leader : leaders_) joint.push_back(std::move(leader.joint));
+    learn_from_best(domain_, all_runs_, threads_, joint);
+    for (size_t k = 0; k < joint.size(); ++k) leaders_[k].joint = std::move(joint[k]);
+  }
+
+  const Trial& best() const {
+    return std::max_element(leaders_.begin(), leaders_.end(),
+                            [](const Leader& a, const Leader& b) {
+                              return a.joint.log_evidence < b.joint.log_evidence;
+                            })
+        ->joint;
+  }
+
+  // Candidates that would gain beside `parent` (one of the leaders) on all runs, and were not tried
+  // or not among the leaders.
+  void add_what_only_all_show(const std::vector<size_t>& parent) {
+    const auto is_parent = [&](const Leader& l) { return trials_[l.at].candidates == parent; };
+    const auto at = std::find_if(leaders_.begin(), leaders_.end(), is_parent);
+    const Trial joint = at->joint, train = trials_[at->at];
+    if (!(joint.fit.chi2_per_sample() < limits_.diverged_chi2_per_sample)) return;
+    const std::vector<size_t> candidates = worth_adding(joint, parent);
+    std::vector<Trial> on_train(candidates.size()), on_all(candidates.size());
+    parallel_for(candidates.size(), threads_, [&](size_t k) {
+      const size_t c = candidates[k];
+      on_train[k] = domain_.extend(train, c, domain_.start_of(c), train_, {});
+      on_all[k] = domain_.extend(joint, c, domain_.start_of(c), all_runs_, patient(limits_));
+      predict_held(on_train[k]);
+    });
+    for (size_t k = 0; k < candidates.size(); ++k) {
+      leaders_.push_back({place_of(std::move(on_train[k])), std::move(on_all[k])});
+    }
+  }
+
+  // The few untried candidates with the largest gains foretold beside `joint`, which is fitted to
+  // all runs: some that have names, some empirical.
+  std::vector<size_t> worth_adding(const Trial& joint, const std::vector<size_t>& parent) const {
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    std::vector<size_t> untried;
+    for (size_t c = 0; c < all.size(); ++c) {
+      std::vector<size_t> together = parent;
+      together.push_back(c);
+      if (!all[c].is_linear || acts_already(parent, c, all) || leads(together)) continue;
+      untried.push_back(c);
+    }
+    const std::vector<double> gains =
+        domain_.gains(joint, untried, slow_runs<D>(domain_, joint, {all_runs_}));
+    const auto beyond_chance = [&](size_t i) {
+      return gains[i] - static_cast<double>(all[untried[i]].parameters);
+    };
+    std::vector<size_t> order;
+    for (size_t i = 0; i < untried.size(); ++i) {
+      if (beyond_chance(i) > limits_.scoring.min_joint_gain) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](size_t a, size_t b) { return beyond_chance(a) > beyond_chance(b); });
+    std::vector<size_t> best;
+    size_t named = 0, empirical = 0;
+    for (const size_t i : order) {
+      const bool few = all[untried[i]].is_empirical ? empirical++ < limits_.held_out.max_empirical
+                                                    : named++ < limits_.held_out.max_effects;
+      if (few) best.push_back(untried[i]);
+    }
+    return best;
+  }
+
+  bool leads(const std::vector<size_t>& candidates) const {
+    return std::any_of(leaders_.begin(), leaders_.end(), [&](const Leader& l) {
+      return same_candidates(candidates, trials_[l.at].candidates);
+    });
+  }
+
+  // Where the trial stands among all: in the place of one of the same candidates, if there is any.
+  size_t place_of(Trial trial) {
+    for (size_t i = 0; i < trials_.size(); ++i) {
+      if (!same_candidates(trial.candidates, trials_[i].candidates)) continue;
+      trials_[i] = std::move(trial);
+      return i;
+    }
+    trials_.push_back(std::move(trial));
+    return trials_.size() - 1;
+  }
+
+  // Of the first `found` trials those that are no leaders.
+  void keep_others_below(size_t found, double nominal, double gain) {
+    // Of the leaders, but for the nominal model. One may diverge on what it never saw.
+    const double nominal_now = trials_.front().log_evidence;
+    double lowest = std::numeric_limits<double>::infinity(), highest = nominal_now;
+    std::vector<bool> is_leader(trials_.size(), false);
+    for (const Leader& leader : leaders_) {
+      is_leader[leader.at] = true;
+      if (leader.at != 0) lowest = std::min(lowest, trials_[leader.at].log_evidence);
+      highest = std::max(highest, trials_[leader.at].log_evidence);
+    }
+    const double ratio = gain > 0.0 ? (highest - nominal_now) / gain : 1.0;
+    for (size_t i = 0; i < found; ++i) {
+      if (is_leader[i]) continue;
+      double& evidence = trials_[i].log_evidence;
+      evidence = std::min(lowest, nominal_now + ratio * (evidence - nominal));
+    }
+  }
+
+  const D& domain_;
+  const Thresholds& limits_;
+  const Runs& train_;
+  const Runs& held_;
+  int threads_;
+  std::vector<Trial>& trials_;
+  Runs all_runs_;  // the train runs, then those held out
+  std::vector<Leader> leaders_;
+};
+
+// How well the leaders also explain what was held out: their evidence on all runs together takes
+// the place of that on the fitted ones. The others gain over the nominal model in the ratio of the
+// best, and stay below the leaders. What only all runs together show, because one of them alone
+// leaves it to the uncertainty of a nominal model, is scored and added to `trials`, fitted to the
+// train runs like all others. The nominal model comes first in `trials` and stays there.
+template <Domain D>
+void weigh_with_held_out(const D& domain, const std::vector<typename D::Run>& train,
+                         const std::vector<typename D::Run>& held, int threads,
+                         std::vector<typename D::Trial>& trials) {
+  Weighing<D>(domain, train, held, threads, trials).run();
+}
+
+}  // namespace photorque::inference

@@ -1,0 +1,89 @@
+#include "inference/whiteness.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photorque::inference {
+namespace {
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// What the neighbours of reading n lead to expect: the middle of what both sides and either side
+// alone say, so that one bad neighbour does not decide and a residual that runs away steadily is no
+// outlier. At an end the one side speaks alone.
+double expected(const std::vector<double>& r, size_t n) {
+  std::vector<double> says;
+  const bool left = n >= 1, right = n + 1 < r.size();
+  if (left && right) says.push_back(0.5 * (r[n - 1] + r[n + 1]));
+  if (n >= 2) says.push_back(2.0 * r[n - 1] - r[n - 2]);
+  if (n + 2 < r.size()) says.push_back(2.0 * r[n + 1] - r[n + 2]);
+  if (n >= 2 && says.size() < 3) says.push_back(r[n - 2]);
+  if (n + 2 < r.size() && says.size() < 3) says.push_back(r[n + 2]);
+  if (says.size() < 3) says.push_back(left ? r[n - 1] : r[n + 1]);
+  return median(says);
+}
+
+void add_second_differences(const std::vector<double>& r, std::vector<double>& sizes) {
+  for (size_t i = 1; i + 1 < r.size(); ++i) {
+    sizes.push_back(std::abs(r[i - 1] - 2.0 * r[i] + r[i + 1]));
+  }
+}
+
+}  // namespace
+
+Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds::Noise& limits) {
+  Whiteness result;
+  const size_t channels = runs.empty() ? 0 : runs.front().size();
+  result.noise_ratio.assign(channels, 1.0);
+  result.readings.assign(channels, 0);
+  double sum = 0.0;
+  int64_t means = 0;
+  for (size_t k = 0; k < channels; ++k) {
+    std::vector<double> differences;
+    for (const ChannelResiduals& run : runs) {
+      const std::vector<double>& r = run[k];
+      add_second_differences(r, differences);
+      for (size_t i = 0; i + limits.neighbours <= r.size(); i += limits.neighbours) {
+        double mean = 0.0;
+        for (size_t j = i; j < i + limits.neighbours; ++j) mean += r[j];
+        sum += mean * mean / static_cast<double>(limits.neighbours);
+        ++means;
+      }
+    }
+    if (differences.size() < limits.min_differences) continue;
+    result.readings[k] = static_cast<int64_t>(differences.size());
+    // The median of |x| is 0.6745 σ, and second differences have six times the variance.
+    result.noise_ratio[k] = median(std::move(differences)) / (0.67449 * std::sqrt(6.0));
+  }
+  if (means == 0) return result;
+  const double variance = 2.0 / static_cast<double>(means);
+  result.slow_chi2_per_mean = sum / static_cast<double>(means);
+  result.excess_sigma = (result.slow_chi2_per_mean - 1.0) / std::sqrt(variance);
+  return result;
+}
+
+std::optional<double> noise_correction(const Whiteness& found, size_t channel,
+                                       const Thresholds::Noise& limits) {
+  const double ratio = found.noise_ratio[channel];
+  const double readings = static_cast<double>(std::max<int64_t>(found.readings[channel], 1));
+  const double scatter = limits.difference_scatter / std::sqrt(readings);
+  const double allowed = std::max(limits.min_correction, limits.correction_sigma * scatter);
+  if (!(std::abs(ratio - 1.0) > allowed) || !(ratio > 0.0)) return std::nullopt;
+  return ratio;
+}
+
+std::vector<size_t> outliers(const std::vector<double>& residuals,
+                             const Thresholds::Noise& limits) {
+  std::vector<size_t> found;
+  if (residuals.size() < limits.min_neighbourhood) return found;
+  for (size_t n = 0; n < residuals.size(); ++n) {
+    if (std::abs(residuals[n] - expected(residuals, n)) > limits.outlier_sigma) found.push_back(n);
+  }
+  return found;
+}
+
+}  // namespace photorque::inference

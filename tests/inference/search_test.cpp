@@ -1,0 +1,230 @@
+// The search for what is missing, end to end, in a domain that has nothing to do with motion: terms
+// added to a line. Every test also runs a mutant, thresholds with which it must fail.
+#include "inference/search.h"
+
+#include <gtest/gtest.h>
+
+#include "inference/decide.h"
+#include "inference/weigh.h"
+#include "tests/inference/line_domain.h"
+
+namespace photorque::inference::line {
+namespace {
+
+constexpr Eigen::Index samples = 200;
+
+std::vector<Term> known_terms() {
+  std::vector<Term> terms;
+  for (Eigen::Index degree = 2; degree <= 7; ++degree) terms.push_back(polynomial(degree));
+  terms.push_back(tone());
+  terms.push_back(smooth(14));
+  return terms;
+}
+
+Eigen::VectorXd nothing() {
+  return Eigen::VectorXd::Zero(samples);
+}
+
+// A polynomial term whose amplitude is so many standard errors.
+Eigen::VectorXd of_degree(Eigen::Index degree, double sigmas) {
+  return sigmas * orthonormal_polynomials(grid(samples), degree - 1).rightCols(1);
+}
+
+struct Answered {
+  Decision decision;
+  std::multiset<std::string> names;  // of the chosen trial
+  std::vector<LineDomain::Trial> trials;
+};
+
+Answered answer(const std::vector<Term>& terms, const std::vector<Series>& train,
+                const std::vector<Series>& held, const Thresholds& limits = {},
+                int max_effects = 3) {
+  const LineDomain domain(terms, limits);
+  Answered a;
+  a.trials = search(domain, domain.nominal(train), train, {1, max_effects});
+  if (!held.empty()) weigh_with_held_out(domain, train, held, 1, a.trials);
+  a.decision = decide(
+      {a.trials.begin(), a.trials.end()}, domain.candidates(),
+      [&](size_t t) { return domain.excess_sigma(a.trials[t], train); }, limits.decision);
+  for (const size_t c : a.trials[a.decision.chosen].candidates) {
+    a.names.insert(terms[c].traits.name);
+  }
+  return a;
+}
+
+using Names = std::multiset<std::string>;
+
+double two_sided(double sigmas) {
+  return std::erfc(sigmas / std::sqrt(2.0));
+}
+
+// Amplitudes of orthonormal terms are independent standard normals under noise, so that the
+// fraction of recordings in which one of six is called significant is known.
+double false_alarms(double min_significance, int seeds) {
+  std::vector<Term> terms = known_terms();
+  terms.resize(6);
+  Thresholds limits;
+  limits.decision.min_significance = min_significance;
+  limits.decision.min_log_odds = -100.0;
+  limits.decision.min_fraction_of_weak_evidence = 0.0;
+  int alarms = 0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const Answered a =
+        answer(terms, {recorded(static_cast<uint64_t>(seed), nothing())}, {}, limits, 1);
+    alarms += a.decision.finding == Finding::named ? 1 : 0;
+  }
+  return alarms / static_cast<double>(seeds);
+}
+
+TEST(Search, CallsNoiseMissingAsOftenAsItsSignificanceSays) {
+  constexpr int seeds = 2000;
+  const double expected = 1.0 - std::pow(1.0 - two_sided(2.5), 6);
+  const double standard_error = std::sqrt(expected * (1.0 - expected) / seeds);
+  EXPECT_NEAR(false_alarms(2.5, seeds), expected, 3.0 * standard_error);
+  // Mutant: another significance.
+  EXPECT_GT(std::abs(false_alarms(3.0, seeds) - expected), 3.0 * standard_error);
+}
+
+TEST(Search, FindsNothingInNoise) {
+  int alarms = 0, alarms_of_mutant = 0;
+  Thresholds mutant;
+  mutant.decision.min_log_odds = -10.0;
+  mutant.decision.min_significance = 2.0;
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    const std::vector<Series> train = {recorded(2 * seed, nothing())},
+                              held = {recorded(2 * seed + 1, nothing())};
+    const Answered a = answer(known_terms(), train, held);
+    alarms += a.decision.finding == Finding::nothing_missing ? 0 : 1;
+    EXPECT_TRUE(a.names.empty());
+    const Answered b = answer(known_terms(), train, held, mutant);
+    alarms_of_mutant += b.decision.finding == Finding::nothing_missing ? 0 : 1;
+  }
+  // A name needs 4.75 σ: six terms and fifty frequencies reach it once in 5000 recordings or so.
+  EXPECT_EQ(alarms, 0);
+  EXPECT_GT(alarms_of_mutant, 10);
+}
+
+TEST(Search, NamesTheTermsThatWereAdded) {
+  Thresholds mutant;
+  mutant.search.min_log_evidence_gain = 1e9;  // nothing goes on: no second term
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    const Eigen::VectorXd signal = of_degree(3, 12.0) + of_degree(6, -15.0);
+    const std::vector<Series> train = {recorded(2 * seed, signal)},
+                              held = {recorded(2 * seed + 1, signal)};
+    const Answered a = answer(known_terms(), train, held);
+    EXPECT_EQ(a.decision.finding, Finding::named);
+    EXPECT_EQ(a.names, (Names{"degree 3", "degree 6"})) << seed;
+    EXPECT_GT(a.decision.confidence, 0.9);
+    EXPECT_NEAR(*a.trials[a.decision.chosen].holdout_chi2_per_sample, 1.0, 0.5);
+    EXPECT_NE(answer(known_terms(), train, held, mutant).names, a.names);
+  }
+}
+
+TEST(Search, ScansForAFrequency) {
+  Thresholds mutant;
+  mutant.scoring.min_scan_gain = 1e9;
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    const Eigen::VectorXd signal =
+        tone().shape({grid(samples), {}, 1.0}, 23.0) * Eigen::Vector2d(6.0, -9.0);
+    const std::vector<Series> train = {recorded(2 * seed, signal)},
+                              held = {recorded(2 * seed + 1, signal)};
+    const Answered a = answer(known_terms(), train, held);
+    EXPECT_EQ(a.names, Names{"tone"});
+    EXPECT_EQ(a.trials[a.decision.chosen].searched, std::vector<double>{23.0});
+    EXPECT_NE(answer(known_terms(), train, held, mutant).names, a.names);
+  }
+}
+
+// The prediction without the term is so far away that the runs are cut into pieces.
+TEST(Search, FindsAStrongTermByWayOfPieces) {
+  const Eigen::VectorXd signal = of_degree(2, 120.0);
+  const std::vector<Series> train = {recorded(1, signal)}, held = {recorded(2, signal)};
+  const LineDomain domain(known_terms(), {});
+  ASSERT_TRUE(has_diverged(domain.nominal(train), domain.limits()));
+  EXPECT_EQ(answer(known_terms(), train, held).names, Names{"degree 2"});
+  Thresholds mutant;
+  mutant.search.max_refits_of_pieces = 0;  // nothing is fitted to the whole
+  EXPECT_NE(answer(known_terms(), train, held, mutant).names, Names{"degree 2"});
+}
+
+// Two terms that nearly cancel each other: neither gains much alone.
+TEST(Search, FindsPairsThatHideEachOther) {
+  std::vector<Term> terms = {polynomial(2), polynomial(3), polynomial(4)};
+  const auto mixed = [](double side, const char* name) {
+    Term t;
+    t.traits = {name, false, true, false, true, 1};
+    t.shape = [side](const Series& run, double) -> Eigen::MatrixXd {
+      const Eigen::MatrixXd P = orthonormal_polynomials(run.x, 5);
+      return side * P.col(3) + 0.05 * P.col(4);
+    };
+    return t;
+  };
+  terms.push_back(mixed(1.0, "one side"));
+  terms.push_back(mixed(-1.0, "other side"));
+  // 200 of each make 20 of the polynomial that they share; alone, each makes 1.
+  const Eigen::VectorXd signal = of_degree(6, 20.0) + of_degree(3, 9.0);
+  const std::vector<Series> train = {recorded(1, signal)}, held = {recorded(2, signal)};
+  EXPECT_EQ(answer(terms, train, held).names, (Names{"degree 3", "one side", "other side"}));
+  Thresholds mutant;
+  mutant.search.max_pairs = 0;
+  EXPECT_NE(answer(terms, train, held, mutant).names,
+            (Names{"degree 3", "one side", "other side"}));
+}
+
+// A bump that no known term has: only the empirical one takes it up.
+TEST(Search, CallsUnknownWhatOnlyTheEmpiricalTermFits) {
+  const Eigen::VectorXd signal = smooth(14).shape({grid(samples), {}, 1.0}, 0.0).col(4) * 25.0;
+  Thresholds mutant;
+  mutant.decision.min_log_odds = 1e9;
+  mutant.decision.max_excess_sigma = 1e9;
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    const std::vector<Series> train = {recorded(2 * seed, signal)},
+                              held = {recorded(2 * seed + 1, signal)};
+    const Answered a = answer(known_terms(), train, held);
+    EXPECT_EQ(a.decision.finding, Finding::unknown);
+    EXPECT_EQ(a.names.count("smooth"), 1u);
+    EXPECT_GT(a.decision.confidence, 0.9);
+    EXPECT_NE(answer(known_terms(), train, held, mutant).decision.finding, Finding::unknown);
+  }
+}
+
+// The same bump without an empirical term to take it up: structure is left.
+TEST(Search, CallsUnknownWhatLeavesStructure) {
+  std::vector<Term> terms = known_terms();
+  terms.pop_back();
+  const Eigen::VectorXd signal = smooth(14).shape({grid(samples), {}, 1.0}, 0.0).col(4) * 40.0;
+  const std::vector<Series> train = {recorded(1, signal)}, held = {recorded(2, signal)};
+  EXPECT_EQ(answer(terms, train, held).decision.finding, Finding::unknown);
+  Thresholds mutant;
+  mutant.decision.max_excess_sigma = 1e9;
+  EXPECT_NE(answer(terms, train, held, mutant).decision.finding, Finding::unknown);
+}
+
+TEST(Search, DoesNotNameWhatIsForbidden) {
+  std::vector<Term> terms = {polynomial(2)};
+  terms.front().not_negative = true;
+  for (const double sign : {1.0, -1.0}) {
+    const Eigen::VectorXd signal = of_degree(2, 12.0 * sign);
+    const Answered a = answer(terms, {recorded(1, signal)}, {recorded(2, signal)});
+    EXPECT_EQ(a.names, sign > 0.0 ? Names{"degree 2"} : Names{});
+  }
+}
+
+// A slope that follows the sign of a run: one run alone leaves it to the uncertain slope of the
+// nominal model, two of opposite sign show it together.
+TEST(Weigh, FindsWhatOnlyAllRunsShow) {
+  Term turned;
+  turned.traits = {"turned slope", false, true, false, true, 1};
+  turned.shape = [](const Series& run, double) -> Eigen::MatrixXd { return run.sign * run.x; };
+  const std::vector<Term> terms = {turned, polynomial(2)};
+  const Eigen::VectorXd slope = 1.5 * grid(samples);
+  const std::vector<Series> train = {recorded(1, slope, 1.0)}, held = {recorded(2, -slope, -1.0)};
+  EXPECT_TRUE(answer(terms, train, {}).names.empty());
+  EXPECT_EQ(answer(terms, train, held).names, Names{"turned slope"});
+  Thresholds mutant;
+  mutant.scoring.min_joint_gain = 1e9;
+  EXPECT_TRUE(answer(terms, train, held, mutant).names.empty());
+}
+
+}  // namespace
+}  // namespace photorque::inference::line
