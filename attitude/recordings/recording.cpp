@@ -29,12 +29,12 @@ std::optional<double> to_number(std::string_view cell) {
 }
 
 // One column of the file: the channel it fills and the factor to SI.
-struct Column {
+struct FileColumn {
   std::string name;
   double to_SI = 1.0;
 };
 
-Column column_named(const std::string& in_file, const RecordingOptions& options) {
+FileColumn column_named(const std::string& in_file, const RecordingOptions& options) {
   std::string name = in_file;
   for (const auto& [channel, written] : options.columns) {
     if (written == in_file) name = channel;
@@ -182,7 +182,7 @@ class RecordingReader {
   const RecordingOptions& options_;
   TextLines lines_;
   Recording recording_;
-  std::vector<Column> columns_;
+  std::vector<FileColumn> columns_;
   std::vector<std::string_view> cells_;
   size_t time_column_ = 0;
   char separator_ = ',';
