@@ -90,9 +90,17 @@ class HtmlPage final : public Canvas::Page {
             attribute("stroke-width", 2.0 * radius) + attribute("stroke-linecap", "round") + "/>\n";
   }
 
+  // Opaque lines of one style that follow each other, such as the pieces of a curve with gaps or a
+  // grid, become one element.
   void line(std::span<const PagePoint> points, const Stroke& stroke) override {
-    svg_ += "<path" + attribute("d", path_through(points)) + stroked(stroke) +
-            attribute("stroke-linejoin", "round") + "/>\n";
+    const std::string tail =
+        "\"" + stroked(stroke) + attribute("stroke-linejoin", "round") + "/>\n";
+    if (stroke.opacity == 1.0 && svg_.ends_with(tail)) {
+      svg_.erase(svg_.size() - tail.size());
+    } else {
+      svg_ += "<path d=\"";
+    }
+    svg_ += path_through(points) + tail;
   }
 
   void outline(const PageBox& box, const Stroke& stroke) override {

@@ -77,7 +77,8 @@ void draw_lines(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curv
                 const Stroke& stroke) {
   std::vector<PagePoint> lone;
   const auto draw_lone = [&] {
-    if (!lone.empty()) canvas.discs(lone, 0.8 * stroke.width, stroke.colour);
+    if (!lone.empty())
+      canvas.discs(thinned(lone, panel.resolution), 0.8 * stroke.width, stroke.colour);
     lone.clear();
   };
   for (const std::vector<PagePoint>& piece : pieces_of(panel, curve, 0.0)) {
