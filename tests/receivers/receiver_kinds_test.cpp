@@ -137,7 +137,7 @@ TEST_P(EveryReceiver, ReadsEveryKeyItKnowsAndNoOther) {
   const Settings settings = settings_of({{"node", node_of("solar_array")},
                                          {"name", node_of("wing 1/left")},
                                          {"colour", node_of("red")}});
-  const auto receiver = GetParam().make(settings, two_plates());
+  const auto receiver = GetParam().make(settings, two_plates()).receiver;
   EXPECT_THAT(input_error_of([&] { settings.finish(); }), HasSubstr("colour"));
   const Product product = receiver->product(sums_of(*receiver, {{}, {}}));
   EXPECT_THAT(product.quantities.front().name, HasSubstr("wing_1_left"));
