@@ -1,0 +1,93 @@
+#include "inference/estimator/covariance.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "inference/estimator/parameter.h"
+
+namespace photorque::inference {
+namespace {
+
+constexpr double rounding = 1e-14;  // of information on a unit diagonal, per parameter
+
+// One over the conditional standard error of each parameter; 1 where nothing is known.
+Eigen::VectorXd scale_of(const Eigen::MatrixXd& information) {
+  return information.diagonal().cwiseSqrt().unaryExpr(
+      [](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
+}
+
+// The marginal covariance of what is known, where some combinations are not. `scaled` has a unit
+// diagonal. With no parameter undetermined the matrix is left empty.
+Covariance without_unknown(const Eigen::MatrixXd& scaled) {
+  const Eigen::Index n = scaled.rows();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const double least = rounding * static_cast<double>(n);
+  // How much of each parameter lies in the unknown combinations.
+  Eigen::VectorXd unknown = Eigen::VectorXd::Zero(n), inverse = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (eigen.eigenvalues()[k] > least) {
+      inverse[k] = 1.0 / eigen.eigenvalues()[k];
+    } else {
+      unknown += eigen.eigenvectors().col(k).cwiseAbs2();
+    }
+  }
+  Covariance result;
+  if (unknown.isZero(0.0)) return result;
+  result.matrix = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+  // An eigenvector is good to rounding over the gap between eigenvalues.
+  constexpr double takes_part = 1e-6;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (unknown[i] < takes_part * takes_part) continue;
+    result.undetermined.push_back(i);
+    result.matrix.row(i).setZero();
+    result.matrix.col(i).setZero();
+    result.matrix(i, i) = infinity;
+  }
+  return result;
+}
+
+}  // namespace
+
+bool Covariance::is_determined(Eigen::Index i) const {
+  return !std::binary_search(undetermined.begin(), undetermined.end(), i);
+}
+
+double Covariance::standard_error(Eigen::Index i) const {
+  return std::sqrt(std::max(0.0, matrix(i, i)));
+}
+
+Covariance covariance_of(const Eigen::MatrixXd& information) {
+  if (!information.allFinite()) {
+    Covariance nothing{Eigen::MatrixXd::Zero(information.rows(), information.cols()), {}};
+    nothing.matrix.diagonal().setConstant(infinity);
+    for (Eigen::Index i = 0; i < information.rows(); ++i) nothing.undetermined.push_back(i);
+    return nothing;
+  }
+  const Eigen::VectorXd scale = scale_of(information);
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::LDLT<Eigen::MatrixXd> ldlt = scaled.ldlt();
+  // The pivots bound the smallest eigenvalue from above and, but for contrived matrices, come
+  // within a factor of the size of it: far from zero they save the eigenvalues.
+  constexpr double surely_known = 1e-9;
+  Covariance result;
+  if (ldlt.vectorD().size() > 0 && !(ldlt.vectorD().minCoeff() > surely_known)) {
+    result = without_unknown(scaled);
+  }
+  if (result.undetermined.empty()) {
+    result.matrix = ldlt.solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+  }
+  result.matrix = Eigen::MatrixXd(scale.asDiagonal() * result.matrix * scale.asDiagonal());
+  return result;
+}
+
+double log_determinant(const Eigen::MatrixXd& A) {
+  const Eigen::VectorXd scale = A.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd scaled =
+      scale.cwiseInverse().asDiagonal() * A * scale.cwiseInverse().asDiagonal();
+  return scaled.ldlt().vectorD().cwiseMax(1e-12).array().log().sum() +
+         2.0 * scale.array().log().sum();
+}
+
+}  // namespace photorque::inference

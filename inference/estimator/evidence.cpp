@@ -1,0 +1,68 @@
+#include "inference/estimator/evidence.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace photorque::inference {
+
+double log_evidence(const Fit& fit) {
+  if (!std::isfinite(fit.chi2)) return -1e300;
+  double result = -0.5 * fit.chi2 - 0.5 * log_determinant(fit.hessian);
+  for (Eigen::Index i = 0; i < fit.parameters.size(); ++i) {
+    const Parameter& p = fit.parameters[i];
+    result += p.has_prior() ? -std::log(p.sigma) : 0.5 * std::log(2.0 * std::numbers::pi);
+  }
+  return result;
+}
+
+double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covariance, size_t effects,
+                             const Thresholds::Evidence& limits) {
+  const auto n = static_cast<Eigen::Index>(s.at.size());
+  if (n == 0) return 0.0;
+  Eigen::MatrixXd C(n, n);
+  Eigen::VectorXd theta(n);
+  double result = 0.0;
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const auto i = static_cast<size_t>(a);
+    theta[a] = s.value[i] / s.scale[i];
+    result -= std::log(s.scale[i]);
+    for (Eigen::Index b = 0; b < n; ++b) {
+      const auto j = static_cast<size_t>(b);
+      C(a, b) = covariance(s.at[i], s.at[j]) / (s.scale[i] * s.scale[j]);
+    }
+  }
+  const int widths = limits.strength_widths;
+  const auto width = [&](int k) {
+    return std::pow(10.0, limits.first_log10_width + limits.step_log10_width * k);
+  };
+  std::vector<int> chosen(effects, widths - 3);
+  const auto at = [&]() {
+    Eigen::MatrixXd sum = C;
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const double w = width(chosen[s.owner[static_cast<size_t>(a)]]);
+      sum(a, a) += w * w;
+    }
+    const Eigen::VectorXd unit = sum.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = unit.asDiagonal() * sum * unit.asDiagonal();
+    const Eigen::VectorXd off = unit.cwiseProduct(theta);
+    return -0.5 * (log_determinant(sum) + off.dot(scaled.ldlt().solve(off)));
+  };
+  // Effect by effect, the others at their best width.
+  for (const bool last : {false, true}) {
+    for (size_t c = 0; c < effects; ++c) {
+      std::vector<double> value;
+      for (chosen[c] = 0; chosen[c] < widths; ++chosen[c]) value.push_back(at());
+      const auto best = std::max_element(value.begin(), value.end());
+      chosen[c] = static_cast<int>(best - value.begin());
+      if (!last) continue;
+      double mean = 0.0;
+      for (const double v : value) mean += std::exp(v - *best) / widths;
+      result += std::log(mean);
+    }
+  }
+  return result + at();
+}
+
+}  // namespace photorque::inference

@@ -1,0 +1,212 @@
+#include "inference/estimator/fit.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.h"
+
+namespace photorque::inference {
+namespace {
+
+// The step of (H + λ D) δ = g, solved in the scale of each parameter; `damped`: D over the diagonal
+// of H.
+Eigen::VectorXd damped_step(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& gradient,
+                            const Eigen::VectorXd& damped, double damping) {
+  const Eigen::VectorXd scale =
+      matrix.diagonal().cwiseSqrt().unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
+  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  scaled.diagonal() += damping * damped;
+  return scale.cwiseProduct(scaled.ldlt().solve(Eigen::VectorXd(scale.cwiseProduct(gradient))));
+}
+
+// What the damping of each parameter is measured by.
+class DampingScale {
+ public:
+  explicit DampingScale(bool keeps_largest) : keeps_largest_(keeps_largest) {}
+
+  // D over the diagonal of H.
+  Eigen::VectorXd over(const Eigen::VectorXd& diagonal) {
+    if (!keeps_largest_) return Eigen::VectorXd::Ones(diagonal.size());
+    largest_ = largest_.size() == 0 ? diagonal : Eigen::VectorXd(largest_.cwiseMax(diagonal));
+    return largest_.binaryExpr(
+        diagonal, [](double d, double h) { return h > 0.0 ? d / h : std::max(d, 1e-300); });
+  }
+
+ private:
+  bool keeps_largest_;
+  Eigen::VectorXd largest_;
+};
+
+bool leaves_bounds(const Parameter& p, double step) {
+  return (p.value <= p.lowest && step < 0.0) || (p.value >= p.highest && step > 0.0);
+}
+
+// The damped step of the parameters that do not stand on a bound and push against it. Each held one
+// may set another one pushing, so the rest is solved until none does.
+Eigen::VectorXd step_within_bounds(const NormalSums& sums, const Parameters& parameters,
+                                   const Eigen::VectorXd& damped, double damping) {
+  const Eigen::Index size = parameters.size();
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < size; ++i) free.push_back(i);
+  Eigen::VectorXd step = damped_step(sums.matrix, sums.gradient, damped, damping);
+  while (step.allFinite()) {
+    const size_t before = free.size();
+    std::erase_if(free, [&](Eigen::Index i) { return leaves_bounds(parameters[i], step[i]); });
+    if (free.size() == before) break;
+    step.setZero();
+    if (free.empty()) break;
+    const Eigen::MatrixXd matrix = sums.matrix(free, free);
+    const Eigen::VectorXd gradient = sums.gradient(free);
+    const Eigen::VectorXd damped_free = damped(free);
+    step(free) = damped_step(matrix, gradient, damped_free, damping);
+  }
+  return step;
+}
+
+class Fitter {
+ public:
+  Fitter(const ForwardModel& model, const Eigen::VectorXd& start, const Options& options)
+      : model_(model), options_(options), now_(start) {}
+
+  Fit run() {
+    Fit result;
+    for (const double window : options_.windows) result.termination = fit_window(window);
+    Evaluation last = evaluate(model_, now_, {true, 1.0});
+    result.parameters = model_.parameters(now_);
+    result.chi2 = last.sums.chi2;
+    result.data_chi2 = last.data_chi2;
+    result.samples = last.sums.samples;
+    result.hessian = std::move(last.sums.matrix);
+    result.first_shared = result.parameters.first_shared();
+    result.run_chi2 = std::move(last.run_chi2);
+    result.run_samples = std::move(last.run_samples);
+    if (!std::isfinite(result.chi2)) result.termination = Termination::not_evaluable;
+    result.converged = result.termination == Termination::converged;
+    result.iterations = iterations_;
+    result.at = std::move(now_);
+    return result;
+  }
+
+ private:
+  Termination fit_window(double window) {
+    double damping = options_.initial_damping;
+    DampingScale scale(options_.keep_largest_scale);
+    Evaluation now = evaluate(model_, now_, {true, window});
+    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+      if (!std::isfinite(now.sums.chi2)) return Termination::not_evaluable;
+      ++iterations_;
+      const Parameters parameters = model_.parameters(now_);
+      const Eigen::VectorXd step =
+          step_within_bounds(now.sums, parameters, scale.over(now.sums.matrix.diagonal()), damping);
+      if (!step.allFinite()) {
+        damping = std::max(damping, 1e-6) * 10.0;
+        continue;
+      }
+      const double predicted_gain = step.dot(2.0 * now.sums.gradient - now.sums.matrix * step);
+      if (predicted_gain <
+          std::max(options_.min_gain, options_.min_gain_fraction * now.sums.chi2)) {
+        if (options_.polish) polish(step, predicted_gain, damping, window);
+        return Termination::converged;
+      }
+      Eigen::VectorXd tried = model_.stepped(now_, step);
+      const Evaluation at = evaluate(model_, tried, {false, window});
+      if (!(at.sums.chi2 < now.sums.chi2)) {
+        damping = std::max(damping, 1e-5) * 10.0;
+        if (damping > options_.max_damping) return Termination::no_step_lowers;
+        continue;
+      }
+      now_ = std::move(tried);
+      damping =
+          at.sums.chi2 < now.sums.chi2 - 0.25 * predicted_gain ? damping * 0.1 : damping * 3.0;
+      damping = std::max(damping, options_.min_damping);
+      now = evaluate(model_, now_, {true, window});
+    }
+    return Termination::max_iterations;
+  }
+
+  // Takes a step untested, and others as long as each predicts to gain less than half of the last.
+  void polish(Eigen::VectorXd step, double gain, double damping, double window) {
+    for (int k = 0; k < options_.max_iterations; ++k) {
+      const Eigen::VectorXd tried = model_.stepped(now_, step);
+      const Evaluation at = evaluate(model_, tried, {true, window});
+      if (!std::isfinite(at.sums.chi2)) return;
+      now_ = tried;
+      ++iterations_;
+      const Eigen::VectorXd damped = Eigen::VectorXd::Ones(step.size());
+      step = step_within_bounds(at.sums, model_.parameters(now_), damped, damping);
+      const double next = step.dot(2.0 * at.sums.gradient - at.sums.matrix * step);
+      if (!(next < 0.5 * gain)) return;
+      gain = next;
+    }
+  }
+
+  const ForwardModel& model_;
+  const Options& options_;
+  Eigen::VectorXd now_;
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+Options Options::to_rounding() {
+  Options options;
+  options.max_iterations = 300;
+  options.min_gain = 0.0;
+  options.min_gain_fraction = 1e-14;
+  options.polish = true;
+  options.initial_damping = 1e-3;
+  options.min_damping = 1e-14;
+  options.keep_largest_scale = true;
+  return options;
+}
+
+void Options::check() const {
+  const auto refuse = [](const char* key, double found, const char* expected) {
+    throw InputError({}, std::string("fit options: ") + key, std::to_string(found), expected);
+  };
+  if (windows.empty()) refuse("windows", 0.0, "at least one");
+  for (const double w : windows) {
+    if (!(w > 0.0 && w <= 1.0)) refuse("windows", w, "fractions in (0, 1]");
+  }
+  if (max_iterations < 1) refuse("max_iterations", max_iterations, "at least 1");
+  if (!(min_gain >= 0.0)) refuse("min_gain", min_gain, "a number >= 0");
+  if (!(min_gain_fraction >= 0.0 && min_gain_fraction < 1.0)) {
+    refuse("min_gain_fraction", min_gain_fraction, "a fraction in [0, 1)");
+  }
+  if (!(initial_damping >= 0.0)) refuse("initial_damping", initial_damping, "a number >= 0");
+  if (!(min_damping >= 0.0)) refuse("min_damping", min_damping, "a number >= 0");
+  if (!(max_damping > 0.0)) refuse("max_damping", max_damping, "a number > 0");
+}
+
+double Fit::variance() const {
+  const int64_t freedom = samples - parameters.size();
+  return freedom > 0 ? data_chi2 / static_cast<double>(freedom) : 0.0;
+}
+
+Eigen::VectorXd Fit::scatter_errors() const {
+  const Covariance known = covariance();
+  const double scatter = std::sqrt(variance());
+  Eigen::VectorXd errors(known.matrix.rows());
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    errors[i] = known.is_determined(i) ? scatter * known.standard_error(i) : infinity;
+  }
+  return errors;
+}
+
+Covariance Fit::shared() const {
+  const Covariance all = covariance();
+  const Eigen::Index n = hessian.rows() - first_shared;
+  Covariance result{all.matrix.bottomRightCorner(n, n), {}};
+  for (const Eigen::Index i : all.undetermined) {
+    if (i >= first_shared) result.undetermined.push_back(i - first_shared);
+  }
+  return result;
+}
+
+Fit fit(const ForwardModel& model, const Eigen::VectorXd& start, const Options& options) {
+  options.check();
+  return Fitter(model, start, options).run();
+}
+
+}  // namespace photorque::inference

@@ -1,0 +1,51 @@
+// The interface between the estimator and whatever is estimated.
+//
+// A forward model says what recordings ("runs") would read if its parameters were θ. The estimator
+// never sees a recording; of every run it asks for sums over the residuals, whitened by their noise
+// (normal_sums.h), and of the whole for the parameters' priors. A point θ is a vector of
+// coordinates that the model alone understands: a parameter may live on a manifold, as an attitude
+// does, whose four quaternion components move along three directions. What the estimator adds to a
+// point is a step, in the order of Parameters, through stepped().
+#pragma once
+
+#include "inference/estimator/normal_sums.h"
+#include "inference/estimator/parameter.h"
+
+namespace photorque::inference {
+
+// What is wanted of a run.
+struct Request {
+  bool derivatives = true;  // false: χ² and the number of samples suffice
+  double window = 1.0;      // only the first part of the run, as a fraction in (0, 1]
+};
+
+class ForwardModel {
+ public:
+  virtual ~ForwardModel() = default;
+
+  // All parameters where they stand at a point, with their priors. Names, bounds and widths do not
+  // depend on the point; the mean of a prior may. Nothing but `value` is used of a parameter
+  // without prior and bounds.
+  virtual Parameters parameters(const Eigen::VectorXd& at) const = 0;
+
+  // The sums of one run, priors left out: by the parameters of that run, then the shared ones.
+  // NumericalError where the model cannot be evaluated, which counts as infinitely bad.
+  virtual NormalSums sums(const Eigen::VectorXd& at, Eigen::Index run,
+                          const Request& request) const = 0;
+
+  // The point that a step leads to. A parameter that the step takes past a bound ends on it
+  // exactly.
+  virtual Eigen::VectorXd stepped(const Eigen::VectorXd& at, const Eigen::VectorXd& step) const = 0;
+};
+
+// The sums of all runs and of the priors at a point.
+struct Evaluation {
+  NormalSums sums;                   // χ² is infinite where the model cannot be evaluated
+  double data_chi2 = infinity;       // without the priors
+  std::vector<double> run_chi2;      // of each run
+  std::vector<int64_t> run_samples;  // of each run
+};
+
+Evaluation evaluate(const ForwardModel& model, const Eigen::VectorXd& at, const Request& request);
+
+}  // namespace photorque::inference

@@ -1,0 +1,70 @@
+#include "inference/estimator/score.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+namespace photorque::inference {
+
+Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& s,
+                  const Eigen::VectorXd& before) {
+  Score score;
+  if (s.size() == 0) return score;
+  constexpr double rounding = 1e-8;
+  const Eigen::VectorXd scale =
+      before.cwiseSqrt().unaryExpr([](double root) { return root > 0.0 ? 1.0 / root : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      Eigen::MatrixXd(scale.asDiagonal() * S * scale.asDiagonal()));
+  const Eigen::VectorXd rotated = eigen.eigenvectors().transpose() * scale.cwiseProduct(s);
+  Eigen::VectorXd solved = Eigen::VectorXd::Zero(s.size());
+  for (Eigen::Index i = 0; i < s.size(); ++i) {
+    const double lambda = eigen.eigenvalues()[i];
+    if (!(lambda > rounding)) continue;
+    solved[i] = rotated[i] / lambda;
+    score.gain += rotated[i] * solved[i];
+  }
+  score.estimate = scale.cwiseProduct(eigen.eigenvectors() * solved);
+  score.information = S;
+  return score;
+}
+
+Score Projected::score(const std::vector<Eigen::Index>& which) const {
+  return solve_score(information(which, which), gradient(which), before(which));
+}
+
+Score Projected::score(Eigen::Index first, Eigen::Index count) const {
+  return solve_score(information.block(first, first, count, count), gradient.segment(first, count),
+                     before.segment(first, count));
+}
+
+Projected project_out(const NormalSums& sums, Eigen::Index fitted) {
+  const Eigen::Index count = sums.matrix.rows() - fitted;
+  const Eigen::LDLT<Eigen::MatrixXd> nuisance(sums.matrix.topLeftCorner(fitted, fitted));
+  const Eigen::MatrixXd cross = sums.matrix.bottomLeftCorner(count, fitted);
+  const Eigen::MatrixXd own = sums.matrix.bottomRightCorner(count, count);
+  Projected result;
+  result.information = own - cross * nuisance.solve(cross.transpose());
+  result.gradient = sums.gradient.tail(count) -
+                    cross * nuisance.solve(Eigen::VectorXd(sums.gradient.head(fitted)));
+  result.before = own.diagonal();
+  return result;
+}
+
+Eigen::MatrixXd pair_gains(const Projected& all, const std::vector<Eigen::Index>& begin) {
+  const auto count = static_cast<Eigen::Index>(begin.size()) - 1;
+  const auto append = [&](Eigen::Index group, std::vector<Eigen::Index>& to) {
+    const auto g = static_cast<size_t>(group);
+    for (Eigen::Index p = begin[g]; p < begin[g + 1]; ++p) to.push_back(p);
+  };
+  Eigen::MatrixXd gains = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = i; j < count; ++j) {
+      std::vector<Eigen::Index> both;
+      append(i, both);
+      if (j != i) append(j, both);
+      gains(i, j) = gains(j, i) = all.score(both).gain;
+    }
+  }
+  return gains;
+}
+
+}  // namespace photorque::inference
