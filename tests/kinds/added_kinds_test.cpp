@@ -83,7 +83,7 @@ TEST(AddedReceiver, IsInTheRegistry) {
   const std::vector<ReceiverKind> all = all_receiver_kinds();
   const auto kind = std::ranges::find(all, "added_receiver", &ReceiverKind::name);
   ASSERT_NE(kind, all.end());
-  EXPECT_EQ(kind->make(settings_of(table({})), Scene{})->bins(), 1u);
+  EXPECT_EQ(kind->make(settings_of(table({})), Scene{}).receiver->bins(), 1u);
 }
 
 TEST(AddedWriter, WritesEveryProduct) {

@@ -14,8 +14,9 @@ class HitCounter final : public Receiver {
 }  // namespace
 
 ReceiverKind added_receiver_kind() {
-  return {"added_receiver", "Counts hits",
-          [](const Settings&, const Scene&) { return std::make_unique<HitCounter>(); }};
+  return {"added_receiver", "Counts hits", [](const Settings&, const Scene&) -> MadeReceiver {
+            return {.receiver = std::make_shared<const HitCounter>()};
+          }};
 }
 
 }  // namespace photorque
