@@ -25,7 +25,13 @@ struct Lanes {
       : low{x[0], x[1], x[2], x[3]}, high{x[4], x[5], x[6], x[7]} {}
 
   double operator[](int lane) const { return lane < 4 ? low[lane] : high[lane - 4]; }
-  void set(int lane, double x) { (lane < 4 ? low[lane] : high[lane - 4]) = x; }
+  void set(int lane, double x) {
+    if (lane < 4) {
+      low[lane] = x;
+    } else {
+      high[lane - 4] = x;
+    }
+  }
 
   Lanes operator-() const { return {-low, -high}; }
   Lanes& operator+=(const Lanes& b) {

@@ -106,6 +106,7 @@ inline std::shared_ptr<const DiodeVoltageTable> table(const CellParameters& p) {
 inline ArrayCurve curve(const ArrayWiring& wiring, const std::vector<double>& suns,
                         const CellParameters& p) {
   std::vector<double> currents;
+  currents.reserve(suns.size());
   for (const double s : suns) currents.push_back(photocurrent_A(s, p));
   return {wiring, CellTables(suns.size(), table(p)), currents};
 }
