@@ -45,7 +45,7 @@ struct LineFit {
 class LineDomain {
  public:
   using Run = Series;
-  using Begin = double;  // a linear fit begins anywhere
+  using Begin = double;  // the intercept of a run; a linear fit may begin anywhere
   struct Start {
     double searched = 0.0;
     double gain = std::numeric_limits<double>::infinity();
@@ -92,9 +92,22 @@ class LineDomain {
     predicted.fit.chi2 = predicted.fit.data_chi2;
     return predicted;
   }
-  std::vector<Begin> begins_of(const Trial&) const { return {}; }
-  std::vector<Begin> seen_begins(const Trial&, const Runs&) const { return {}; }
-  Trial with_begins(const Trial& t, const std::vector<Begin>&) const { return t; }
+  std::vector<Begin> begins_of(const Trial& t) const {
+    const Eigen::VectorXd& v = t.fit.value;
+    return {v.begin(), v.end() - (1 + amplitudes(t))};
+  }
+  std::vector<Begin> seen_begins(const Trial&, const Runs& runs) const {
+    std::vector<Begin> begins;
+    for (const Series& run : runs) begins.push_back(run.y[0]);
+    return begins;
+  }
+  Trial with_begins(Trial t, const std::vector<Begin>& begins) const {
+    const auto intercepts = static_cast<Eigen::Index>(begins.size());
+    const Eigen::VectorXd shared = t.fit.value.tail(1 + amplitudes(t));
+    t.fit.value.resize(intercepts + shared.size());
+    t.fit.value << Eigen::Map<const Eigen::VectorXd>(begins.data(), intercepts), shared;
+    return t;
+  }
 
   // Of a linear model the score test is the difference of two fits without priors of the new.
   std::vector<double> gains(const Trial& at, const std::vector<size_t>& which,
@@ -174,6 +187,12 @@ class LineDomain {
     t.candidates.push_back(c);
     t.searched.push_back(searched);
     return t;
+  }
+
+  Eigen::Index amplitudes(const Trial& t) const {
+    size_t count = 0;
+    for (const size_t c : t.candidates) count += terms_[c].traits.parameters;
+    return static_cast<Eigen::Index>(count);
   }
 
   static Eigen::VectorXd readings(const Runs& runs) {
@@ -278,11 +297,21 @@ inline Eigen::VectorXd grid(Eigen::Index n) {
   return Eigen::VectorXd::LinSpaced(n, -1.0, 1.0);
 }
 
+constexpr Eigen::Index samples = 200;  // of a whole run
+
+// Columns on the points of a whole run, taken where this one has its own: a piece of a run sees a
+// piece of the same function.
+inline Eigen::MatrixXd taken_at(const Eigen::MatrixXd& whole, const Series& run) {
+  const double step = 2.0 / static_cast<double>(samples - 1);
+  const Eigen::Index first = std::lround((run.x[0] + 1.0) / step);
+  return whole.middleRows(first, run.x.size());
+}
+
 inline Term polynomial(Eigen::Index degree) {
   Term t;
   t.traits = {"degree " + std::to_string(degree), false, true, false, true, 1};
   t.shape = [degree](const Series& run, double) -> Eigen::MatrixXd {
-    return orthonormal_polynomials(run.x, degree - 1).rightCols(1);
+    return taken_at(orthonormal_polynomials(grid(samples), degree - 1).rightCols(1), run);
   };
   return t;
 }
@@ -297,7 +326,7 @@ inline Term tone() {
     Eigen::MatrixXd columns(run.x.size(), 2);
     const Eigen::ArrayXd phase = 3.14159265358979 * periods * run.x.array();
     columns << phase.sin().matrix(), phase.cos().matrix();
-    return Eigen::MatrixXd(columns * std::sqrt(2.0 / static_cast<double>(run.x.size())));
+    return Eigen::MatrixXd(columns * std::sqrt(2.0 / static_cast<double>(samples)));
   };
   return t;
 }
@@ -306,16 +335,16 @@ inline Term tone() {
 inline Term smooth(Eigen::Index bumps) {
   Term t;
   t.traits = {"smooth", true, true, false, true, static_cast<size_t>(bumps)};
-  t.shape = [bumps](const Series& run, double) {
-    Eigen::MatrixXd columns(run.x.size(), bumps);
+  t.shape = [bumps](const Series& run, double) -> Eigen::MatrixXd {
+    const Eigen::VectorXd x = grid(samples);
+    const double width = 1.0 / static_cast<double>(bumps);
+    Eigen::MatrixXd columns(samples, bumps);
     for (Eigen::Index b = 0; b < bumps; ++b) {
-      const double middle =
-          -1.0 + (2.0 * static_cast<double>(b) + 1.0) / static_cast<double>(bumps);
-      const double width = 1.0 / static_cast<double>(bumps);
-      columns.col(b) = (-(run.x.array() - middle).square() / (2.0 * width * width)).exp().matrix();
+      const double middle = -1.0 + (2.0 * static_cast<double>(b) + 1.0) * width;
+      columns.col(b) = (-(x.array() - middle).square() / (2.0 * width * width)).exp().matrix();
       columns.col(b).normalize();
     }
-    return columns;
+    return taken_at(columns, run);
   };
   return t;
 }
