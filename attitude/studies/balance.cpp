@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/estimation/nominal_model.h"
 #include "attitude/propagation/run.h"
+#include "core/errors.h"
 
 namespace photorque {
 namespace {
@@ -23,19 +25,36 @@ size_t unbalance_of(AttitudeModel& model) {
 }
 
 // The offset freely, and within their stated uncertainty all parameters that have one.
-std::vector<FreeParameter> free_parameters(const AttitudeModel& model, size_t unbalance) {
-  std::vector<FreeParameter> free;
-  for (size_t d = 0; d < model.disturbances.size(); ++d) {
-    const std::vector<Parameter>& parameters = model.disturbances[d].parameters;
-    for (size_t p = 0; p < parameters.size(); ++p) {
-      if (d == unbalance) {
-        free.push_back({d, static_cast<int>(p), std::nullopt});
-      } else if (parameters[p].sigma > 0.0) {
-        free.push_back({d, static_cast<int>(p), parameters[p].sigma});
-      }
-    }
+Hypothesis hypothesis_of(const BalanceRun& run, const AttitudeModel& model, size_t unbalance,
+                         const Observation& seen) {
+  Hypothesis h = nominal_hypothesis({model, run.sensors}, {seen});
+  std::erase_if(h.free, [&](const Free& f) { return f.disturbance == unbalance; });
+  for (int k = 0; k < 3; ++k) h.free.push_back({unbalance, k});
+  return h;
+}
+
+// Windows that grow: a start that is far off is repaired before a long run can diverge from it.
+FitSettings patient_settings() {
+  FitSettings settings;
+  settings.windows = {0.02, 0.07, 0.25, 1.0};
+  settings.max_iterations = 30;
+  // A hundredth of a standard error.
+  settings.min_gain = 1e-4;
+  settings.min_gain_fraction = 0.0;
+  settings.tolerance = 1e-8;
+  return settings;
+}
+
+// What is left of the camera's attitudes.
+void add_camera_residuals(const Observation& seen, BalanceResult& result) {
+  const Prediction predicted = std::move(residuals_of(result.fit, {seen}).front());
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (!(seen.attitude_rows[i] > 0.0)) continue;
+    const Vec3 white = predicted.residual[i].head<3>();
+    result.residual_time_s.push_back(seen.time_s[i]);
+    result.camera_residual_rad.emplace_back(white.cwiseProduct(seen.noise.camera_rad) /
+                                            std::sqrt(seen.attitude_rows[i]));
   }
-  return free;
 }
 
 Mat3 cross_matrix(const Vec3& v) {
@@ -176,19 +195,25 @@ BalanceResult balance(const BalanceRun& run) {
   std::vector<Parameter>& offset = model.disturbances[unbalance].parameters;
   for (size_t k = 0; k < 3; ++k) offset[k].value = guess_m[static_cast<Eigen::Index>(k)];
 
-  const std::vector<FreeParameter> free = free_parameters(model, unbalance);
+  Observation seen = observe(run.recording, "recording", run.recording.rows());
+  seen.noise = noise_levels(run.sensors);
   BalanceResult result;
-  result.fit = fit_trajectory(model, run.sensors, run.recording, free);
-  const double misfit = std::sqrt(std::max(1.0, result.fit.chi2_per_sample));
-  for (size_t v = 0; v < result.fit.variables.size(); ++v) {
-    const Variable& variable = result.fit.variables[v];
-    if (variable.initial >= 0 || variable.disturbance != unbalance) continue;
-    const auto i = static_cast<Eigen::Index>(v);
-    result.offset_body_m[variable.parameter] =
-        result.fit.model.disturbances[unbalance]
-            .parameters[static_cast<size_t>(variable.parameter)]
-            .value;
-    result.sigma_m[variable.parameter] = misfit * std::sqrt(result.fit.covariance(i, i));
+  result.fit = fit(hypothesis_of(run, model, unbalance, seen), {seen}, patient_settings());
+  if (!std::isfinite(result.fit.chi2)) {
+    throw NumericalError("the model cannot be propagated along the recording");
+  }
+  add_camera_residuals(seen, result);
+
+  const double misfit = std::sqrt(std::max(1.0, result.fit.chi2_per_sample()));
+  const inference::Covariance known = result.fit.shared();
+  Eigen::Index shared = 0;
+  for (const Free& f : result.fit.best.free) {
+    if (f.per_run) continue;
+    if (f.disturbance == unbalance) {
+      result.offset_body_m[f.parameter] = result.fit.best.value(f);
+      result.sigma_m[f.parameter] = misfit * known.standard_error(shared);
+    }
+    ++shared;
   }
   const double mass_kg = model.platform.mass_kg;
   result.command = steps_that_remove(result.offset_body_m, run.masses, mass_kg);
@@ -239,7 +264,7 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   exact("left_by_steps_N_m", left_m * weight_N);
   exact("resolution_m", result.resolution_m);
   exact("published_resolution_m", published_resolution_m);
-  exact("chi2_per_sample", result.fit.chi2_per_sample);
+  exact("chi2_per_sample", result.fit.chi2_per_sample());
 
   Plot plot;
   plot.name = "balance_residuals";
@@ -247,15 +272,15 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   plot.x_label = "Time [s]";
   // More points than these only blot out each other.
   constexpr size_t max_points = 2000;
-  const size_t rows = result.fit.residual_time_s.size();
+  const size_t rows = result.residual_time_s.size();
   const size_t every = rows / max_points + 1;
   if (every > 1) plot.title += ", one row in " + std::to_string(every);
   const auto residuals = [&](int axis) {
     Plot::Curve curve;
     curve.markers = true;
     for (size_t i = 0; i < rows; i += every) {
-      curve.x.push_back(result.fit.residual_time_s[i]);
-      curve.y.push_back(result.fit.camera_residual_rad[i][axis] / arcsecond_rad);
+      curve.x.push_back(result.residual_time_s[i]);
+      curve.y.push_back(result.camera_residual_rad[i][axis] / arcsecond_rad);
     }
     return curve;
   };

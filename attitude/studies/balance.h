@@ -8,7 +8,7 @@
 #pragma once
 
 #include "attitude/disturbances/mass/moving_masses.h"
-#include "attitude/estimation/trajectory_fit.h"
+#include "attitude/estimation/fit.h"
 #include "core/product.h"
 #include "core/settings/settings.h"
 
@@ -31,10 +31,15 @@ BalanceRun read_balance(const Settings& root, const std::filesystem::path& recor
 
 struct BalanceResult {
   Vec3 offset_body_m = Vec3::Zero();
-  Vec3 sigma_m = Vec3::Zero();  // widened by the fit's misfit where chi² exceeds 1
-  BalanceCommand command;       // of the masses, and what their steps leave
-  double resolution_m = 0.0;    // of the coarsest axis, half a step (eq. 1)
-  TrajectoryFit fit;
+  // Standard errors, widened by the fit's misfit where chi² exceeds 1. Infinite along an axis that
+  // the recording does not determine, as the vertical of a platform that stays level.
+  Vec3 sigma_m = Vec3::Zero();
+  BalanceCommand command;     // of the masses, and what their steps leave
+  double resolution_m = 0.0;  // of the coarsest axis, half a step (eq. 1)
+  Fit fit;
+  // What is left of the camera's attitudes, lab axes, at these times.
+  std::vector<double> residual_time_s;
+  std::vector<Vec3> camera_residual_rad;
 };
 BalanceResult balance(const BalanceRun& run);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/estimation/conventions.h"
+#include "attitude/estimation/nominal_model.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/account.h"
 #include "diagnosis/attitude/domain.h"
@@ -11,7 +13,6 @@
 #include "diagnosis/attitude/locate.h"
 #include "diagnosis/attitude/manoeuvre.h"
 #include "diagnosis/attitude/noise.h"
-#include "diagnosis/attitude/nominal_model.h"
 #include "diagnosis/attitude/recorded_data.h"
 #include "inference/decide.h"
 #include "inference/search.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "attitude/estimation/averaging.h"
 #include "core/parallel.h"
-#include "diagnosis/attitude/averaging.h"
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/noise.h"
 #include "diagnosis/attitude/screen.h"

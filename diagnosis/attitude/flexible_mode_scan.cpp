@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/attitude/noise.h"
 #include "diagnosis/attitude/ringing.h"
 #include "diagnosis/attitude/scan_parts.h"
-#include "diagnosis/attitude/noise.h"
 
 namespace photorque {
 namespace {

@@ -6,17 +6,6 @@
 
 namespace photorque {
 
-std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs) {
-  PredictionOptions options;
-  options.keep_residuals = true;
-  std::vector<Prediction> all;
-  for (size_t run = 0; run < runs.size(); ++run) {
-    const Dynamics dynamics(fit.best.model_of(run, runs[run]));
-    all.push_back(predict(dynamics, fit.best.runs[run].initial, runs[run], {}, options));
-  }
-  return all;
-}
-
 std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals) {
   std::vector<inference::ChannelResiduals> runs;
   for (const Prediction& p : residuals) {

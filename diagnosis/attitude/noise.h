@@ -1,15 +1,12 @@
 // The noise of the readings: levels that are not as stated, readings that stand out.
 #pragma once
 
-#include "diagnosis/attitude/fit.h"
+#include "attitude/estimation/fit.h"
 #include "inference/whiteness.h"
 
 namespace photorque {
 
-// All whitened residuals of a fit, by run.
-std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs);
-
-// Their six channels (camera x, y, z, gyro x, y, z) without gaps, by run.
+// The six channels of whitened residuals (camera x, y, z, gyro x, y, z) without gaps, by run.
 std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals);
 
 // The structure that a fit leaves; huge where it cannot be propagated.

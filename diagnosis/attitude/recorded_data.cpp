@@ -2,21 +2,10 @@
 
 #include <algorithm>
 
-#include "diagnosis/attitude/conventions.h"
+#include "attitude/estimation/conventions.h"
 
 namespace photorque {
 namespace {
-
-NoiseLevels noise_of(const Sensors& sensors) {
-  NoiseLevels noise;
-  if (sensors.camera && sensors.camera->noise_rad.minCoeff() > 0.0) {
-    noise.camera_rad = sensors.camera->noise_rad;
-  }
-  if (sensors.gyro && sensors.gyro->noise_rad_s > 0.0) {
-    noise.gyro_rad_s = Vec3::Constant(sensors.gyro->noise_rad_s);
-  }
-  return noise;
-}
 
 std::vector<Observation> observe_all(const std::vector<NamedRecording>& recordings,
                                      const NoiseLevels& noise, size_t max_blocks,
@@ -36,7 +25,7 @@ std::vector<Observation> observe_all(const std::vector<NamedRecording>& recordin
 RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts,
                        const DiagnoseOptions& options) {
-  const NoiseLevels noise = noise_of(nominal.sensors);
+  const NoiseLevels noise = noise_levels(nominal.sensors);
   RecordedData data;
   data.train = observe_all(recordings, noise, options.max_blocks, data.warnings);
   data.held = observe_all(holdouts, noise, options.max_blocks, data.warnings);

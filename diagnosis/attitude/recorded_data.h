@@ -1,8 +1,8 @@
 // The recordings of a diagnosis, made ready: what is fitted, what is held out, what was wrong.
 #pragma once
 
+#include "attitude/estimation/observation.h"
 #include "diagnosis/attitude/diagnose.h"
-#include "diagnosis/attitude/observation.h"
 
 namespace photorque {
 

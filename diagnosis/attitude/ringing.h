@@ -2,7 +2,7 @@
 // frequency.
 #pragma once
 
-#include "diagnosis/attitude/prediction.h"
+#include "attitude/estimation/prediction.h"
 #include "diagnosis/attitude/screen.h"
 
 namespace photorque {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "attitude/disturbances/kind.h"
-#include "diagnosis/attitude/fit.h"
+#include "attitude/estimation/fit.h"
 
 namespace photorque {
 

@@ -1,23 +1,13 @@
-// Score tests: how much χ² would fall if a disturbance were added whose parameters now stand at
-// zero effect, computed from slopes at the present fit alone, everything already fitted projected
-// out.
+// Score tests (inference/score.h) of disturbances that a model does not have yet.
 #pragma once
 
-#include "diagnosis/attitude/fit.h"
+#include "attitude/estimation/fit.h"
+#include "inference/estimator/score.h"
 
 namespace photorque {
 
-struct Score {
-  double gain = 0.0;            // expected fall of χ²
-  Eigen::VectorXd estimate;     // expected change of the parameters
-  Eigen::MatrixXd information;  // inverse covariance of the estimate
-};
-
-// From the information S about some parameters and their gradient g: the gain gᵀ S⁻¹ g and the
-// estimate S⁻¹ g in the space that the data determine at all. `before`: the diagonal of the
-// information before anything was projected out.
-Score solve_score(const Eigen::MatrixXd& S, const Eigen::VectorXd& g,
-                  const Eigen::VectorXd& before);
+using inference::Score;
+using inference::solve_score;
 
 // One group of parameters that would enter together.
 struct ScoreGroup {

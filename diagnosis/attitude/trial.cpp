@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/estimation/nominal_model.h"
 #include "attitude/propagation/run.h"
-#include "diagnosis/attitude/nominal_model.h"
+#include "inference/estimator/evidence.h"
 
 namespace photorque {
 namespace {
@@ -45,75 +46,6 @@ bool is_fitted(const Candidate& c, size_t p) {
   return c.scale[p] > 0.0;
 }
 
-// ln |A|, of a positive definite matrix whose rows have different units.
-double log_determinant(const Eigen::MatrixXd& A) {
-  const Eigen::VectorXd scale = A.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd scaled =
-      scale.cwiseInverse().asDiagonal() * A * scale.cwiseInverse().asDiagonal();
-  return scaled.ldlt().vectorD().cwiseMax(1e-12).array().log().sum() +
-         2.0 * scale.array().log().sum();
-}
-
-// The strengths of all candidates of a trial: the parameters that are not searched, in units of
-// what is expected of them.
-struct Strengths {
-  std::vector<Eigen::Index> at;  // among the shared parameters
-  std::vector<size_t> owner;     // which of the trial's candidates
-  std::vector<double> value, scale;
-};
-
-// ln ∫ N(θ; 0, S) … over the widths of S: nobody knows beforehand how strong an effect is that was
-// left out, so the width of the prior of each one's strengths, a common factor of the expected
-// ones, is uniform in its logarithm from a millionth to ten times. With θ̂ and C from a fit with
-// a flat prior, a width contributes N(θ̂; 0, C + S) but for a constant.
-double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covariance,
-                             size_t candidates, const Thresholds::Evidence& limits) {
-  const auto n = static_cast<Eigen::Index>(s.at.size());
-  if (n == 0) return 0.0;
-  Eigen::MatrixXd C(n, n);
-  Eigen::VectorXd theta(n);
-  double result = 0.0;
-  for (Eigen::Index a = 0; a < n; ++a) {
-    const auto i = static_cast<size_t>(a);
-    theta[a] = s.value[i] / s.scale[i];
-    result -= std::log(s.scale[i]);
-    for (Eigen::Index b = 0; b < n; ++b) {
-      const auto j = static_cast<size_t>(b);
-      C(a, b) = covariance(s.at[i], s.at[j]) / (s.scale[i] * s.scale[j]);
-    }
-  }
-  const int widths = limits.strength_widths;
-  const auto width = [&](int k) {
-    return std::pow(10.0, limits.first_log10_width + limits.step_log10_width * k);
-  };
-  std::vector<int> chosen(candidates, widths - 3);
-  const auto at = [&]() {
-    Eigen::MatrixXd sum = C;
-    for (Eigen::Index a = 0; a < n; ++a) {
-      const double w = width(chosen[s.owner[static_cast<size_t>(a)]]);
-      sum(a, a) += w * w;
-    }
-    const Eigen::VectorXd unit = sum.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled = unit.asDiagonal() * sum * unit.asDiagonal();
-    const Eigen::VectorXd off = unit.cwiseProduct(theta);
-    return -0.5 * (log_determinant(sum) + off.dot(scaled.ldlt().solve(off)));
-  };
-  // Candidate by candidate, the others at their best width.
-  for (const bool last : {false, true}) {
-    for (size_t c = 0; c < candidates; ++c) {
-      std::vector<double> value;
-      for (chosen[c] = 0; chosen[c] < widths; ++chosen[c]) value.push_back(at());
-      const auto best = std::max_element(value.begin(), value.end());
-      chosen[c] = static_cast<int>(best - value.begin());
-      if (!last) continue;
-      double mean = 0.0;
-      for (const double v : value) mean += std::exp(v - *best) / widths;
-      result += std::log(mean);
-    }
-  }
-  return result + at();
-}
-
 // Laplace's approximation of the evidence. The fit's own prior is far wider than the nominal model
 // of an effect; here it is replaced.
 double log_evidence(const Trial& trial, const Candidates& all) {
@@ -122,7 +54,8 @@ double log_evidence(const Trial& trial, const Candidates& all) {
   if (!std::isfinite(fit.chi2)) return -1e300;
   Eigen::MatrixXd hessian = fit.hessian;
   double result = -0.5 * fit.chi2;
-  Strengths strengths;
+  // The parameters that are not searched, in units of what is expected of them.
+  inference::Strengths strengths;
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];
     result += c.empirical() ? limits.log_prior_empirical : limits.log_prior_effect;
@@ -150,9 +83,9 @@ double log_evidence(const Trial& trial, const Candidates& all) {
                 std::log(limits.own_state_sigma);  // prior of its start
     }
   }
-  result -= 0.5 * log_determinant(hessian);
-  return result +
-         log_strength_evidence(strengths, fit.shared_covariance(), trial.candidates.size(), limits);
+  result -= 0.5 * inference::log_determinant(hessian);
+  return result + inference::log_strength_evidence(strengths, fit.shared_covariance(),
+                                                   trial.candidates.size(), limits);
 }
 
 // The largest change of a principal moment by a fitted error of the inertia, as a fraction of the

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "attitude/estimation/fit.h"
 #include "diagnosis/attitude/catalogue.h"
 #include "diagnosis/attitude/empirical.h"
-#include "diagnosis/attitude/fit.h"
 #include "inference/domain.h"
 
 namespace photorque {

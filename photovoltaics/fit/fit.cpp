@@ -72,63 +72,73 @@ MatrixXd covariance_root(const IvSweep& sweep, const SweepNoise& noise, const Ve
   return covariance.llt().matrixL();
 }
 
-LeastSquaresFit fit_round(std::span<const IvSweep> sweeps, const std::vector<MatrixXd>& roots,
-                          const VectorXd& start) {
+std::vector<inference::Parameter> parameters_from(const VectorXd& x) {
+  return {{"photocurrent", "A", x[light]},
+          {"saturation", "ln A", x[saturation]},
+          {"n V_t", "ln V", x[scale]},
+          {"series", "ln ohm", x[series]},
+          {"shunt", "ln S", x[shunt]}};
+}
+
+// The residuals of some sweeps, whitened by the roots of their covariances.
+inference::Fit fit_round(std::span<const IvSweep> sweeps, const std::vector<MatrixXd>& roots,
+                         const VectorXd& start) {
   Index points = 0;
   for (const IvSweep& sweep : sweeps) points += static_cast<Index>(sweep.voltage_V.size());
-  const auto whitened = [&, points](const VectorXd& x, VectorXd& residuals, MatrixXd& jacobian) {
+  const auto whitened = [&, points](const VectorXd& x, Index, VectorXd& residuals,
+                                    MatrixXd* slopes) {
     residuals = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
-    jacobian.resize(points, count);
     if (!reasonable(x)) return;
+    if (slopes != nullptr) slopes->resize(points, count);
     const CellCurve cell = circuit(x);
     Index row = 0;
     for (size_t s = 0; s < sweeps.size(); ++s) {
       const Index first = row;
       for (size_t i = 0; i < sweeps[s].voltage_V.size(); ++i, ++row) {
         const PointOfCurve p = point_of_curve(cell, x, sweeps[s].voltage_V[i]);
-        residuals[row] = p.current_A - sweeps[s].current_A[i];
-        jacobian.row(row) = p.derivatives_A;
+        residuals[row] = sweeps[s].current_A[i] - p.current_A;
+        if (slopes != nullptr) slopes->row(row) = p.derivatives_A;
       }
       const auto root = roots[s].triangularView<Eigen::Lower>();
       root.solveInPlace(residuals.segment(first, row - first));
-      root.solveInPlace(jacobian.middleRows(first, row - first));
+      if (slopes != nullptr) root.solveInPlace(slopes->middleRows(first, row - first));
     }
   };
-  return least_squares(start, whitened);
+  const inference::ResidualModel model(parameters_from(start), whitened);
+  return inference::fit(model, start, inference::Options::to_rounding());
 }
 
 // The weights of each round are those of the curve of the round before.
-LeastSquaresFit fit_rounds(std::span<const IvSweep> sweeps, const SweepNoise& noise, VectorXd x,
-                           int rounds) {
-  LeastSquaresFit fit;
+inference::Fit fit_rounds(std::span<const IvSweep> sweeps, const SweepNoise& noise, VectorXd x,
+                          int rounds) {
+  inference::Fit fit;
   for (int round = 0; round < rounds; ++round) {
     std::vector<MatrixXd> roots;
     for (const IvSweep& sweep : sweeps) roots.push_back(covariance_root(sweep, noise, x));
     fit = fit_round(sweeps, roots, x);
-    x = fit.parameters;
+    x = fit.at;
   }
   return fit;
 }
 
-// The sum of squares may have several minima: the best fit of one sweep from sharp and blunt knees.
+// χ² may have several minima: the best fit of one sweep from sharp and blunt knees.
 VectorXd start_from(const IvSweep& sweep, const SweepNoise& noise) {
   const SweepEnds ends = sweep_ends(sweep);
-  LeastSquaresFit best;
-  best.squares = std::numeric_limits<double>::infinity();
+  inference::Fit best;
   for (const double knee : {16.0, 22.0, 30.0}) {
     VectorXd start(Index{count});
     start << ends.short_circuit_A, std::log(ends.short_circuit_A) - knee,
         std::log(ends.open_circuit_V / knee),
         std::log(0.02 * ends.open_circuit_V / ends.short_circuit_A),
         std::log(0.01 * ends.short_circuit_A / ends.open_circuit_V);
-    const LeastSquaresFit fit = fit_rounds(std::span(&sweep, 1), noise, start, 2);
-    if (fit.squares < best.squares) best = fit;
+    const inference::Fit fit = fit_rounds(std::span(&sweep, 1), noise, start, 2);
+    if (fit.chi2 < best.chi2) best = fit;
   }
-  if (best.parameters.size() == 0) {
+  if (best.at.size() == 0) {
     throw InputError({}, "curves", "a sweep and noise that no diode fits",
                      "a current-voltage curve of a lit cell and its noise");
   }
-  return best.parameters;
+  return best.at;
 }
 
 double rms_A(std::span<const IvSweep> sweeps, const VectorXd& x) {
@@ -148,18 +158,18 @@ double rms_A(std::span<const IvSweep> sweeps, const VectorXd& x) {
 SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
   if (sweeps.empty()) throw InputError({}, "curves", "none", "at least one sweep");
   for (const IvSweep& sweep : sweeps) check_sweep(sweep);
-  const LeastSquaresFit best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
+  const inference::Fit best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
   SweepFit result;
-  const VectorXd& x = best.parameters;
+  const VectorXd& x = best.at;
   result.variance = best.variance();
-  const VectorXd error = (best.covariance.diagonal() * result.variance).cwiseSqrt();
+  const VectorXd error = best.scatter_errors();
   result.diode = {{x[light], error[light]},
                   exponential(x[saturation], error[saturation]),
                   exponential(x[scale], error[scale]),
                   exponential(x[series], error[series]),
                   exponential(-x[shunt], error[shunt])};
   result.rms_A = rms_A(sweeps, x);
-  result.points = static_cast<size_t>(best.residuals);
+  result.points = static_cast<size_t>(best.samples);
   return result;
 }
 

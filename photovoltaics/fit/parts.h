@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "core/estimate.h"
+#include "inference/estimator/fit.h"
+#include "inference/estimator/residual_model.h"
 #include "photovoltaics/fit/fit.h"
-#include "photovoltaics/fit/least_squares.h"
 
 namespace photorque {
 

@@ -52,31 +52,32 @@ VectorXd relative_errors(std::span<const RatedPoint> points, const VectorXd& x) 
   for (const RatedPoint& p : points) {
     const double light_A = cell.photocurrent_A(p.short_circuit_A);
     const CellOperatingPoint best = cell.maximum_power(light_A);
-    errors[row++] = cell.open_circuit_V(light_A) / p.open_circuit_V - 1.0;
-    errors[row++] = best.current_A / p.maximum_A - 1.0;
-    errors[row++] = best.voltage_V / p.maximum_V - 1.0;
+    errors[row++] = 1.0 - cell.open_circuit_V(light_A) / p.open_circuit_V;
+    errors[row++] = 1.0 - best.current_A / p.maximum_A;
+    errors[row++] = 1.0 - best.voltage_V / p.maximum_V;
   }
   return errors;
 }
 
-LeastSquaresFit fit_from(const VectorXd& start, std::span<const RatedPoint> points,
-                         double guess_V) {
-  // Without a second point a weak pull keeps n V_t where it was guessed.
-  const bool fixed_scale = points.size() == 1;
-  const auto residuals = [&](const VectorXd& x) {
-    VectorXd all = relative_errors(points, x);
-    if (!fixed_scale) return all;
-    all.conservativeResize(all.size() + 1);
-    all[all.size() - 1] = x[scale] - std::log(guess_V);
-    return all;
-  };
-  return least_squares(start, with_differences(residuals));
+inference::Fit fit_from(const VectorXd& start, std::span<const RatedPoint> points, double guess_V) {
+  std::vector<inference::Parameter> parameters = {{"saturation", "ln A", start[saturation]},
+                                                  {"n V_t", "ln V", start[scale]},
+                                                  {"series", "ln ohm", start[series]},
+                                                  {"shunt", "ln S", start[shunt]}};
+  if (points.size() == 1) {
+    // Without a second point a weak pull keeps n V_t where it was guessed.
+    parameters[scale].mean = std::log(guess_V);
+    parameters[scale].sigma = 1.0;
+  }
+  const inference::ResidualModel model(
+      parameters,
+      inference::with_differences([&](const VectorXd& x) { return relative_errors(points, x); }));
+  return inference::fit(model, start, inference::Options::to_rounding());
 }
 
-LeastSquaresFit fit(std::span<const RatedPoint> points, double guess_V) {
+inference::Fit best_fit(std::span<const RatedPoint> points, double guess_V) {
   const RatedPoint& first = points[0];
-  LeastSquaresFit best;
-  best.squares = std::numeric_limits<double>::infinity();
+  inference::Fit best;
   for (const double blunter : {1.0, 1.5}) {
     for (const double resistive : {0.3, 3.0}) {
       const double a = guess_V * (points.size() == 1 ? 1.0 : blunter);
@@ -84,8 +85,8 @@ LeastSquaresFit fit(std::span<const RatedPoint> points, double guess_V) {
       start << std::log(first.short_circuit_A) - first.open_circuit_V / a, std::log(a),
           std::log(0.02 * resistive * first.open_circuit_V / first.short_circuit_A),
           std::log(0.01 * first.short_circuit_A / first.open_circuit_V);
-      const LeastSquaresFit trial = fit_from(start, points, guess_V);
-      if (trial.squares < best.squares) best = trial;
+      const inference::Fit trial = fit_from(start, points, guess_V);
+      if (trial.chi2 < best.chi2) best = trial;
     }
   }
   return best;
@@ -139,23 +140,32 @@ FigureErrors figures_of(const RatedFit& fit) {
           d.series_ohm.value,     d.shunt_ohm.value,    fit.model.gap_eV};
 }
 
-// From the covariance of the parameters, by central differences.
-FigureErrors scatter_errors(const LeastSquaresFit& fitted, std::span<const RatedPoint> points,
+// From the covariance of the parameters, by central differences. Figures that depend on a parameter
+// which the points do not determine are undetermined too.
+FigureErrors scatter_errors(const inference::Fit& fitted, std::span<const RatedPoint> points,
                             const TemperatureSlopes& slopes) {
   constexpr double step = 1e-4;  // of logarithms
   Eigen::Matrix<double, with_errors, Eigen::Dynamic> jacobian(with_errors, Index{count});
   for (Index k = 0; k < Index{count}; ++k) {
     const auto moved = [&](double by) {
-      VectorXd x = fitted.parameters;
+      VectorXd x = fitted.at;
       x[k] += by;
       return figures_of(described(x, points, slopes));
     };
     jacobian.col(k) = (moved(step) - moved(-step)) / (2.0 * step);
   }
-  return (jacobian * fitted.covariance * jacobian.transpose() * fitted.variance())
-      .diagonal()
-      .cwiseMax(0.0)
-      .cwiseSqrt();
+  inference::Covariance known = fitted.covariance();
+  for (const Index k : known.undetermined) known.matrix(k, k) = 0.0;
+  FigureErrors errors = (jacobian * known.matrix * jacobian.transpose() * fitted.variance())
+                            .diagonal()
+                            .cwiseMax(0.0)
+                            .cwiseSqrt();
+  for (const Index k : known.undetermined) {
+    for (Index figure = 0; figure < with_errors; ++figure) {
+      if (jacobian(figure, k) != 0.0) errors[figure] = inference::infinity;
+    }
+  }
+  return errors;
 }
 
 double rounded_sigma(double figure, double step, double fraction) {
@@ -183,7 +193,7 @@ FigureErrors rounding_errors(const VectorXd& start, std::span<const RatedPoint> 
       const auto moved = [&](double by) {
         std::vector<RatedPoint> trial(points.begin(), points.end());
         trial[p].*figure.member += by;
-        return figures_of(described(fit_from(start, trial, guess_V).parameters, trial, slopes));
+        return figures_of(described(fit_from(start, trial, guess_V).at, trial, slopes));
       };
       squares += (0.5 * (moved(sigma) - moved(-sigma))).cwiseAbs2();
     }
@@ -227,18 +237,18 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
     throw InputError({}, "datasheet", "n V_t = " + std::to_string(ideality_guess_V),
                      "a number > 0");
   }
-  const LeastSquaresFit best = fit(points, ideality_guess_V);
-  if (best.parameters.size() == 0) {
+  const inference::Fit best = best_fit(points, ideality_guess_V);
+  if (best.at.size() == 0) {
     throw InputError({}, "datasheet",
                      std::to_string(points[0].open_circuit_V) +
                          " V at open circuit, that no diode of n V_t = " +
                          std::to_string(ideality_guess_V) + " V gives",
                      "the figures of one cell, or of a module with its cells_in_series");
   }
-  RatedFit result = described(best.parameters, points, slopes);
+  RatedFit result = described(best.at, points, slopes);
   const FigureErrors errors =
       scatter_errors(best, points, slopes)
-          .cwiseMax(rounding_errors(best.parameters, points, slopes, ideality_guess_V, tolerance));
+          .cwiseMax(rounding_errors(best.at, points, slopes, ideality_guess_V, tolerance));
   SingleDiode& d = result.diode;
   Index row = 0;
   for (Estimate* of :

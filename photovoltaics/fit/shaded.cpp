@@ -76,6 +76,18 @@ VectorXd first_guess(const IvSweep& sweep, int substrings, double knee) {
   return x;
 }
 
+std::vector<inference::Parameter> parameters_from(const VectorXd& x) {
+  std::vector<inference::Parameter> all = {{"saturation", "ln A", x[saturation]},
+                                           {"n V_t", "ln V", x[scale]},
+                                           {"series", "ln ohm", x[series]},
+                                           {"shunt", "ln S", x[shunt]},
+                                           {"bypass drop", "ln V", x[drop]}};
+  for (Index k = first_light; k < x.size(); ++k) {
+    all.push_back({"photocurrent " + std::to_string(k - first_light + 1), "ln A", x[k]});
+  }
+  return all;
+}
+
 // Errors of the current over their standard deviations, the voltage's carried over by the slope.
 VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double max_A,
                          const VectorXd& x) {
@@ -90,7 +102,7 @@ VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double m
     const double slope = string.voltage(current_A).slope;
     const double from_voltage_A = slope < 0 ? noise.voltage_fraction * std::abs(v) / -slope : 0.0;
     const double from_light_A = noise.current_fraction * max_A;
-    errors[i] = (current_A - measured_A) / std::hypot(from_voltage_A, from_light_A);
+    errors[i] = (measured_A - current_A) / std::hypot(from_voltage_A, from_light_A);
   }
   return errors;
 }
@@ -106,11 +118,18 @@ ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoi
   }
   const double max_A = sweep_ends(sweep).short_circuit_A;
   constexpr double knee = 20.0;  // open-circuit voltage over n V_t of silicon: 18 to 27
-  const LeastSquaresFit best = least_squares(
-      first_guess(sweep, substrings, knee),
-      with_differences([&](const VectorXd& x) { return weighted_errors(sweep, noise, max_A, x); }));
-  const VectorXd& x = best.parameters;
-  const VectorXd error = (best.covariance.diagonal() * best.variance()).cwiseSqrt();
+  const VectorXd start = first_guess(sweep, substrings, knee);
+  const inference::ResidualModel model(parameters_from(start),
+                                       inference::with_differences([&](const VectorXd& x) {
+                                         return weighted_errors(sweep, noise, max_A, x);
+                                       }));
+  const inference::Fit best = inference::fit(model, start, inference::Options::to_rounding());
+  if (!std::isfinite(best.chi2)) {
+    throw InputError({}, "curves", "a sweep and noise that no string fits",
+                     "a current-voltage curve of a lit string and its noise");
+  }
+  const VectorXd& x = best.at;
+  const VectorXd error = best.scatter_errors();
   ShadedFit fit;
   for (int k = 0; k < substrings; ++k) {
     fit.photocurrents_A.push_back(exponential(x[first_light + k], error[first_light + k]));

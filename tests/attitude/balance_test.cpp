@@ -70,7 +70,7 @@ TEST(Balance, FindsTheOffsetWithinItsErrors) {
       EXPECT_LT(result.sigma_m[k], 5e-9);
     }
     // 36,000 numbers: one standard error of chi² per sample is 0.0075.
-    EXPECT_NEAR(result.fit.chi2_per_sample, 1.0, 0.03);
+    EXPECT_NEAR(result.fit.chi2_per_sample(), 1.0, 0.03);
   }
 }
 
@@ -123,11 +123,11 @@ TEST(Balance, RefusesRecordingsWithoutAttitude) {
   BalanceRun run = unbalanced(true, 7);
   std::erase_if(run.recording.channels, [](const Channel& c) { return c.name == "q_w"; });
   EXPECT_THROW(balance(run), InputError);
-  EXPECT_THROW(fit_trajectory(run.model, run.sensors, run.recording, {}), InputError);
+  EXPECT_THROW(observe(run.recording, "recording"), InputError);
 }
 
 // Standard errors mean what they say: over many recordings the estimates scatter by them.
-TEST(TrajectoryFit, StandardErrorsAreTheScatterOfTheEstimates) {
+TEST(Balance, StandardErrorsAreTheScatterOfTheEstimates) {
   constexpr int runs = 24;
   double squares = 0.0;
   for (int i = 0; i < runs; ++i) {

@@ -5,7 +5,7 @@
 
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
-#include "diagnosis/attitude/observation.h"
+#include "attitude/estimation/observation.h"
 
 namespace photorque {
 namespace {

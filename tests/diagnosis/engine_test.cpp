@@ -8,7 +8,7 @@
 #include <random>
 
 #include "diagnosis/attitude/diagnose.h"
-#include "diagnosis/attitude/nominal_model.h"
+#include "attitude/estimation/nominal_model.h"
 #include "diagnosis/attitude/scan.h"
 #include "diagnosis/attitude/screen.h"
 #include "diagnosis/attitude/trial.h"

@@ -1,6 +1,6 @@
 // Averages of readings against the motion itself: a symmetric top free of torque, whose motion
 // every textbook has (Landau and Lifshitz, Mechanics, section 33).
-#include "diagnosis/attitude/observation.h"
+#include "attitude/estimation/observation.h"
 
 #include <gtest/gtest.h>
 

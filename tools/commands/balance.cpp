@@ -22,7 +22,7 @@ void print_balance(const Console& console, const BalanceRun& run, const BalanceR
     console.line(std::string("  ") + "xyz"[k] + "  " +
                  show(Estimate{result.offset_body_m[k], result.sigma_m[k]}, "m"));
   }
-  console.line("  chi² per sample of the fit " + show(result.fit.chi2_per_sample));
+  console.line("  chi² per sample of the fit " + show(result.fit.chi2_per_sample()));
   console.heading("Moves of the masses");
   for (const Table& table : product.tables) {
     if (table.name != "moving_masses") continue;

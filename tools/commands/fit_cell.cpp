@@ -150,12 +150,12 @@ std::vector<Row> diode_rows(const SingleDiode& d, const FitTask& task) {
 }
 
 // Parameters that are positive by their nature and come out with an error as large as themselves,
-// or with none because the data do not feel them.
+// which may be infinite.
 void print_undetermined(const Console& console, const std::vector<Row>& rows) {
   std::string names;
   for (const Row& row : rows) {
     const Estimate& e = row.estimate;
-    if (e.standard_error > 0.0 && e.standard_error < e.value) continue;
+    if (e.standard_error < e.value) continue;
     names += (names.empty() ? "" : ", ") + row.name;
   }
   if (!names.empty()) console.line("  these data do not determine " + names);

@@ -1,7 +1,7 @@
 // Fewer blocks for the search: means of what is left of a fit, not of the readings.
 #pragma once
 
-#include "diagnosis/attitude/fit.h"
+#include "attitude/estimation/fit.h"
 
 namespace photorque {
 

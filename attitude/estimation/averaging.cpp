@@ -1,9 +1,9 @@
-#include "diagnosis/attitude/averaging.h"
+#include "attitude/estimation/averaging.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/attitude/noise.h"
+#include "attitude/estimation/fit.h"
 
 namespace photorque {
 namespace {

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/nominal_model.h"
+#include "attitude/estimation/nominal_model.h"
 
 #include "attitude/disturbances/kind.h"
 

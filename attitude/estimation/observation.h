@@ -17,6 +17,9 @@ struct NoiseLevels {
   Vec3 gyro_rad_s = Vec3::Constant(2e-4);              // body axes
 };
 
+// Those of the instruments; where they state none, the usual ones above.
+NoiseLevels noise_levels(const Sensors& sensors);
+
 struct Observation {
   std::string name;
   Schedule schedule;

@@ -4,26 +4,18 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "attitude/estimation/observation.h"
 #include "attitude/propagation/propagator.h"
-#include "diagnosis/attitude/observation.h"
+#include "inference/estimator/normal_sums.h"
 
 namespace photorque {
-
-// Sums of squares of whitened residuals r and their slopes J by the variables: what a least-squares
-// step needs. Jᵀ J fills both triangles.
-struct NormalSums {
-  Eigen::MatrixXd matrix;    // Jᵀ J
-  Eigen::VectorXd gradient;  // Jᵀ r
-  double chi2 = 0.0;
-  int64_t samples = 0;
-};
 
 // Six whitened residuals of a block: attitude about lab x, y, z, then gyro x, y, z; (measured −
 // predicted)/noise, NaN where nothing was measured.
 using WhiteRow = Eigen::Matrix<double, 6, 1>;
 
 struct Prediction {
-  NormalSums sums;
+  inference::NormalSums sums;
   // Filled on request.
   std::vector<WhiteRow> residual;
   std::vector<PlatformState> states;

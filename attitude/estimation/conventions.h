@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "diagnosis/attitude/observation.h"
+#include "attitude/estimation/observation.h"
 
 namespace photorque {
 

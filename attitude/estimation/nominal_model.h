@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
-#include "diagnosis/attitude/fit.h"
 #include "inference/thresholds.h"
 
 namespace photorque {

@@ -1,49 +1,10 @@
-#include "diagnosis/attitude/prediction.h"
+#include "attitude/estimation/prediction.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace photorque {
 namespace {
-
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-// Collects rows [slopes | residual] and adds their squares in one product.
-class Accumulator {
- public:
-  explicit Accumulator(size_t variables)
-      : width_(static_cast<Eigen::Index>(variables) + 1),
-        rows_(RowMatrix::Zero(capacity, width_)),
-        square_(Eigen::MatrixXd::Zero(width_, width_)) {}
-
-  // The next row to be filled: slopes, then the residual.
-  auto next() {
-    if (used_ == capacity) flush();
-    ++samples_;
-    return rows_.row(used_++);
-  }
-
-  NormalSums finish() {
-    flush();
-    const Eigen::MatrixXd full = square_.selfadjointView<Eigen::Lower>();
-    const Eigen::Index n = width_ - 1;
-    return {full.topLeftCorner(n, n), full.col(n).head(n), full(n, n), samples_};
-  }
-
- private:
-  static constexpr Eigen::Index capacity = 192;
-
-  void flush() {
-    square_.selfadjointView<Eigen::Lower>().rankUpdate(rows_.topRows(used_).transpose());
-    used_ = 0;
-  }
-
-  Eigen::Index width_;
-  RowMatrix rows_;
-  Eigen::MatrixXd square_;
-  Eigen::Index used_ = 0;
-  int64_t samples_ = 0;
-};
 
 Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
   return {v[0][lane], v[1][lane], v[2][lane]};
@@ -87,7 +48,7 @@ class Comparison {
  public:
   Comparison(const Observation& seen, size_t variables, bool keep)
       : seen_(seen),
-        sums_(variables),
+        sums_(static_cast<Eigen::Index>(variables)),
         slope_(6, static_cast<Eigen::Index>(variables)),
         keep_(keep) {
     slope_.setZero();
@@ -146,7 +107,7 @@ class Comparison {
   }
 
   const Observation& seen_;
-  Accumulator sums_;
+  inference::SumsOfRows sums_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> slope_;
   bool keep_;
   Prediction result_;

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/conventions.h"
+#include "attitude/estimation/conventions.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/observation.h"
+#include "attitude/estimation/observation.h"
 
 #include <algorithm>
 #include <array>
@@ -161,6 +161,17 @@ Vec3 rotation_vector(const Quat& rotation) {
   const double sine = rotation.vec().norm(), side = std::copysign(1.0, rotation.w());
   if (sine < 1e-12) return 2.0 * side * rotation.vec();
   return 2.0 * side * std::atan2(sine, std::abs(rotation.w())) / sine * rotation.vec();
+}
+
+NoiseLevels noise_levels(const Sensors& sensors) {
+  NoiseLevels noise;
+  if (sensors.camera && sensors.camera->noise_rad.minCoeff() > 0.0) {
+    noise.camera_rad = sensors.camera->noise_rad;
+  }
+  if (sensors.gyro && sensors.gyro->noise_rad_s > 0.0) {
+    noise.gyro_rad_s = Vec3::Constant(sensors.gyro->noise_rad_s);
+  }
+  return noise;
 }
 
 Observation observe(const Recording& recording, const std::string& name, size_t max_blocks) {

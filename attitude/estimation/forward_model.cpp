@@ -1,0 +1,194 @@
+#include "attitude/estimation/forward_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/estimation/prediction.h"
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+// An appendage begins near rest against the body, to within these.
+constexpr double extra_state_sigma = 0.01;
+
+// A sinusoid of no amplitude yet does not show in the error by which the propagator chooses its
+// steps, but its slopes have to be resolved: a step is no longer than its period, to 3e-4 of them.
+double max_step_s(const AttitudeModel& model) {
+  double max_time_s = inference::infinity;
+  for (const Disturbance& d : model.disturbances) {
+    for (const Parameter& p : d.parameters) {
+      if (p.key == "frequency_Hz" && p.value > 0.0)
+        max_time_s = std::min(max_time_s, 1.0 / p.value);
+    }
+  }
+  return max_time_s;
+}
+
+std::vector<Variable> variables_of(const Hypothesis& h, const std::vector<Free>& extra) {
+  std::vector<Variable> variables;
+  for (int k = 0; k < 6; ++k) variables.push_back({k, 0, -1});
+  for (size_t k = 0; k < h.runs.front().initial.extra.size(); ++k) {
+    variables.push_back(Variable::initial_extra(static_cast<int>(k)));
+  }
+  for (const bool own : {true, false}) {
+    for (const Free& f : h.free) {
+      if (f.per_run == own) variables.push_back(Variable::of(f.disturbance, f.parameter));
+    }
+  }
+  for (const Free& f : extra) variables.push_back(Variable::of(f.disturbance, f.parameter));
+  return variables;
+}
+
+// The step of an initial state along its tangent.
+void step_initial(const Eigen::VectorXd& step, const AttitudeModel& model, PlatformState& initial) {
+  const Vec3 rotation = step.head<3>(), rate = step.segment<3>(3);
+  const double angle = rotation.norm();
+  if (angle > 0.0) {
+    initial.lab_from_body =
+        (initial.lab_from_body * Quat(Eigen::AngleAxisd(angle, rotation / angle))).normalized();
+  }
+  initial.rate_body_rad_s += rate;
+  size_t e = 0;
+  for (const Disturbance& d : model.disturbances) {
+    for (const ExtraState& state : d.states) {
+      initial.extra[e] += state.per_body_rate.dot(rate) + step[static_cast<Eigen::Index>(6 + e)];
+      ++e;
+    }
+  }
+}
+
+// "static_unbalance.offset_m[2]": the key names the unit.
+std::string name_of(const Hypothesis& h, const Free& f) {
+  const Parameter& p = h.parameter(f);
+  const std::string component = p.component < 0 ? "" : "[" + std::to_string(p.component) + "]";
+  return h.model.disturbances[f.disturbance].kind + "." + p.key + component;
+}
+
+inference::Parameter parameter_of(const Hypothesis& h, const Free& f, double value) {
+  return {name_of(h, f), "", value, f.mean, f.sigma, f.lowest, f.highest};
+}
+
+// Where a run began.
+std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
+                                                     const PlatformState& initial) {
+  const char* axes[] = {"x", "y", "z"};
+  std::vector<inference::Parameter> result;
+  for (const char* axis : axes) {
+    result.push_back({std::string("initial rotation ") + axis, "rad", 0.0});
+  }
+  for (int k = 0; k < 3; ++k) {
+    result.push_back({std::string("initial rate ") + axes[k], "rad/s", initial.rate_body_rad_s[k]});
+  }
+  if (initial.extra.empty()) return result;
+  const PlatformState rest = Dynamics(model).initial_state(initial.rate_body_rad_s);
+  for (size_t k = 0; k < rest.extra.size(); ++k) {
+    result.push_back({"initial state " + std::to_string(k + 1), "", initial.extra[k], rest.extra[k],
+                      extra_state_sigma});
+  }
+  return result;
+}
+
+}  // namespace
+
+AttitudeForwardModel::AttitudeForwardModel(Hypothesis nominal, const std::vector<Observation>& runs,
+                                           std::vector<Free> extra, double tolerance)
+    : nominal_(std::move(nominal)),
+      runs_(runs),
+      extra_(std::move(extra)),
+      tolerance_(tolerance),
+      variables_(variables_of(nominal_, extra_)) {}
+
+Eigen::VectorXd AttitudeForwardModel::point_of(const Hypothesis& h) const {
+  std::vector<double> x;
+  for (const RunStart& run : h.runs) {
+    const Quat& q = run.initial.lab_from_body;
+    const Vec3& rate = run.initial.rate_body_rad_s;
+    x.insert(x.end(), {q.w(), q.x(), q.y(), q.z(), rate.x(), rate.y(), rate.z()});
+    x.insert(x.end(), run.initial.extra.begin(), run.initial.extra.end());
+    x.insert(x.end(), run.own.begin(), run.own.end());
+  }
+  for (const Free& f : h.free) {
+    if (!f.per_run) x.push_back(h.parameter(f).value);
+  }
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+}
+
+Hypothesis AttitudeForwardModel::hypothesis_at(const Eigen::VectorXd& at) const {
+  Hypothesis h = nominal_;
+  const double* x = at.data();
+  for (RunStart& run : h.runs) {
+    run.initial.lab_from_body = Quat(x[0], x[1], x[2], x[3]);
+    run.initial.rate_body_rad_s = {x[4], x[5], x[6]};
+    x += 7;
+    for (double& e : run.initial.extra) e = *x++;
+    for (double& own : run.own) own = *x++;
+  }
+  for (const Free& f : h.free) {
+    if (!f.per_run) h.value(f) = *x++;
+  }
+  return h;
+}
+
+inference::Parameters AttitudeForwardModel::parameters(const Eigen::VectorXd& at) const {
+  const Hypothesis h = hypothesis_at(at);
+  inference::Parameters result;
+  for (const RunStart& run : h.runs) {
+    std::vector<inference::Parameter> own = initial_parameters(h.model, run.initial);
+    size_t k = 0;
+    for (const Free& f : h.free) {
+      if (f.per_run) own.push_back(parameter_of(h, f, run.own[k++]));
+    }
+    result.of_run.push_back(std::move(own));
+  }
+  for (const Free& f : h.free) {
+    if (!f.per_run) result.shared.push_back(parameter_of(h, f, h.parameter(f).value));
+  }
+  for (const Free& f : extra_) {
+    result.shared.push_back({name_of(h, f), "", h.parameter(f).value});
+  }
+  return result;
+}
+
+inference::NormalSums AttitudeForwardModel::sums(const Eigen::VectorXd& at, Eigen::Index run,
+                                                 const inference::Request& request) const {
+  const Hypothesis h = hypothesis_at(at);
+  const auto which = static_cast<size_t>(run);
+  const Observation& seen = runs_[which];
+  PredictionOptions options;
+  options.propagation.tolerance = tolerance_;
+  options.propagation.max_step_s = max_step_s(h.model);
+  options.blocks = std::max<size_t>(
+      20, static_cast<size_t>(request.window * static_cast<double>(seen.blocks())));
+  try {
+    const Dynamics dynamics(h.model_of(which, seen));
+    return predict(dynamics, h.runs[which].initial, seen,
+                   request.derivatives ? variables_ : std::vector<Variable>(), options)
+        .sums;
+  } catch (const InputError& error) {  // an inertia that no body has
+    throw NumericalError(error.what());
+  }
+}
+
+Eigen::VectorXd AttitudeForwardModel::stepped(const Eigen::VectorXd& at,
+                                              const Eigen::VectorXd& step) const {
+  Hypothesis h = hypothesis_at(at);
+  Eigen::Index next = 0;
+  for (RunStart& run : h.runs) {
+    const auto initial = static_cast<Eigen::Index>(6 + run.initial.extra.size());
+    step_initial(step.segment(next, initial), h.model, run.initial);
+    next += initial;
+    size_t own = 0;
+    for (const Free& f : h.free) {
+      if (!f.per_run) continue;
+      run.own[own] = std::clamp(run.own[own] + step[next++], f.lowest, f.highest);
+      ++own;
+    }
+  }
+  for (const Free& f : h.free) {
+    if (!f.per_run) h.value(f) = std::clamp(h.value(f) + step[next++], f.lowest, f.highest);
+  }
+  return point_of(h);
+}
+
+}  // namespace photorque
