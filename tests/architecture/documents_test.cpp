@@ -79,6 +79,25 @@ TEST(Documents, PathsInBackquotesExist) {
   EXPECT_GT(checked, 100u);
 }
 
+// Rows `| file | functions | … |`, as in the tours of docs/contributing.md.
+TEST(Documents, FunctionsStandInTheFilesOfTheirRows) {
+  static const std::regex row(R"(\n\| `([\w/]+\.(?:h|cpp))` \| ([^|\n]*) \|)");
+  static const std::regex name(R"(`(\w+)`)");
+  size_t checked = 0;
+  for (const fs::path& document : documents()) {
+    const std::string text = text_of(document);
+    for (std::sregex_iterator it(text.begin(), text.end(), row), end; it != end; ++it) {
+      const std::string code = code_of(root / (*it)[1].str());
+      for (const std::string& function : matches((*it)[2], name, 1)) {
+        EXPECT_TRUE(std::regex_search(code, std::regex("\\b" + function + "\\b")))
+            << document << ": " << (*it)[1] << " has no " << function;
+        ++checked;
+      }
+    }
+  }
+  EXPECT_GT(checked, 20u);
+}
+
 TEST(Documents, LinksLeadToFiles) {
   static const std::regex link(R"(\]\(([^)#\s]+)[^)]*\))");
   size_t checked = 0;
@@ -93,7 +112,7 @@ TEST(Documents, LinksLeadToFiles) {
 }
 
 TEST(Documents, CommandsExistAndEachHasARow) {
-  static const std::regex called(R"((?:^|[\s`/])photorque ([a-z][a-z-]*))");
+  static const std::regex called(R"((?:`|/|\n {4}|\n)photorque ([a-z][a-z-]*))");
   static const std::regex row(R"(\n\| `([a-z-]+)` \|)");
   std::set<std::string> verbs;
   for (const std::string& word : kinds_of("tools")) {
@@ -185,7 +204,7 @@ TEST(Words, HeadersAndDocumentsSpeakTheFields) {
       R"(`[^`\n]*`|longest_\w+|most_\w+|"mended"|beliefs_refined|<!-- \w+ begin -->[^]*?<!-- \w+ end -->)");
   std::string all;
   for (const auto& [word, instead] : words) all += (all.empty() ? "" : "|") + word;
-  const std::regex any("(.{0,30})\\b(" + all + ")\\b(.{0,30})", std::regex::icase);
+  const std::regex any("\\b(" + all + ")\\b", std::regex::icase);
   std::vector<fs::path> files = documents();
   for (const fs::path& file : all_sources()) {
     if (file.extension() == ".h") files.push_back(file);
@@ -193,8 +212,10 @@ TEST(Words, HeadersAndDocumentsSpeakTheFields) {
   for (const fs::path& file : files) {
     std::string text = file.extension() == ".h" ? comments_of(file) : text_of(file);
     text = std::regex_replace(text, kept, " ");
-    for (const std::string& found : matches(text, any, 0)) {
-      ADD_FAILURE() << file << " says \"" << found << "\"; the field's words stand in this test";
+    for (std::sregex_iterator it(text.begin(), text.end(), any), end; it != end; ++it) {
+      const auto at = static_cast<size_t>(it->position());
+      ADD_FAILURE() << file << " says \"" << text.substr(at < 30 ? 0 : at - 30, 70)
+                    << "\"; the field's words stand in this test";
     }
   }
 }
