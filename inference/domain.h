@@ -30,7 +30,7 @@ struct CandidateTraits {
   // A smooth function without a law: it competes with the others, so that something unknown is not
   // mistaken for one of them, but it names nothing.
   bool is_empirical = false;
-  // Whether a score test can foretell what its fit gains.
+  // Whether a score test can predict what its fit gains.
   bool is_linear = true;
   // Whether it changes faster than averages show.
   bool is_fast = false;
@@ -69,7 +69,7 @@ concept Fitted = requires(const F& fit) {
 };
 
 // A domain says what its trials, runs, starts and begins are. A Start is where the fit of a
-// candidate starts, with the gain (fall of χ²) that a scan foretells; infinite where nothing was
+// candidate starts, with the gain (fall of χ²) that a scan predicts; infinite where nothing was
 // scanned. A Begin is where the fit of one run begins: its nuisances. All functions are const and
 // are called from several threads.
 template <class D>

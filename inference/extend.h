@@ -26,10 +26,10 @@ std::vector<typename D::Run> slow_runs(const D& domain, const typename D::Trial&
 // Candidates that are worth a fit.
 struct Promising {
   std::vector<size_t> candidates;
-  double min_gain;  // that a scan's start must foretell, to be worth a fit beside these
+  double min_gain;  // that a scan's start must predict, to be worth a fit beside these
 };
 
-// Where the prediction is near the readings, the score test foretells what each candidate would
+// Where the prediction is near the readings, the score test predicts what each candidate would
 // gain: those that would gain hardly anything against the best need no fit of their own.
 template <Domain D>
 Promising promising(const D& domain, const typename D::Trial& parent,

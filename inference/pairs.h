@@ -7,7 +7,7 @@ namespace photorque::inference {
 
 struct Pair {
   size_t first, second;  // candidates, the stronger first
-  double gain;           // foretold of both together
+  double gain;           // predicted of both together
 };
 
 // Pairs of linear candidates that would gain clearly more than the better of the two alone, but for
@@ -45,7 +45,7 @@ std::vector<Pair> promising_pairs(const D& domain, const typename D::Trial& nomi
   return pairs;
 }
 
-// Near the readings the score test foretells what every pair would gain; the best are fitted.
+// Near the readings the score test predicts what every pair would gain; the best are fitted.
 template <Domain D>
 std::vector<typename D::Trial> best_pairs(const D& domain, const typename D::Trial& nominal,
                                           const std::vector<typename D::Run>& runs,

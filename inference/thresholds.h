@@ -95,7 +95,7 @@ struct Thresholds {
     size_t max_pairs = 4;
     // Explanations that are extended further: of single effects, and of more.
     size_t max_single_parents = 2, max_parents = 1;
-    // Structure left by an explanation [sigma], below which the next best is not extended too.
+    // Residual structure of an explanation [sigma], below which the next best is not extended too.
     double explained_sigma = 5.0;
   } search;
 
@@ -153,8 +153,8 @@ struct Thresholds {
     double min_significance = 4.0;
     // Of the probability, for a name that only the recordings and what was held out show together.
     double min_fraction_of_weak_evidence = 0.7;
-    // Structure left [sigma], before the best physics is called insufficient; and the confidence,
-    // at least, that something unknown acts then.
+    // Residual structure [sigma], before the best physics is called insufficient; and the
+    // confidence, at least, that something unknown acts then.
     double max_excess_sigma = 6.0, structure_confidence = 0.95;
   } decision;
 

@@ -127,7 +127,7 @@ class Weighing {
     }
   }
 
-  // The few untried candidates with the largest gains foretold beside `joint`, which is fitted to
+  // The few untried candidates with the largest gains predicted beside `joint`, which is fitted to
   // all runs: some that have names, some empirical.
   std::vector<size_t> worth_adding(const Trial& joint, const std::vector<size_t>& parent) const {
     const std::vector<CandidateTraits>& all = domain_.candidates();

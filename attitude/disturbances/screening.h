@@ -79,7 +79,7 @@ struct Screening {
   bool fast = false;           // acts within averages of the readings: fitted to all of them
   bool per_recording = false;  // has another value after every switching on
   // By how much a fitted disturbance changes the platform's inertia, of which there is a limit to
-  // what can be believed; null: not at all.
+  // what is credible; null: not at all.
   Mat3 (*inertia_change_kg_m2)(const Disturbance&) = nullptr;
   std::optional<LeastSum> least_sum = {};
   std::vector<Likeness> alike = {};

@@ -65,8 +65,8 @@ Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observa
             const std::vector<RunStart>& starts, const FitSettings& settings = {});
 
 // The same trial from where another on the same runs ended: its starts, and its values of all that
-// the two share. Of a long run that tumbles a fit may end in one of many valleys; what others found
-// is a second chance.
+// the two share. Of a long run that tumbles a fit may end in one of many local minima; what others
+// found is a second chance.
 Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
                  const std::vector<Observation>& runs, const FitSettings& settings = {});
 

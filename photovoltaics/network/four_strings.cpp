@@ -167,8 +167,8 @@ void FourStrings::add_blocking(Point& at, const Quad& current_A) const {
   const Quad forward_A = max(current_A, Quad{});
   const Quad ohm = blocking_scale_V_ / (forward_A + blocking_saturation_A_);
   const Quad bend = ohm * ohm / blocking_scale_V_;
-  at.voltage_V -=
-      blocking_scale_V_ * log(1.0 + forward_A / blocking_saturation_A_) + forward_A * blocking_ohm_;
+  const Quad junction_V = blocking_scale_V_ * log(1.0 + forward_A / blocking_saturation_A_);
+  at.voltage_V -= multiply_add(forward_A, blocking_ohm_, junction_V);
   at.resistance += {ohm + blocking_ohm_, bend, -(2.0 * bend * ohm / blocking_scale_V_)};
 }
 

@@ -8,7 +8,6 @@
 #include "core/errors.h"
 #include "core/numerics/monotone_cubic.h"
 #include "core/numerics/quadrature.h"
-#include "core/numerics/root.h"
 
 namespace photorque {
 namespace {
@@ -39,16 +38,23 @@ class FluxOutside {
     return outside_[j + 1] + integral(rise, edge(j + 1));
   }
 
-  // The rise outside which `flux` ∈ (0, total) lies, to rounding.
+  // The rise outside which `flux` ∈ (0, total) lies, to rounding: Newton's method, kept inside the
+  // panel by bisection. newton_root() would bisect once more where steps no longer shrink because
+  // they are rounding, and end a few bits further off.
   double inverse(double flux) const {
     const auto below = std::lower_bound(outside_.rbegin(), outside_.rend(), flux);
     const auto j = std::min<size_t>(static_cast<size_t>(outside_.rend() - below) - 1, panels - 1);
-    return newton_root(edge(j), edge(j + 1), 0.5 * (edge(j) + edge(j + 1)), 0.0, [&](double rise) {
+    double low = edge(j), high = edge(j + 1);
+    double rise = 0.5 * (low + high);
+    for (int step = 0; step < 60; ++step) {
       const double excess = outside_[j + 1] + integral(rise, edge(j + 1)) - flux;
-      const double length = excess / intensity(rise);
-      const bool exact = std::abs(excess) <= 1e-14 * flux || std::abs(length) <= 4e-16 * rise;
-      return NewtonStep{excess > 0.0, exact ? 0.0 : length};
-    });
+      if (std::abs(excess) <= 1e-14 * flux) break;
+      (excess > 0.0 ? low : high) = rise;
+      const double newton = rise + excess / intensity(rise);
+      if (std::abs(newton - rise) <= 4e-16 * rise) break;
+      rise = newton > low && newton < high ? newton : 0.5 * (low + high);
+    }
+    return rise;
   }
 
  private:

@@ -91,6 +91,66 @@ TEST(Rooms, ThePageDrawsEveryIncludeAndNoOther) {
   }
 }
 
+// The drawing's arrows `A, B ──> C`, each from every folder on its left to every one on its right.
+// A line that begins with a branch continues the first folder of the drawing.
+std::set<std::pair<std::string, std::string>> arrows_of_the_page() {
+  static const std::regex name(R"([a-z]+)");
+  const std::string page = text_of(root / "ARCHITECTURE.md");
+  const size_t begin = page.find("```\n") + 4;
+  std::istringstream drawing(page.substr(begin, page.find("\n```", begin) - begin));
+  std::set<std::pair<std::string, std::string>> arrows;
+  std::set<std::string> first;
+  for (std::string line; std::getline(drawing, line);) {
+    std::set<std::string> left = first;
+    for (size_t at = 0; at != std::string::npos;) {
+      const size_t next = line.find("──>", at);
+      const std::string segment = line.substr(at, next - at);
+      std::set<std::string> names;
+      for (std::sregex_iterator it(segment.begin(), segment.end(), name), end; it != end; ++it) {
+        names.insert(it->str());
+      }
+      if (first.empty()) first = names;
+      for (const std::string& from : left) {
+        for (const std::string& to : names) {
+          if (from != to) arrows.emplace(from, to);
+        }
+      }
+      if (!names.empty()) left = names;
+      at = next == std::string::npos ? next : next + std::string("──>").size();
+    }
+  }
+  return arrows;
+}
+
+TEST(Rooms, TheDrawingShowsEveryIncludeAndNoOther) {
+  const auto top = [](const std::string& room) { return room.substr(0, room.find('/')); };
+  std::set<std::pair<std::string, std::string>> includes;
+  for (const auto& [room, others] : rooms_of_the_sources()) {
+    for (const std::string& other : others) {
+      if (top(other) != top(room)) includes.emplace(top(room), top(other));
+    }
+  }
+  auto reach = arrows_of_the_page();
+  EXPECT_GE(reach.size(), 10u);
+  for (const auto& [from, to] : reach) {
+    if (to == "core") continue;  // open to all
+    EXPECT_TRUE(includes.contains({from, to})) << "nothing in " << from << " includes " << to;
+  }
+  for (size_t before = 0; before != reach.size();) {
+    before = reach.size();
+    const auto known = reach;
+    for (const auto& [from, over] : known) {
+      for (const auto& [start, to] : known) {
+        if (start == over) reach.emplace(from, to);
+      }
+    }
+  }
+  for (const auto& [from, to] : includes) {
+    if (to == "core") continue;
+    EXPECT_TRUE(reach.contains({from, to})) << from << " includes " << to << " against the drawing";
+  }
+}
+
 TEST(Rooms, IncludesNeverRunInACircle) {
   auto left = rooms_of_the_sources();
   while (!left.empty()) {

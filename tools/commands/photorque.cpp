@@ -84,7 +84,9 @@ int run(int argc, char** argv) {
           ->allow_extra_args(false);
     }
     if (verb.takes_holdouts) {
-      command->add_option("--holdout", line.holdouts, "A recording held out: never fitted, it judges the finding; as above")
+      command
+          ->add_option("--holdout", line.holdouts,
+                       "A recording held out: never fitted, it judges the finding; as above")
           ->allow_extra_args(false);
     }
     if (verb.takes_cases) {
@@ -101,9 +103,9 @@ int run(int argc, char** argv) {
     std::set<std::string> known;
     for (const Verb& verb : verbs) known.insert(verb.name);
     if (!known.contains(argv[1])) {
-      const std::string weak_evidence = nearest(argv[1], known);
+      const std::string likest = nearest(argv[1], known);
       std::fprintf(stderr, "photorque: unknown command \"%s\"%s (see photorque --help)\n", argv[1],
-                   weak_evidence.empty() ? "" : (", perhaps \"" + weak_evidence + "\"").c_str());
+                   likest.empty() ? "" : (", perhaps \"" + likest + "\"").c_str());
       return 2;
     }
   }

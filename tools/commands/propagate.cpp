@@ -55,7 +55,7 @@ void run_propagate(const CommandLine& line) {
   PropagationRun run = read_propagation(experiment.settings());
   if (line.seed) run.seed = *line.seed;
   const Provenance provenance = experiment.provenance(run.seed);
-  const PropagationResult result = propagate(run, console.progress("flying"));
+  const PropagationResult result = propagate(run, console.progress("propagating"));
   console.done();
   print_run(console, run, result);
   write_trajectory(line.out_folder(), run, result, provenance, line.experiment.stem().string());

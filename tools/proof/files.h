@@ -1,4 +1,4 @@
-// An injected case as files: what the laboratory believes, what it recorded, and the truth.
+// An injected case as files: the nominal model, what was recorded, and the truth.
 #pragma once
 
 #include <filesystem>

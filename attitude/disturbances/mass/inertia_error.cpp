@@ -66,7 +66,7 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 
 DisturbanceKind inertia_error_kind() {
   return {.name = "inertia_error",
-          .summary = "the moments or products of inertia are not those believed",
+          .summary = "the moments or products of inertia are not those stated",
           .read = read,
           .screening = {.parametrisations =
                             {{"the moments or products of inertia differ from those believed",
