@@ -1,7 +1,7 @@
 #include "core/product.h"
+#include "core/errors.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace photorque {
 namespace {
@@ -13,8 +13,8 @@ auto* column_in(T& table, std::string_view name) {
   return found == table.columns.end() ? nullptr : &*found;
 }
 
-std::logic_error fault(const Table& table, std::string_view column, const std::string& what) {
-  return std::logic_error("table " + table.name + ", column " + std::string(column) + ": " + what);
+NumericalError fault(const Table& table, std::string_view column, const std::string& what) {
+  return NumericalError("table " + table.name + ", column " + std::string(column) + ": " + what);
 }
 
 Table& append(Table& table, Table::Column column) {

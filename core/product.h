@@ -50,12 +50,12 @@ struct Table {
   static Table of(std::string name, std::string title,
                   const std::vector<std::string>& column_names = {});
 
-  // Appended behind the others. std::logic_error for a name that is taken or, except in the first
+  // Appended behind the others. NumericalError for a name that is taken or, except in the first
   // column, another length than the first column's.
   Table& add(std::string column_name, std::vector<double> values);
   Table& add(std::string column_name, std::vector<std::string> texts);
 
-  // One line of the table, to be filled in column by column. std::logic_error for a column that the
+  // One line of the table, to be filled in column by column. NumericalError for a column that the
   // table does not have and for one that is set twice or was left out of an earlier row.
   class Row {
    public:
@@ -73,7 +73,7 @@ struct Table {
   // A new last row.
   Row row();
 
-  // std::logic_error if there is none of this name.
+  // NumericalError if there is none of this name.
   const Column& column(std::string_view column_name) const;
   Column& column(std::string_view column_name);
 };

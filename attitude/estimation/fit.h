@@ -1,4 +1,4 @@
-// A hypothesis fitted to recordings by the program's one estimator (inference/fit.h).
+// A hypothesis fitted to recordings by the program's one estimator (inference/estimator/fit.h).
 #pragma once
 
 #include <vector>

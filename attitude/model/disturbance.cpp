@@ -1,6 +1,5 @@
 #include "attitude/model/disturbance.h"
-
-#include <stdexcept>
+#include "core/errors.h"
 
 namespace photorque {
 namespace {
@@ -93,7 +92,7 @@ PlacedParameters fixed_parameter(const std::string& key, std::span<const double>
 
 void append(Parameters& parameters, const PlacedParameters& group) {
   if (static_cast<size_t>(group.first) != parameters.size()) {
-    throw std::logic_error("a law looks for " + group.parameters.front().key + " elsewhere");
+    throw NumericalError("a law looks for " + group.parameters.front().key + " elsewhere");
   }
   parameters.insert(parameters.end(), group.parameters.begin(), group.parameters.end());
 }

@@ -303,7 +303,7 @@ std::filesystem::path file_of(const Settings& settings, const std::string& key);
 PlacedParameters fixed_parameter(const std::string& key, std::span<const double> values_SI,
                                  int first = 0);
 
-// `parameters` and those of `group` behind them; std::logic_error where the law looks for them
+// `parameters` and those of `group` behind them; NumericalError where the law looks for them
 // elsewhere.
 void append(Parameters& parameters, const PlacedParameters& group);
 

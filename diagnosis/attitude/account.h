@@ -1,7 +1,7 @@
 // Puts what was found into words and numbers for the reader of a diagnosis.
 #pragma once
 
-#include "diagnosis/attitude/trial.h"
+#include "diagnosis/attitude/effects/trial.h"
 #include "diagnosis/diagnosis.h"
 #include "inference/decide.h"
 

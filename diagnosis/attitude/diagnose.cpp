@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "attitude/estimation/conventions.h"
+#include "attitude/estimation/noise.h"
 #include "attitude/estimation/nominal_model.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/account.h"
@@ -12,7 +13,6 @@
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/locate.h"
 #include "diagnosis/attitude/manoeuvre.h"
-#include "diagnosis/attitude/noise.h"
 #include "diagnosis/attitude/recorded_data.h"
 #include "inference/decide.h"
 #include "inference/search.h"

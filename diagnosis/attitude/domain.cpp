@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "attitude/estimation/averaging.h"
+#include "attitude/estimation/noise.h"
 #include "core/parallel.h"
+#include "diagnosis/attitude/effects/screen.h"
 #include "diagnosis/attitude/holdout.h"
-#include "diagnosis/attitude/noise.h"
-#include "diagnosis/attitude/screen.h"
 
 namespace photorque {
 namespace {

@@ -1,7 +1,7 @@
 // What a fitted empirical law says, as numbers against its variable.
 #pragma once
 
-#include "diagnosis/attitude/trial.h"
+#include "diagnosis/attitude/effects/trial.h"
 #include "diagnosis/diagnosis.h"
 
 namespace photorque {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "attitude/estimation/noise.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "diagnosis/attitude/noise.h"
 
 namespace photorque {
 namespace {

@@ -1,7 +1,7 @@
 // Prediction of recordings that were never fitted.
 #pragma once
 
-#include "diagnosis/attitude/trial.h"
+#include "diagnosis/attitude/effects/trial.h"
 #include "diagnosis/diagnosis.h"
 
 namespace photorque {

@@ -2,7 +2,7 @@
 // on.
 #pragma once
 
-#include "diagnosis/attitude/trial.h"
+#include "diagnosis/attitude/effects/trial.h"
 #include "diagnosis/diagnosis.h"
 
 namespace photorque {

@@ -1,7 +1,7 @@
 // Experiments that would tell apart what the recordings cannot.
 #pragma once
 
-#include "diagnosis/attitude/trial.h"
+#include "diagnosis/attitude/effects/trial.h"
 #include "diagnosis/diagnosis.h"
 #include "inference/decide.h"
 

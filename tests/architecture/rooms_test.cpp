@@ -259,15 +259,18 @@ TEST(Rooms, NoGlobalVariables) {
 // Two classes of one name in one program are undefined behaviour that linkers do not report.
 TEST(Rooms, TypesOfHeadersHaveDistinctNames) {
   static const std::regex type(R"(\n(struct|class|enum class) ([A-Z]\w+)\b(?!::)[^;\n]*\{)");
+  static const std::regex space(R"(\nnamespace ([a-z:]+) \{)");
   std::map<std::string, fs::path> first;
   for (const std::string& folder : top_folders) {
     for (const fs::path& file : sources_of(folder)) {
       if (file.extension() != ".h") continue;
       const std::string code = code_of(file);
+      std::smatch in;
+      const std::string scope = std::regex_search(code, in, space) ? in[1].str() + "::" : "";
       for (std::sregex_iterator it(code.begin(), code.end(), type), end; it != end; ++it) {
-        const auto [place, is_new] = first.try_emplace((*it)[2], file);
+        const auto [place, is_new] = first.try_emplace(scope + (*it)[2].str(), file);
         EXPECT_TRUE(is_new || place->second == file)
-            << (*it)[2] << " in " << place->second << " and " << file;
+            << scope << (*it)[2] << " in " << place->second << " and " << file;
       }
     }
   }

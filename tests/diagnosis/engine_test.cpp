@@ -7,11 +7,11 @@
 #include <functional>
 #include <random>
 
-#include "diagnosis/attitude/diagnose.h"
 #include "attitude/estimation/nominal_model.h"
-#include "diagnosis/attitude/scan.h"
-#include "diagnosis/attitude/screen.h"
-#include "diagnosis/attitude/trial.h"
+#include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/attitude/effects/screen.h"
+#include "diagnosis/attitude/effects/trial.h"
+#include "diagnosis/attitude/scans/scan.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 
 namespace photorque {

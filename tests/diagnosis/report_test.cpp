@@ -16,6 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+using testing::Pointwise;
 
 // In place of a drawing engine: what a chart says in words.
 std::string words_of(const Plot& plot) {
@@ -96,11 +97,12 @@ TEST(ReportCharts, PutReadingsAboveResidualsAndShadeWhatWasHeldOut) {
   const ChannelSeries& channel = recording.channels.at(0);
   const Plot plot = channel_plot(channel, recording);
   ASSERT_EQ(plot.curves.size(), 3u);
-  EXPECT_EQ(plot.curves[0].y, channel.measured);
+  EXPECT_THAT(plot.curves[0].y, Pointwise(testing::NanSensitiveDoubleEq(), channel.measured));
   EXPECT_TRUE(plot.curves[0].dots);
   EXPECT_TRUE(plot.curves[1].dashed);
   ASSERT_EQ(plot.below.size(), 1u);
-  EXPECT_EQ(plot.below[0].curves.at(1).y, channel.residual_after);
+  EXPECT_THAT(plot.below[0].curves.at(1).y,
+              Pointwise(testing::NanSensitiveDoubleEq(), channel.residual_after));
   EXPECT_EQ(plot.below[0].levels, (std::vector<double>{-2.0 * channel.noise, 2.0 * channel.noise}));
   ASSERT_EQ(plot.shaded.size(), recording.held_out_s.size());
   EXPECT_EQ(plot.shaded[0].to, recording.held_out_s[0].to);

@@ -6,7 +6,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
-#include <random>
 #include <unsupported/Eigen/NonLinearOptimization>
 #ifdef PHOTORQUE_HAS_CERES
 #include <ceres/ceres.h>
@@ -16,12 +15,24 @@
 #include "attitude/estimation/forward_model.h"
 #include "attitude/estimation/nominal_model.h"
 #include "core/constants.h"
+#include "core/numerics/random.h"
 #include "inference/estimator/fit.h"
 #include "inference/estimator/residual_model.h"
 #include "tools/benchmarks/nist_strd.h"
 
 namespace photorque {
 namespace {
+
+// Standard normal numbers one after the other (G. E. P. Box, M. E. Muller, Ann. Math. Stat. 29,
+// 610).
+struct NormalNumbers {
+  uint64_t seed, count = 0;
+  double operator()() {
+    const uint64_t at = count++;
+    return std::sqrt(-2.0 * std::log(unit_interval(hash_words(seed, at, 0)))) *
+           std::cos(2.0 * std::numbers::pi * unit_interval(hash_words(seed, at, 1)));
+  }
+};
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
@@ -80,12 +91,11 @@ NistProblem diode() {
   };
   const VectorXd truth =
       numbers_of({0.76, std::log(3.2e-7), std::log(0.0385), std::log(0.036), std::log(0.0186)});
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
+  NormalNumbers normal{1};
   VectorXd slopes(5);
   for (int i = 0; i < 60; ++i) {
     p.x.push_back(0.0098 * i);
-    p.y.push_back(p.model(p.x.back(), truth, slopes) + 0.76e-3 * normal(random));
+    p.y.push_back(p.model(p.x.back(), truth, slopes) + 0.76e-3 * normal());
   }
   p.starts = {numbers_of(
       {0.7, std::log(0.7) - 22.0, std::log(0.57 / 22.0), std::log(0.015), std::log(0.0125)})};
@@ -147,16 +157,15 @@ struct Tabletop {
     for (int i = 0; i < 3000; ++i) times_s.push_back(0.2 * i);
     const PlatformState initial = dynamics.initial_state({0.01, -0.01, 0.1});
     const Trajectory truth = propagate(dynamics, initial, times_s, {.tolerance = 1e-10});
-    std::mt19937_64 random(2);
-    std::normal_distribution<double> normal;
+    NormalNumbers normal{2};
     Observation seen;
     seen.has_gyro = true;
     for (size_t i = 0; i < times_s.size(); ++i) {
       const PlatformState& state = truth.states[i];
       Vec3 turn, rate = state.rate_body_rad_s + Vec3(1e-3, -5e-4, 2e-4);
       for (int k = 0; k < 3; ++k) {
-        turn[k] = seen.noise.camera_rad[k] * normal(random);
-        rate[k] += seen.noise.gyro_rad_s[k] * normal(random);
+        turn[k] = seen.noise.camera_rad[k] * normal();
+        rate[k] += seen.noise.gyro_rad_s[k] * normal();
       }
       seen.time_s.push_back(times_s[i]);
       seen.attitude.push_back(Quat(Eigen::AngleAxisd(turn.norm(), turn.normalized())) *

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/scan.h"
+#include "diagnosis/attitude/scans/scan.h"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -10,9 +10,9 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "diagnosis/attitude/flexible_mode_scan.h"
-#include "diagnosis/attitude/scan_parts.h"
-#include "diagnosis/attitude/screen.h"
+#include "diagnosis/attitude/effects/screen.h"
+#include "diagnosis/attitude/scans/flexible_mode.h"
+#include "diagnosis/attitude/scans/parts.h"
 
 namespace photorque {
 namespace {

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/screen.h"
+#include "diagnosis/attitude/effects/screen.h"
 
 #include <cmath>
 

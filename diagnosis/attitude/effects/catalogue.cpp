@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/catalogue.h"
+#include "diagnosis/attitude/effects/catalogue.h"
 
 namespace photorque {
 namespace {

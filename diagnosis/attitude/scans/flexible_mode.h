@@ -1,7 +1,7 @@
 // Starts for an appendage that swings: its frequency and axis.
 #pragma once
 
-#include "diagnosis/attitude/scan.h"
+#include "diagnosis/attitude/scans/scan.h"
 
 namespace photorque {
 

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/noise.h"
+#include "attitude/estimation/noise.h"
 
 #include <cmath>
 

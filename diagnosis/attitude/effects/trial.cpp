@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/trial.h"
+#include "diagnosis/attitude/effects/trial.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -1,12 +1,12 @@
-#include "diagnosis/attitude/flexible_mode_scan.h"
+#include "diagnosis/attitude/scans/flexible_mode.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/attitude/noise.h"
-#include "diagnosis/attitude/ringing.h"
-#include "diagnosis/attitude/scan_parts.h"
+#include "attitude/estimation/noise.h"
+#include "diagnosis/attitude/scans/parts.h"
+#include "diagnosis/attitude/scans/ringing.h"
 
 namespace photorque {
 namespace {

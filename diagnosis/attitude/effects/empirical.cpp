@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/empirical.h"
+#include "diagnosis/attitude/effects/empirical.h"
 
 #include "core/constants.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "diagnosis/attitude/trial.h"
+#include "diagnosis/attitude/effects/trial.h"
 
 namespace photorque {
 

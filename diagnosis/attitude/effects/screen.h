@@ -1,4 +1,4 @@
-// Score tests (inference/score.h) of disturbances that a model does not have yet.
+// Score tests (inference/estimator/score.h) of disturbances that a model does not have yet.
 #pragma once
 
 #include "attitude/estimation/fit.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "attitude/estimation/fit.h"
-#include "diagnosis/attitude/catalogue.h"
-#include "diagnosis/attitude/empirical.h"
+#include "diagnosis/attitude/effects/catalogue.h"
+#include "diagnosis/attitude/effects/empirical.h"
 #include "inference/domain.h"
 
 namespace photorque {

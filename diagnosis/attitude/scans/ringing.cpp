@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/ringing.h"
+#include "diagnosis/attitude/scans/ringing.h"
 
 #include <algorithm>
 #include <cmath>

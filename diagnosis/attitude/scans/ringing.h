@@ -3,7 +3,7 @@
 #pragma once
 
 #include "attitude/estimation/prediction.h"
-#include "diagnosis/attitude/screen.h"
+#include "diagnosis/attitude/effects/screen.h"
 
 namespace photorque {
 
