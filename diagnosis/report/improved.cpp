@@ -92,7 +92,8 @@ std::string improved_experiment(const std::string& text, const Diagnosis& diagno
   for (const FoundEffect& effect : diagnosis.effects) improved += effect_text(effect);
   for (const EmpiricalTorque& torque : diagnosis.empirical) improved += empirical_text(torque);
   if (!diagnosis.priors_refined.empty()) {
-    improved += "\n" + comment("The same recordings narrow the uncertain numbers of the nominal model to:");
+    improved +=
+        "\n" + comment("The same recordings narrow the uncertain numbers of the nominal model to:");
   }
   for (const FittedParameter& p : diagnosis.priors_refined) {
     improved += comment("  " + p.key + " = " + value_text(p));

@@ -22,8 +22,8 @@ class LimbDarkening {
 
   // The mean of cos θ over the light.
   double mean_cosine() const { return mean_cosine_; }
-  // 1 − cos θ of the cone about the middle that holds `fraction` ∈ [0, 1] of the light. To 1e-6 of the
-  // disc's.
+  // 1 − cos θ of the cone about the middle that holds `fraction` ∈ [0, 1] of the light. To 1e-6 of
+  // the disc's.
   double rise_within(double fraction) const;
 
   // Circles about the middle, rising to the disc's edge, between which L is a smooth function of

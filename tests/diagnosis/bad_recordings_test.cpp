@@ -3,9 +3,9 @@
 
 #include <fstream>
 
+#include "attitude/estimation/observation.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
-#include "attitude/estimation/observation.h"
 
 namespace photorque {
 namespace {

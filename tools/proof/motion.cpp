@@ -207,7 +207,8 @@ std::vector<InjectedContext> injected_motion(const InjectedWorld& world,
       ++stop;
     }
     if (time_s > t) advance_to(time_s);
-    if (!std::isfinite(y[4])) throw NumericalError("the motion under the injected effects diverges");
+    if (!std::isfinite(y[4]))
+      throw NumericalError("the motion under the injected effects diverges");
     moments.push_back(equations.read(t, y));
   }
   return moments;
