@@ -1,7 +1,8 @@
 #include "core/product.h"
-#include "core/errors.h"
 
 #include <algorithm>
+
+#include "core/errors.h"
 
 namespace photorque {
 namespace {
@@ -57,12 +58,16 @@ Table::Column& Table::Row::cell_column(std::string_view column_name) const {
 }
 
 Table::Row& Table::Row::set(std::string_view column_name, double value) {
-  cell_column(column_name).values.push_back(value);
+  Column& column = cell_column(column_name);
+  if (!column.texts.empty()) throw fault(*table_, column_name, "a number among texts");
+  column.values.push_back(value);
   return *this;
 }
 
 Table::Row& Table::Row::set(std::string_view column_name, std::string text) {
-  cell_column(column_name).texts.push_back(std::move(text));
+  Column& column = cell_column(column_name);
+  if (!column.values.empty()) throw fault(*table_, column_name, "a text among numbers");
+  column.texts.push_back(std::move(text));
   return *this;
 }
 

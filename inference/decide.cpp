@@ -115,7 +115,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   const auto names = judge.names_of(named);
   d.confidence =
       probability_of(d.probability, [&](size_t i) { return judge.names_of(i) == names; });
-  d.undecided = d.confidence < limits.min_fraction_of_weak_evidence &&
+  d.undecided = d.confidence < limits.min_confidence_of_weak_name &&
                 !judge.is_significant(named, trials[named].significance);
   if (d.undecided) {
     d.confidence = 1.0 - d.confidence;

@@ -151,8 +151,8 @@ struct Thresholds {
     double min_log_odds = 4.5;
     // Significance of every named effect [sigma].
     double min_significance = 4.0;
-    // Of the probability, for a name that only the recordings and what was held out show together.
-    double min_fraction_of_weak_evidence = 0.7;
+    // Confidence, for a name that only the recordings and what was held out show together.
+    double min_confidence_of_weak_name = 0.7;
     // Residual structure [sigma], before the best physics is called insufficient; and the
     // confidence, at least, that something unknown acts then.
     double max_excess_sigma = 6.0, structure_confidence = 0.95;

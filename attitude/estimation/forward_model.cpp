@@ -5,24 +5,26 @@
 
 #include "attitude/estimation/prediction.h"
 #include "core/errors.h"
+#include "inference/thresholds.h"
 
 namespace photorque {
 namespace {
 
 // An appendage begins near rest against the body, to within these.
-constexpr double extra_state_sigma = 0.01;
+constexpr double extra_state_sigma = Thresholds::Evidence{}.own_state_sigma;
 
 // A sinusoid of no amplitude yet does not show in the error by which the propagator chooses its
 // steps, but its slopes have to be resolved: a step is no longer than its period, to 3e-4 of them.
 double max_step_s(const AttitudeModel& model) {
-  double max_time_s = inference::infinity;
+  double shortest_period_s = inference::infinity;
   for (const Disturbance& d : model.disturbances) {
     for (const Parameter& p : d.parameters) {
-      if (p.key == "frequency_Hz" && p.value > 0.0)
-        max_time_s = std::min(max_time_s, 1.0 / p.value);
+      if (p.key == "frequency_Hz" && p.value > 0.0) {
+        shortest_period_s = std::min(shortest_period_s, 1.0 / p.value);
+      }
     }
   }
-  return max_time_s;
+  return shortest_period_s;
 }
 
 std::vector<Variable> variables_of(const Hypothesis& h, const std::vector<Free>& extra) {

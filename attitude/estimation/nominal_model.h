@@ -1,4 +1,4 @@
-// the nominal model of the platform, ready to be fitted.
+// The nominal model of the platform, ready to be fitted.
 #pragma once
 
 #include <vector>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -41,13 +42,14 @@ void make_direction(FittedParameter& axis, const Eigen::Matrix3d& covariance) {
   const Mat3 error = across * covariance * across / (length * length);
   for (int k = 0; k < 3; ++k) {
     axis.value[static_cast<size_t>(k)] = unit[k];
-    axis.sigma[static_cast<size_t>(k)] = std::sqrt(std::max(0.0, error(k, k)));
+    axis.sigma[static_cast<size_t>(k)] =
+        error(k, k) >= 0.0 ? std::sqrt(error(k, k)) : std::numeric_limits<double>::infinity();
   }
 }
 
 // Values and standard errors of one disturbance by key, in the keys' units.
 std::vector<FittedParameter> parameters_of(const Trial& t, size_t disturbance) {
-  const Eigen::MatrixXd covariance = t.fit.shared_covariance();
+  const Eigen::MatrixXd covariance = t.fit.shared_posterior();
   const auto& parameters = t.fit.best.model.disturbances[disturbance].parameters;
   std::vector<FittedParameter> result;
   for (size_t p = 0; p < parameters.size(); ++p) {

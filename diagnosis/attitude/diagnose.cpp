@@ -26,7 +26,7 @@ namespace {
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
   Fit fitted = fit_nominal(nominal, data.train, limits);
   if (!std::isfinite(fitted.chi2)) {
-    throw NumericalError("the believed model cannot be propagated along the recording");
+    throw NumericalError("the nominal model cannot be propagated along the recording");
   }
   const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
   data.outliers = drop_outliers(residuals, limits.noise, data.train);
@@ -64,7 +64,7 @@ Answer explain(const NominalModel& nominal, const Fit& nominal_fit, const Record
   a.trials = inference::search(domain, nominal_trial(nominal_fit, a.all), data.train,
                                {options.threads, options.max_effects});
   a.depends_on = dependences(a.trials, a.all);
-  tell(options, "comparing with what was held back");
+  tell(options, "comparing with what was held out");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
   const auto excess = [&](size_t trial) {
     return domain.excess_sigma(a.trials[trial], data.train);
@@ -134,7 +134,7 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   }
   if (decision.undecided) {
     warnings.push_back(
-        "the recordings and what was held back show together what neither shows alone, but not "
+        "the recordings and what was held out show together what neither shows alone, but not "
         "which effect it is: see the alternatives");
   }
   return warnings;
@@ -161,7 +161,7 @@ Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording
                    const std::vector<NamedRecording>& holdouts, const DiagnoseOptions& options) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
   RecordedData data = read_data(nominal, recordings, holdouts, options);
-  tell(options, "fitting what is believed");
+  tell(options, "fitting the nominal model");
   const Fit nominal_fit = settle(nominal, options.limits, data);
   const Answer answer = explain(nominal, nominal_fit, data, options);
   Diagnosis d;

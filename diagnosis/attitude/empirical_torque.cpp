@@ -82,7 +82,7 @@ EmpiricalTorque torque_of(const Trial& chosen, size_t which, const Candidate& ca
     coefficients[k] = parameters[static_cast<size_t>(k)].value;
   }
   const std::vector<Eigen::Index> where = shared_indices(chosen, which);
-  const Eigen::MatrixXd covariance = chosen.fit.shared_covariance()(where, where);
+  const Eigen::MatrixXd covariance = chosen.fit.shared_posterior()(where, where);
   for (size_t bin = 0; bin < torque_bins; ++bin) {
     if (samples[bin] == 0.0) continue;
     const Eigen::Matrix3Xd mean = sum[bin] / samples[bin];

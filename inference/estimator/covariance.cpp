@@ -55,7 +55,8 @@ bool Covariance::is_determined(Eigen::Index i) const {
 }
 
 double Covariance::standard_error(Eigen::Index i) const {
-  return std::sqrt(std::max(0.0, matrix(i, i)));
+  const double variance = matrix(i, i);
+  return variance >= 0.0 ? std::sqrt(variance) : infinity;
 }
 
 Covariance covariance_of(const Eigen::MatrixXd& information) {
@@ -80,6 +81,14 @@ Covariance covariance_of(const Eigen::MatrixXd& information) {
   }
   result.matrix = Eigen::MatrixXd(scale.asDiagonal() * result.matrix * scale.asDiagonal());
   return result;
+}
+
+Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale = scale_of(information);
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::MatrixXd inverse =
+      scaled.ldlt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 
 double log_determinant(const Eigen::MatrixXd& A) {

@@ -4,9 +4,9 @@
 // covariance, and half the second derivative of χ². Where neither data nor prior say anything about
 // some combination of parameters, H is singular and that combination has no covariance. The policy
 // of this program is one: every parameter that takes part in such a combination is UNDETERMINED. It
-// is named, its standard error is infinite, and its value is where the fit began. It never gets an
-// error of zero, nor a large number that a reader might take for a measurement; all others get
-// their marginal covariance, whatever the undetermined ones may be.
+// is named, its standard error is infinite, and along that combination it stays where the fit
+// began. It never gets an error of zero, nor a large number that a reader might take for a
+// measurement; all others get their marginal covariance, whatever the undetermined ones may be.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,6 +27,10 @@ struct Covariance {
 // is below 1e-14 of that per parameter: what is left there is rounding of the sums. (In terms of
 // the singular values of J, 1e-7.)
 Covariance covariance_of(const Eigen::MatrixXd& information);
+
+// The inverse of the information as it stands, for problems whose priors make it positive definite:
+// always finite, and large where a prior alone holds a combination.
+Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information);
 
 // ln |A| of a positive definite matrix whose rows have different units. What rounding has made
 // smaller than 1e-12 of the diagonal counts as that.

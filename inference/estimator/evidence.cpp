@@ -33,6 +33,7 @@ double log_strength_evidence(const Strengths& s, const Eigen::MatrixXd& covarian
       C(a, b) = covariance(s.at[i], s.at[j]) / (s.scale[i] * s.scale[j]);
     }
   }
+  if (!C.allFinite()) return -1e300;
   const int widths = limits.strength_widths;
   const auto width = [&](int k) {
     return std::pow(10.0, limits.first_log10_width + limits.step_log10_width * k);

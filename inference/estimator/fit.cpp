@@ -104,8 +104,9 @@ class Fitter {
         continue;
       }
       const double predicted_gain = step.dot(2.0 * now.sums.gradient - now.sums.matrix * step);
-      if (predicted_gain <
-          std::max(options_.min_gain, options_.min_gain_fraction * now.sums.chi2)) {
+      // Not "<": a perfect fit has nothing to gain and asks for nothing.
+      if (!(predicted_gain >
+            std::max(options_.min_gain, options_.min_gain_fraction * now.sums.chi2))) {
         if (options_.polish) polish(step, predicted_gain, damping, window);
         return Termination::converged;
       }
@@ -202,6 +203,11 @@ Covariance Fit::shared() const {
     if (i >= first_shared) result.undetermined.push_back(i - first_shared);
   }
   return result;
+}
+
+Eigen::MatrixXd Fit::shared_posterior() const {
+  const Eigen::Index n = hessian.rows() - first_shared;
+  return posterior_of(hessian).bottomRightCorner(n, n);
 }
 
 Fit fit(const ForwardModel& model, const Eigen::VectorXd& start, const Options& options) {

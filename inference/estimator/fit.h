@@ -12,9 +12,10 @@
 //
 // (K. Levenberg 1944; D. Marquardt, J. SIAM 11 (1963) 431) with the matrix scaled to a unit
 // diagonal, so that no result depends on the units of parameters. A step that lowers χ² is taken,
-// and λ falls by ten when χ² fell by more than a quarter of what the step predicted; a step that
-// does not is tried again with ten times λ. A parameter on a bound that the step would leave is
-// held there and the rest solved again.
+// and λ falls by ten when χ² fell by more than a quarter of what the step predicted and grows by
+// three when it fell by less; a step that does not lower χ² is tried again with ten times λ, 1e-4
+// at least. A parameter on a bound that the step would leave is held there and the rest solved
+// again.
 //
 // A window is the first part of every run; windows that grow repair a start that is far off before
 // a long run can diverge from it.
@@ -85,6 +86,8 @@ struct Fit {
   // Of the shared parameters alone, whatever the runs' own may be.
   Covariance shared() const;
   Eigen::MatrixXd shared_covariance() const { return shared().matrix; }
+  // The same where priors hold every parameter: always finite, whatever the data determine.
+  Eigen::MatrixXd shared_posterior() const;
 
   // What a person wants to know of it: a line on how it ended, then every parameter with its error,
   // and whether data, prior, a bound or nothing at all determines it.

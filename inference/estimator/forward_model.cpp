@@ -55,7 +55,9 @@ Evaluation evaluate(const ForwardModel& model, const Eigen::VectorXd& at, const 
       }
     }
   } catch (const NumericalError&) {
-    result.sums.chi2 = infinity;
+    result.sums = {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), infinity, 0};
+    result.run_chi2.clear();
+    result.run_samples.clear();
     return result;
   }
   result.data_chi2 = result.sums.chi2;

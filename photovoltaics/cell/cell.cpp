@@ -93,32 +93,32 @@ DarkCurrent CellCurve::dark(double diode_V) const {
 }
 
 // Each term alone would need at least the voltage at which the sum reaches the current; and one of
-// the terms must carry its equal fraction.
+// the terms carries its equal part of it at least.
 CellCurve::Bracket CellCurve::forward_bracket(double dark_A, double conductance_S) const {
-  const auto smallest = [&](double fraction_A, double linear_S) {
-    return std::min({forward_inverse(fraction_A, parameters_.saturation_1_A, scale_1_V_),
-                     forward_inverse(fraction_A, parameters_.saturation_2_A, scale_2_V_),
-                     fraction_A / linear_S});
+  const auto smallest = [&](double term_A, double linear_S) {
+    return std::min({forward_inverse(term_A, parameters_.saturation_1_A, scale_1_V_),
+                     forward_inverse(term_A, parameters_.saturation_2_A, scale_2_V_),
+                     term_A / linear_S});
   };
   // Forward, the breakdown factor is below 1.
   return {smallest(dark_A / 3.0, conductance_S + breakdown_S_), smallest(dark_A, conductance_S)};
 }
 
 CellCurve::Bracket CellCurve::reverse_bracket(double dark_A, double conductance_S) const {
-  const double size_A = -dark_A, fraction_A = size_A / 4.0, half_V = 0.5 * breakdown_size_V_;
+  const double size_A = -dark_A, term_A = size_A / 4.0, half_V = 0.5 * breakdown_size_V_;
   const double m = parameters_.breakdown_exponent;
   double farthest = size_A / conductance_S;
-  double nearest = std::min({reverse_inverse(fraction_A, parameters_.saturation_1_A, scale_1_V_),
-                             reverse_inverse(fraction_A, parameters_.saturation_2_A, scale_2_V_),
-                             fraction_A / conductance_S});
+  double nearest = std::min({reverse_inverse(term_A, parameters_.saturation_1_A, scale_1_V_),
+                             reverse_inverse(term_A, parameters_.saturation_2_A, scale_2_V_),
+                             term_A / conductance_S});
   if (breakdown_S_ > 0) {
     // Beyond half the breakdown voltage the factor V_d is between V_br/2 and V_br; before it, the
     // power is between 1 and 2^m.
     const double far_y = std::pow(half_V * breakdown_S_ / size_A, 1.0 / m);
     farthest = std::min(farthest, std::max(half_V, breakdown_size_V_ * (1.0 - far_y)));
-    const double near_y = std::pow(breakdown_size_V_ * breakdown_S_ / fraction_A, 1.0 / m);
+    const double near_y = std::pow(breakdown_size_V_ * breakdown_S_ / term_A, 1.0 / m);
     const double near = near_y < 0.5 ? breakdown_size_V_ * (1.0 - near_y)
-                                     : std::min(half_V, fraction_A / (breakdown_S_ * std::exp2(m)));
+                                     : std::min(half_V, term_A / (breakdown_S_ * std::exp2(m)));
     nearest = std::min(nearest, near);
   }
   return {-farthest, -nearest};

@@ -159,6 +159,10 @@ SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
   if (sweeps.empty()) throw InputError({}, "curves", "none", "at least one sweep");
   for (const IvSweep& sweep : sweeps) check_sweep(sweep);
   const inference::Fit best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);
+  if (!std::isfinite(best.chi2)) {
+    throw InputError({}, "curves", "sweeps and noise that no diode fits together",
+                     "sweeps of one lit cell and their noise");
+  }
   SweepFit result;
   const VectorXd& x = best.at;
   result.variance = best.variance();

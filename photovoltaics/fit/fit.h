@@ -3,7 +3,7 @@
 // All fits are of one diode with the whole device as one cell: n V_t stands for n N_s kT/q of N_s
 // cells in series, resistances and voltages are the device's. Standard errors are those of least
 // squares, from the covariance (JᵀJ)⁻¹ times the variance per degree of freedom, so that they rest
-// on the scatter of the data and not on the nominal model about it.
+// on the scatter of the data and not on the noise that was stated.
 #pragma once
 
 #include <span>
@@ -20,7 +20,7 @@ struct IvSweep {
   std::vector<double> voltage_V, current_A;  // of equal length, at least 6 points
 };
 
-// the nominal model of its errors. Both are proportional: to the current with a correlation
+// The noise of a sweep. Both errors are proportional: to the current with a correlation
 // exp(−k/length) over k points (slow drift of the light), and independent to the voltage.
 struct SweepNoise {
   double current_fraction = 1e-3;  // > 0

@@ -55,17 +55,17 @@ class ShadedString {
   std::vector<double> light_A_;
 };
 
-// The current in the middle of each substring's fraction of the voltage is about that substring's.
+// The current in the middle of each substring's part of the voltage is about that substring's.
 VectorXd first_guess(const IvSweep& sweep, int substrings, double knee) {
   const SweepEnds ends = sweep_ends(sweep);
-  const double fraction_V = ends.open_circuit_V / substrings, a = fraction_V / knee;
+  const double substring_V = ends.open_circuit_V / substrings, a = substring_V / knee;
   VectorXd x(Index{first_light} + substrings);
   x << std::log(ends.short_circuit_A) - knee, std::log(a),
-      std::log(0.02 * fraction_V / ends.short_circuit_A),
-      std::log(0.002 * ends.short_circuit_A / fraction_V), std::log(0.5),
+      std::log(0.02 * substring_V / ends.short_circuit_A),
+      std::log(0.002 * ends.short_circuit_A / substring_V), std::log(0.5),
       VectorXd::Zero(substrings);
   for (int k = 0; k < substrings; ++k) {
-    const double middle_V = (k + 0.5) * fraction_V;
+    const double middle_V = (k + 0.5) * substring_V;
     size_t nearest = 0;
     for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
       if (std::abs(sweep.voltage_V[i] - middle_V) < std::abs(sweep.voltage_V[nearest] - middle_V))

@@ -59,11 +59,11 @@ std::optional<ElementPoint> solve_together(std::span<const LitCell> cells, doubl
 ElementPoint solve_nested(std::span<const LitCell> cells, double current_A,
                           std::span<JunctionState> states) {
   // Were the current shared equally, the row's voltage would lie between its cells'.
-  const double fraction_A = current_A / static_cast<double>(cells.size());
+  const double cell_A = current_A / static_cast<double>(cells.size());
   double low_V = std::numeric_limits<double>::infinity(), high_V = -low_V;
   for (const LitCell& cell : cells) {
     JunctionState unused;
-    const double v = cell_at(cell, fraction_A, unused).voltage_V;
+    const double v = cell_at(cell, cell_A, unused).voltage_V;
     low_V = std::min(low_V, v);
     high_V = std::max(high_V, v);
   }

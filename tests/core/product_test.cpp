@@ -1,7 +1,8 @@
 #include "core/product.h"
-#include "core/errors.h"
 
 #include <gtest/gtest.h>
+
+#include "core/errors.h"
 
 namespace photorque {
 namespace {
@@ -20,6 +21,9 @@ TEST(Table, RefusesWhatWouldShiftItsRows) {
   Table table = Table::of("t", "", {"a", "b"});
   EXPECT_THROW(table.row().set("c", 1.0), NumericalError);
   EXPECT_THROW(table.row().set("a", 1.0).set("a", 2.0), NumericalError);
+  Table mixed = Table::of("t", "", {"a"});
+  mixed.row().set("a", 1.0);
+  EXPECT_THROW(mixed.row().set("a", "one"), NumericalError);
   Table left_out = Table::of("t", "", {"a", "b"});
   left_out.row().set("a", 1.0);
   EXPECT_THROW(left_out.row().set("b", 2.0), NumericalError);

@@ -133,6 +133,32 @@ TEST(Undetermined, IsFlaggedAndNeverGetsAnErrorOfZero) {
   EXPECT_NE(again.report().find("by its prior alone"), std::string::npos);
 }
 
+// Data without noise are fitted exactly, and that is the end of the fit, not a failure of it.
+TEST(Fit, OfExactDataConverges) {
+  std::mt19937_64 random(5);
+  LinearRun run{random_matrix(random, 30, 3), {}};
+  run.data = run.design * Eigen::Vector3d(1.0, -2.0, 0.5);
+  const ResidualModel model =
+      linear_model({{{}}, {{"a", "", 0.0}, {"b", "", 0.0}, {"c", "", 0.0}}}, {run});
+  const Fit found = fit(model, model.start(), Options::to_rounding());
+  EXPECT_TRUE(found.converged);
+  EXPECT_NEAR(found.at[1], -2.0, 1e-12);
+}
+
+// Two parameters of which the data know the sum, k (x + y)², held apart by priors of width s alone:
+// along x − y the variance is s². The policy says undetermined; the posterior stays finite.
+TEST(Undetermined, APosteriorThatPriorsHoldIsFinite) {
+  const double s = 1e3, k = 1e14 / (s * s);
+  Eigen::MatrixXd information(2, 2);
+  information << k, k, k, k;
+  information.diagonal().array() += 1.0 / (s * s);
+  EXPECT_EQ(covariance_of(information).undetermined.size(), 2u);
+  EXPECT_TRUE(std::isinf(covariance_of(information).standard_error(0)));
+  // Rounding of a matrix of this condition leaves one digit.
+  const Eigen::MatrixXd posterior = posterior_of(information);
+  EXPECT_NEAR(std::sqrt(posterior(0, 0) / (0.5 * s * s)), 1.0, 0.2);
+}
+
 TEST(Score, IsTheExactGainOfALinearModel) {
   const TwoRuns two(5);
   // Fitted without the last two shared parameters, which the full model frees.

@@ -77,7 +77,7 @@ std::vector<fs::path> make_cases(const ProveSettings& settings, const fs::path& 
   const size_t count = std::min(case_count(settings.plan), settings.max_cases);
   std::vector<fs::path> folders(count);
   std::atomic<size_t> done = 0;
-  const auto progress = console.progress("concealing");
+  const auto progress = console.progress("injecting");
   parallel_for(count, threads, [&](size_t i) {
     char number[16];
     std::snprintf(number, sizeof number, "%04zu", i + 1);
@@ -245,7 +245,7 @@ void run_prove(const CommandLine& line) {
 }  // namespace
 
 Verb prove_verb() {
-  Verb verb{"prove", "Conceal effects in recordings, diagnose them blind, score the answers",
+  Verb verb{"prove", "Inject effects in recordings, diagnose them blind, score the answers",
             run_prove};
   verb.takes_cases = true;
   return verb;

@@ -103,7 +103,7 @@ DisturbanceKind bearing_drag_kind() {
       .summary = "viscous drag of the bearing's air film, linear in the rate",
       .read = read,
       .screening = {.parametrisations = {{"the bearing's viscous drag differs from what is "
-                                          "believed, beyond the uncertainty stated",
+                                          "stated, beyond the uncertainty stated",
                                           {EffectKey::number(coefficient.name, 2e-5)}}},
                     .least_sum = LeastSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
       .injection = {.draw = injected::fixed_size(coefficient.name, 1e-5),

@@ -4,7 +4,7 @@
 // per cell with
 //   electrodes_m[3]: from the lithium's mean place when charged to that when empty, body axes. Half
 //     a cell's length is the paper's upper bound; wound cells shift by orders of magnitude less;
-//   charge_fraction: 1 in series (default), 1/n of n in parallel;
+//   charge_share: 1 in series (default), 1/n of n in parallel;
 // and lithium: "exact" (Faraday, default) or "rounded" (the paper's 0.3 g/Ah).
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/battery.h"

@@ -1,4 +1,4 @@
-// The inertia is not the nominal model: I + δ, about the centre of rotation.
+// The inertia is not the nominal one: I + δ, about the centre of rotation.
 //
 // delta_kg_m2[6]: xx, yy, zz, xy, xz, yz. The whole must remain an inertia.
 #include "attitude/disturbances/kind.h"
@@ -68,13 +68,13 @@ DisturbanceKind inertia_error_kind() {
   return {.name = "inertia_error",
           .summary = "the moments or products of inertia are not those stated",
           .read = read,
-          .screening = {.parametrisations =
-                            {{"the moments or products of inertia differ from those believed",
-                              {{.key = delta.name,
-                                .start = {0, 0, 0, 0, 0, 0},
-                                .scale = 0.03,
-                                .times_inertia = true}}}},
-                        .inertia_change_kg_m2 = inertia_change_kg_m2},
+          .screening =
+              {.parametrisations = {{"the moments or products of inertia differ from those stated",
+                                     {{.key = delta.name,
+                                       .start = {0, 0, 0, 0, 0, 0},
+                                       .scale = 0.03,
+                                       .times_inertia = true}}}},
+               .inertia_change_kg_m2 = inertia_change_kg_m2},
           .injection = {.draw = draw_example,
                         .alter = plain_change,
                         .strength = delta.name,

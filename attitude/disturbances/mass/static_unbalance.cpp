@@ -31,18 +31,17 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 }  // namespace
 
 DisturbanceKind static_unbalance_kind() {
-  return {
-      .name = "static_unbalance",
-      .summary = "the centre of mass does not lie in the centre of rotation",
-      .read = read,
-      .screening =
-          {.parametrisations =
-               {{"the centre of mass lies elsewhere than believed, beyond the uncertainty stated",
-                 {EffectKey::vector(offset.name, 5e-6)}}}},
-      .injection = {.draw = injected::random_direction(offset.name, 1e-6),
-                    .torque = plain_torque,
-                    .strength = offset.name,
-                    .step = 1e-8}};
+  return {.name = "static_unbalance",
+          .summary = "the centre of mass does not lie in the centre of rotation",
+          .read = read,
+          .screening =
+              {.parametrisations =
+                   {{"the centre of mass lies elsewhere than stated, beyond the uncertainty stated",
+                     {EffectKey::vector(offset.name, 5e-6)}}}},
+          .injection = {.draw = injected::random_direction(offset.name, 1e-6),
+                        .torque = plain_torque,
+                        .strength = offset.name,
+                        .step = 1e-8}};
 }
 
 }  // namespace photorque

@@ -84,7 +84,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
     }
   }
   result -= 0.5 * inference::log_determinant(hessian);
-  return result + inference::log_strength_evidence(strengths, fit.shared_covariance(),
+  return result + inference::log_strength_evidence(strengths, fit.shared_posterior(),
                                                    trial.candidates.size(), limits);
 }
 
@@ -125,7 +125,7 @@ std::string sum_objection(const AttitudeModel& model) {
 std::string objection_to(const Trial& trial, const Candidates& all) {
   const Thresholds::Objection& limits = all.limits.objection;
   if (!std::isfinite(trial.fit.chi2)) return "cannot be propagated";
-  const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
+  const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
   for (size_t i = 0; i < trial.candidates.size(); ++i) {
     const Candidate& c = all[trial.candidates[i]];
     const std::vector<Eigen::Index> where = shared_indices(trial, i);
@@ -152,7 +152,7 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
 double significance(const Trial& trial, const Candidates& all, size_t which) {
   const Candidate& c = all[trial.candidates[which]];
   const std::vector<Eigen::Index> where = shared_indices(trial, which);
-  const Eigen::MatrixXd covariance = trial.fit.shared_covariance();
+  const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
   std::vector<std::pair<Eigen::Index, double>> linear;
   size_t k = 0;
   for (size_t p = 0; p < c.scale.size(); ++p) {

@@ -12,9 +12,9 @@
 
 namespace photorque {
 
-// An effect of the catalogue, or an empirical law.
 struct NominalModel;  // attitude/propagation/run.h
 
+// An effect of the catalogue, or an empirical law.
 struct Candidate {
   std::string label;     // "magnetic_dipole", "unknown in heading: 3 periods a turn"
   std::string variable;  // of an empirical law; empty: an effect of the catalogue
