@@ -54,7 +54,8 @@ TEST(PhotovoltaicCell, CurrentAndVoltageAreInverse) {
   const CellCurve cell(reference::cell());
   for (double current_A = -20.0; current_A < 20.0; current_A += 0.37) {
     const double voltage_V = cell.voltage_V(5.0, current_A);
-    EXPECT_NEAR(cell.current_A(5.0, voltage_V), current_A, 1e-12) << voltage_V;
+    // Rounding of the voltage over the slope: 1e-13 of the largest current here.
+    EXPECT_NEAR(cell.current_A(5.0, voltage_V), current_A, 2e-12) << voltage_V;
   }
 }
 
