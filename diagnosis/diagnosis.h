@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/vector.h"
@@ -38,7 +39,7 @@ struct FoundEffect {
 };
 
 // Part of the torque that no known law explains, fitted without a law as a function of one
-// variable.
+// variable, or of two.
 struct EmpiricalTorque {
   std::string variable;                  // "heading", "tilt", "rate", "time", …
   std::string unit;                      // of `at`: "deg", "rad/s", "s", …
@@ -46,6 +47,14 @@ struct EmpiricalTorque {
   std::vector<double> at;                // rises
   std::vector<Vec3> torque_N_m;          // at each
   std::vector<Vec3> standard_error_N_m;  // of each; empty: unknown
+  // The law with its constants and their errors, "T = (4.4 ± 0.1)e-06 N m cos(3 ψ − 95°) about the
+  // vertical"; empty where no short one does it.
+  std::string formula = {};
+  std::string looks_like = {};  // physics that commonly looks like this
+  // The law as a disturbance of the kind empirical_torque: keys with their values in TOML, and
+  // those that were fitted.
+  std::vector<std::pair<std::string, std::string>> shape = {};
+  std::vector<FittedParameter> parameters = {};
 };
 
 // Where recording and nominal model part.
@@ -139,6 +148,9 @@ struct Diagnosis {
   Where where;
   std::vector<FoundEffect> effects;
   std::vector<EmpiricalTorque> empirical;
+  // Effects that the model reported contains beside these without being named: it predicts what it
+  // does only with them.
+  std::vector<FoundEffect> unnamed = {};
   double chi2_per_sample_before = 0.0;
   double chi2_per_sample_after = 0.0;
   int64_t samples = 0;  // numbers that were fitted

@@ -47,8 +47,29 @@ void make_direction(FittedParameter& axis, const Eigen::Matrix3d& covariance) {
   }
 }
 
-// Values and standard errors of one disturbance by key, in the keys' units.
-std::vector<FittedParameter> parameters_of(const Trial& t, size_t disturbance) {
+// Kinds that stand in for `kind` in an equally good trial that is otherwise the same.
+std::vector<std::string> rivals(const std::string& kind, const Trial& chosen,
+                                const std::vector<Trial>& trials, const Candidates& all) {
+  std::vector<std::string> others = kinds_of(chosen, all);
+  others.erase(std::find(others.begin(), others.end(), kind));
+  std::set<std::string> result;
+  for (const Trial& t : trials) {
+    if (!t.objection.empty() || t.candidates.size() != chosen.candidates.size()) continue;
+    if (t.log_evidence < chosen.log_evidence - all.limits.search.min_log_evidence_gain) continue;
+    std::vector<std::string> kinds = kinds_of(t, all);
+    if (kinds.size() != t.candidates.size()) continue;
+    for (const std::string& other : others) {
+      const auto at = std::find(kinds.begin(), kinds.end(), other);
+      if (at != kinds.end()) kinds.erase(at);
+    }
+    if (kinds.size() == 1 && kinds.front() != kind) result.insert(kinds.front());
+  }
+  return {result.begin(), result.end()};
+}
+
+}  // namespace
+
+std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbance) {
   const Eigen::MatrixXd covariance = t.fit.shared_posterior();
   const auto& parameters = t.fit.best.model.disturbances[disturbance].parameters;
   std::vector<FittedParameter> result;
@@ -73,28 +94,6 @@ std::vector<FittedParameter> parameters_of(const Trial& t, size_t disturbance) {
   return result;
 }
 
-// Kinds that stand in for `kind` in an equally good trial that is otherwise the same.
-std::vector<std::string> rivals(const std::string& kind, const Trial& chosen,
-                                const std::vector<Trial>& trials, const Candidates& all) {
-  std::vector<std::string> others = kinds_of(chosen, all);
-  others.erase(std::find(others.begin(), others.end(), kind));
-  std::set<std::string> result;
-  for (const Trial& t : trials) {
-    if (!t.objection.empty() || t.candidates.size() != chosen.candidates.size()) continue;
-    if (t.log_evidence < chosen.log_evidence - all.limits.search.min_log_evidence_gain) continue;
-    std::vector<std::string> kinds = kinds_of(t, all);
-    if (kinds.size() != t.candidates.size()) continue;
-    for (const std::string& other : others) {
-      const auto at = std::find(kinds.begin(), kinds.end(), other);
-      if (at != kinds.end()) kinds.erase(at);
-    }
-    if (kinds.size() == 1 && kinds.front() != kind) result.insert(kinds.front());
-  }
-  return {result.begin(), result.end()};
-}
-
-}  // namespace
-
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,
                                        const std::vector<Trial>& trials, const Candidates& all) {
   const Trial& chosen = trials[decision.chosen];
@@ -105,7 +104,7 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     FoundEffect effect;
     effect.kind = c.effect.kind;
     effect.explanation = c.effect.explanation;
-    effect.parameters = parameters_of(chosen, chosen.disturbances[i]);
+    effect.parameters = fitted_parameters(chosen, chosen.disturbances[i]);
     for (size_t t = 0; t < trials.size(); ++t) {
       const std::vector<std::string> kinds = kinds_of(trials[t], all);
       if (std::find(kinds.begin(), kinds.end(), effect.kind) != kinds.end()) {
@@ -116,6 +115,17 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     effect.indistinguishable_from = rivals(effect.kind, chosen, trials, all);
     effects.push_back(std::move(effect));
   }
+  return effects;
+}
+
+std::vector<FoundEffect> unnamed_effects(const inference::Decision& decision,
+                                         const std::vector<Trial>& trials, const Candidates& all,
+                                         const std::vector<FoundEffect>& named) {
+  std::vector<FoundEffect> effects = found_effects(decision, trials, all);
+  std::erase_if(effects, [&](const FoundEffect& effect) {
+    return std::any_of(named.begin(), named.end(),
+                       [&](const FoundEffect& other) { return other.kind == effect.kind; });
+  });
   return effects;
 }
 
@@ -153,7 +163,7 @@ std::vector<FittedParameter> refined_priors(const Trial& chosen) {
           ? chosen.fit.best.model.disturbances.size()
           : *std::min_element(chosen.disturbances.begin(), chosen.disturbances.end());
   for (size_t d = 0; d < nominal; ++d) {
-    for (FittedParameter& p : parameters_of(chosen, d)) {
+    for (FittedParameter& p : fitted_parameters(chosen, d)) {
       p.key = "disturbance[" + std::to_string(d) + "]." + p.key;
       result.push_back(std::move(p));
     }

@@ -11,6 +11,15 @@ namespace photorque {
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,
                                        const std::vector<Trial>& trials, const Candidates& all);
 
+// Those among them that are not in `named`.
+std::vector<FoundEffect> unnamed_effects(const inference::Decision& decision,
+                                         const std::vector<Trial>& trials, const Candidates& all,
+                                         const std::vector<FoundEffect>& named);
+
+// Values and standard errors of one disturbance of a trial by key, in the keys' units, in the order
+// of its law.
+std::vector<FittedParameter> fitted_parameters(const Trial& trial, size_t disturbance);
+
 // The best of every set of names, best first, relative to the nominal model.
 std::vector<Alternative> alternatives(const inference::Decision& decision,
                                       const std::vector<Trial>& trials, const Candidates& all);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/constants.h"
+#include "diagnosis/attitude/account.h"
+#include "diagnosis/attitude/formula.h"
 
 namespace photorque {
 namespace {
@@ -35,17 +38,38 @@ double value_of(const std::string& variable, const AttitudeModel& model,
   return state.time_s;
 }
 
-// The law's torque for coefficient k = 1 and all others 0, in column k: it is linear in them.
-Eigen::Matrix3Xd shapes(const AttitudeModel& model, size_t law, const PlatformState& state) {
-  AttitudeModel unit = model;
-  auto& parameters = unit.disturbances[law].parameters;
-  for (Parameter& p : parameters) p.value = 0.0;
-  Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(parameters.size()));
-  for (size_t k = 0; k < parameters.size(); ++k) {
-    parameters[k].value = 1.0;
-    result.col(static_cast<Eigen::Index>(k)) = disturbance_torques_body_N_m(unit, state)[law];
-    parameters[k].value = 0.0;
+// The law at one state: its torque, and how that changes with each of its parameters.
+struct TorqueAndSlopes {
+  Vec3 torque_N_m = Vec3::Zero();
+  Eigen::Matrix3Xd slopes;
+};
+
+// `model` has the law alone; it is left as it was. Coefficients are linear: their slopes are the
+// torques of each alone. Of an exponent or a time constant the slope is a difference.
+TorqueAndSlopes at_state(AttitudeModel& model, size_t own, const PlatformState& state) {
+  auto& parameters = model.disturbances.front().parameters;
+  const auto torque = [&] { return disturbance_torques_body_N_m(model, state).front(); };
+  TorqueAndSlopes result;
+  result.torque_N_m = torque();
+  result.slopes.resize(3, static_cast<Eigen::Index>(parameters.size()));
+  for (size_t p = 0; p < own; ++p) {
+    const double value = parameters[p].value, step = 1e-4 * value;
+    parameters[p].value = value + step;
+    const Vec3 above = torque();
+    parameters[p].value = value - step;
+    result.slopes.col(static_cast<Eigen::Index>(p)) = (above - torque()) / (2.0 * step);
+    parameters[p].value = value;
   }
+  std::vector<double> values;
+  for (size_t p = own; p < parameters.size(); ++p) {
+    values.push_back(std::exchange(parameters[p].value, 0.0));
+  }
+  for (size_t p = own; p < parameters.size(); ++p) {
+    parameters[p].value = 1.0;
+    result.slopes.col(static_cast<Eigen::Index>(p)) = torque();
+    parameters[p].value = 0.0;
+  }
+  for (size_t p = own; p < parameters.size(); ++p) parameters[p].value = values[p - own];
   return result;
 }
 
@@ -64,33 +88,38 @@ EmpiricalTorque torque_of(const Trial& chosen, size_t which, const Candidate& ca
   }
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   const double width = std::max((*high - *low) / torque_bins, 1e-300);
-  const auto& parameters = model.disturbances[law].parameters;
-  const auto count = static_cast<Eigen::Index>(parameters.size());
-  std::vector<Eigen::Matrix3Xd> sum(torque_bins, Eigen::Matrix3Xd::Zero(3, count));
+  AttitudeModel alone = model;
+  alone.disturbances = {model.disturbances[law]};
+  const auto count = static_cast<Eigen::Index>(alone.disturbances.front().parameters.size());
+  std::vector<Eigen::Matrix3Xd> slopes(torque_bins, Eigen::Matrix3Xd::Zero(3, count));
+  std::vector<Vec3> sum(torque_bins, Vec3::Zero());
   std::vector<double> samples(torque_bins, 0.0);
   for (size_t k = 0; k < x.size(); ++k) {
     const PlatformState& state = propagated.states[k];
     const auto bin = std::min(torque_bins - 1, static_cast<size_t>((x[k] - *low) / width));
-    const Eigen::Matrix3Xd body = shapes(model, law, state);
-    const Mat3 lab_from_body = state.lab_from_body.toRotationMatrix();
-    sum[bin] += abscissa.lab_axes ? Eigen::Matrix3Xd(lab_from_body * body) : body;
+    const TorqueAndSlopes at = at_state(alone, candidate.law.shape.first_coefficient(), state);
+    const Mat3 turn =
+        abscissa.lab_axes ? Mat3(state.lab_from_body.toRotationMatrix()) : Mat3::Identity();
+    sum[bin] += turn * at.torque_N_m;
+    slopes[bin] += turn * at.slopes;
     samples[bin] += 1.0;
   }
 
-  Eigen::VectorXd coefficients(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    coefficients[k] = parameters[static_cast<size_t>(k)].value;
-  }
   const std::vector<Eigen::Index> where = shared_indices(chosen, which);
   const Eigen::MatrixXd covariance = chosen.fit.shared_posterior()(where, where);
   for (size_t bin = 0; bin < torque_bins; ++bin) {
     if (samples[bin] == 0.0) continue;
-    const Eigen::Matrix3Xd mean = sum[bin] / samples[bin];
+    const Eigen::Matrix3Xd slope = slopes[bin] / samples[bin];
     torque.at.push_back(*low + (static_cast<double>(bin) + 0.5) * width);
-    torque.torque_N_m.emplace_back(mean * coefficients);
+    torque.torque_N_m.emplace_back(sum[bin] / samples[bin]);
     torque.standard_error_N_m.emplace_back(
-        (mean * covariance * mean.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt());
+        (slope * covariance * slope.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt());
   }
+  torque.shape = shape_as_written(candidate.law.shape);
+  torque.parameters = fitted_parameters(chosen, law);
+  const EmpiricalFormula formula = formula_of(candidate.law.shape, torque.parameters, covariance);
+  torque.formula = formula.text;
+  torque.looks_like = formula.looks_like;
   return torque;
 }
 

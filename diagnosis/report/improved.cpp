@@ -55,16 +55,23 @@ std::string effect_text(const FoundEffect& effect) {
   return text;
 }
 
+std::string unnamed_text(const FoundEffect& effect) {
+  std::string text =
+      "\n" + comment("Fitted beside the torque below, without being proved: " + effect.kind + ".");
+  text += "[[disturbance]]\nkind = \"" + effect.kind + "\"\n";
+  for (const FittedParameter& p : effect.parameters) text += p.key + " = " + value_text(p) + "\n";
+  return text;
+}
+
 std::string empirical_text(const EmpiricalTorque& torque) {
   std::string text = "\n" + comment("A torque that depends on " + torque.variable +
                                     " and follows no law of the catalogue, fitted without one.");
-  text += comment("No kind of disturbance can hold it, so it does not act here. [" + torque.unit +
-                  "]: N m about " + (torque.about_lab_axes ? "lab" : "body") + " x, y, z");
-  for (size_t i = 0; i < torque.at.size(); ++i) {
-    const Vec3& t = torque.torque_N_m[i];
-    text += comment("  " + print("%.4g", torque.at[i]) + ": " +
-                    array_text({t.x(), t.y(), t.z()}, "%.3g"));
-  }
+  if (!torque.formula.empty()) text += comment(torque.formula);
+  if (!torque.looks_like.empty()) text += comment("Looks like " + torque.looks_like + ".");
+  if (torque.parameters.empty()) return text;
+  text += "[[disturbance]]\nkind = \"empirical_torque\"\n";
+  for (const auto& [key, value] : torque.shape) text += key + " = " + value + "\n";
+  for (const FittedParameter& p : torque.parameters) text += p.key + " = " + value_text(p) + "\n";
   return text;
 }
 
@@ -90,6 +97,7 @@ std::string improved_experiment(const std::string& text, const Diagnosis& diagno
   if (!improved.empty() && improved.back() != '\n') improved += '\n';
   improved += "\n" + comment("---- Added by the diagnosis: " + diagnosis.sentence);
   for (const FoundEffect& effect : diagnosis.effects) improved += effect_text(effect);
+  for (const FoundEffect& effect : diagnosis.unnamed) improved += unnamed_text(effect);
   for (const EmpiricalTorque& torque : diagnosis.empirical) improved += empirical_text(torque);
   if (!diagnosis.priors_refined.empty()) {
     improved +=

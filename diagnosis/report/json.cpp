@@ -67,6 +67,9 @@ Json effect_json(const FoundEffect& effect) {
 
 Json empirical_json(const EmpiricalTorque& torque) {
   return {{"variable", torque.variable},
+          {"formula", torque.formula.empty() ? Json() : Json(torque.formula)},
+          {"looks_like", torque.looks_like},
+          {"parameters", parameters_json(torque.parameters)},
           {"unit", torque.unit},
           {"axes", torque.about_lab_axes ? "lab" : "body"},
           {"at", numbers(torque.at)},

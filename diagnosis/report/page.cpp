@@ -149,6 +149,10 @@ std::string empirical(const Diagnosis& d, const ChartDrawer& draw) {
   if (d.empirical.empty()) return "";
   std::string section = tag("h2", "The part that no known law explains");
   for (const EmpiricalTorque& torque : d.empirical) {
+    if (!torque.formula.empty()) section += tag("p", "<b>" + xml_text(torque.formula) + ".</b>");
+    if (!torque.looks_like.empty()) {
+      section += tag("p", "Commonly this is " + xml_text(torque.looks_like) + ".");
+    }
     section += tag("p", "Torque as a function of " + xml_text(spoken(torque.variable)) +
                             ", fitted without any law; bands are ± 1 σ.");
     section += draw.plot(empirical_plot(torque));
@@ -218,7 +222,7 @@ std::string overlays(const Diagnosis& d, const ChartDrawer& draw) {
 
 std::string priors(const Diagnosis& d) {
   if (d.priors_refined.empty()) return "";
-  return tag("section", tag("h2", "What wnominal model, after these recordings") +
+  return tag("section", tag("h2", "What the nominal model left uncertain, after these recordings") +
                             parameter_table(d.priors_refined));
 }
 

@@ -96,6 +96,12 @@ std::map<std::string, Entries> examples() {
         {"largest_rate_rad_s", node(500)},
         {"viscous_N_m_s", node(1e-6)}}},
       {"camera_misalignment", {{"misalignment_rad", numbers({1e-3, 2e-3, -1e-3})}}},
+      {"empirical_torque",
+       {{"axes", list({node("lean"), node("rate")})},
+        {"tilt_exponent", node(1.7)},
+        {"rate_knots_rad_s", numbers({0.0, 0.05, 0.1, 0.25, 0.3})},
+        {"coefficients_N_m",
+         numbers({1e-6, 2e-6, -3e-6, 4e-6, 5e-6, 1e-6, 2e-6, 3e-6, 4e-6, 1e-6})}}},
   };
 }
 

@@ -11,7 +11,6 @@
 namespace photorque {
 namespace {
 
-using testing::HasSubstr;
 using testing::StartsWith;
 
 const std::string written = R"(# My laboratory, as I know it.
@@ -123,13 +122,30 @@ TEST(Improved, HoldsEveryKindWithNumbers) {
   }
 }
 
-TEST(Improved, SaysThatAnEmpiricalTorqueDoesNotAct) {
+// A torque without a law is written as the disturbance that was fitted.
+TEST(Improved, HoldsAnEmpiricalTorque) {
   Diagnosis d = sample_diagnosis();
   d.effects.clear();
-  d.empirical = {{"heading", "deg", false, {0, 90}, {Vec3(1e-6, 0, 0), Vec3(2e-6, 0, 0)}, {}}};
+  d.unnamed = {{"turbine_torque", 0.5, {{"torque_N_m", {1e-6}, {1e-8}}}, {}, ""}};
+  EmpiricalTorque torque;
+  torque.variable = "tilt";
+  torque.formula = "T = a\nb";
+  torque.shape = {{"axes", "[\"lean\", \"vertical\"]"}, {"tilt_reference_deg", "5.5"}};
+  torque.parameters = {{"tilt_exponent", {2.9}, {0.1}},
+                       {"coefficients_N_m", {1e-6, -2e-6}, {1e-8, 2e-8}}};
+  d.empirical = {torque};
   const std::string text = improved_experiment(written, d, ".");
-  EXPECT_THAT(text, HasSubstr("does not act here"));
-  EXPECT_EQ(read_attitude_model(read(text)).model.disturbances.size(), 1u);
+  const AttitudeModel model = read_attitude_model(read(text)).model;
+  ASSERT_EQ(model.disturbances.size(), 3u);
+  EXPECT_EQ(model.disturbances[1].kind, "turbine_torque");
+  const Disturbance& found = model.disturbances[2];
+  ASSERT_EQ(found.kind, "empirical_torque");
+  const double value[] = {2.9, 1e-6, -2e-6}, sigma[] = {0.1, 1e-8, 2e-8};
+  ASSERT_EQ(found.parameters.size(), 3u);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(found.parameters[i].value, value[i]);
+    EXPECT_DOUBLE_EQ(found.parameters[i].sigma, sigma[i]);
+  }
 }
 
 // A sentence with a line break must not become a line of its own.

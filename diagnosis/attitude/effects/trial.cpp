@@ -33,12 +33,16 @@ Candidate candidate_of(const EmpiricalLaw& law) {
   Candidate c;
   c.label = "unknown in " + law.variable + ": " + law.description;
   c.variable = law.variable;
+  c.law = law;
   c.start = law.disturbance;
-  const size_t n = law.disturbance.parameters.size();
-  c.scale.assign(n, law.scale);
-  c.lowest.assign(n, -1e308);
-  c.highest.assign(n, 1e308);
-  c.searched.assign(n, false);
+  for (size_t p = 0; p < law.disturbance.parameters.size(); ++p) {
+    // An exponent, a time constant.
+    const bool own = p < law.shape.first_coefficient();
+    c.scale.push_back(own ? law.own_scale : law.scale);
+    c.lowest.push_back(own ? law.lowest : -1e308);
+    c.highest.push_back(own ? law.highest : 1e308);
+    c.searched.push_back(own);
+  }
   return c;
 }
 
@@ -188,27 +192,36 @@ void judge(Trial& trial, const Candidates& all) {
   trial.objection = objection_to(trial, all);
 }
 
+CoveredMotion covered_by(const std::vector<Observation>& runs) {
+  CoveredMotion covered;
+  for (const Observation& seen : runs) {
+    covered.duration_s = std::max(covered.duration_s, seen.time_s.back());
+    const Observation last = seen.part(seen.blocks() - 1, seen.blocks());
+    covered.charge_C = std::max(covered.charge_C, std::abs(last.initial_charge_C));
+    for (const ZeroOrderHold& held : seen.schedule.held) {
+      covered.has_commands = covered.has_commands || held.command_body_N_m.norm() > 0.0;
+    }
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      if (!(seen.attitude_rows[i] > 0.0)) continue;
+      const double up = (seen.attitude[i] * Vec3::UnitZ()).z();
+      covered.tilt_rad = std::max(covered.tilt_rad, std::acos(std::clamp(up, -1.0, 1.0)));
+    }
+  }
+  return covered;
+}
+
 }  // namespace
 
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits) {
   const DisturbanceContext context{nominal.model.platform, nominal.model.environment};
-  double duration_s = 0.0, charge_C = 0.0;
-  bool has_commands = false;
-  for (const Observation& seen : runs) {
-    duration_s = std::max(duration_s, seen.time_s.back());
-    const Observation last = seen.part(seen.blocks() - 1, seen.blocks());
-    charge_C = std::max(charge_C, std::abs(last.initial_charge_C));
-    for (const ZeroOrderHold& held : seen.schedule.held) {
-      has_commands = has_commands || held.command_body_N_m.norm() > 0.0;
-    }
-  }
+  const CoveredMotion covered = covered_by(runs);
   const auto has_channel = [&](Requirement channel) {
     switch (channel) {
       case Requirement::command:
-        return has_commands;
+        return covered.has_commands;
       case Requirement::charge:
-        return charge_C != 0.0;
+        return covered.charge_C != 0.0;
       case Requirement::field:
         return nominal.model.environment.magnetic_field_lab_T.norm() > 0.0;
       case Requirement::none:
@@ -227,7 +240,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     all.list.push_back(candidate_of(effect, context));
   }
   const double torque_N_m = 5e-6;
-  for (const EmpiricalLaw& law : empirical_laws(duration_s, charge_C, has_commands, torque_N_m)) {
+  for (const EmpiricalLaw& law : empirical_laws(covered, torque_N_m)) {
     all.list.push_back(candidate_of(law));
   }
   return all;

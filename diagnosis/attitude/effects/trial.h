@@ -19,6 +19,7 @@ struct Candidate {
   std::string label;     // "magnetic_dipole", "unknown in heading: 3 periods a turn"
   std::string variable;  // of an empirical law; empty: an effect of the catalogue
   Effect effect;         // empty kind for an empirical law
+  EmpiricalLaw law;      // empty for an effect of the catalogue
   Disturbance start;
   std::vector<double> scale;  // of each parameter
   std::vector<double> lowest, highest;

@@ -100,6 +100,32 @@ std::vector<Start> instant_starts(const Candidate& c, const Trial& parent,
   return starts;
 }
 
+// A function without a law, from each value of its exponent or time constant: the best, with the
+// coefficients that the score test expects of it.
+std::vector<Start> empirical_starts(const Candidate& c, const Trial& parent,
+                                    const std::vector<Observation>& runs,
+                                    const Thresholds::Scoring& limits) {
+  const auto own = c.law.shape.first_coefficient();
+  const std::vector<int> coefficients =
+      indices_of(c.start, empirical_coefficients, c.law.shape.coefficients());
+  std::vector<ScoreGroup> groups;
+  for (const double value : c.law.starts) {
+    groups.push_back({{c.start}, coefficients});
+    groups.back().disturbances.front().parameters[own - 1].value = value;
+  }
+  const std::vector<Score> scores = score(parent.fit, runs, groups);
+  const auto best =
+      static_cast<size_t>(std::ranges::max_element(scores, {}, &Score::gain) - scores.begin());
+  const Eigen::VectorXd& estimate = scores[best].estimate;
+  if (scores[best].gain < limits.min_scan_gain) return {};
+  if (estimate.size() != static_cast<Eigen::Index>(coefficients.size())) return {};
+  Disturbance d = groups[best].disturbances.front();
+  for (size_t k = 0; k < coefficients.size(); ++k) {
+    d.parameters[own + k].value = estimate[static_cast<Eigen::Index>(k)];
+  }
+  return {{d, scores[best].gain}};
+}
+
 // Up to this, sinusoids excite the platform's own motion; there the slopes of the whole trajectory
 // tell more than the residual's power.
 double slowest_line_Hz(const std::vector<Observation>& runs) {
@@ -223,6 +249,7 @@ std::vector<Start> starts_of(const Candidate& candidate, const Trial& parent,
     case Scan::nothing:
       break;
   }
+  if (!candidate.law.starts.empty()) return empirical_starts(candidate, parent, slow_runs, limits);
   return {{candidate.start}};
 }
 

@@ -1,0 +1,68 @@
+// A torque that follows no known law: measured, not derived. As functions of one or two variables
+// of the motion, about stated axes, with free coefficients.
+//
+// axes: any of "body" (x, y, z), "lab" (x, y, z), "vertical", "lean" (rights), "rate" (brakes),
+//   "rate_by_axis" (brakes, x, y, z), "command", "cross_talk" (xy, xz, yx, yz, zx, zy);
+// one function of one variable, or of two, whose terms are multiplied:
+//   heading_orders: cos nψ and sin nψ for each n;
+//   VARIABLE_exponent, VARIABLE_powers or VARIABLE_knots_UNIT for tilt (deg), rate (rad_s), time
+//     (s), charge (Ah), command (N_m): a power of any exponent, whole powers, a smooth table;
+//   time_constant_s: exp(−t/τ); time_period_s with time_orders: cos and sin of 2π n t/period;
+//   time_span_s with time_cosines: cos(π n t/span);
+// VARIABLE_reference_UNIT: where its powers are 1 (default 0.1 rad, 0.1 rad/s, 100 s, 1 Ah,
+//   1e-4 N m);
+// VARIABLE_range_UNIT [from, to]: beyond it the variable is held (a table's is that of its knots);
+// coefficients_N_m: term by term of the first function, of each all terms of the second, of each
+//   all components of the axes.
+#include "attitude/disturbances/kind.h"
+#include "attitude/disturbances/unknown/law.h"
+
+namespace photorque {
+namespace {
+
+constexpr const char* kind_name = "empirical_torque";
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  const EmpiricalShape shape = read_shape(settings);
+  Disturbance d = empirical_torque(shape);
+  for (size_t p = 0; p < shape.first_coefficient(); ++p) {
+    const Uncertain own = settings.uncertain(d.parameters[p].key, Range::positive());
+    d.parameters[p].value = own.value;
+    d.parameters[p].sigma = own.sigma;
+  }
+  d.parameters.resize(shape.first_coefficient());
+  const int first = static_cast<int>(d.parameters.size());
+  const bool is_one_number =
+      shape.coefficients() == 1 && count_as_written(settings, empirical_coefficients) == 0;
+  append(d.parameters,
+         is_one_number
+             ? scalar_parameter(settings, ScalarKey{empirical_coefficients, first})
+             : array_parameter(settings, empirical_coefficients, shape.coefficients(), first));
+  return d;
+}
+
+}  // namespace
+
+Disturbance empirical_torque(const EmpiricalShape& shape) {
+  Disturbance d = make_disturbance<EmpiricalTorqueLaw>({}, Stage::torque, {}, shape);
+  d.kind = kind_name;
+  for (const MotionFunction& f : shape.functions) {
+    const std::string key = f.own_key();
+    if (!key.empty()) d.parameters.push_back({key, -1, f.own, 0.0});
+  }
+  const std::vector<double> zeros(shape.coefficients(), 0.0);
+  append(d.parameters,
+         fixed_parameter(empirical_coefficients, zeros, static_cast<int>(d.parameters.size())));
+  return d;
+}
+
+DisturbanceKind empirical_torque_kind() {
+  return {.name = kind_name,
+          .summary = "a torque that follows no known law, as a fit or a measurement gives it",
+          .read = read,
+          .screening = {.reason_against = "it is what diagnose fits where no known law will do"},
+          .injection = {.reason_against = "a function without a law; prove has unknown laws of its "
+                                          "own"}};
+}
+
+}  // namespace photorque

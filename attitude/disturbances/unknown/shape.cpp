@@ -1,0 +1,274 @@
+#include "attitude/disturbances/unknown/shape.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+constexpr std::array axes_names = {"body", "lab",          "vertical", "lean",
+                                   "rate", "rate_by_axis", "command",  "cross_talk"};
+constexpr std::array axes_components = {3, 3, 1, 1, 1, 3, 1, 6};
+constexpr std::array variable_names = {"heading", "tilt", "rate", "time", "charge", "command"};
+constexpr std::array variable_units = {"deg", "deg", "rad_s", "s", "Ah", "N_m"};
+// At which a power of the variable is 1 unless the user says otherwise.
+constexpr std::array usual_reference = {1.0, 0.1, 0.1, 100.0, 3600.0, 1e-4};
+
+template <class Enum>
+size_t index(Enum e) {
+  return static_cast<size_t>(e);
+}
+
+std::string with_unit(MotionVariable variable, const std::string& what) {
+  return name_of(variable) + "_" + what + "_" + unit_of(variable);
+}
+
+// The keys of a variable, each of which makes another function of it.
+struct FormKey {
+  FunctionForm form;
+  std::string key;
+};
+std::vector<FormKey> form_keys(MotionVariable v) {
+  const std::string name = name_of(v);
+  if (v == MotionVariable::heading) return {{FunctionForm::harmonics, "heading_orders"}};
+  std::vector<FormKey> keys = {{FunctionForm::power, name + "_exponent"},
+                               {FunctionForm::powers, name + "_powers"},
+                               {FunctionForm::table, with_unit(v, "knots")}};
+  if (v == MotionVariable::time) {
+    keys.push_back({FunctionForm::decay, "time_constant_s"});
+    keys.push_back({FunctionForm::harmonics, "time_period_s"});
+    keys.push_back({FunctionForm::cosines, "time_span_s"});
+  }
+  return keys;
+}
+
+std::vector<int> read_orders(const Settings& settings, const std::string& key, int least) {
+  std::vector<int> orders;
+  for (const double x : settings.numbers(key, {static_cast<double>(least), 200.0})) {
+    const int order = static_cast<int>(x);
+    if (static_cast<double>(order) != x || (!orders.empty() && order <= orders.back())) {
+      throw settings.error(key, "other numbers", "whole numbers that rise");
+    }
+    orders.push_back(order);
+  }
+  if (orders.empty()) throw settings.error(key, "an empty array", "whole numbers that rise");
+  return orders;
+}
+
+SmoothTable read_knots(const Settings& settings, const std::string& key) {
+  const std::vector<double> knots = settings.numbers(key);
+  const bool rise =
+      std::adjacent_find(knots.begin(), knots.end(), std::greater_equal<>()) == knots.end();
+  if (knots.size() < 4 || knots.size() > 1000 || !rise) {
+    throw settings.error(key, "an array of " + std::to_string(knots.size()),
+                         "4 to 1000 numbers that rise");
+  }
+  return SmoothTable(knots);
+}
+
+MotionFunction read_function(const Settings& settings, MotionVariable variable,
+                             const FormKey& form) {
+  MotionFunction f;
+  f.of = variable;
+  f.form = form.form;
+  f.reference = usual_reference[index(variable)];
+  const std::string reference = with_unit(variable, "reference");
+  switch (form.form) {
+    case FunctionForm::harmonics:
+      if (variable == MotionVariable::heading) {
+        f.orders = read_orders(settings, form.key, 1);
+        return f;
+      }
+      f.own = settings.uncertain(form.key, Range::positive()).value;
+      f.orders = read_orders(settings, "time_orders", 1);
+      break;
+    case FunctionForm::power:
+      f.own = settings.uncertain(form.key, Range::positive()).value;
+      f.reference = settings.number_or(reference, f.reference, Range::positive());
+      break;
+    case FunctionForm::powers:
+      f.orders = read_orders(settings, form.key, variable == MotionVariable::time ? 0 : 1);
+      f.reference = settings.number_or(reference, f.reference, Range::positive());
+      break;
+    case FunctionForm::decay:
+      f.own = settings.uncertain(form.key, Range::positive()).value;
+      break;
+    case FunctionForm::cosines:
+      f.reference = settings.number(form.key, Range::positive());
+      f.orders = read_orders(settings, "time_cosines", 0);
+      break;
+    case FunctionForm::table:
+      f.table = read_knots(settings, form.key);
+      f.range = {f.table.knots().front(), f.table.knots().back()};
+      return f;
+  }
+  const std::string range = with_unit(variable, "range");
+  if (!settings.has(range)) return f;
+  const std::vector<double> ends = settings.numbers(range);
+  if (ends.size() != 2 || !(ends[1] > ends[0])) {
+    throw settings.error(range, "other numbers", "two numbers that rise");
+  }
+  f.range = {ends[0], ends[1]};
+  return f;
+}
+
+std::vector<TorqueAxes> read_axes(const Settings& settings) {
+  std::vector<TorqueAxes> all;
+  for (const std::string& word : settings.texts("axes")) {
+    const auto at = std::find(axes_names.begin(), axes_names.end(), word);
+    const auto axes = static_cast<TorqueAxes>(at - axes_names.begin());
+    if (at == axes_names.end() || std::find(all.begin(), all.end(), axes) != all.end()) {
+      throw settings.error("axes", "\"" + word + "\"",
+                           "body, lab, vertical, lean, rate, rate_by_axis, command or cross_talk, "
+                           "each once");
+    }
+    all.push_back(axes);
+  }
+  if (all.empty()) throw settings.error("axes", "an empty array", "one of the axes");
+  return all;
+}
+
+// Some axes exist only where a variable is not zero: there a function of it has to vanish.
+void require_functions(const Settings& settings, const EmpiricalShape& shape) {
+  const auto needs = [&](TorqueAxes axes, MotionVariable variable) {
+    if (std::find(shape.axes.begin(), shape.axes.end(), axes) == shape.axes.end()) return;
+    for (const MotionFunction& f : shape.functions) {
+      if (f.of == variable) return;
+    }
+    throw settings.error("axes",
+                         "\"" + name_of(axes) + "\" without a function of the " + name_of(variable),
+                         "one, as this axis has no direction where that is zero");
+  };
+  needs(TorqueAxes::lean, MotionVariable::tilt);
+  needs(TorqueAxes::rate, MotionVariable::rate);
+  needs(TorqueAxes::rate_by_axis, MotionVariable::rate);
+  needs(TorqueAxes::command, MotionVariable::command);
+  needs(TorqueAxes::cross_talk, MotionVariable::command);
+}
+
+std::string print(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.15g", x);
+  return text;
+}
+
+std::string array_of(const std::vector<double>& values_SI, double unit) {
+  std::string text;
+  for (const double x : values_SI) text += (text.empty() ? "" : ", ") + print(x / unit);
+  return "[" + text + "]";
+}
+
+std::string array_of(const std::vector<int>& values) {
+  std::string text;
+  for (const int x : values) text += (text.empty() ? "" : ", ") + std::to_string(x);
+  return "[" + text + "]";
+}
+
+}  // namespace
+
+size_t components_of(TorqueAxes axes) {
+  return static_cast<size_t>(axes_components[index(axes)]);
+}
+std::string name_of(TorqueAxes axes) {
+  return axes_names[index(axes)];
+}
+std::string name_of(MotionVariable variable) {
+  return variable_names[index(variable)];
+}
+std::string unit_of(MotionVariable variable) {
+  return variable_units[index(variable)];
+}
+
+size_t MotionFunction::terms() const {
+  switch (form) {
+    case FunctionForm::harmonics:
+      return 2 * orders.size();
+    case FunctionForm::power:
+    case FunctionForm::decay:
+      return 1;
+    case FunctionForm::powers:
+    case FunctionForm::cosines:
+      return orders.size();
+    case FunctionForm::table:
+      break;
+  }
+  return table.knots().size();
+}
+
+std::string MotionFunction::own_key() const {
+  if (form == FunctionForm::power) return name_of(of) + "_exponent";
+  if (form == FunctionForm::decay) return "time_constant_s";
+  const bool periodic = form == FunctionForm::harmonics && of == MotionVariable::time;
+  return periodic ? "time_period_s" : "";
+}
+
+size_t EmpiricalShape::components() const {
+  size_t sum = 0;
+  for (const TorqueAxes a : axes) sum += components_of(a);
+  return sum;
+}
+
+size_t EmpiricalShape::terms() const {
+  size_t product = 1;
+  for (const MotionFunction& f : functions) product *= f.terms();
+  return product;
+}
+
+size_t EmpiricalShape::first_coefficient() const {
+  return static_cast<size_t>(std::count_if(functions.begin(), functions.end(),
+                                           [](const auto& f) { return !f.own_key().empty(); }));
+}
+
+EmpiricalShape read_shape(const Settings& settings) {
+  EmpiricalShape shape;
+  shape.axes = read_axes(settings);
+  for (size_t v = 0; v < variable_names.size(); ++v) {
+    const auto variable = static_cast<MotionVariable>(v);
+    std::string known;
+    for (const FormKey& form : form_keys(variable)) {
+      if (!settings.has(form.key)) continue;
+      if (!known.empty()) {
+        throw settings.error(form.key, "this beside " + known, "one function of a variable");
+      }
+      known = form.key;
+      shape.functions.push_back(read_function(settings, variable, form));
+    }
+  }
+  if (shape.functions.empty() || shape.functions.size() > 2) {
+    throw settings.error("kind", std::to_string(shape.functions.size()) + " functions",
+                         "one or two, by heading_orders, tilt_exponent, rate_exponent, "
+                         "time_constant_s and the like");
+  }
+  require_functions(settings, shape);
+  return shape;
+}
+
+std::vector<std::pair<std::string, std::string>> shape_as_written(const EmpiricalShape& shape) {
+  std::string axes;
+  for (const TorqueAxes a : shape.axes) axes += (axes.empty() ? "\"" : ", \"") + name_of(a) + "\"";
+  std::vector<std::pair<std::string, std::string>> keys = {{"axes", "[" + axes + "]"}};
+  for (const MotionFunction& f : shape.functions) {
+    const double unit = unit_of_key(with_unit(f.of, "range")).to_SI;
+    const auto add = [&](const std::string& key, const std::string& value) {
+      keys.emplace_back(key, value);
+    };
+    const bool is_power = f.form == FunctionForm::power || f.form == FunctionForm::powers;
+    if (is_power) add(with_unit(f.of, "reference"), print(f.reference / unit));
+    if (f.form == FunctionForm::powers) add(name_of(f.of) + "_powers", array_of(f.orders));
+    if (f.form == FunctionForm::harmonics) add(name_of(f.of) + "_orders", array_of(f.orders));
+    if (f.form == FunctionForm::cosines) {
+      add("time_span_s", print(f.reference));
+      add("time_cosines", array_of(f.orders));
+    }
+    if (f.form == FunctionForm::table) {
+      add(with_unit(f.of, "knots"), array_of(f.table.knots(), unit));
+    } else if (f.range) {
+      add(with_unit(f.of, "range"), array_of({(*f.range)[0], (*f.range)[1]}, unit));
+    }
+  }
+  return keys;
+}
+
+}  // namespace photorque

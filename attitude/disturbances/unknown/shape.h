@@ -1,0 +1,85 @@
+// The shape of a torque that follows no known law: about which axes, as what functions of what.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "attitude/disturbances/unknown/table.h"
+#include "attitude/model/disturbance.h"
+
+namespace photorque {
+
+// About what the torque acts. Each counts as one component, or more: a coefficient for each.
+enum class TorqueAxes {
+  body,          // body x, y, z
+  lab,           // lab x, y, z
+  vertical,      // lab z
+  lean,          // the horizontal axis about which the platform leans: positive rights it
+  rate,          // against the rate: positive brakes
+  rate_by_axis,  // the same, body x, y, z each with its own coefficient
+  command,       // along the torque commanded
+  cross_talk,    // the commanded torque's components about other axes: xy, xz, yx, yz, zx, zy, the
+                 // first the axis of the torque, the second that of the command
+};
+
+enum class MotionVariable { heading, tilt, rate, time, charge, command };
+
+enum class FunctionForm {
+  harmonics,  // cos n x, sin n x of the heading, or of 2π t/period, for each order n
+  power,      // (x/reference)^exponent
+  powers,     // (x/reference)^n for each order n
+  decay,      // exp(−t/τ)
+  cosines,    // cos(n π t/span) for each order n
+  table,      // a smooth table: one term for each knot
+};
+
+// A function of one variable, a sum of terms with free coefficients. SI.
+struct MotionFunction {
+  MotionVariable of = MotionVariable::tilt;
+  FunctionForm form = FunctionForm::power;
+  std::vector<int> orders = {};
+  double reference = 1.0;  // of powers; of cosines the span
+  double own = 0.0;        // exponent, time constant or period, where the form has one
+  SmoothTable table = {};
+  // Beyond it the variable is held, smoothly: it goes on for a twentieth of the range at most.
+  std::optional<std::array<double, 2>> range = {};
+
+  size_t terms() const;
+  // The key of its exponent, time constant or period; empty: it has none.
+  std::string own_key() const;
+};
+
+struct EmpiricalShape {
+  std::vector<TorqueAxes> axes;
+  std::vector<MotionFunction> functions;  // one or two, whose terms are multiplied
+
+  size_t components() const;
+  size_t terms() const;
+  // Of the first coefficient among the parameters: the functions' own come before.
+  size_t first_coefficient() const;
+  size_t coefficients() const { return components() * terms(); }
+};
+
+inline constexpr const char* empirical_coefficients = "coefficients_N_m";
+
+size_t components_of(TorqueAxes axes);
+std::string name_of(TorqueAxes axes);
+std::string name_of(MotionVariable variable);
+// Of the variable in files and reports: "deg", "rad_s", "s", "Ah", "N_m".
+std::string unit_of(MotionVariable variable);
+
+// From the keys of an experiment file (empirical_torque.cpp lists them). InputError for what is
+// missing, double or does not fit together.
+EmpiricalShape read_shape(const Settings& settings);
+// What read_shape() would read as keys and values of TOML, but for the functions' own parameters
+// and the coefficients, which may have sigmas.
+std::vector<std::pair<std::string, std::string>> shape_as_written(const EmpiricalShape& shape);
+
+// The disturbance, every coefficient 0, the functions' own parameters at their values. Coefficients
+// stand term by term, of each term all components.
+Disturbance empirical_torque(const EmpiricalShape& shape);
+
+}  // namespace photorque

@@ -1,0 +1,25 @@
+// A fitted function without a law as a short formula, and what physics it looks like.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "attitude/disturbances/unknown/shape.h"
+#include "diagnosis/diagnosis.h"
+
+namespace photorque {
+
+struct EmpiricalFormula {
+  std::string text;  // with its constants and one standard error of each; empty: none is short
+  std::string looks_like;  // physics that commonly looks like this, without a claim
+};
+
+// `parameters` are those of empirical_torque(shape), as fitted; `covariance` is theirs in SI, in
+// the same order. Components below three standard errors are left out of the text, but for the
+// largest.
+EmpiricalFormula formula_of(const EmpiricalShape& shape,
+                            const std::vector<FittedParameter>& parameters,
+                            const Eigen::MatrixXd& covariance);
+
+}  // namespace photorque

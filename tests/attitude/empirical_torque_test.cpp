@@ -1,0 +1,248 @@
+// Torques without a law: every form against its formula, and the errors of its keys.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "attitude/disturbances/unknown/shape.h"
+#include "core/errors.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+using Entries = std::vector<std::pair<std::string, SettingsNode>>;
+
+SettingsNode words(const std::vector<const char*>& all) {
+  std::vector<SettingsNode> items;
+  for (const char* word : all) items.push_back(node(word));
+  return list(items);
+}
+
+Vec3 torque(const Entries& entries, const Quat& lab_from_body, const Vec3& rate = Vec3::Zero(),
+            double time_s = 0.0, double charge_C = 0.0) {
+  AttitudeModel model = bench_model();
+  model.schedule.append(0.0, {.command_body_N_m = {3e-4, 0.0, 4e-4}});
+  model = with(model, "empirical_torque", entries);
+  return torque_body_N_m(model, state_of(model, lab_from_body, rate, time_s, charge_C));
+}
+
+void expect_near(const Vec3& found, const Vec3& expected) {
+  EXPECT_LT((found - expected).norm(), 1e-10 * expected.norm() + 1e-20)
+      << found.transpose() << " against " << expected.transpose();
+}
+
+// Heading 0.7 rad, then leaning by 0.2 rad about body x: body z leans to the right of the nose.
+const Quat attitude = turned(0.7, Vec3::UnitZ()) * turned(0.2, Vec3::UnitX());
+const Vec3 vertical = attitude.conjugate() * Vec3::UnitZ();
+
+TEST(EmpiricalTorque, HarmonicsOfTheHeading) {
+  expect_near(
+      torque({{"axes", words({"vertical"})},
+              {"heading_orders", numbers({1, 3})},
+              {"coefficients_N_m", numbers({1e-6, 2e-6, -3e-6, 4e-6})}},
+             attitude),
+      (1e-6 * std::cos(0.7) + 2e-6 * std::sin(0.7) - 3e-6 * std::cos(2.1) + 4e-6 * std::sin(2.1)) *
+          vertical);
+}
+
+// A positive torque along the lean axis brings body z back to the vertical.
+TEST(EmpiricalTorque, PowerOfTheTiltRights) {
+  const Vec3 found = torque({{"axes", words({"lean", "vertical"})},
+                             {"tilt_exponent", node(2.5)},
+                             {"coefficients_N_m", numbers({3e-6, 2e-6})}},
+                            attitude);
+  const double size = std::pow(2.0, 2.5);
+  expect_near(found, size * (-3e-6 * Vec3::UnitX() + 2e-6 * vertical));
+}
+
+TEST(EmpiricalTorque, WholePowersOfTheRateBrake) {
+  const Vec3 rate(0.03, -0.04, 0.12);  // 0.13 rad/s
+  const double size = 2e-6 * 0.13 / 0.1 - 1e-6 * std::pow(1.3, 3);
+  const Vec3 found = torque({{"axes", words({"rate"})},
+                             {"rate_powers", numbers({1, 3})},
+                             {"coefficients_N_m", numbers({2e-6, -1e-6})}},
+                            attitude, rate);
+  EXPECT_LT((found + size * rate / 0.13).norm(), 1e-7 * size);  // the direction fades below 1e-5
+}
+
+TEST(EmpiricalTorque, PowerOfTheRateByAxis) {
+  const Vec3 rate(0.03, -0.04, 0.12), drag(1e-6, 2e-6, 3e-6);
+  const Vec3 found = torque({{"axes", words({"rate_by_axis"})},
+                             {"rate_exponent", node(1.5)},
+                             {"rate_reference_rad_s", node(0.2)},
+                             {"coefficients_N_m", numbers({1e-6, 2e-6, 3e-6})}},
+                            attitude, rate);
+  const Vec3 expected = -std::pow(0.13 / 0.2, 1.5) * drag.cwiseProduct(rate) / 0.13;
+  EXPECT_LT((found - expected).norm(), 1e-7 * expected.norm());
+}
+
+TEST(EmpiricalTorque, FadesInBodyAxesAndAboutTheVertical) {
+  expect_near(torque({{"axes", words({"body", "vertical"})},
+                      {"time_constant_s", node(80.0)},
+                      {"coefficients_N_m", numbers({1e-6, -2e-6, 3e-6, 5e-6})}},
+                     attitude, Vec3::Zero(), 120.0),
+              std::exp(-1.5) * (Vec3(1e-6, -2e-6, 3e-6) + 5e-6 * vertical));
+}
+
+TEST(EmpiricalTorque, PeriodsAndCosinesInTime) {
+  expect_near(torque({{"axes", words({"lab"})},
+                      {"time_period_s", node(40.0)},
+                      {"time_orders", numbers({2})},
+                      {"coefficients_N_m", numbers({1e-6, 0, 0, 0, 2e-6, 3e-6})}},
+                     attitude, Vec3::Zero(), 7.0),
+              attitude.conjugate() * (std::cos(0.7 * pi) * Vec3(1e-6, 0, 0) +
+                                      std::sin(0.7 * pi) * Vec3(0, 2e-6, 3e-6)));
+  expect_near(torque({{"axes", words({"body"})},
+                      {"time_span_s", node(100.0)},
+                      {"time_cosines", numbers({0, 3})},
+                      {"coefficients_N_m", numbers({1e-6, 0, 0, 0, 2e-6, 3e-6})}},
+                     attitude, Vec3::Zero(), 20.0),
+              Vec3(1e-6, 0, 0) + std::cos(0.6 * pi) * Vec3(0, 2e-6, 3e-6));
+}
+
+TEST(EmpiricalTorque, CrossTalkAndPowersOfTheCommand) {
+  // The torque of a command of 1 N m: fractions of the command.
+  expect_near(torque({{"axes", words({"cross_talk"})},
+                      {"command_powers", numbers({1})},
+                      {"command_reference_N_m", node(1.0)},
+                      {"coefficients_N_m", numbers({0, 0.1, 0.2, 0.3, 0.4, 0})}},
+                     attitude),
+              Vec3(0.1 * 4e-4, 0.2 * 3e-4 + 0.3 * 4e-4, 0.4 * 3e-4));
+  expect_near(torque({{"axes", words({"command"})},
+                      {"command_powers", numbers({2})},
+                      {"coefficients_N_m", node(1e-6)}},
+                     attitude),
+              25e-6 * Vec3(0.6, 0.0, 0.8));
+}
+
+TEST(EmpiricalTorque, ChargeIsHeldBeyondItsRange) {
+  const Entries entries = {{"axes", words({"body"})},
+                           {"charge_powers", numbers({1})},
+                           {"charge_reference_Ah", node(2.0)},
+                           {"charge_range_Ah", numbers({0.0, 1.0})},
+                           {"coefficients_N_m", numbers({1e-6, 0, 0})}};
+  expect_near(torque(entries, attitude, Vec3::Zero(), 0.0, 1800.0), Vec3(0.25e-6, 0, 0));
+  // A twentieth of the range beyond its end, however far.
+  expect_near(torque(entries, attitude, Vec3::Zero(), 0.0, 36000.0), Vec3(0.525e-6, 0, 0));
+  expect_near(torque(entries, attitude, Vec3::Zero(), 0.0, -36000.0), Vec3(-0.025e-6, 0, 0));
+}
+
+// Two functions: every term of the first with every term of the second.
+TEST(EmpiricalTorque, DragThatDependsOnTheHeading) {
+  const Vec3 rate(0.03, -0.04, 0.12);
+  const Vec3 found = torque({{"axes", words({"rate"})},
+                             {"heading_orders", numbers({2})},
+                             {"rate_powers", numbers({1, 2})},
+                             {"coefficients_N_m", numbers({1e-6, 2e-6, 3e-6, 4e-6})}},
+                            attitude, rate);
+  const double size =
+      std::cos(1.4) * (1e-6 * 1.3 + 2e-6 * 1.69) + std::sin(1.4) * (3e-6 * 1.3 + 4e-6 * 1.69);
+  EXPECT_LT((found + size * rate / 0.13).norm(), 1e-7 * std::abs(size));
+}
+
+// A parabola through knots at any distance is kept; values count at their knots, slopes run on.
+TEST(EmpiricalTorque, TableKeepsParabolas) {
+  const std::vector<double> knots = {0.0, 1.0, 1.5, 4.0, 6.0, 6.5};
+  const auto parabola = [](double x) { return 1.0 - 2.0 * x + 0.5 * x * x; };
+  const SmoothTable table(knots);
+  for (double x = 0.0; x <= 6.5; x += 0.05) {
+    const SmoothTable::Weights w = table.at(x);
+    double value = 0.0, slope = 0.0, sum = 0.0;
+    for (size_t k = 0; k < 4; ++k) {
+      const double at = parabola(knots[static_cast<size_t>(w.first) + k]);
+      value += w.value[k] * at;
+      slope += w.slope[k] * at;
+      sum += w.value[k];
+    }
+    EXPECT_NEAR(value, parabola(x), 1e-12);
+    EXPECT_NEAR(slope, -2.0 + x, 1e-12);
+    EXPECT_NEAR(sum, 1.0, 1e-13);
+  }
+}
+
+TEST(EmpiricalTorque, TableInTime) {
+  const Entries entries = {{"axes", words({"vertical"})},
+                           {"time_knots_s", numbers({0, 10, 20, 40, 80})},
+                           {"coefficients_N_m", numbers({1e-6, 2e-6, 1e-6, 5e-6, 3e-6})}};
+  expect_near(torque(entries, attitude, Vec3::Zero(), 40.0), 5e-6 * vertical);
+  // Half-way between 10 and 20, by the slopes of the parabolas through 0, 10, 20 and 10, 20, 40.
+  const double left = 0.0, right = (-1e-6 / 10 * 20 + 4e-6 / 20 * 10) / 30;
+  expect_near(torque(entries, attitude, Vec3::Zero(), 15.0),
+              (1.5e-6 + 10.0 * (left - right) / 8.0) * vertical);
+}
+
+// What is written reads back as the same shape.
+TEST(EmpiricalTorque, ShapesAreWrittenAsTheyAreRead) {
+  const std::vector<Entries> all = {
+      {{"axes", words({"vertical", "lab"})}, {"heading_orders", numbers({1, 3})}},
+      {{"axes", words({"lean"})}, {"tilt_exponent", node(2.5)}, {"tilt_reference_deg", node(7)}},
+      {{"axes", words({"rate"})},
+       {"rate_knots_rad_s", numbers({0, 0.1, 0.2, 0.25})},
+       {"heading_orders", numbers({2})}},
+      {{"axes", words({"body"})}, {"time_constant_s", node(30)}, {"time_range_s", numbers({0, 9})}},
+      {{"axes", words({"body"})}, {"time_period_s", node(30)}, {"time_orders", numbers({1, 2})}},
+      {{"axes", words({"body"})}, {"time_span_s", node(30)}, {"time_cosines", numbers({1, 2})}},
+      {{"axes", words({"command"})}, {"command_powers", numbers({1, 2})}}};
+  for (const Entries& entries : all) {
+    const EmpiricalShape shape = read_shape(settings_of(table(entries)));
+    SettingsNode::Table again;
+    for (const auto& [key, value] : shape_as_written(shape)) {
+      std::vector<SettingsNode> items;
+      if (value.front() != '[') {
+        again[key] = node(std::stod(value));
+        continue;
+      }
+      std::string item;
+      std::istringstream line(value.substr(1, value.size() - 2));
+      while (std::getline(line, item, ',')) {
+        item.erase(0, item.find_first_not_of(' '));
+        items.push_back(item.front() == '"' ? node(item.substr(1, item.size() - 2).c_str())
+                                            : node(std::stod(item)));
+      }
+      again[key] = list(items);
+    }
+    for (const MotionFunction& f : shape.functions) {
+      if (!f.own_key().empty()) again[f.own_key()] = node(f.own);
+    }
+    SettingsNode root;
+    root.value = again;
+    const EmpiricalShape found = read_shape(settings_of(root));
+    EXPECT_EQ(shape_as_written(found), shape_as_written(shape));
+    EXPECT_EQ(found.coefficients(), shape.coefficients());
+    EXPECT_GT(shape.coefficients(), 0u);
+  }
+}
+
+std::string complaint(const Entries& entries) {
+  try {
+    make(bench_model(), "empirical_torque", entries);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(EmpiricalTorque, SaysWhatIsWrongWithItsKeys) {
+  using testing::HasSubstr;
+  const std::pair<std::string, SettingsNode> about = {"axes", words({"vertical"})};
+  const std::pair<std::string, SettingsNode> two = {"coefficients_N_m", numbers({1e-6, 2e-6})};
+  const std::pair<std::string, SettingsNode> heading = {"heading_orders", numbers({3})};
+  EXPECT_EQ(complaint({about, heading, two}), "");
+  EXPECT_THAT(complaint({about, two}), HasSubstr("one or two"));
+  EXPECT_THAT(complaint({heading, two}), HasSubstr("axes"));
+  EXPECT_THAT(complaint({{"axes", words({"sideways"})}, heading, two}), HasSubstr("sideways"));
+  EXPECT_THAT(complaint({about, heading, {"coefficients_N_m", numbers({1e-6})}}),
+              HasSubstr("an array of 2 numbers"));
+  EXPECT_THAT(complaint({about, {"heading_orders", numbers({2.5})}, two}),
+              HasSubstr("whole numbers"));
+  EXPECT_THAT(complaint({{"axes", words({"lean"})}, heading, two}),
+              HasSubstr("without a function of the tilt"));
+  EXPECT_THAT(complaint({about, {"tilt_exponent", node(2)}, {"tilt_powers", numbers({1})}, two}),
+              HasSubstr("one function of a variable"));
+  EXPECT_THAT(complaint({about, {"time_knots_s", numbers({0, 3, 2, 5})}, two}), HasSubstr("rise"));
+  EXPECT_THAT(complaint({about, {"time_constant_s", node(-3)}, two}), HasSubstr("time_constant_s"));
+}
+
+}  // namespace
+}  // namespace photorque
