@@ -45,6 +45,12 @@ ProveSettings read_settings(const CommandLine& line) {
   plan.none = static_cast<int>(s.integer_or("none", plan.none, 0, most));
   plan.pairs = static_cast<int>(s.integer_or("pairs", plan.pairs, 0, most));
   plan.outside = static_cast<int>(s.integer_or("outside", plan.outside, 0, most));
+  plan.triples = static_cast<int>(s.integer_or("triples", plan.triples, 0, most));
+  plan.known_unknown = static_cast<int>(s.integer_or("known_unknown", plan.known_unknown, 0, most));
+  plan.noise_none = static_cast<int>(s.integer_or("noise_none", plan.noise_none, 0, most));
+  plan.noise_effect = static_cast<int>(s.integer_or("noise_effect", plan.noise_effect, 0, most));
+  plan.strong_fraction = s.number_or("strong_share", plan.strong_fraction, Range::fraction());
+  plan.second_fraction = s.number_or("second_maker_share", plan.second_fraction, Range::fraction());
   const Range seconds{20.0, 1e5, false, false}, rate{1.0, 1000.0, false, false};
   plan.duration_s = s.number_or("duration_s", plan.duration_s, seconds);
   plan.holdout_s = s.number_or("holdout_s", plan.holdout_s, seconds);

@@ -7,6 +7,7 @@
 
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
+#include "tools/proof/instruments.h"
 #include "tools/proof/recipes.h"
 
 namespace photorque {
@@ -15,9 +16,10 @@ namespace {
 using namespace injected;
 using Json = nlohmann::ordered_json;
 
-constexpr double start_s = -0.5;  // the motion starts before the clock, so that a camera may lag
+constexpr double start_s = injected_start_s;
 constexpr double step_s = 0.01;
-constexpr double arcsecond = pi / 180.0 / 3600.0;
+// A hundred kinks bent by this much are off by less than the instruments' noise after minutes.
+constexpr double bend_rad_s = 2e-8;
 
 template <class... Numbers>
 std::string print(const char* format, Numbers... numbers) {
@@ -47,34 +49,6 @@ std::string effect_text(const InjectedEffect& effect) {
   return text;
 }
 
-// When the rows are taken, and which of them are lost.
-struct Rows {
-  std::vector<double> time_s;
-  std::vector<bool> lost;
-};
-
-Rows draw_rows(RandomDraw& draw, const InjectedSensors& sensors, double duration_s) {
-  Rows rows;
-  const double interval_s = 1.0 / sensors.rate_Hz;
-  const auto count = static_cast<size_t>(std::llround(duration_s * sensors.rate_Hz));
-  for (size_t i = 0; i < count; ++i) {
-    const double jitter = sensors.dirty ? std::clamp(0.05 * draw.normal(), -0.3, 0.3) : 0.0;
-    const double t_s = (static_cast<double>(i) + jitter) * interval_s;
-    rows.time_s.push_back(i == 0 ? 0.0 : std::round(1e6 * t_s) / 1e6);
-  }
-  rows.lost.assign(count, false);
-  if (!sensors.dirty) return rows;
-  for (size_t i = 1; i < count; ++i) rows.lost[i] = draw.chance(0.003);
-  for (int gap = 0; gap < 2; ++gap) {
-    const double from_s = draw.uniform(0.1, 0.9) * duration_s, length_s = draw.uniform(1.0, 8.0);
-    for (size_t i = 1; i < count; ++i) {
-      const double into_s = rows.time_s[i] - from_s;
-      if (into_s >= 0.0 && into_s < length_s) rows.lost[i] = true;
-    }
-  }
-  return rows;
-}
-
 // Commands begin with a row, and that row is never lost: what the log says is what was done.
 std::vector<InjectedCommand> on_rows(std::vector<InjectedCommand> commands, Rows& rows) {
   for (InjectedCommand& c : commands) {
@@ -86,46 +60,18 @@ std::vector<InjectedCommand> on_rows(std::vector<InjectedCommand> commands, Rows
   return commands;
 }
 
-// The readings of one row as cells.
-class Instruments {
- public:
-  Instruments(RandomDraw& draw, const InjectedSensors& sensors) : draw_(draw), sensors_(sensors) {}
-
-  std::string attitude(const Quaternion& seen, size_t row) {
-    Triple noise;
-    for (size_t k = 0; k < 3; ++k) {
-      noise[k] = sensors_.camera_noise_arcsec[k] * arcsecond * draw_.normal();
-    }
-    if (sensors_.dirty && draw_.chance(0.002)) {
-      noise = times(draw_.log_uniform(0.01, 0.3), draw_.direction());
-    }
-    Quaternion q = product(quaternion_of(noise), seen);
-    if (sensors_.dirty && draw_.chance(0.01)) side_ = -side_;
-    if (side_ * q[0] < 0.0 && !sensors_.dirty) side_ = -side_;  // most trackers report w ≥ 0
-    const bool due = row % static_cast<size_t>(sensors_.camera_every) == 0;
-    const bool seen_at_all = !(sensors_.dirty && draw_.chance(0.01));
-    if (!due || !seen_at_all) return ",,,";
-    for (double& x : q) x *= side_;
-    return print("%.9f,%.9f,%.9f,%.9f", q[0], q[1], q[2], q[3]);
-  }
-
-  std::string gyro(Triple rate_rad_s) {
-    rate_rad_s = plus(rate_rad_s, draw_.normals(sensors_.gyro_noise_rad_s));
-    if (sensors_.dirty && draw_.chance(0.001)) {
-      rate_rad_s = plus(rate_rad_s, times(draw_.log_uniform(0.02, 1.0), draw_.direction()));
-    }
-    if (sensors_.dirty && draw_.chance(0.003)) return ",,";
-    return print("%.7e,%.7e,%.7e", rate_rad_s[0], rate_rad_s[1], rate_rad_s[2]);
-  }
-
- private:
-  RandomDraw& draw_;
-  InjectedSensors sensors_;
-  double side_ = 1.0;
-};
-
 Json number_or_array(const std::vector<double>& numbers) {
   return numbers.size() == 1 ? Json(numbers[0]) : Json(numbers);
+}
+
+// Where it is not as stated.
+void add_noise(Json& json, const char* instrument, const InjectedNoise& noise) {
+  if (noise.is_as_stated()) return;
+  json[instrument] = {{"scale", noise.scale},
+                      {"correlation_time_s", noise.time_s},
+                      {"student_degrees", noise.student_degrees},
+                      {"outlier_share", noise.outlier_share},
+                      {"step_sigma", noise.step_sigma}};
 }
 
 }  // namespace
@@ -156,6 +102,7 @@ std::string injected_experiment(const InjectedCase& c, bool told_truth) {
   text += "\n[sensors.camera]\nnoise_arcsec = " + array_text(c.sensors.camera_noise_arcsec) +
           "   # about lab x, y (out of plane) and z (in plane)\n";
   const std::string bias = print("%g", priors.gyro_bias_sigma_rad_s);
+  if (!c.sensors.has_gyro) return text;
   text += print("\n[sensors.gyro]\nnoise_rad_s = %g\n", c.sensors.gyro_noise_rad_s);
   text += "bias_rad_s = " +
           with_sigma("[0, 0, 0]", "[" + bias + ", " + bias + ", " + bias + "]",
@@ -169,15 +116,21 @@ std::string injected_recording(const InjectedCase& c, size_t run_index) {
   const InjectedRun& run = c.runs[run_index];
   Rows rows = draw_rows(draw, c.sensors, run.duration_s);
   const auto commands = on_rows(run.commands, rows);
-  const auto moments = injected_motion(c.world, commands, run.start, start_s, rows.time_s, step_s);
+  const auto motion_at = [&](const std::vector<double>& times_s) {
+    return injected_motion(c.world, commands, run.start, start_s, times_s, step_s, bend_rad_s);
+  };
+  const auto moments = motion_at(rows.time_s);
+  const double latency_s = std::min(0.49, injected_latency_s(c.world));
   std::vector<double> seen_s = rows.time_s;
-  for (double& t_s : seen_s) t_s -= std::min(0.49, injected_latency_s(c.world));
-  const auto seen = injected_motion(c.world, commands, run.start, start_s, seen_s, step_s);
+  for (double& t_s : seen_s) t_s -= latency_s;
+  const auto seen = latency_s == 0.0 ? moments : motion_at(seen_s);
 
   std::string text = c.sensors.dirty ? "# exported log, tracker and gyro on one clock\n" : "";
-  text +=
-      "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,"
-      "command_x_N_m,command_y_N_m,command_z_N_m,battery_current_A\n";
+  text += "t_s,q_w,q_x,q_y,q_z";
+  if (c.sensors.has_gyro) text += ",gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s";
+  if (c.sensors.has_commands)
+    text += ",command_x_N_m,command_y_N_m,command_z_N_m,battery_current_A";
+  text += "\n";
   Instruments instruments(draw, c.sensors);
   size_t held = 0;
   // As many digits as the times have: a pulse 50 µs off shows after minutes.
@@ -188,11 +141,16 @@ std::string injected_recording(const InjectedCase& c, size_t run_index) {
     const std::string attitude = instruments.attitude(seen[i].camera, i);
     const std::string gyro = instruments.gyro(moments[i].gyro_rad_s);
     if (rows.lost[i]) continue;
-    while (held + 1 < commands.size() && commands[held + 1].time_s <= rows.time_s[i] + 1e-9) ++held;
-    const Triple& torque = commands[held].torque_N_m;
-    const std::string row = print(time_format, rows.time_s[i]) + attitude + "," + gyro +
-                            print(",%.8e,%.8e,%.8e,%.4f\n", torque[0], torque[1], torque[2],
-                                  commands[held].battery_current_A);
+    std::string row = print(time_format, rows.time_s[i]) + attitude + gyro;
+    if (c.sensors.has_commands) {
+      while (held + 1 < commands.size() && commands[held + 1].time_s <= rows.time_s[i] + 1e-9) {
+        ++held;
+      }
+      const Triple& torque = commands[held].torque_N_m;
+      row += print(",%.8e,%.8e,%.8e,%.4f", torque[0], torque[1], torque[2],
+                   commands[held].battery_current_A);
+    }
+    row += "\n";
     text += row;
     if (c.sensors.dirty && draw.chance(0.001)) text += row;  // written twice
   }
@@ -213,9 +171,14 @@ std::string injected_truth_json(const InjectedCase& c) {
   json["depends_on"] = c.depends_on;
   json["name"] = c.name;
   json["family"] = c.family;
+  json["maker"] = c.maker;
   json["chi2_gain"] = c.chi2_gain;
   json["dirty"] = c.sensors.dirty;
   json["rate_Hz"] = c.sensors.rate_Hz;
+  Json noise = Json::object();
+  add_noise(noise, "camera", c.sensors.camera);
+  add_noise(noise, "gyro", c.sensors.gyro);
+  if (!noise.empty()) json["noise"] = noise;
   json["platform"] = {{"mass", c.world.mass_kg},
                       {"inertia", c.world.inertia_kg_m2},
                       {"offset", c.world.offset_m},

@@ -12,9 +12,7 @@ namespace {
 
 using namespace injected;
 
-constexpr double start_s = -0.5;  // see files.cpp
-// Good to 1e-5 of an effect at up to 1 rad/s, to a per cent of the fastest tones.
-constexpr double step_s = 0.05;
+constexpr double start_s = injected_start_s;
 constexpr double arcsecond = pi / 180.0 / 3600.0;
 
 // Kinds whose readings change in proportion to all their numbers, or that have none, those that
@@ -37,17 +35,34 @@ bool is_tone(const Recipe& recipe) {
   return recipe.screening.scan == Scan::frequency;
 }
 
+// Errors that stay alike over many readings tell as much of what is slow as one reading in so many.
+double independent_share(const InjectedNoise& noise, double interval_s) {
+  if (noise.time_s == 0.0) return 1.0;
+  const double alike = std::exp(-interval_s / noise.time_s);
+  return (1.0 - alike) / (1.0 + alike);
+}
+
 }  // namespace
 
 InjectedInformation::InjectedInformation(const InjectedCase& injected) : case_(injected) {
   // A reading every 0.7 s or so, at uneven times, stands for those around it.
   const double duration_s = case_.runs[0].duration_s;
-  const auto count = static_cast<size_t>(duration_s / 0.7);
+  const auto count = static_cast<size_t>(std::clamp(duration_s / 0.7, 200.0, 800.0));
   for (size_t i = 0; i < count; ++i) {
     const double at = static_cast<double>(i) + unit_interval(hash_words(case_.seed, 5, i));
     times_s_.push_back(duration_s * at / static_cast<double>(count));
   }
-  weight_ = std::sqrt(duration_s * case_.sensors.rate_Hz / static_cast<double>(count));
+  // Good to 1e-5 of an effect at up to 1 rad/s, to a per cent of the fastest tones; over an hour
+  // to ten times that.
+  step_s_ = duration_s > 1000.0 ? 0.1 : 0.05;
+  const InjectedSensors& sensors = case_.sensors;
+  const double rows = duration_s * sensors.rate_Hz, interval_s = 1.0 / sensors.rate_Hz;
+  const double each = rows / static_cast<double>(count);
+  camera_weight_ =
+      std::sqrt(each * independent_share(sensors.camera, interval_s * sensors.camera_every) /
+                sensors.camera_every);
+  gyro_weight_ =
+      sensors.has_gyro ? std::sqrt(each * independent_share(sensors.gyro, interval_s)) : 0.0;
   base_ = sample(case_.world, case_.runs[0].start);
   add_nuisances();
 }
@@ -76,7 +91,9 @@ void InjectedInformation::add_nuisances() {
     if (priors.offset_sigma_m[k] > 0.0) add(world, start, 1e-8, priors.offset_sigma_m[k]);
     world = case_.world;
     world.gyro_bias_rad_s[k] += 1e-6;
-    if (priors.gyro_bias_sigma_rad_s > 0.0) add(world, start, 1e-6, priors.gyro_bias_sigma_rad_s);
+    if (priors.gyro_bias_sigma_rad_s > 0.0 && case_.sensors.has_gyro) {
+      add(world, start, 1e-6, priors.gyro_bias_sigma_rad_s);
+    }
   }
   InjectedWorld world = case_.world;
   world.drag_N_m_s += 1e-8;
@@ -95,7 +112,7 @@ InjectedInformation::Sampled InjectedInformation::sample(const InjectedWorld& wo
                                                          const InjectedStart& start) const {
   const double latency_s = injected_latency_s(world);
   const auto& commands = case_.runs[0].commands;
-  const auto moments = injected_motion(world, commands, start, start_s, times_s_, step_s);
+  const auto moments = injected_motion(world, commands, start, start_s, times_s_, step_s_);
   Sampled sampled;
   for (const InjectedContext& moment : moments) {
     sampled.gyro_rad_s.push_back(moment.gyro_rad_s);
@@ -104,22 +121,21 @@ InjectedInformation::Sampled InjectedInformation::sample(const InjectedWorld& wo
   if (latency_s == 0.0) return sampled;
   std::vector<double> seen_s = times_s_;
   for (double& t : seen_s) t = std::max(start_s, t - latency_s);
-  const auto seen = injected_motion(world, commands, start, start_s, seen_s, step_s);
+  const auto seen = injected_motion(world, commands, start, start_s, seen_s, step_s_);
   for (size_t i = 0; i < seen.size(); ++i) sampled.camera[i] = seen[i].camera;
   return sampled;
 }
 
 Eigen::VectorXd InjectedInformation::difference(const Sampled& sampled) const {
   const InjectedSensors& sensors = case_.sensors;
-  const double camera_weight = weight_ / std::sqrt(sensors.camera_every);
   Eigen::VectorXd all(static_cast<Eigen::Index>(6 * times_s_.size()));
   for (size_t i = 0; i < times_s_.size(); ++i) {
     const Triple turn = turn_of(product(sampled.camera[i], conjugate(base_.camera[i])));
     const Triple faster = minus(sampled.gyro_rad_s[i], base_.gyro_rad_s[i]);
     for (size_t k = 0; k < 3; ++k) {
       const auto at = static_cast<Eigen::Index>(6 * i + k);
-      all[at] = camera_weight * turn[k] / (sensors.camera_noise_arcsec[k] * arcsecond);
-      all[at + 3] = weight_ * faster[k] / sensors.gyro_noise_rad_s;
+      all[at] = camera_weight_ * turn[k] / (sensors.camera_noise_arcsec[k] * arcsecond);
+      all[at + 3] = gyro_weight_ * faster[k] / sensors.gyro_noise_rad_s;
     }
   }
   return all;
@@ -138,7 +154,13 @@ Eigen::VectorXd InjectedInformation::change_by(size_t index, double fraction) co
   return -difference(sample(world, case_.runs[0].start)) / fraction;
 }
 
-Eigen::MatrixXd InjectedInformation::columns_of(const std::string& kind) const {
+const Eigen::MatrixXd& InjectedInformation::columns_of(const std::string& kind) const {
+  const auto found = columns_.find(kind);
+  if (found != columns_.end()) return found->second;
+  return columns_.emplace(kind, made_columns_of(kind)).first->second;
+}
+
+Eigen::MatrixXd InjectedInformation::made_columns_of(const std::string& kind) const {
   std::vector<Eigen::VectorXd> columns;
   const InjectedStart& start = case_.runs[0].start;
   const auto add = [&](const InjectedEffect& effect, double by) {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,8 @@ class InjectedInformation {
   // which it is proportional is taken away whole.
   Eigen::VectorXd change_by(size_t index, double fraction) const;
 
-  // The columns of a kind's numbers, about the true motion.
-  Eigen::MatrixXd columns_of(const std::string& kind) const;
+  // The columns of a kind's numbers, about the true motion; none where it is not linear in them.
+  const Eigen::MatrixXd& columns_of(const std::string& kind) const;
 
   // The part of `change`, squared, that neither the start, the uncertain priors nor the columns of
   // `others` can take up: what chi² gains by knowing.
@@ -43,10 +44,14 @@ class InjectedInformation {
   // From the base, in units of the noise.
   Eigen::VectorXd difference(const Sampled& sampled) const;
   void add_nuisances();
+  Eigen::MatrixXd made_columns_of(const std::string& kind) const;
 
   InjectedCase case_;
   std::vector<double> times_s_;
-  double weight_ = 1.0;  // root of the readings that one of times_s_ stands for
+  double step_s_ = 0.05;
+  // Roots of the independent readings that one of times_s_ stands for; 0: none are taken.
+  double camera_weight_ = 1.0, gyro_weight_ = 1.0;
+  mutable std::map<std::string, Eigen::MatrixXd> columns_;
   Sampled base_;
   Eigen::MatrixXd nuisance_;  // the last rows are those of the priors
 };

@@ -124,7 +124,7 @@ class Equations {
     s.gravity_level = platform_.gravity_lab;
     s.gravity_m_s2 = world_.gravity_m_s2;
     s.field = to_body(s.attitude, world_.magnetic_field_T);
-    s.up = to_body(s.attitude, times(-1.0 / world_.gravity_m_s2, platform_.gravity_lab));
+    s.up = to_body(s.attitude, {0, 0, 1});
     s.command_N_m = command.torque_N_m;
     return s;
   }
@@ -141,14 +141,23 @@ State along(const State& y, double by, const State& d) {
   return sum;
 }
 
-// Kutta's classical step. A law that jumps at either end is looked at just inside.
+// Kutta's classical step. A law that jumps at either end is looked at just inside. The step is
+// halved where the rate's change would bend by more than `bend_rad_s` (0: never).
 State step(const Equations& equations, const InjectedCommand& command, double t, const State& y,
-           double h) {
+           double h, double bend_rad_s, int halvings = 12) {
   const double inside = 1e-9 * h;
   const State a = equations.rates(t + inside, y, command);
   const State b = equations.rates(t + 0.5 * h, along(y, 0.5 * h, a), command);
   const State c = equations.rates(t + 0.5 * h, along(y, 0.5 * h, b), command);
   const State d = equations.rates(t + h - inside, along(y, h, c), command);
+  if (bend_rad_s > 0.0 && halvings > 0) {
+    double bend = 0.0;
+    for (size_t i = 4; i < 7; ++i) bend = std::max(bend, std::abs(a[i] - b[i] - c[i] + d[i]));
+    if (h / 6.0 * bend > bend_rad_s) {
+      const State half = step(equations, command, t, y, 0.5 * h, bend_rad_s, halvings - 1);
+      return step(equations, command, t + 0.5 * h, half, 0.5 * h, bend_rad_s, halvings - 1);
+    }
+  }
   State sum = y;
   for (size_t i = 0; i < state_size; ++i) {
     sum[i] += h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
@@ -178,10 +187,15 @@ double injected_latency_s(const InjectedWorld& world) {
   return changed(world).camera_latency_s;
 }
 
+std::array<Triple, 3> injected_inertia_kg_m2(const InjectedWorld& world) {
+  return changed(world).inertia;
+}
+
 std::vector<InjectedContext> injected_motion(const InjectedWorld& world,
                                              const std::vector<InjectedCommand>& commands,
                                              const InjectedStart& start, double from_s,
-                                             const std::vector<double>& times_s, double step_s) {
+                                             const std::vector<double>& times_s, double step_s,
+                                             double bend_rad_s) {
   const Equations equations(world);
   std::vector<InjectedContext> moments;
   if (times_s.empty()) return moments;
@@ -198,7 +212,9 @@ std::vector<InjectedContext> injected_motion(const InjectedWorld& world,
     while (held + 1 < commands.size() && commands[held + 1].time_s <= t + 1e-12) ++held;
     const bool before = commands.empty() || commands[held].time_s > t + 1e-12;
     const InjectedCommand now = before ? InjectedCommand{} : commands[held];
-    for (int i = 0; i < steps; ++i) y = step(equations, now, t + i * h, y, h);
+    for (int i = 0; i < steps; ++i) {
+      y = step(equations, now, t + i * h, y, h, bend_rad_s);
+    }
     t = end_s;
   };
   for (const double time_s : times_s) {

@@ -56,13 +56,21 @@ bool is_outside_catalogue(const std::string& kind);
 // Multiplies what makes the effect strong (Injection::strength), not times or frequencies.
 void scale_effect(InjectedEffect& effect, double by);
 double injected_latency_s(const InjectedWorld& world);
+// With what the effects add, about the body axes.
+std::array<Triple, 3> injected_inertia_kg_m2(const InjectedWorld& world);
+
+// The motion of a case starts before its clock, so that a camera may lag.
+inline constexpr double injected_start_s = -0.5;
 
 // Noiseless readings at `times_s` (rising, not before `from_s`, where the motion starts). Steps of
 // at most `step_s` that end at every jump; the error falls with its fourth power: 1e-9 rad for
-// 0.01 s and rates below 1 rad/s. NumericalError for an unknown kind and when the motion diverges.
+// 0.01 s and rates below 1 rad/s. With `bend_rad_s` > 0, steps are halved until the torque bends
+// them by no more than that: where a law has a kink, dry friction at rest. NumericalError for an
+// unknown kind and when the motion diverges.
 std::vector<InjectedContext> injected_motion(const InjectedWorld& world,
                                              const std::vector<InjectedCommand>& commands,
                                              const InjectedStart& start, double from_s,
-                                             const std::vector<double>& times_s, double step_s);
+                                             const std::vector<double>& times_s, double step_s,
+                                             double bend_rad_s = 0.0);
 
 }  // namespace photorque

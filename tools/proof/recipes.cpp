@@ -21,10 +21,11 @@ const EffectKey* strength_key(const Recipe& recipe) {
 std::vector<Recipe> make_recipes() {
   std::vector<Recipe> all;
   for (const DisturbanceKind& kind : disturbance_kinds()) {
-    if (kind.injection.draw) all.push_back({kind.name, kind.injection, kind.screening});
+    if (!kind.injection.draw) continue;
+    all.push_back({kind.name, kind.injection, kind.screening, kind.instrument});
   }
   for (const OutsideLaw& law : outside_laws()) {
-    all.push_back({law.name, law.injection, {}, true, law.depends_on});
+    all.push_back({law.name, law.injection, {}, {}, true, law.depends_on});
   }
   return all;
 }

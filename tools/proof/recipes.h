@@ -13,9 +13,10 @@ namespace photorque::injected {
 struct Recipe {
   std::string kind;
   Injection injection;
-  Screening screening = {};     // of a kind of disturbance
-  bool outside = false;         // of the catalogue
-  std::string depends_on = {};  // of a law outside of it
+  Screening screening = {};                  // of a kind of disturbance
+  std::string instrument = {};               // whose error it is
+  bool outside = false;                      // of the catalogue
+  std::vector<std::string> depends_on = {};  // of a law outside of it
 
   // Whether its readings change in proportion to its strength.
   bool is_proportional() const;

@@ -35,8 +35,8 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 injected::PlainTorque plain_torque(const InjectedEffect& effect) {
   using namespace injected;
   return [size_N_m = effect.number(friction.name)](const Surroundings& s) {
-    const double rate = length(s.rate);
-    return rate > 0.0 ? times(-size_N_m / rate, s.rate) : Triple{};
+    constexpr double creep_rad_s = 1e-6;  // what the file takes by default
+    return times(-size_N_m / std::hypot(length(s.rate), creep_rad_s), s.rate);
   };
 }
 
