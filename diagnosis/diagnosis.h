@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/vector.h"
+#include "inference/predictive.h"
 
 namespace photorque {
 
@@ -92,6 +93,10 @@ struct Holdout {
   double chi2_per_sample_before = 0.0;
   double chi2_per_sample_after = 0.0;
   int64_t samples = 0;
+  // How the model predicts them with the uncertainty of its parameters; empty: it was not asked.
+  std::optional<inference::Predictive> predictive = {};
+  // Of what the nominal model leaves beyond noise, the part that is explained, 0 to 1.
+  double explained_fraction = 0.0;
 };
 
 // An experiment that would tell apart what these data cannot.
@@ -143,8 +148,9 @@ struct DataQuality {
 
 struct Diagnosis {
   Verdict verdict = Verdict::consistent;
-  double confidence = 0.0;  // probability that the verdict and the names are right
-  std::string sentence;     // the finding in one sentence, for the top of the report
+  double confidence = 0.0;   // probability that the verdict and the names are right
+  std::string sentence;      // the finding in one sentence, for the top of the report
+  std::string because = {};  // of "unexplained": which evidence decided it
   Where where;
   std::vector<FoundEffect> effects;
   std::vector<EmpiricalTorque> empirical;

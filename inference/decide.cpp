@@ -48,6 +48,32 @@ class Judge {
     return best;
   }
 
+  // The same without those of its names that are hardly missed.
+  size_t pruned(size_t trial) const {
+    while (trial != 0) {
+      size_t fewer = trial;
+      for (size_t i = 0; i < trials_.size(); ++i) {
+        if (!is_part(i, trial) || !trials_[i].objection.empty()) continue;
+        if (is_missed(i, trial)) continue;
+        if (fewer == trial || trials_[i].log_evidence > trials_[fewer].log_evidence) fewer = i;
+      }
+      if (fewer == trial) return trial;
+      trial = fewer;
+    }
+    return trial;
+  }
+
+  // Whether the trial predicts what was held out.
+  bool predicts(size_t trial) const {
+    const std::optional<Predictive>& p = trials_[trial].predictive;
+    return !p || p->sigma < limits_.max_predictive_sigma;
+  }
+
+  bool has_names_of(size_t part, size_t whole) const {
+    const auto some = names_of(part), all = names_of(whole);
+    return std::includes(all.begin(), all.end(), some.begin(), some.end());
+  }
+
   std::multiset<std::string> names_of(size_t trial) const {
     std::multiset<std::string> names;
     for (const size_t c : trials_[trial].candidates) names.insert(all_[c].name);
@@ -55,6 +81,21 @@ class Judge {
   }
 
  private:
+  // Whether `part` has all names of `whole` but one.
+  bool is_part(size_t part, size_t whole) const {
+    const auto fewer = names_of(part), all = names_of(whole);
+    return fewer.size() + 1 == all.size() &&
+           std::includes(all.begin(), all.end(), fewer.begin(), fewer.end());
+  }
+
+  // Whether `whole` beats `part` by the full threshold, and does not predict worse.
+  bool is_missed(size_t part, size_t whole) const {
+    const Explanation &a = trials_[part], &b = trials_[whole];
+    if (b.log_evidence < a.log_evidence + limits_.min_log_odds) return false;
+    if (!a.predictive || !b.predictive) return true;
+    return b.predictive->log_score > a.predictive->log_score - limits_.max_predictive_loss;
+  }
+
   const std::vector<Explanation>& trials_;
   const std::vector<CandidateTraits>& all_;
   const Thresholds::Decision& limits_;
@@ -92,7 +133,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
                 const std::function<double(size_t trial)>& excess_sigma,
                 const Thresholds::Decision& limits) {
   const Judge judge(trials, all, limits);
-  const size_t named = judge.best(false), empirical = judge.best(true);
+  const size_t named = judge.pruned(judge.best(false)), empirical = judge.best(true);
   Decision d;
   d.probability = posterior(trials);
   d.best_named = named;
@@ -100,21 +141,30 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
       empirical != 0 &&
       trials[empirical].log_evidence > trials[named].log_evidence + limits.min_log_odds;
   const bool structure_left = excess_sigma(named) > limits.max_excess_sigma;
-  if (only_empirical || structure_left) {
+  const bool predicts = judge.predicts(named);
+  if (only_empirical || structure_left || !predicts) {
     d.finding = Finding::unknown;
+    d.because = only_empirical   ? "a smooth law without physics explains the recording better"
+                : structure_left ? "the best known physics leaves structure in the recording"
+                                 : "the best known physics does not predict what was held out";
     d.chosen = only_empirical ? empirical : named;
     d.confidence = probability_of(d.probability, [&](size_t i) { return judge.is_empirical(i); });
-    if (structure_left) d.confidence = std::max(d.confidence, limits.structure_confidence);
+    if (structure_left || !predicts) {
+      d.confidence = std::max(d.confidence, limits.structure_confidence);
+    }
     return d;
   }
   if (named == 0) {
-    d.confidence = d.probability.front();
+    // What is less likely than nothing is no rival, however many such there are.
+    const double rivals = probability_of(
+        d.probability, [&](size_t i) { return d.probability[i] > d.probability.front(); });
+    d.confidence = d.probability.front() / (d.probability.front() + rivals);
     return d;
   }
   // The same names with another parametrisation are the same answer.
-  const auto names = judge.names_of(named);
+  // More than these is not said, though more may act.
   d.confidence =
-      probability_of(d.probability, [&](size_t i) { return judge.names_of(i) == names; });
+      probability_of(d.probability, [&](size_t i) { return judge.has_names_of(named, i); });
   d.undecided = d.confidence < limits.min_confidence_of_weak_name &&
                 !judge.is_significant(named, trials[named].significance);
   if (d.undecided) {

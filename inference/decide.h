@@ -19,13 +19,16 @@ struct Decision {
   // Nothing missing only because what shows has no name: the runs and what was held out show it
   // together, neither does alone, and no candidate is much likelier than all others.
   bool undecided = false;
-  size_t chosen = 0;                // index of the trial whose model is kept
-  size_t best_named = 0;            // of the best trial without empirical candidates; 0: nominal
+  size_t chosen = 0;      // index of the trial whose model is kept
+  size_t best_named = 0;  // of the best trial without empirical candidates; 0: nominal
+  // Why something unknown acts, for a person: "the held-out recording is not predicted".
+  std::string because = {};
   std::vector<double> probability;  // of each trial
 };
 
 // Trial 0 is the nominal model. `excess_sigma` is asked for the best named trial, and is the
-// structure that it leaves.
+// structure that it leaves. Whatever is said has to predict what was held out, "nothing is missing"
+// as well, and every name has to be missed where it is taken away.
 Decision decide(const std::vector<Explanation>& trials, const std::vector<CandidateTraits>& all,
                 const std::function<double(size_t trial)>& excess_sigma,
                 const Thresholds::Decision& limits);

@@ -19,6 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "inference/predictive.h"
+#include "inference/subsets.h"
 #include "inference/thresholds.h"
 
 namespace photorque::inference {
@@ -51,6 +53,7 @@ struct Explanation {
   std::string objection = {};                   // why it is forbidden; empty: nothing
   // Of its prediction of what was held out, where it was asked for.
   std::optional<double> holdout_chi2_per_sample = {};
+  std::optional<Predictive> predictive = {};
 };
 
 // How patiently is fitted: the fractions of each run that are fitted in turn, and the iterations
@@ -59,6 +62,23 @@ struct Effort {
   std::vector<double> windows = {1.0};
   int max_iterations = 25;
 };
+
+// A candidate with the start of its fit.
+template <class Start>
+struct Term {
+  size_t candidate = 0;
+  Start start;
+};
+
+// One of those that are to act together; `strengths`: where the fit of its strengths starts; empty:
+// as the start says.
+template <class Start>
+struct Member {
+  Term<Start> term;
+  Eigen::VectorXd strengths = {};
+};
+template <class Start>
+using Members = std::vector<Member<Start>>;
 
 // A fit as the search sees it: χ² with the priors, the number of residuals, χ² of the data over it.
 template <class F>
@@ -78,7 +98,8 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
     requires(const D& domain, const typename D::Trial& trial, const typename D::Start& start,
              const std::vector<typename D::Run>& runs, const std::vector<size_t>& candidates,
              const std::vector<typename D::Begin>& begins, const Effort& effort, size_t count,
-             int threads) {
+             const std::vector<Term<typename D::Start>>& terms,
+             const Members<typename D::Start>& members, int threads) {
   { domain.candidates() } -> std::same_as<const std::vector<CandidateTraits>&>;
   { domain.limits() } -> std::same_as<const Thresholds&>;
 
@@ -98,10 +119,15 @@ concept Domain = std::derived_from<typename D::Trial, Explanation> &&
   // The same trial, to be fitted from there next.
   { domain.with_begins(trial, begins) } -> std::same_as<typename D::Trial>;
 
-  // The fall of χ² that each candidate would bring (0 for those that are not linear), and that
-  // every two would bring together, each alone on the diagonal.
+  // The fall of χ² that each candidate would bring (0 for those that are not linear).
   { domain.gains(trial, candidates, runs) } -> std::same_as<std::vector<double>>;
-  { domain.pair_gains(trial, candidates, runs) } -> std::same_as<Eigen::MatrixXd>;
+  // The trial's own candidates as they were fitted, in their order.
+  { domain.terms_of(trial) } -> std::same_as<std::vector<Term<typename D::Start>>>;
+  // The strengths of terms about a trial, everything else that is fitted projected out. The first
+  // of `terms` are the trial's own; those that averages do not show make no group.
+  { domain.linear_problem(trial, terms, runs) } -> std::same_as<LinearProblem>;
+  // The nominal model with these members alone, fitted from where the trial ended.
+  { domain.assemble(trial, members, runs, effort) } -> std::same_as<typename D::Trial>;
   // Starts of each candidate added to the trial: one, or the most promising of a scan over what
   // is not linear. The second runs are averages of the first.
   {

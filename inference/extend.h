@@ -1,4 +1,4 @@
-// Every candidate added to a trial: scored, the promising ones fitted.
+// What rounds of the search share: runs in fewer samples or in pieces, fits of one candidate more.
 #pragma once
 
 #include <algorithm>
@@ -23,33 +23,6 @@ std::vector<typename D::Run> slow_runs(const D& domain, const typename D::Trial&
   return domain.average(about, set.runs, domain.limits().fitting.slow_blocks / set.pieces);
 }
 
-// Candidates that are worth a fit.
-struct Promising {
-  std::vector<size_t> candidates;
-  double min_gain;  // that a scan's start must predict, to be worth a fit beside these
-};
-
-// Where the prediction is near the readings, the score test predicts what each candidate would
-// gain: those that would gain hardly anything against the best need no fit of their own.
-template <Domain D>
-Promising promising(const D& domain, const typename D::Trial& parent,
-                    const std::vector<size_t>& candidates,
-                    const std::vector<typename D::Run>& averages) {
-  const Thresholds::Scoring& limits = domain.limits().scoring;
-  if (has_diverged(parent, domain.limits())) return {candidates, 0.0};
-  const std::vector<double> gains = domain.gains(parent, candidates, averages);
-  double best = 0.0;
-  for (const double gain : gains) best = std::max(best, gain);
-  Promising result{{}, limits.min_fraction * best};
-  for (size_t i = 0; i < candidates.size(); ++i) {
-    const CandidateTraits& c = domain.candidates()[candidates[i]];
-    const double by_chance = static_cast<double>(c.parameters);
-    const bool worth_it = gains[i] > std::max(limits.min_gain + by_chance, result.min_gain);
-    if (!c.is_linear || worth_it) result.candidates.push_back(candidates[i]);
-  }
-  return result;
-}
-
 // Averages and pieces flatter some: what was not fitted to the full readings stands below the first
 // `fitted` of these trials, which were, as it stood before.
 template <class Trial>
@@ -65,6 +38,23 @@ template <class Trial>
 void sort_by_evidence(std::vector<Trial>& trials) {
   std::stable_sort(trials.begin(), trials.end(),
                    [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
+}
+
+// Of trials of the same candidates, found in different order, the best.
+template <class Trial>
+std::vector<Trial> without_twins(std::vector<Trial> trials) {
+  std::vector<Trial> kept;
+  for (Trial& trial : trials) {
+    const auto twin = std::find_if(kept.begin(), kept.end(), [&](const Trial& t) {
+      return same_candidates(t.candidates, trial.candidates);
+    });
+    if (twin == kept.end()) {
+      kept.push_back(std::move(trial));
+    } else if (trial.log_evidence > twin->log_evidence) {
+      *twin = std::move(trial);
+    }
+  }
+  return kept;
 }
 
 // One fit that is to be done.
@@ -97,52 +87,6 @@ std::vector<typename D::Trial> extend_by_tasks(const D& domain, const typename D
   return best;
 }
 
-// The fits of slow candidates: to averages first, and those that come near the best to all
-// readings.
-template <Domain D>
-std::vector<typename D::Trial> extend_by_averages(const D& domain, const typename D::Trial& parent,
-                                                  const std::vector<Task<D>>& tasks,
-                                                  const std::vector<typename D::Run>& runs,
-                                                  const std::vector<typename D::Run>& averages,
-                                                  int threads) {
-  using Trial = typename D::Trial;
-  std::vector<Trial> rough = extend_by_tasks(domain, parent, tasks, averages, threads);
-  // Their evidence counts as what they gain over the parent on the same averages.
-  const double rough_parent =
-      domain.refit(parent, averages, domain.begins_of(parent), {}).log_evidence;
-  for (Trial& t : rough) t.log_evidence += parent.log_evidence - rough_parent;
-  sort_by_evidence(rough);
-  const size_t refits = std::min(domain.limits().search.max_refits_of_averages, rough.size());
-  parallel_for(refits, threads, [&](size_t i) {
-    rough[i] = domain.refit(rough[i], runs, domain.begins_of(rough[i]), {});
-  });
-  keep_below(rough, refits);
-  return rough;
-}
-
-// Every candidate added to a parent whose derivatives can be trusted.
-template <Domain D>
-std::vector<typename D::Trial> extend_near(const D& domain, const typename D::Trial& parent,
-                                           const std::vector<size_t>& candidates,
-                                           const RunSet<D>& set, int threads) {
-  const std::vector<typename D::Run> averages = slow_runs(domain, parent, set);
-  const Promising hopeful = promising(domain, parent, candidates, averages);
-  const auto starts = domain.starts(parent, hopeful.candidates, set.runs, averages, threads);
-  std::vector<Task<D>> slow, fast;
-  for (size_t i = 0; i < hopeful.candidates.size(); ++i) {
-    const size_t c = hopeful.candidates[i];
-    for (const typename D::Start& start : starts[i]) {
-      if (start.gain < hopeful.min_gain) continue;
-      (domain.candidates()[c].is_fast ? fast : slow).push_back({c, start});
-    }
-  }
-  auto found = extend_by_tasks(domain, parent, fast, set.runs, threads);
-  for (auto& t : extend_by_averages(domain, parent, slow, set.runs, averages, threads)) {
-    found.push_back(std::move(t));
-  }
-  return found;
-}
-
 // The pieces of the runs in which the parent stays near the readings, or the shortest that can be,
 // and the parent fitted to them.
 template <Domain D>
@@ -160,49 +104,6 @@ std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
     if (near.fit.chi2_per_sample() < domain.limits().diverged_chi2_per_sample) break;
   }
   return result;
-}
-
-// Every candidate added to a parent that has diverged. A prediction far from the readings says
-// little about why, so the runs are cut into pieces, each with a begin of its own, in which it
-// stays near them; what explains the pieces best is then fitted to the whole (multiple shooting).
-template <Domain D>
-std::vector<typename D::Trial> extend_by_pieces(const D& domain, const typename D::Trial& parent,
-                                                const std::vector<size_t>& candidates,
-                                                const std::vector<typename D::Run>& runs,
-                                                int threads) {
-  using Trial = typename D::Trial;
-  const Thresholds& limits = domain.limits();
-  const auto [pieces, near] = near_pieces(domain, parent, runs);
-  const double near_evidence = near.log_evidence;
-  std::vector<Trial> found = extend_near(domain, near, candidates, pieces, threads);
-  sort_by_evidence(found);
-  const size_t most = std::min(limits.search.max_refits_of_pieces, found.size());
-  size_t refits = 0;
-  while (refits < most && is_near(found[refits], found.front(), limits)) ++refits;
-  const Effort growing{.windows = limits.fitting.diverged_windows};
-  parallel_for(found.size(), threads, [&](size_t i) {
-    Trial& t = found[i];
-    const std::vector<typename D::Begin> begins = domain.seen_begins(t, runs);
-    if (i < refits) {
-      t = domain.refit(t, runs, begins, growing);
-    } else {
-      t.log_evidence += parent.log_evidence - near_evidence;
-      t = domain.with_begins(t, begins);
-    }
-  });
-  keep_below(found, refits);
-  return found;
-}
-
-template <Domain D>
-std::vector<typename D::Trial> extend_by_each(const D& domain, const typename D::Trial& parent,
-                                              const std::vector<size_t>& candidates,
-                                              const std::vector<typename D::Run>& runs,
-                                              int threads) {
-  if (has_diverged(parent, domain.limits())) {
-    return extend_by_pieces(domain, parent, candidates, runs, threads);
-  }
-  return extend_near(domain, parent, candidates, {runs}, threads);
 }
 
 }  // namespace photorque::inference

@@ -53,6 +53,8 @@ struct Thresholds {
     // Iterations of a fit: of a first try; of a second chance, enough to see whether it falls into
     // another local minimum; of a leader, which is to converge.
     int trial_iterations = 12, brief_iterations = 10, patient_iterations = 60;
+    // χ² at a foretold start over that of the trial from which it was foretold.
+    double max_start_growth = 10.0;
     // Blocks into which recordings are averaged for what changes slowly: several times faster than
     // all, and fine enough for every slow law of the catalogue.
     size_t slow_blocks = 1000;
@@ -82,6 +84,7 @@ struct Thresholds {
 
   // How far the search goes.
   struct Search {
+    size_t max_effects = 4;  // that may act together
     // Log evidence that one candidate more must gain, before anything is built on it. The same
     // makes two explanations distinguishable: odds of 20 to 1.
     double min_log_evidence_gain = 3.0;
@@ -91,12 +94,13 @@ struct Thresholds {
     size_t min_readings_of_piece = 10;
     // Fits to averages or pieces that are repeated on all readings.
     size_t max_refits_of_averages = 4, max_refits_of_pieces = 6;
-    // Pairs that are fitted for their joint score.
-    size_t max_pairs = 4;
-    // Explanations that are extended further: of single effects, and of more.
-    size_t max_single_parents = 2, max_parents = 1;
-    // Residual structure of an explanation [sigma], below which the next best is not extended too.
-    double explained_sigma = 5.0;
+    // Sets of candidates that a forecast keeps of each size, to be enlarged.
+    size_t beam = 40;
+    // Rounds of forecast and fit; the foretold sets that a round fits; and the log evidence below
+    // the best forecast within which a set is worth that.
+    int max_rounds = 6;
+    size_t max_fits_of_round = 6;
+    double forecast_within = 12.0;
   } search;
 
   // The best of many, which are fitted with more patience.
@@ -116,6 +120,12 @@ struct Thresholds {
     double within = 15.0;
     // Candidates that are added because only all recordings together show them.
     size_t max_effects = 4, max_empirical = 2;
+    // χ² per sample that may be noise alone where the train runs have it too: the level of the
+    // noise is known to a few per cent.
+    double max_noise = 1.15;
+    // Significance [sigma] beyond which a name would be missed in any case: the evidence falls by
+    // half of its square.
+    double sure_sigma = 12.0;
   } held_out;
 
   // Priors of the evidence.
@@ -141,6 +151,9 @@ struct Thresholds {
     double bound_sigma = 2.0;
     // Change of a principal moment of inertia, as a fraction: nobody weighs a platform that badly.
     double max_inertia_change = 0.4;
+    // Periods of a tone within the longest recording: one that is slower stands in for any torque
+    // that changes slowly.
+    double min_periods = 3.0;
   } objection;
 
   // The verdict.
@@ -151,6 +164,14 @@ struct Thresholds {
     double min_log_odds = 4.5;
     // Significance of every named effect [sigma].
     double min_significance = 4.0;
+    // Of the held-out runs beyond the predictive distribution [sigma], for a model to be believed.
+    double max_predictive_sigma = 5.0;
+    // Log evidence that a name may cost in predicting them: an effect that shows in the train runs
+    // alone predicts nothing.
+    double max_predictive_loss = 2.0;
+    // Distance of a nominal value from what was stated of it [sigma], to be doubted and to be
+    // contradicted.
+    double doubtful_belief_sigma = 3.0, contradicted_belief_sigma = 5.0;
     // Confidence, for a name that only the recordings and what was held out show together.
     double min_confidence_of_weak_name = 0.7;
     // Residual structure [sigma], before the best physics is called insufficient; and the

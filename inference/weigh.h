@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "inference/extend.h"
+#include "inference/rounds.h"
 
 namespace photorque::inference {
 
@@ -48,8 +48,14 @@ class Weighing {
     add_leaders(places);
     const size_t found = trials_.size();
     add_what_only_all_show(trials_.front().candidates);
-    add_what_only_all_show(best().candidates);
+    add_what_only_all_show(best().joint.candidates);
     learn();
+    search_on();
+    add_without_each();
+    for (const Leader& leader : leaders_) {
+      Trial& train = trials_[leader.at];
+      train.predictive = predictive_of(train, leader.joint);
+    }
     for (const Leader& leader : leaders_) {
       Trial& trial = trials_[leader.at];
       trial.log_evidence = leader.joint.log_evidence;
@@ -99,12 +105,101 @@ class Weighing {
     for (size_t k = 0; k < joint.size(); ++k) leaders_[k].joint = std::move(joint[k]);
   }
 
-  const Trial& best() const {
-    return std::max_element(leaders_.begin(), leaders_.end(),
-                            [](const Leader& a, const Leader& b) {
-                              return a.joint.log_evidence < b.joint.log_evidence;
-                            })
-        ->joint;
+  // The likeliest on all runs that nothing forbids.
+  const Leader& best() const {
+    const Leader* best = nullptr;
+    for (const Leader& leader : leaders_) {
+      if (!leader.joint.objection.empty() || !trials_[leader.at].objection.empty()) continue;
+      if (best == nullptr || leader.joint.log_evidence > best->joint.log_evidence) best = &leader;
+    }
+    return best != nullptr ? *best : leaders_.front();
+  }
+
+  Predictive predictive_of(const Trial& train, const Trial& joint) const {
+    Predictive result;
+    const double fitted = static_cast<double>(train.fit.samples),
+                 held = static_cast<double>(joint.fit.samples) - fitted;
+    result.chi2_per_sample = (joint.fit.chi2 - train.fit.chi2) / held;
+    result.log_score = joint.log_evidence - train.log_evidence;
+    if (!std::isfinite(result.chi2_per_sample)) {
+      result.sigma = limits_.noise.excess_unknown;
+      return result;
+    }
+    // The noise is known to a few per cent; what it is shows in the train runs.
+    const double noise = std::clamp(train.fit.chi2_per_sample(), 1.0, limits_.held_out.max_noise);
+    result.sigma = (result.chi2_per_sample - noise) / std::sqrt(2.0 / held + 2.0 / fitted);
+    const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
+    const Trial on_held = domain_.with_begins(
+        joint, {begins.end() - static_cast<std::ptrdiff_t>(held_.size()), begins.end()});
+    result.sigma = std::max(result.sigma, domain_.excess_sigma(on_held, held_));
+    return result;
+  }
+
+  // Where the best does not predict what was held out, all runs together are searched from there.
+  void search_on() {
+    const Leader from = best();
+    if (predictive_of(trials_[from.at], from.joint).sigma < limits_.decision.max_predictive_sigma)
+      return;
+    if (has_diverged(from.joint, limits_) || !std::isfinite(from.joint.fit.chi2)) return;
+    const auto nominal =
+        std::find_if(leaders_.begin(), leaders_.end(), [](const Leader& l) { return l.at == 0; });
+    Rounds<D> rounds(domain_, {all_runs_}, nominal->joint, limits_.search.max_effects, threads_);
+    std::vector<Trial> found = rounds.run(from.joint);
+    size_t added = 0;
+    for (const size_t i : by_evidence(found)) {
+      if (found[i].log_evidence < from.joint.log_evidence + limits_.search.min_log_evidence_gain ||
+          added == limits_.held_out.max_effects) {
+        break;
+      }
+      if (!found[i].objection.empty() || leads(found[i].candidates)) continue;
+      Trial joint =
+          domain_.refit(found[i], all_runs_, domain_.begins_of(found[i]), patient(limits_));
+      Trial train = assembled(joint, domain_.terms_of(joint));
+      add_leader(std::move(train), std::move(joint));
+      ++added;
+    }
+  }
+
+  // What is left of the best where one of its names is taken away: each has to be missed.
+  void add_without_each() {
+    const Leader from = best();
+    const auto terms = domain_.terms_of(from.joint);
+    for (size_t i = 0; i < terms.size() && terms.size() > 1; ++i) {
+      const bool is_sure = domain_.candidates()[terms[i].candidate].has_strength &&
+                           from.joint.significance[i] > limits_.held_out.sure_sigma;
+      auto fewer = terms;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+      std::vector<size_t> candidates;
+      for (const auto& term : fewer) candidates.push_back(term.candidate);
+      if (is_sure || leads(candidates)) continue;
+      Members<typename D::Start> members;
+      for (const auto& term : fewer) members.push_back({term});
+      Trial joint = domain_.assemble(from.joint, members, all_runs_, patient(limits_));
+      Trial train = assembled(joint, domain_.terms_of(joint));
+      add_leader(std::move(train), std::move(joint));
+    }
+  }
+
+  // Fitted to the train runs from where a fit to all ended.
+  Trial assembled(const Trial& joint, const std::vector<Term<typename D::Start>>& terms) const {
+    const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
+    const Trial start = domain_.with_begins(
+        joint, {begins.begin(), begins.begin() + static_cast<std::ptrdiff_t>(train_.size())});
+    Members<typename D::Start> members;
+    for (const auto& term : terms) members.push_back({term});
+    return domain_.assemble(start, members, train_, patient(limits_));
+  }
+
+  void add_leader(Trial train, Trial joint) {
+    predict_held(train);
+    const size_t at = place_of(std::move(train));
+    const auto leader =
+        std::find_if(leaders_.begin(), leaders_.end(), [&](const Leader& l) { return l.at == at; });
+    if (leader == leaders_.end()) {
+      leaders_.push_back({at, std::move(joint)});
+    } else if (joint.log_evidence > leader->joint.log_evidence) {
+      leader->joint = std::move(joint);
+    }
   }
 
   // Candidates that would gain beside `parent` (one of the leaders) on all runs, and were not tried
@@ -120,10 +215,9 @@ class Weighing {
       const size_t c = candidates[k];
       on_train[k] = domain_.extend(train, c, domain_.start_of(c), train_, {});
       on_all[k] = domain_.extend(joint, c, domain_.start_of(c), all_runs_, patient(limits_));
-      predict_held(on_train[k]);
     });
     for (size_t k = 0; k < candidates.size(); ++k) {
-      leaders_.push_back({place_of(std::move(on_train[k])), std::move(on_all[k])});
+      add_leader(std::move(on_train[k]), std::move(on_all[k]));
     }
   }
 

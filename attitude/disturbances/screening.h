@@ -31,6 +31,9 @@ struct EffectKey {
   static EffectKey vector(const std::string& key, double scale) {
     return {key, {0.0, 0.0, 0.0}, scale};
   }
+  static EffectKey vector_not_negative(const std::string& key, double scale) {
+    return {key, {0.0, 0.0, 0.0}, scale, 0.0};
+  }
   // A shape (a frequency, an instant) whose starts a scan has to find.
   static EffectKey shape(const std::string& key, double start, double scale, double lowest,
                          double highest = unbounded) {

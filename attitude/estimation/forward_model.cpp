@@ -160,6 +160,7 @@ inference::NormalSums AttitudeForwardModel::sums(const Eigen::VectorXd& at, Eige
   PredictionOptions options;
   options.propagation.tolerance = tolerance_;
   options.propagation.max_step_s = max_step_s(h.model);
+  options.max_chi2 = request.give_up_above;
   options.blocks = std::max<size_t>(
       20, static_cast<size_t>(request.window * static_cast<double>(seen.blocks())));
   try {

@@ -3,6 +3,21 @@
 #include "attitude/disturbances/kind.h"
 
 namespace photorque {
+namespace {
+
+// The least that physics allows of a key, as the kind's own file says.
+double lowest_of(const DisturbanceKind* kind, const std::string& key) {
+  if (kind == nullptr) return -inference::infinity;
+  if (kind->screening.least_sum) return kind->screening.least_sum->lowest;
+  for (const Parametrisation& p : kind->screening.parametrisations) {
+    for (const EffectKey& k : p.keys) {
+      if (k.key == key && k.lowest > -EffectKey::unbounded) return k.lowest;
+    }
+  }
+  return -inference::infinity;
+}
+
+}  // namespace
 
 Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs) {
   Hypothesis h;
@@ -15,7 +30,12 @@ Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Obs
     for (size_t p = 0; p < disturbance.parameters.size(); ++p) {
       const Parameter& parameter = disturbance.parameters[p];
       if (!(parameter.sigma > 0.0)) continue;
-      h.free.push_back({d, static_cast<int>(p), parameter.value, parameter.sigma, per_run});
+      Free f{d, static_cast<int>(p), parameter.value, parameter.sigma, per_run};
+      // What physics forbids of an effect it forbids of a belief, wherever it starts.
+      if (parameter.value >= lowest_of(kind, parameter.key)) {
+        f.lowest = lowest_of(kind, parameter.key);
+      }
+      h.free.push_back(f);
       if (per_run) own.push_back(parameter.value);
     }
   }

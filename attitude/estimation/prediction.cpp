@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/errors.h"
+
 namespace photorque {
 namespace {
 
@@ -44,10 +46,31 @@ class Slopes {
   std::vector<Lanes> readings_;
 };
 
+// By the gyro, or from one attitude to the next; 0.1 at least.
+double fastest_rad_s(const Observation& seen) {
+  double fastest = 0.1;
+  size_t before = seen.blocks();
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if ((seen.gyro_rows[i].array() > 0.0).all()) {
+      fastest = std::max(fastest, seen.gyro_rad_s[i].norm());
+    } else if (!seen.has_gyro && seen.attitude_rows[i] > 0.0) {
+      if (before < i) {
+        const Quat turn = seen.attitude[before].conjugate() * seen.attitude[i];
+        fastest = std::max(fastest,
+                           rotation_vector(turn).norm() / (seen.time_s[i] - seen.time_s[before]));
+      }
+      before = i;
+    }
+  }
+  return fastest;
+}
+
 class Comparison {
  public:
-  Comparison(const Observation& seen, size_t variables, bool keep)
+  Comparison(const Observation& seen, size_t variables, bool keep, double max_chi2)
       : seen_(seen),
+        max_chi2_(max_chi2),
+        max_rate_rad_s_(runaway * fastest_rad_s(seen)),
         sums_(static_cast<Eigen::Index>(variables)),
         slope_(6, static_cast<Eigen::Index>(variables)),
         keep_(keep) {
@@ -58,10 +81,15 @@ class Comparison {
     const Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
     std::optional<Slopes> slopes;
     if (sensitivity != nullptr) slopes.emplace(*sensitivity, samples);
+    // Nothing of what follows would be worth its steps.
+    if (chi2_ > max_chi2_) throw NumericalError("the prediction has left the readings");
     std::vector<double> y(samples.y.size());
     for (int lane = 0; lane < samples.count; ++lane) {
       for (size_t c = 0; c < y.size(); ++c) y[c] = samples.y[c][lane];
       const PlatformState state = to_state(samples.time_s[lane], y);
+      if (!(state.rate_body_rad_s.norm() < max_rate_rad_s_)) {
+        throw NumericalError("the motion runs away");
+      }
       if (slopes) slopes->fill(lane, state, slope_);
       const Vec3 camera_offset_body =
           in_lane(now.camera_error_rad, lane) - now.camera_delay_s[lane] * state.rate_body_rad_s;
@@ -100,13 +128,18 @@ class Comparison {
 
   void put(int reading, double off, double weight, WhiteRow& white) {
     white[reading] = off * weight;
+    chi2_ += white[reading] * white[reading];
     auto row = sums_.next();
     const Eigen::Index n = slope_.cols();
     row.head(n) = weight * slope_.row(reading);
     row[n] = white[reading];
   }
 
+  // Times the fastest motion seen: no trial of parameters is worth more.
+  static constexpr double runaway = 20.0;
+
   const Observation& seen_;
+  double max_chi2_, max_rate_rad_s_, chi2_ = 0.0;
   inference::SumsOfRows sums_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> slope_;
   bool keep_;
@@ -118,12 +151,15 @@ class Comparison {
 Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const Observation& seen,
                    const std::vector<Variable>& variables, const PredictionOptions& options) {
   const size_t blocks = std::min(options.blocks, seen.blocks());
-  Comparison comparison(seen, variables.size(), options.keep_residuals);
+  Comparison comparison(seen, variables.size(), options.keep_residuals, options.max_chi2);
   PropagationOptions propagation = options.propagation;
   // A trial of parameters that make the motion run away is not worth its steps.
+  // What rubs and stops needs thousands in a short time.
+  constexpr int64_t steps_at_least = 60000;
   constexpr double steps_per_second = 40.0;
   propagation.max_steps =
-      2000 + static_cast<int64_t>(steps_per_second * (seen.time_s[blocks - 1] - initial.time_s));
+      steps_at_least +
+      static_cast<int64_t>(steps_per_second * (seen.time_s[blocks - 1] - initial.time_s));
   Propagator propagator(dynamics, initial, seen.time_s[blocks - 1], propagation, variables);
   sample(
       propagator, blocks, [&](size_t i) { return seen.time_s[i]; },

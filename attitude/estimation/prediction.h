@@ -7,6 +7,7 @@
 #include "attitude/estimation/observation.h"
 #include "attitude/propagation/propagator.h"
 #include "inference/estimator/normal_sums.h"
+#include "inference/estimator/parameter.h"
 
 namespace photorque {
 
@@ -27,6 +28,7 @@ struct PredictionOptions {
   PropagationOptions propagation{.tolerance = 1e-7, .derivative_tolerance = 1e-9};
   size_t blocks = SIZE_MAX;  // only the first of them
   bool keep_residuals = false;
+  double max_chi2 = inference::infinity;  // beyond it the rest is not propagated
 };
 
 // `variables` may be empty. Residuals are taken at the linearised attitude error; the camera's

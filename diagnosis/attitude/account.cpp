@@ -171,6 +171,24 @@ std::vector<FittedParameter> refined_priors(const Trial& chosen) {
   return result;
 }
 
+std::vector<std::string> contradicted_beliefs(const Trial& chosen,
+                                              const Thresholds::Decision& limits) {
+  std::vector<std::string> sentences;
+  for (const inference::Parameter& p : chosen.fit.parameters.shared) {
+    const double off = (p.value - p.mean) / p.sigma;
+    if (sentences.size() == chosen.fit.best.free.size()) break;
+    if (!p.has_prior() || !(std::abs(off) > limits.doubtful_belief_sigma)) continue;
+    char text[200];
+    const bool is_contradicted = std::abs(off) > limits.contradicted_belief_sigma;
+    std::snprintf(text, sizeof text, "%s: stated %.4g ± %.2g, fitted %.4g: %s by %.1f σ",
+                  p.name.c_str(), p.mean, p.sigma, p.value,
+                  is_contradicted ? "the belief is contradicted" : "the belief is doubtful",
+                  std::abs(off));
+    sentences.emplace_back(text);
+  }
+  return sentences;
+}
+
 std::string sentence_of(const Diagnosis& d) {
   if (d.verdict == Verdict::consistent) {
     return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";

@@ -25,6 +25,9 @@ std::vector<Alternative> alternatives(const inference::Decision& decision,
                                       const std::vector<Trial>& trials, const Candidates& all);
 
 // What was nominal with an uncertainty, as the chosen trial has it.
+// One sentence for each nominal value that the recording contradicts.
+std::vector<std::string> contradicted_beliefs(const Trial& chosen,
+                                              const Thresholds::Decision& limits);
 std::vector<FittedParameter> refined_priors(const Trial& chosen);
 
 std::string sentence_of(const Diagnosis& diagnosis);

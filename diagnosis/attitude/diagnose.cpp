@@ -25,9 +25,8 @@ namespace {
 // the way.
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
   Fit fitted = fit_nominal(nominal, data.train, limits);
-  if (!std::isfinite(fitted.chi2)) {
-    throw NumericalError("the nominal model cannot be propagated along the recording");
-  }
+  // One that cannot be propagated along the recording says nothing of its readings.
+  if (!std::isfinite(fitted.chi2)) return fitted;
   const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
   data.outliers = drop_outliers(residuals, limits.noise, data.train);
   const inference::Whiteness found = inference::whiteness(channels_of(residuals), limits.noise);
@@ -61,8 +60,8 @@ Answer explain(const NominalModel& nominal, const Fit& nominal_fit, const Record
   a.all = all_candidates(nominal, data.train, options.limits);
   const AttitudeDomain domain(a.all);
   tell(options, "fitting every effect of the catalogue");
-  a.trials = inference::search(domain, nominal_trial(nominal_fit, a.all), data.train,
-                               {options.threads, options.max_effects});
+  a.trials =
+      inference::search(domain, nominal_trial(nominal_fit, a.all), data.train, options.threads);
   a.depends_on = dependences(a.trials, a.all);
   tell(options, "comparing with what was held out");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
@@ -86,13 +85,23 @@ Verdict verdict_of(inference::Finding finding) {
   return Verdict::unexplained;
 }
 
+// Nowhere where the nominal model cannot be propagated: they part from the start.
+Where where_they_part(const Fit& nominal_fit, const RecordedData& data,
+                      const Thresholds::Location& limits) {
+  try {
+    return locate(residuals_of(nominal_fit, data.train), data.train, limits);
+  } catch (const NumericalError&) {
+    return {};
+  }
+}
+
 void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const RecordedData& data,
                         const DiagnoseOptions& options, Diagnosis& d) {
   const auto& [all, trials, depends_on, decision] = answer;
   const Trial& chosen = answer.chosen();
   d.verdict = verdict_of(decision.finding);
   d.confidence = decision.confidence;
-  d.where = locate(residuals_of(nominal_fit, data.train), data.train, all.limits.location);
+  d.where = where_they_part(nominal_fit, data, all.limits.location);
   if (d.verdict == Verdict::missing_physics) {
     d.where.depends_on = depends_on;
     d.effects = found_effects(decision, trials, all);
@@ -103,19 +112,37 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
     d.unnamed = unnamed_effects(decision, trials, all, d.effects);
   }
   d.alternatives = alternatives(decision, trials, all);
-  d.manoeuvres = manoeuvres(d.effects, decision, trials, all, data.train, options.threads);
+  try {
+    d.manoeuvres = manoeuvres(d.effects, decision, trials, all, data.train, options.threads);
+  } catch (const NumericalError&) {
+    // Of a motion that cannot be propagated there is none to propose.
+  }
   d.priors_refined = refined_priors(chosen);
+  d.because = decision.because;
+}
+
+// The part of what the nominal model leaves of the held-out runs that the chosen one explains.
+double explained_fraction(const Fit& held_before, const Fit& held_after) {
+  const double before = held_before.chi2_per_sample() - 1.0,
+               after = held_after.chi2_per_sample() - 1.0;
+  if (std::isnan(before) || std::isnan(after) || std::isinf(after)) return 0.0;
+  if (std::isinf(before)) return 1.0;
+  const double noise = 5.0 * std::sqrt(2.0 / static_cast<double>(held_before.samples));
+  return before > noise ? std::clamp((before - after) / before, 0.0, 1.0) : 1.0;
 }
 
 // Numbers and curves of the nominal and the chosen model, beside what was fitted and held out.
-void say_how_well(const Fit& before, const Fit& after, const RecordedData& data,
+void say_how_well(const Fit& before, const Trial& chosen, const RecordedData& data,
                   const Thresholds& limits, Diagnosis& d) {
+  const Fit& after = chosen.fit;
   d.chi2_per_sample_before = before.chi2_per_sample();
   d.chi2_per_sample_after = after.chi2_per_sample();
   d.samples = before.samples;
   const Fit held_before = propagate_model(before, data.held, limits),
             held_after = propagate_model(after, data.held, limits);
   d.holdout = compare_holdout(held_before, held_after, data.held);
+  d.holdout->predictive = chosen.predictive;
+  d.holdout->explained_fraction = explained_fraction(held_before, held_after);
   for (size_t run = 0; run < data.train.size(); ++run) {
     d.series.push_back(series_of(before, after, data.train[run], run));
   }
@@ -167,8 +194,11 @@ Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording
   const Answer answer = explain(nominal, nominal_fit, data, options);
   Diagnosis d;
   say_what_was_found(answer, nominal_fit, data, options, d);
-  say_how_well(nominal_fit, answer.chosen().fit, data, options.limits, d);
+  say_how_well(nominal_fit, answer.chosen(), data, options.limits, d);
   d.warnings = warnings_of(data, answer.decision);
+  for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
+    d.warnings.push_back(text);
+  }
   d.data = quality_of(recordings, holdouts, data);
   d.replay = replay_of(answer.chosen().fit, data.train.front());
   d.sentence = sentence_of(d);

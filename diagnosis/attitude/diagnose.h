@@ -22,7 +22,6 @@ struct NamedRecording {
 
 struct DiagnoseOptions {
   int threads = 0;                 // 0: all
-  int max_effects = 3;             // that may be found together
   size_t max_blocks = 6000;        // into which each recording is averaged
   double holdout_fraction = 0.25;  // of each recording, its end, held out when there is no holdout
   Thresholds limits;               // of search and decision

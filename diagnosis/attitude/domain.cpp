@@ -79,11 +79,14 @@ std::vector<double> AttitudeDomain::gains(const Trial& at, const std::vector<siz
   return result;
 }
 
-Eigen::MatrixXd AttitudeDomain::pair_gains(const Trial& at, const std::vector<size_t>& candidates,
-                                           const Runs& runs) const {
-  std::vector<ScoreGroup> groups;
-  for (const size_t c : candidates) groups.push_back({{all_[c].start}});
-  return score_pairs(at.fit, runs, groups);
+inference::LinearProblem AttitudeDomain::linear_problem(
+    const Trial& at, const std::vector<inference::Term<Start>>& terms, const Runs& runs) const {
+  return photorque::linear_problem(at, all_, terms, runs);
+}
+
+Trial AttitudeDomain::assemble(const Trial& from, const inference::Members<Start>& members,
+                               const Runs& runs, const Effort& effort) const {
+  return photorque::assemble(from, all_, members, runs, settings_of(effort));
 }
 
 std::vector<std::vector<Start>> AttitudeDomain::starts(const Trial& parent,

@@ -37,8 +37,14 @@ class AttitudeDomain {
 
   std::vector<double> gains(const Trial& at, const std::vector<size_t>& candidates,
                             const Runs& runs) const;
-  Eigen::MatrixXd pair_gains(const Trial& at, const std::vector<size_t>& candidates,
-                             const Runs& runs) const;
+  std::vector<inference::Term<Start>> terms_of(const Trial& trial) const {
+    return photorque::terms_of(trial);
+  }
+  inference::LinearProblem linear_problem(const Trial& at,
+                                          const std::vector<inference::Term<Start>>& terms,
+                                          const Runs& runs) const;
+  Trial assemble(const Trial& from, const inference::Members<Start>& members, const Runs& runs,
+                 const Effort& effort) const;
   std::vector<std::vector<Start>> starts(const Trial& parent, const std::vector<size_t>& candidates,
                                          const Runs& runs, const Runs& averages, int threads) const;
 

@@ -78,7 +78,11 @@ Json empirical_json(const EmpiricalTorque& torque) {
 }
 
 Json holdout_json(const Holdout& holdout) {
-  return {{"rms_before", object(holdout.rms_before)},
+  const auto& predictive = holdout.predictive;
+  return {{"predictive_chi2_per_sample", predictive ? number(predictive->chi2_per_sample) : Json()},
+          {"predictive_sigma", predictive ? number(predictive->sigma) : Json()},
+          {"explained_fraction", number(holdout.explained_fraction)},
+          {"rms_before", object(holdout.rms_before)},
           {"rms_after", object(holdout.rms_after)},
           {"chi2_per_sample_before", number(holdout.chi2_per_sample_before)},
           {"chi2_per_sample_after", number(holdout.chi2_per_sample_after)},
@@ -131,6 +135,7 @@ std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
   json["verdict"] = name_of(d.verdict);
   json["confidence"] = number(d.confidence);
   json["sentence"] = d.sentence;
+  json["because"] = d.because;
   json["where"] = where_json(d.where);
   json["effects"] = list(d.effects, effect_json);
   json["fit"] = {{"chi2_per_sample_before", number(d.chi2_per_sample_before)},

@@ -72,7 +72,9 @@ class Fitter {
   Fit run() {
     Fit result;
     for (const double window : options_.windows) result.termination = fit_window(window);
-    Evaluation last = evaluate(model_, now_, {true, 1.0});
+    const bool is_hopeless =
+        options_.max_start_chi2 < infinity && result.termination == Termination::not_evaluable;
+    Evaluation last = evaluate(model_, now_, {!is_hopeless, 1.0, is_hopeless ? 0.0 : infinity});
     result.parameters = model_.parameters(now_);
     result.chi2 = last.sums.chi2;
     result.data_chi2 = last.data_chi2;
@@ -92,6 +94,12 @@ class Fitter {
   Termination fit_window(double window) {
     double damping = options_.initial_damping;
     DampingScale scale(options_.keep_largest_scale);
+    if (options_.max_start_chi2 < infinity) {
+      const Request alone{false, window, options_.max_start_chi2};
+      if (!(evaluate(model_, now_, alone).sums.chi2 <= options_.max_start_chi2)) {
+        return Termination::not_evaluable;
+      }
+    }
     Evaluation now = evaluate(model_, now_, {true, window});
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       if (!std::isfinite(now.sums.chi2)) return Termination::not_evaluable;
@@ -111,7 +119,7 @@ class Fitter {
         return Termination::converged;
       }
       Eigen::VectorXd tried = model_.stepped(now_, step);
-      const Evaluation at = evaluate(model_, tried, {false, window});
+      const Evaluation at = evaluate(model_, tried, {false, window, now.sums.chi2});
       if (!(at.sums.chi2 < now.sums.chi2)) {
         damping = std::max(damping, 1e-5) * 10.0;
         if (damping > options_.max_damping) return Termination::no_step_lowers;

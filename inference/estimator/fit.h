@@ -39,6 +39,8 @@ struct Options {
   // Whether steps are then taken untested as long as their predicted gains fall: χ² shows
   // parameters to a part in 1e7 of their errors, but its gradient knows better.
   bool polish = false;
+  // A start whose χ² is larger is not worth its derivatives: it counts as not evaluable.
+  double max_start_chi2 = infinity;
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;  // ≥ 0: keeps combinations that nothing determines where they are
   double max_damping = 1e9;  // beyond it no step lowers χ²

@@ -17,6 +17,8 @@ namespace photorque::inference {
 struct Request {
   bool derivatives = true;  // false: χ² and the number of samples suffice
   double window = 1.0;      // only the first part of the run, as a fraction in (0, 1]
+  // A run whose χ² alone exceeds this may be given up as if it could not be evaluated.
+  double give_up_above = infinity;
 };
 
 class ForwardModel {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <random>
 
 #include "attitude/estimation/nominal_model.h"
@@ -21,7 +22,7 @@ using namespace rigid_body;
 
 Diagnosis diagnosed(const Extra& extra, double gyro_unit = 1.0) {
   DiagnoseOptions options;
-  options.max_effects = 1;
+  options.limits.search.max_effects = 1;
   return diagnose(nominal_model(), {recorded(1, extra, gyro_unit)}, {recorded(2, extra, gyro_unit)},
                   options);
 }
@@ -78,18 +79,40 @@ TEST(Score, PredictsWhatTwoEffectsGainTogether) {
     return static_cast<size_t>(at - all.list.begin());
   };
   const size_t dipole = named("magnetic_dipole"), draught = named("room_draft");
-  const std::vector<ScoreGroup> groups = {{{all[dipole].start}}, {{all[draught].start}}};
-  const Eigen::MatrixXd gains = score_pairs(nominal, runs, groups);
-  const std::vector<Score> alone = score(nominal, runs, groups);
-  EXPECT_NEAR(gains(0, 0), alone[0].gain, 1e-6 * alone[0].gain);
-  EXPECT_NEAR(gains(1, 1), alone[1].gain, 1e-6 * alone[1].gain);
-  EXPECT_EQ(gains(0, 1), gains(1, 0));
+  const Trial before = nominal_trial(nominal, all);
+  const inference::LinearProblem problem = linear_problem(
+      before, all, {{dipole, {all[dipole].start}}, {draught, {all[draught].start}}}, runs);
+  const std::vector<Score> alone =
+      score(nominal, runs, {{{all[dipole].start}}, {{all[draught].start}}});
+  std::map<std::vector<size_t>, inference::Subset> foretold;
+  for (const inference::Subset& s : inference::best_subsets(problem, 2, {})) {
+    foretold[s.groups] = s;
+  }
+  EXPECT_NEAR(foretold[{0}].gain, alone[0].gain, 1e-6 * alone[0].gain);
+  EXPECT_NEAR(foretold[{1}].gain, alone[1].gain, 1e-6 * alone[1].gain);
+  EXPECT_NEAR(foretold[{}].gain, 0.0, 1e-9);
 
   const Trial one = extend(nominal_trial(nominal, all), all, dipole, all[dipole].start, runs);
   const Trial both = extend(one, all, draught, all[draught].start, runs);
   const double gained = nominal.chi2 - both.fit.chi2;
-  EXPECT_NEAR(gains(0, 1), gained, 0.05 * gained);
+  EXPECT_NEAR((foretold[{0, 1}].gain), gained, 0.05 * gained);
   EXPECT_GT(gained, nominal.chi2 - one.fit.chi2 + 20.0);
+  // Its evidence beside that of the fits.
+  EXPECT_NEAR((foretold[{0, 1}].log_evidence - foretold[{0}].log_evidence),
+              both.log_evidence - one.log_evidence,
+              0.05 * (both.log_evidence - one.log_evidence) + 1.0);
+
+  // About the fit of both the same form says what one of them taken away would cost.
+  const inference::LinearProblem about = linear_problem(both, all, terms_of(both), runs);
+  for (const inference::Subset& s : inference::best_subsets(about, 2, {})) {
+    if (s.groups.size() == 2) {
+      EXPECT_NEAR(s.gain, 0.0, 0.1);
+    }
+    if (s.groups == std::vector<size_t>{0}) {
+      const double lost = one.fit.chi2 - both.fit.chi2;
+      EXPECT_NEAR(-s.gain, lost, 0.05 * lost);
+    }
+  }
 }
 
 // A camera that sees every second row: what is slow has a mirror image at half the rate of the
@@ -163,7 +186,7 @@ TEST(Diagnose, AShortRunThatDivergesIsStillAnswered) {
   for (Channel& channel : brief.recording.channels) channel.values.resize(rows);
   brief.recording.report.rows_read = brief.recording.report.rows_kept = rows;
   DiagnoseOptions options;
-  options.max_effects = 1;
+  options.limits.search.max_effects = 1;
   const Diagnosis d = diagnose(nominal_model(), {brief}, {}, options);
   EXPECT_GT(d.chi2_per_sample_before, 20.0);
   EXPECT_NE(d.verdict, Verdict::consistent);

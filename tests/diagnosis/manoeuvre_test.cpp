@@ -24,7 +24,7 @@ TEST(Manoeuvre, SeparatesTwoLawsOfDragAsPredicted) {
   coefficient.value = drag_N_m_s;
   coefficient.sigma = 2e-7;
   DiagnoseOptions options;
-  options.max_effects = 1;
+  options.limits.search.max_effects = 1;
   const NamedRecording usual = recorded(1, drag);
   const Diagnosis before = diagnose(nominal, {usual}, {}, options);
   ASSERT_EQ(before.verdict, Verdict::missing_physics);

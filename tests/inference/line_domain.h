@@ -121,19 +121,54 @@ class LineDomain {
     }
     return result;
   }
-  Eigen::MatrixXd pair_gains(const Trial& at, const std::vector<size_t>& which,
-                             const Runs& runs) const {
-    const auto n = static_cast<Eigen::Index>(which.size());
-    const double before = solve(at, runs, 0).chi2;
-    Eigen::MatrixXd result(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        Trial more = with(at, which[static_cast<size_t>(i)], 0.0);
-        if (j != i) more = with(more, which[static_cast<size_t>(j)], 0.0);
-        result(i, j) = before - solve(more, runs, i == j ? 1 : 2).chi2;
-      }
+  std::vector<inference::Term<Start>> terms_of(const Trial& t) const {
+    std::vector<inference::Term<Start>> terms;
+    for (size_t i = 0; i < t.candidates.size(); ++i) {
+      terms.push_back({t.candidates[i], {t.searched[i]}});
     }
-    return result;
+    return terms;
+  }
+  // The columns of all terms, intercepts and slope projected out.
+  LinearProblem linear_problem(const Trial& at, const std::vector<inference::Term<Start>>& terms,
+                               const Runs& runs) const {
+    Trial all;
+    LinearProblem problem;
+    Eigen::Index first = 0, own = at.fit.value.size() - amplitudes(at);
+    for (size_t i = 0; i < terms.size(); ++i) {
+      const Term& t = terms_[terms[i].candidate];
+      if (t.traits.is_fast) continue;
+      const auto count = static_cast<Eigen::Index>(t.traits.parameters);
+      StrengthGroup group{i, t.traits.name, t.traits.is_empirical, first, {}, {}, {}, {}};
+      for (Eigen::Index k = 0; k < count; ++k) {
+        group.value.push_back(i < at.candidates.size() ? at.fit.value[own++] : 0.0);
+        group.scale.push_back(amplitude_sigma);
+        group.lowest.push_back(t.not_negative ? 0.0 : -1e300);
+        group.highest.push_back(1e300);
+      }
+      first += count;
+      problem.groups.push_back(std::move(group));
+      all = with(all, terms[i].candidate, terms[i].start.searched);
+    }
+    const LineFit fit = solve(all, runs, all.candidates.size());
+    const Eigen::Index rest = fit.value.size() - first;
+    const Eigen::MatrixXd& H = fit.hessian;
+    problem.information =
+        H.bottomRightCorner(first, first) -
+        H.bottomLeftCorner(first, rest) *
+            H.topLeftCorner(rest, rest).ldlt().solve(H.topRightCorner(rest, first));
+    Eigen::VectorXd value(first);
+    for (const StrengthGroup& g : problem.groups) {
+      for (Eigen::Index k = 0; k < g.count(); ++k)
+        value[g.first + k] = g.value[static_cast<size_t>(k)];
+    }
+    problem.gradient = problem.information * (fit.value.tail(first) - value);
+    return problem;
+  }
+  Trial assemble(const Trial&, const Members<Start>& members, const Runs& runs,
+                 const Effort&) const {
+    Trial t;
+    for (const auto& m : members) t = with(t, m.term.candidate, m.term.start.searched);
+    return fitted(t, runs);
   }
   std::vector<std::vector<Start>> starts(const Trial& parent, const std::vector<size_t>& which,
                                          const Runs& runs, const Runs&, int) const {

@@ -35,11 +35,10 @@ struct Answered {
 };
 
 Answered answer(const std::vector<Term>& terms, const std::vector<Series>& train,
-                const std::vector<Series>& held, const Thresholds& limits = {},
-                int max_effects = 3) {
+                const std::vector<Series>& held, const Thresholds& limits = {}) {
   const LineDomain domain(terms, limits);
   Answered a;
-  a.trials = search(domain, domain.nominal(train), train, {1, max_effects});
+  a.trials = search(domain, domain.nominal(train), train, 1);
   if (!held.empty()) weigh_with_held_out(domain, train, held, 1, a.trials);
   a.decision = decide(
       {a.trials.begin(), a.trials.end()}, domain.candidates(),
@@ -65,10 +64,11 @@ double false_alarms(double min_significance, int seeds) {
   limits.decision.min_significance = min_significance;
   limits.decision.min_log_odds = -100.0;
   limits.decision.min_confidence_of_weak_name = 0.0;
+  limits.search.max_effects = 1;
   int alarms = 0;
   for (int seed = 0; seed < seeds; ++seed) {
     const Answered a =
-        answer(terms, {recorded(static_cast<uint64_t>(seed), nothing())}, {}, limits, 1);
+        answer(terms, {recorded(static_cast<uint64_t>(seed), nothing())}, {}, limits);
     alarms += a.decision.finding == Finding::named ? 1 : 0;
   }
   return alarms / static_cast<double>(seeds);
@@ -104,7 +104,7 @@ TEST(Search, FindsNothingInNoise) {
 
 TEST(Search, NamesTheTermsThatWereAdded) {
   Thresholds mutant;
-  mutant.search.min_log_evidence_gain = 1e9;  // nothing goes on: no second term
+  mutant.search.max_effects = 1;
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     const Eigen::VectorXd signal = of_degree(3, 12.0) + of_degree(6, -15.0);
     const std::vector<Series> train = {recorded(2 * seed, signal)},
@@ -168,7 +168,8 @@ TEST(Search, FindsPairsThatHideEachOther) {
   const std::vector<Series> train = {{grid(samples), signal, 1.0}}, held = train;
   EXPECT_EQ(answer(terms, train, held).names, (Names{"degree 3", "one side", "other side"}));
   Thresholds mutant;
-  mutant.search.max_pairs = 0;
+  mutant.search.max_effects = 2;
+  mutant.decision.max_predictive_sigma = mutant.scoring.min_joint_gain = 1e9;
   EXPECT_NE(answer(terms, train, held, mutant).names,
             (Names{"degree 3", "one side", "other side"}));
 }
@@ -178,7 +179,7 @@ TEST(Search, CallsUnknownWhatOnlyTheEmpiricalTermFits) {
   const Eigen::VectorXd signal = smooth(14).shape({grid(samples), {}, 1.0}, 0.0).col(4) * 25.0;
   Thresholds mutant;
   mutant.decision.min_log_odds = 1e9;
-  mutant.decision.max_excess_sigma = 1e9;
+  mutant.decision.max_excess_sigma = mutant.decision.max_predictive_sigma = 1e9;
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const std::vector<Series> train = {recorded(2 * seed, signal)},
                               held = {recorded(2 * seed + 1, signal)};
@@ -198,7 +199,7 @@ TEST(Search, CallsUnknownWhatLeavesStructure) {
   const std::vector<Series> train = {recorded(1, signal)}, held = {recorded(2, signal)};
   EXPECT_EQ(answer(terms, train, held).decision.finding, Finding::unknown);
   Thresholds mutant;
-  mutant.decision.max_excess_sigma = 1e9;
+  mutant.decision.max_excess_sigma = mutant.decision.max_predictive_sigma = 1e9;
   EXPECT_NE(answer(terms, train, held, mutant).decision.finding, Finding::unknown);
 }
 
@@ -224,7 +225,8 @@ TEST(Weigh, FindsWhatOnlyAllRunsShow) {
   EXPECT_TRUE(answer(terms, train, {}).names.empty());
   EXPECT_EQ(answer(terms, train, held).names, Names{"turned slope"});
   Thresholds mutant;
-  mutant.scoring.min_joint_gain = 1e9;
+  mutant.scoring.min_joint_gain = mutant.decision.max_predictive_sigma = 1e9;
+  mutant.search.forecast_within = 0.0;
   EXPECT_TRUE(answer(terms, train, held, mutant).names.empty());
 }
 

@@ -72,12 +72,94 @@ std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
   return scores;
 }
 
-Eigen::MatrixXd score_pairs(const Fit& at, const std::vector<Observation>& runs,
-                            const std::vector<ScoreGroup>& groups) {
-  const GroupsAtFit these = project(at, runs, groups, 0, groups.size());
-  if (these.known) return inference::pair_gains(these.all, these.begin);
-  const auto count = static_cast<Eigen::Index>(groups.size());
-  return Eigen::MatrixXd::Zero(count, count);
+namespace {
+
+// A candidate's strengths as a group; where they stand in the sums is added to `columns`.
+inference::StrengthGroup group_of(const inference::Term<Start>& term, size_t at,
+                                  const Candidates& all, bool acts,
+                                  const std::vector<Eigen::Index>& where,
+                                  std::vector<Eigen::Index>& columns) {
+  const Candidate& c = all[term.candidate];
+  inference::StrengthGroup group;
+  group.term = at;
+  group.name = c.label;
+  group.is_empirical = c.empirical();
+  group.first = static_cast<Eigen::Index>(columns.size());
+  size_t k = 0;
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (!c.is_fitted(p)) continue;
+    const Eigen::Index column = where[k++];
+    if (!c.is_strength(p)) continue;
+    columns.push_back(column);
+    group.value.push_back(acts ? term.start.disturbance.parameters[p].value : 0.0);
+    group.scale.push_back(c.scale[p]);
+    group.lowest.push_back(c.lowest[p]);
+    group.highest.push_back(c.highest[p]);
+  }
+  return group;
+}
+
+// With no strength: the derivative by it is wanted there, whatever a scan has found.
+Disturbance without_strength(const Candidate& c, Disturbance d) {
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (c.is_strength(p)) d.parameters[p].value = 0.0;
+  }
+  return d;
+}
+
+// Sums by some columns, all others projected out.
+inference::LinearProblem projected_on(const inference::NormalSums& sums,
+                                      const std::vector<Eigen::Index>& columns) {
+  std::vector<bool> is_wanted(static_cast<size_t>(sums.gradient.size()), false);
+  for (const Eigen::Index c : columns) is_wanted[static_cast<size_t>(c)] = true;
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < sums.gradient.size(); ++i) {
+    if (!is_wanted[static_cast<size_t>(i)]) order.push_back(i);
+  }
+  const auto fitted = static_cast<Eigen::Index>(order.size());
+  order.insert(order.end(), columns.begin(), columns.end());
+  const inference::NormalSums sorted{sums.matrix(order, order), sums.gradient(order), sums.chi2,
+                                     sums.samples};
+  inference::Projected all = inference::project_out(sorted, fitted);
+  return {std::move(all.information), std::move(all.gradient), {}};
+}
+
+}  // namespace
+
+inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
+                                        const std::vector<inference::Term<Start>>& terms,
+                                        const std::vector<Observation>& runs) {
+  Hypothesis h = at.fit.best;
+  std::vector<Free> extra;
+  std::vector<inference::StrengthGroup> groups;
+  std::vector<Eigen::Index> columns;
+  // The sums' columns: the runs' own, the shared ones in the order of h.free, the extra ones. A new
+  // disturbance with states of its own would move them: those are fast, and make no group.
+  const Eigen::Index first_shared = at.fit.first_shared;
+  Eigen::Index next = at.fit.hessian.rows();
+  for (size_t t = 0; t < terms.size(); ++t) {
+    const Candidate& c = all[terms[t].candidate];
+    if (c.effect.how.fast || !c.has_linear_strength()) continue;
+    const bool acts = t < at.candidates.size();
+    std::vector<Eigen::Index> where;
+    if (acts) {
+      where = shared_indices(at, t);
+      for (Eigen::Index& i : where) i += first_shared;
+    } else {
+      const size_t index = add_disturbance(h, without_strength(c, terms[t].start.disturbance));
+      for (size_t p = 0; p < c.scale.size(); ++p) {
+        if (!c.is_fitted(p)) continue;
+        where.push_back(c.is_strength(p) ? next++ : -1);
+        if (c.is_strength(p)) extra.push_back({index, static_cast<int>(p)});
+      }
+    }
+    groups.push_back(group_of(terms[t], t, all, acts, where, columns));
+  }
+  inference::NormalSums sums = sums_at(h, runs, extra);
+  if (!std::isfinite(sums.chi2)) return {};
+  inference::LinearProblem problem = projected_on(sums, columns);
+  problem.groups = std::move(groups);
+  return problem;
 }
 
 }  // namespace photorque

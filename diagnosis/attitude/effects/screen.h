@@ -1,8 +1,9 @@
 // Score tests (inference/estimator/score.h) of disturbances that a model does not have yet.
 #pragma once
 
-#include "attitude/estimation/fit.h"
+#include "diagnosis/attitude/effects/trial.h"
 #include "inference/estimator/score.h"
+#include "inference/subsets.h"
 
 namespace photorque {
 
@@ -20,9 +21,11 @@ struct ScoreGroup {
 std::vector<Score> score(const Fit& at, const std::vector<Observation>& runs,
                          const std::vector<ScoreGroup>& groups);
 
-// The expected fall of χ² by every two groups together, on the diagonal by each alone. In one pass
+// The strengths of terms about a trial (inference/subsets.h), everything else that is fitted
+// projected out. The first of `terms` are the trial's own; what is fast makes no group. In one pass
 // with all their parameters: for runs of some thousand blocks.
-Eigen::MatrixXd score_pairs(const Fit& at, const std::vector<Observation>& runs,
-                            const std::vector<ScoreGroup>& groups);
+inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
+                                        const std::vector<inference::Term<Start>>& terms,
+                                        const std::vector<Observation>& runs);
 
 }  // namespace photorque

@@ -46,10 +46,6 @@ Candidate candidate_of(const EmpiricalLaw& law) {
   return c;
 }
 
-bool is_fitted(const Candidate& c, size_t p) {
-  return c.scale[p] > 0.0;
-}
-
 // Laplace's approximation of the evidence. The fit's own prior is far wider than the nominal model
 // of an effect; here it is replaced.
 double log_evidence(const Trial& trial, const Candidates& all) {
@@ -66,7 +62,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
     const std::vector<Eigen::Index> where = shared_indices(trial, i);
     size_t k = 0;
     for (size_t p = 0; p < c.scale.size(); ++p) {
-      if (!is_fitted(c, p)) continue;
+      if (!c.is_fitted(p)) continue;
       const Eigen::Index at = where[k++];
       if (!c.searched[p]) {
         strengths.at.push_back(at);
@@ -95,15 +91,15 @@ double log_evidence(const Trial& trial, const Candidates& all) {
 // The largest change of a principal moment by a fitted error of the inertia, as a fraction of the
 // nominal one. The torque equation is homogeneous: hardly any inertia at all explains nearly
 // everything, but nobody weighs a platform that badly.
-double inertia_change(const Trial& trial, const Candidates& all) {
+double inertia_change(const Trial& trial) {
   const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
   const Vec3 nominal = nominal_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
   double largest = 0.0;
-  for (size_t i = 0; i < trial.candidates.size(); ++i) {
-    const auto change_kg_m2 = all[trial.candidates[i]].effect.how.inertia_change_kg_m2;
-    if (change_kg_m2 == nullptr) continue;
-    const Mat3 found =
-        nominal_kg_m2 + change_kg_m2(trial.fit.best.model.disturbances[trial.disturbances[i]]);
+  // What is believed of it moves within the same limits.
+  for (const Disturbance& d : trial.fit.best.model.disturbances) {
+    const DisturbanceKind* kind = find_kind(d.kind);
+    if (kind == nullptr || kind->screening.inertia_change_kg_m2 == nullptr) continue;
+    const Mat3 found = nominal_kg_m2 + kind->screening.inertia_change_kg_m2(d);
     const Vec3 moments = found.selfadjointView<Eigen::Lower>().eigenvalues();
     largest = std::max(largest, (moments - nominal).cwiseQuotient(nominal).cwiseAbs().maxCoeff());
   }
@@ -135,7 +131,7 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
     const std::vector<Eigen::Index> where = shared_indices(trial, i);
     size_t k = 0;
     for (size_t p = 0; p < c.scale.size(); ++p) {
-      if (!is_fitted(c, p)) continue;
+      if (!c.is_fitted(p)) continue;
       const Eigen::Index at = where[k++];
       const double value =
           trial.fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value;
@@ -146,7 +142,15 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
       }
     }
   }
-  if (const double change = inertia_change(trial, all); change > limits.max_inertia_change) {
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const Candidate& c = all[trial.candidates[i]];
+    if (c.effect.how.scan != Scan::frequency) continue;
+    const Disturbance& tone = trial.fit.best.model.disturbances[trial.disturbances[i]];
+    if (parameter_of(tone, "frequency_Hz").value * all.longest_run_s < limits.min_periods) {
+      return "its period is as long as the recording: any slow torque looks like that";
+    }
+  }
+  if (const double change = inertia_change(trial); change > limits.max_inertia_change) {
     return "a principal moment of inertia would change by " +
            std::to_string(static_cast<int>(std::lround(100.0 * change))) + " %";
   }
@@ -160,7 +164,7 @@ double significance(const Trial& trial, const Candidates& all, size_t which) {
   std::vector<std::pair<Eigen::Index, double>> linear;
   size_t k = 0;
   for (size_t p = 0; p < c.scale.size(); ++p) {
-    if (!is_fitted(c, p)) continue;
+    if (!c.is_fitted(p)) continue;
     const Eigen::Index at = where[k++];
     if (c.searched[p]) continue;
     linear.emplace_back(
@@ -189,6 +193,7 @@ void judge(Trial& trial, const Candidates& all) {
     trial.significance.push_back(significance(trial, all, i));
   }
   trial.log_evidence = log_evidence(trial, all);
+  if (!std::isfinite(trial.log_evidence)) trial.log_evidence = -1e300;
   trial.objection = objection_to(trial, all);
 }
 
@@ -230,6 +235,9 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     return true;
   };
   Candidates all{{}, limits};
+  for (const Observation& seen : runs) {
+    all.longest_run_s = std::max(all.longest_run_s, seen.duration_s());
+  }
   for (const Effect& effect : catalogue(nominal.model.platform)) {
     if (!has_channel(effect.how.needs)) continue;
     // A law without parameters acts already or not.
@@ -270,6 +278,40 @@ void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observati
   h.runs = seen_starts(h, runs);
 }
 
+// Adds a candidate with all that is fitted of it. Returns its disturbance.
+size_t add_free(Hypothesis& h, const Candidate& c, const Disturbance& start,
+                const Thresholds& limits) {
+  const size_t index = add_disturbance(h, start);
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (!c.is_fitted(p)) continue;
+    Free f{index, static_cast<int>(p)};
+    f.mean = c.searched[p] ? start.parameters[p].value : 0.0;
+    f.sigma = limits.evidence.fit_prior_widths * c.scale[p];
+    if (c.searched[p]) {
+      f.lowest = c.lowest[p];
+      f.highest = c.highest[p];
+    }
+    h.free.push_back(f);
+  }
+  return index;
+}
+
+// Without the candidates of a trial: their disturbances stand behind the nominal ones.
+Hypothesis nominal_part(const Trial& trial) {
+  Hypothesis h = trial.fit.best;
+  const auto is_candidates = [&](size_t d) {
+    return std::find(trial.disturbances.begin(), trial.disturbances.end(), d) !=
+           trial.disturbances.end();
+  };
+  std::erase_if(h.free, [&](const Free& f) { return is_candidates(f.disturbance); });
+  auto& disturbances = h.model.disturbances;
+  disturbances.resize(disturbances.size() - trial.candidates.size());
+  size_t states = 0;
+  for (const Disturbance& d : disturbances) states += d.states.size();
+  for (RunStart& run : h.runs) run.initial.extra.resize(states);
+  return h;
+}
+
 }  // namespace
 
 Trial nominal_trial(const Fit& nominal, const Candidates& all) {
@@ -281,7 +323,6 @@ Trial nominal_trial(const Fit& nominal, const Candidates& all) {
 
 Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Disturbance& start,
              const std::vector<Observation>& runs, const FitSettings& settings) {
-  const Candidate& c = all[candidate];
   Trial trial;
   trial.candidates = parent.candidates;
   trial.disturbances = parent.disturbances;
@@ -291,21 +332,61 @@ Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const
     start_again(h, parent, runs);
     how.windows = all.limits.fitting.diverged_windows;
   }
-  const size_t index = add_disturbance(h, start);
   trial.candidates.push_back(candidate);
-  trial.disturbances.push_back(index);
-  for (size_t p = 0; p < c.scale.size(); ++p) {
-    if (!is_fitted(c, p)) continue;
-    Free f{index, static_cast<int>(p)};
-    f.mean = c.searched[p] ? start.parameters[p].value : 0.0;
-    f.sigma = all.limits.evidence.fit_prior_widths * c.scale[p];
-    if (c.searched[p]) {
-      f.lowest = c.lowest[p];
-      f.highest = c.highest[p];
-    }
-    h.free.push_back(f);
-  }
+  trial.disturbances.push_back(add_free(h, all[candidate], start, all.limits));
   trial.fit = fit(h, runs, how);
+  judge(trial, all);
+  return trial;
+}
+
+std::vector<inference::Term<Start>> terms_of(const Trial& trial) {
+  std::vector<inference::Term<Start>> terms;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    terms.push_back(
+        {trial.candidates[i], {trial.fit.best.model.disturbances[trial.disturbances[i]]}});
+  }
+  return terms;
+}
+
+namespace {
+
+inference::Members<Start> without_forecast(inference::Members<Start> members) {
+  for (inference::Member<Start>& member : members) member.strengths.resize(0);
+  return members;
+}
+
+Trial assembled(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
+                const std::vector<Observation>& runs, const FitSettings& settings) {
+  Hypothesis h = nominal_part(from);
+  Trial trial;
+  for (const inference::Member<Start>& member : members) {
+    const Candidate& c = all[member.term.candidate];
+    Disturbance start = member.term.start.disturbance;
+    Eigen::Index k = 0;
+    for (size_t p = 0; p < c.scale.size() && member.strengths.size() > 0; ++p) {
+      if (!c.is_strength(p)) continue;
+      start.parameters[p].value = std::clamp(member.strengths[k++], c.lowest[p], c.highest[p]);
+    }
+    trial.candidates.push_back(member.term.candidate);
+    trial.disturbances.push_back(add_free(h, c, start, all.limits));
+  }
+  trial.fit = fit(h, runs, settings);
+  return trial;
+}
+
+}  // namespace
+
+Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
+               const std::vector<Observation>& runs, const FitSettings& settings) {
+  // The forecast is a start where it comes near the readings; elsewhere the trial's own strengths
+  // are, and none of what it lacks.
+  FitSettings near = settings;
+  near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * from.fit.chi2,
+                                 all.limits.diverged_chi2_per_sample * from.fit.samples);
+  Trial trial = assembled(from, all, members, runs, near);
+  if (!std::isfinite(trial.fit.chi2)) {
+    trial = assembled(from, all, without_forecast(members), runs, settings);
+  }
   judge(trial, all);
   return trial;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct Candidate {
   std::vector<bool> searched;
 
   bool empirical() const { return !variable.empty(); }
+  bool is_fitted(size_t p) const { return scale[p] > 0.0; }
+  // Enters linearly, and how strongly nobody knows.
+  bool is_strength(size_t p) const { return is_fitted(p) && !searched[p]; }
   // Whether a parameter need not be searched.
   bool has_linear_strength() const {
     return std::any_of(searched.begin(), searched.end(), [](bool b) { return !b; });
@@ -37,10 +41,18 @@ struct Candidate {
   }
 };
 
+// Where the fit of a candidate starts.
+struct Start {
+  Disturbance disturbance;
+  // Fall of χ² that a scan predicts; infinite where nothing was scanned.
+  double gain = std::numeric_limits<double>::infinity();
+};
+
 // Everything that may be missing, and by what it is judged.
 struct Candidates {
   std::vector<Candidate> list;
   Thresholds limits;
+  double longest_run_s = 0.0;
 
   const Candidate& operator[](size_t i) const { return list[i]; }
   size_t size() const { return list.size(); }
@@ -70,6 +82,13 @@ Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observa
 // found is a second chance.
 Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
                  const std::vector<Observation>& runs, const FitSettings& settings = {});
+
+// The nominal model with these members alone, from where `from`, which has any others, ended.
+Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
+               const std::vector<Observation>& runs, const FitSettings& settings = {});
+
+// The trial's own candidates as they were fitted.
+std::vector<inference::Term<Start>> terms_of(const Trial& trial);
 
 // Indices of a candidate's parameters among the shared ones of the fit.
 std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which);

@@ -2,7 +2,6 @@
 // would not find them from anywhere.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "diagnosis/attitude/effects/trial.h"
@@ -13,12 +12,6 @@ namespace photorque {
 // those of the platform's own motion.
 std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
                                         const Thresholds::Scoring& limits, size_t most = 4);
-
-struct Start {
-  Disturbance disturbance;
-  // Fall of χ² that a scan predicts; infinite where nothing was scanned.
-  double gain = std::numeric_limits<double>::infinity();
-};
 
 // Where to start the fit of a candidate added to `parent`: one start, or the most promising ones of
 // a scan. `slow_runs` are averages of the runs, as good for what is slow; `lines_Hz` are the

@@ -1,0 +1,237 @@
+// Rounds of forecast and fit about the best explanation so far.
+#pragma once
+
+#include "inference/extend.h"
+#include "inference/subsets.h"
+
+namespace photorque::inference {
+
+template <Domain D>
+using Terms = std::vector<Term<typename D::Start>>;
+
+// Each round linearises the problem about one trial, foretells what every set of candidates would
+// gain (subsets.h), and fits the few best; the next round is about the best of all. Where nothing
+// gains any more, what only a scan can find is added to the best, and the rounds go on or end.
+template <Domain D>
+class Rounds {
+ public:
+  using Trial = typename D::Trial;
+  using Runs = std::vector<typename D::Run>;
+
+  // `base` has no candidates and is fitted to the set; `max_effects` may act together.
+  Rounds(const D& domain, const RunSet<D>& set, const Trial& base, size_t max_effects, int threads)
+      : domain_(domain),
+        limits_(domain.limits()),
+        set_(set),
+        max_effects_(max_effects),
+        threads_(threads),
+        trials_{base} {}
+
+  // All trials that were fitted, the base first; `from`: where the rounds begin, fitted to the set.
+  std::vector<Trial> run(const Trial& from) {
+    if (!from.candidates.empty()) trials_.push_back(from);
+    Trial at = from;
+    bool scan = false;
+    for (int round = 0; round < limits_.search.max_rounds; ++round) {
+      std::vector<Trial> found = scan ? scanned(at) : foretold(at, round == 0);
+      std::vector<Trial> parents = {at};
+      settle_leaders(domain_, set_.runs, threads_, found, parents);
+      for (Trial& parent : parents) keep(std::move(parent));
+      for (Trial& trial : found) keep(std::move(trial));
+      const Trial& best = best_to_go_on();
+      const Trial& before = *std::find_if(trials_.begin(), trials_.end(), [&](const Trial& t) {
+        return same_candidates(t.candidates, at.candidates);
+      });
+      const bool gained =
+          best.log_evidence > before.log_evidence + limits_.search.min_log_evidence_gain;
+      at = gained ? best : before;
+      // What needs a scan is looked for where nothing foretold gains any more.
+      if (!gained && (scan || !is_worth_a_scan(at))) break;
+      scan = !gained;
+    }
+    return std::move(trials_);
+  }
+
+ private:
+  // In pieces of the runs a faint line or jump cannot be told; the whole is searched later.
+  bool is_worth_a_scan(const Trial& at) const {
+    return set_.pieces == 1 ||
+           domain_.excess_sigma(at, set_.runs) > limits_.decision.max_excess_sigma;
+  }
+
+  // Candidates that need no scan at full rate, in linear strengths.
+  Terms<D> slow_terms(const Trial& at, const Runs& averages) const {
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    Terms<D> terms;
+    std::vector<size_t> to_scan;
+    for (size_t c = 0; c < all.size(); ++c) {
+      if (all[c].is_fast || !all[c].has_strength || acts_already(at.candidates, c, all)) continue;
+      if (all[c].is_linear) {
+        terms.push_back({c, domain_.start_of(c)});
+      } else {
+        to_scan.push_back(c);
+      }
+    }
+    const auto starts = domain_.starts(at, to_scan, set_.runs, averages, threads_);
+    for (size_t i = 0; i < to_scan.size(); ++i) {
+      for (const auto& start : starts[i]) terms.push_back({to_scan[i], start});
+    }
+    return terms;
+  }
+
+  // Fits of what is foretold about `at`.
+  std::vector<Trial> foretold(const Trial& at, bool first) const {
+    const Runs averages = slow_runs(domain_, at, set_);
+    Terms<D> terms = domain_.terms_of(at);
+    const size_t own = terms.size();
+    for (auto& term : slow_terms(at, averages)) terms.push_back(std::move(term));
+    const LinearProblem problem = domain_.linear_problem(at, terms, averages);
+    const std::vector<bool> is_kept = kept_terms(problem, own);
+    const auto kept = static_cast<size_t>(std::count(is_kept.begin(), is_kept.end(), true));
+    if (kept >= max_effects_) return {};
+    const std::vector<Subset> subsets = best_subsets(problem, max_effects_ - kept, limits_);
+    if (subsets.empty()) return {};
+    std::vector<Members<typename D::Start>> chosen;
+    size_t sets = 0;
+    const double least = least_worth_fitting(subsets, problem, own);
+    for (const Subset& s : subsets) {
+      const bool is_single =
+          first && s.groups.size() == 1 && s.gain > least_gain(s, problem, subsets);
+      const bool is_leader = s.log_evidence > least && sets < limits_.search.max_fits_of_round;
+      if (!is_leader && !is_single) continue;
+      Members<typename D::Start> members = members_of(s, problem, terms, is_kept);
+      if (members.empty() || was_tried(members)) continue;
+      if (is_leader) ++sets;
+      chosen.push_back(std::move(members));
+    }
+    return fitted(at, chosen, averages);
+  }
+
+  // Terms of the trial that the problem leaves alone, because averages do not show them.
+  static std::vector<bool> kept_terms(const LinearProblem& problem, size_t own) {
+    std::vector<bool> kept(own, true);
+    for (const StrengthGroup& group : problem.groups) {
+      if (group.term < own) kept[group.term] = false;
+    }
+    return kept;
+  }
+
+  // A little below the best forecast, and not far below the trial itself.
+  double least_worth_fitting(const std::vector<Subset>& subsets, const LinearProblem& problem,
+                             size_t own) const {
+    double least = subsets.front().log_evidence - limits_.search.forecast_within;
+    for (const Subset& s : subsets) {
+      size_t of_trial = 0, groups_of_trial = 0;
+      for (const size_t g : s.groups) of_trial += problem.groups[g].term < own ? 1 : 0;
+      for (const StrengthGroup& g : problem.groups) groups_of_trial += g.term < own ? 1 : 0;
+      if (of_trial == s.groups.size() && of_trial == groups_of_trial) {
+        least = std::max(least, s.log_evidence - limits_.decision.min_log_odds);
+      }
+    }
+    return least;
+  }
+
+  // Of a single candidate, to be fitted for comparison.
+  double least_gain(const Subset& single, const LinearProblem& problem,
+                    const std::vector<Subset>& subsets) const {
+    double best = 0.0;
+    for (const Subset& s : subsets) {
+      if (s.groups.size() == 1) best = std::max(best, s.gain);
+    }
+    const double by_chance = static_cast<double>(problem.groups[single.groups[0]].count());
+    return std::max(limits_.scoring.min_gain + by_chance, limits_.scoring.min_fraction * best);
+  }
+
+  Members<typename D::Start> members_of(const Subset& s, const LinearProblem& problem,
+                                        const Terms<D>& terms,
+                                        const std::vector<bool>& is_kept) const {
+    Members<typename D::Start> members;
+    for (size_t i = 0; i < is_kept.size(); ++i) {
+      if (is_kept[i]) members.push_back({terms[i], {}});
+    }
+    Eigen::Index first = 0;
+    for (const size_t g : s.groups) {
+      const StrengthGroup& group = problem.groups[g];
+      members.push_back({terms[group.term], s.value.segment(first, group.count())});
+      first += group.count();
+    }
+    return members;
+  }
+
+  static std::vector<size_t> candidates_of(const Members<typename D::Start>& members) {
+    std::vector<size_t> candidates;
+    for (const auto& m : members) candidates.push_back(m.term.candidate);
+    return candidates;
+  }
+
+  bool was_tried(const Members<typename D::Start>& members) const {
+    const std::vector<size_t> candidates = candidates_of(members);
+    return std::any_of(trials_.begin(), trials_.end(),
+                       [&](const Trial& t) { return same_candidates(t.candidates, candidates); });
+  }
+
+  // Fits to averages, and of the best to all readings.
+  std::vector<Trial> fitted(const Trial& at, const std::vector<Members<typename D::Start>>& chosen,
+                            const Runs& averages) const {
+    const Effort effort{.max_iterations = limits_.fitting.trial_iterations};
+    std::vector<Trial> found(chosen.size());
+    parallel_for(chosen.size(), threads_,
+                 [&](size_t i) { found[i] = domain_.assemble(at, chosen[i], averages, effort); });
+    if (found.empty()) return found;
+    const double rough = domain_.refit(at, averages, domain_.begins_of(at), {}).log_evidence;
+    for (Trial& t : found) t.log_evidence += at.log_evidence - rough;
+    found = without_twins(std::move(found));
+    sort_by_evidence(found);
+    const size_t refits = std::min(limits_.search.max_refits_of_averages, found.size());
+    parallel_for(refits, threads_, [&](size_t i) {
+      found[i] = domain_.refit(found[i], set_.runs, domain_.begins_of(found[i]), {});
+    });
+    keep_below(found, refits);
+    return found;
+  }
+
+  // What acts faster than averages show, and what acts or does not.
+  std::vector<Trial> scanned(const Trial& at) const {
+    if (at.candidates.size() >= max_effects_) return {};
+    const Runs averages = slow_runs(domain_, at, set_);
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    std::vector<size_t> others;
+    for (size_t c = 0; c < all.size(); ++c) {
+      if (!all[c].is_fast && all[c].has_strength) continue;
+      if (!acts_already(at.candidates, c, all)) others.push_back(c);
+    }
+    const auto starts = domain_.starts(at, others, set_.runs, averages, threads_);
+    std::vector<Task<D>> tasks;
+    for (size_t i = 0; i < others.size(); ++i) {
+      for (const auto& start : starts[i]) tasks.push_back({others[i], start});
+    }
+    return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
+  }
+
+  void keep(Trial trial) {
+    for (Trial& t : trials_) {
+      if (!same_candidates(t.candidates, trial.candidates)) continue;
+      if (trial.log_evidence > t.log_evidence || t.candidates == trial.candidates) {
+        t = std::move(trial);
+      }
+      return;
+    }
+    trials_.push_back(std::move(trial));
+  }
+
+  const Trial& best_to_go_on() const {
+    for (const size_t i : by_evidence(trials_)) {
+      if (trials_[i].objection.empty()) return trials_[i];
+    }
+    return trials_.front();
+  }
+
+  const D& domain_;
+  const Thresholds& limits_;
+  RunSet<D> set_;
+  size_t max_effects_;
+  int threads_;
+  std::vector<Trial> trials_;
+};
+
+}  // namespace photorque::inference

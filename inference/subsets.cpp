@@ -1,0 +1,183 @@
+#include "inference/subsets.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "inference/estimator/covariance.h"
+#include "inference/estimator/evidence.h"
+
+namespace photorque::inference {
+namespace {
+
+class Forecast {
+ public:
+  Forecast(const LinearProblem& problem, const Thresholds& limits)
+      : problem_(problem), limits_(limits) {
+    const Eigen::Index n = problem.gradient.size();
+    // A unit diagonal: parameters have units that differ by any number of orders.
+    unit_ = problem.information.diagonal().unaryExpr(
+        [](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
+    matrix_ = unit_.asDiagonal() * problem.information * unit_.asDiagonal();
+    matrix_.diagonal().array() += rounding;
+    gradient_ = unit_.cwiseProduct(problem.gradient);
+    value_ = Eigen::VectorXd::Zero(n);
+    for (const StrengthGroup& group : problem.groups) {
+      for (Eigen::Index k = 0; k < group.count(); ++k) {
+        const Eigen::Index i = group.first + k;
+        const double v = group.value[static_cast<size_t>(k)];
+        value_[i] = unit_[i] > 0.0 ? v / unit_[i] : 0.0;
+      }
+    }
+    // With everything that the trial has taken away.
+    gradient_without_ = gradient_ + matrix_ * value_;
+    gain_without_ = -2.0 * gradient_.dot(value_) - value_.dot(matrix_ * value_);
+  }
+
+  // The gain alone: what ranks the many.
+  double gain(const std::vector<size_t>& groups) const {
+    if (groups.empty()) return gain_without_;
+    const std::vector<Eigen::Index> at = places(groups);
+    const Eigen::VectorXd g = gradient_without_(at);
+    return gain_without_ + g.dot(matrix_(at, at).llt().solve(g));
+  }
+
+  // From the strengths at which all are taken away, θ_S = H_SS⁻¹ (g + H θ)_S.
+  Subset subset(const std::vector<size_t>& groups) const {
+    Subset result{groups, gain_without_, 0.0, {}};
+    const std::vector<Eigen::Index> at = places(groups);
+    const auto n = static_cast<Eigen::Index>(at.size());
+    Strengths strengths;
+    Eigen::MatrixXd covariance(n, n);
+    if (n > 0) {
+      const Eigen::VectorXd g = gradient_without_(at), unit = unit_(at);
+      const Eigen::LLT<Eigen::MatrixXd> llt(matrix_(at, at));
+      const Eigen::VectorXd scaled = llt.solve(g);
+      result.gain += g.dot(scaled);
+      result.value = unit.cwiseProduct(scaled);
+      covariance =
+          unit.asDiagonal() * llt.solve(Eigen::MatrixXd::Identity(n, n)) * unit.asDiagonal();
+      result.log_evidence += 0.5 * log_determinant(covariance);
+    }
+    Eigen::Index k = 0;
+    for (size_t owner = 0; owner < groups.size(); ++owner) {
+      const StrengthGroup& group = problem_.groups[groups[owner]];
+      result.log_evidence += group.is_empirical ? limits_.evidence.log_prior_empirical
+                                                : limits_.evidence.log_prior_effect;
+      for (size_t p = 0; p < group.value.size(); ++p, ++k) {
+        strengths.at.push_back(k);
+        strengths.owner.push_back(owner);
+        strengths.value.push_back(result.value[k]);
+        strengths.scale.push_back(group.scale[p]);
+        const double beyond = limits_.objection.bound_sigma * std::sqrt(covariance(k, k));
+        if (result.value[k] < group.lowest[p] - beyond ||
+            result.value[k] > group.highest[p] + beyond) {
+          forbidden_.insert(groups);
+        }
+      }
+    }
+    result.log_evidence += 0.5 * result.gain;
+    if (n > 0) {
+      result.log_evidence +=
+          log_strength_evidence(strengths, covariance, groups.size(), limits_.evidence);
+    }
+    return result;
+  }
+
+  bool is_forbidden(const std::vector<size_t>& groups) const { return forbidden_.contains(groups); }
+
+  size_t parameters(const std::vector<size_t>& groups) const { return places(groups).size(); }
+
+  // Whether a group may enter beside others.
+  bool may_join(const std::vector<size_t>& groups, size_t group) const {
+    const StrengthGroup& joining = problem_.groups[group];
+    return std::none_of(groups.begin(), groups.end(), [&](size_t g) {
+      const StrengthGroup& there = problem_.groups[g];
+      return g == group || there.name == joining.name ||
+             (there.is_empirical && joining.is_empirical);
+    });
+  }
+
+  // No reading tells one of its parameters.
+  bool is_silent(size_t group) const {
+    const StrengthGroup& g = problem_.groups[group];
+    return !(unit_.segment(g.first, g.count()).minCoeff() > 0.0);
+  }
+
+ private:
+  // Of information on a unit diagonal: combinations that no reading determines stay where they are.
+  static constexpr double rounding = 1e-10;
+
+  std::vector<Eigen::Index> places(const std::vector<size_t>& groups) const {
+    std::vector<Eigen::Index> all;
+    for (const size_t g : groups) {
+      const StrengthGroup& group = problem_.groups[g];
+      for (Eigen::Index k = 0; k < group.count(); ++k) all.push_back(group.first + k);
+    }
+    return all;
+  }
+
+  const LinearProblem& problem_;
+  const Thresholds& limits_;
+  Eigen::VectorXd unit_, gradient_, value_, gradient_without_;
+  Eigen::MatrixXd matrix_;
+  double gain_without_ = 0.0;
+  mutable std::set<std::vector<size_t>> forbidden_;
+};
+
+// The sets of one more group than those of the beam, each once, ranked by the gain less what its
+// parameters and names cost.
+std::vector<std::vector<size_t>> larger(const Forecast& forecast, const LinearProblem& problem,
+                                        const std::vector<std::vector<size_t>>& beam,
+                                        const Thresholds& limits) {
+  const double name = -2.0 * limits.evidence.log_prior_effect;
+  std::vector<std::pair<double, std::vector<size_t>>> ranked;
+  std::set<std::vector<size_t>> seen;
+  for (const std::vector<size_t>& from : beam) {
+    for (size_t g = 0; g < problem.groups.size(); ++g) {
+      if (!forecast.may_join(from, g) || forecast.is_silent(g)) continue;
+      std::vector<size_t> set = from;
+      set.insert(std::upper_bound(set.begin(), set.end(), g), g);
+      if (!seen.insert(set).second) continue;
+      const double cost =
+          limits.scoring.cost_per_parameter * static_cast<double>(forecast.parameters(set)) +
+          name * static_cast<double>(set.size());
+      const double worth = forecast.gain(set) - cost;
+      if (std::isfinite(worth)) ranked.emplace_back(worth, std::move(set));
+    }
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::vector<size_t>> result;
+  for (auto& [worth, set] : ranked) result.push_back(std::move(set));
+  return result;
+}
+
+}  // namespace
+
+std::vector<Subset> best_subsets(const LinearProblem& problem, size_t max_size,
+                                 const Thresholds& limits) {
+  const Forecast forecast(problem, limits);
+  std::vector<Subset> found = {forecast.subset({})};
+  std::vector<std::vector<size_t>> beam = {{}};
+  for (size_t size = 1; size <= max_size; ++size) {
+    std::vector<std::vector<size_t>> sets = larger(forecast, problem, beam, limits);
+    // Single candidates are all kept: any two may hide each other.
+    const size_t kept = size == 1 ? sets.size() : std::min(limits.search.beam, sets.size());
+    sets.resize(kept);
+    for (size_t i = 0; i < std::min(limits.search.beam, kept); ++i) {
+      found.push_back(forecast.subset(sets[i]));
+    }
+    beam = std::move(sets);
+  }
+  std::erase_if(found, [&](const Subset& s) {
+    return forecast.is_forbidden(s.groups) || !std::isfinite(s.log_evidence);
+  });
+  std::stable_sort(found.begin(), found.end(), [](const Subset& a, const Subset& b) {
+    return a.log_evidence > b.log_evidence;
+  });
+  return found;
+}
+
+}  // namespace photorque::inference
