@@ -1,4 +1,4 @@
-#include "tools/proof/score.h"
+#include "tools/scoring/score.h"
 
 #include <gtest/gtest.h>
 
@@ -86,6 +86,100 @@ TEST_F(ProofScore, ANamedEffectWhereNothingIsMissingIsAFalseAlarm) {
       scored(truth, R"({"verdict": "consistent", "confidence": 0.9, "effects": []})");
   EXPECT_TRUE(quiet.right);
   EXPECT_FALSE(quiet.false_alarm);
+}
+
+// Friction that drives is beyond physics, however well it fits.
+TEST_F(ProofScore, ANumberBeyondPhysicsIsCounted) {
+  const std::string truth =
+      R"({"verdict": "missing_physics", "accept": [["dry_friction"]], "effects":
+          [{"kind": "dry_friction", "torque_N_m": 1e-6}]})";
+  const auto found = [](const std::string& value) {
+    return R"({"verdict": "missing_physics", "confidence": 0.9, "effects": [{"kind": "dry_friction",
+        "probability": 0.9, "parameters": {"torque_N_m": {"value": )" +
+           value + R"(, "sigma": 1e-7}}}]})";
+  };
+  EXPECT_TRUE(scored(truth, found("1.1e-6")).impossible.empty());
+  EXPECT_EQ(scored(truth, found("-1.1e-6")).impossible,
+            std::vector<std::string>{"dry_friction.torque_N_m"});
+}
+
+TEST_F(ProofScore, AKnownEffectBesideAnUnknownLawMayBeNamedOrNot) {
+  const std::string truth =
+      R"({"verdict": "unexplained", "accept": [["tether"], []], "depends_on": ["heading"],
+          "effects": [{"kind": "tether"}, {"kind": "heading_cogging"}]})";
+  const auto said = [](const std::string& verdict, const std::string& kinds) {
+    return R"({"verdict": ")" + verdict + R"(", "confidence": null, "effects": [)" + kinds + "]}";
+  };
+  const std::string tether = R"({"kind": "tether", "probability": 0.9})";
+  const CaseScore named = scored(truth, said("unexplained", tether));
+  EXPECT_TRUE(named.right);
+  EXPECT_TRUE(named.known_named);
+  EXPECT_TRUE(std::isnan(named.confidence));
+  const CaseScore quiet = scored(truth, said("unexplained", ""));
+  EXPECT_TRUE(quiet.right);
+  EXPECT_FALSE(quiet.known_named);
+  EXPECT_FALSE(scored(truth, said("missing_physics", tether)).right);
+  const CaseScore wrong =
+      scored(truth, said("unexplained", R"({"kind": "dry_friction", "probability": 0.9})"));
+  EXPECT_FALSE(wrong.right);
+  EXPECT_TRUE(wrong.wrong_name);
+}
+
+// The row of that question; an empty one where it was not asked.
+ProofRow row_of(const std::vector<CaseScore>& scores, const std::string& part) {
+  for (const ProofRow& row : proof_rows(scores)) {
+    if (row.question.find(part) != std::string::npos) return row;
+  }
+  return {};
+}
+
+TEST_F(ProofScore, ANameThatContradictsItsOwnPredictionIsCounted) {
+  const std::string truth =
+      R"({"verdict": "missing_physics", "accept": [["tether"]], "effects": [{"kind": "tether"}]})";
+  const auto with = [](const std::string& held_out) {
+    return R"({"verdict": "missing_physics", "confidence": 0.9, "effects": [{"kind": "tether",
+        "probability": 0.9}], "holdout": {"chi2_per_sample_after": 1.5)" +
+           held_out + "}}";
+  };
+  const std::vector<CaseScore> scores = {scored(truth, with(R"(, "predictive_sigma": 1.2)")),
+                                         scored(truth, with(R"(, "predictive_sigma": 7.0)")),
+                                         scored(truth, with(""))};
+  EXPECT_EQ(row_of(scores, "contradicts its own prediction").fraction.hits, 1);
+  EXPECT_EQ(row_of(scores, "contradicts its own prediction").fraction.of, 2);
+  EXPECT_EQ(row_of(scores, "without a stated prediction").fraction.hits, 1);
+}
+
+TEST_F(ProofScore, AnImprovedExperimentHasToFlyAsStated) {
+  const std::string truth = R"({"verdict": "consistent", "accept": [[]], "effects": []})";
+  const auto flight = [&](const std::string& runs) {
+    std::filesystem::create_directories(folder_ / "diagnosis");
+    std::ofstream(folder_ / "diagnosis" / "runs.json") << runs;
+    return scored(truth, R"({"verdict": "consistent", "confidence": 0.9, "effects": [],
+                             "fit": {"chi2_per_sample_after": 1.1}})");
+  };
+  EXPECT_TRUE(replays_as_stated(
+      flight(R"({"wall_s": 3.0, "exit_status": 0, "replay_status": 0, "replay_chi2": 1.2})")));
+  EXPECT_FALSE(replays_as_stated(
+      flight(R"({"wall_s": 3.0, "exit_status": 0, "replay_status": 0, "replay_chi2": 4.0})")));
+  const CaseScore failed = flight(R"({"wall_s": 61.0, "exit_status": 3, "replay_status": 2})");
+  EXPECT_FALSE(replays_as_stated(failed));
+  EXPECT_EQ(row_of({failed}, "exits other than 0").fraction.hits, 1);
+}
+
+// Ten answers at 0.9 of which six are right, ten at 0.45 of which five are: (|9 − 6| + |4.5 −
+// 5|)/20.
+TEST_F(ProofScore, CalibrationErrorIsTheMeanDistanceByBins) {
+  std::vector<CaseScore> scores(20);
+  for (size_t i = 0; i < scores.size(); ++i) {
+    scores[i].answered = true;
+    scores[i].confidence = i < 10 ? 0.9 : 0.45;
+    scores[i].right = i < 6 || i >= 15;
+  }
+  double error = -1.0;
+  for (const Quantity& q : proof_quantities(scores)) {
+    if (q.name == "confidence_calibration_error") error = q.estimate.value;
+  }
+  EXPECT_NEAR(error, 0.175, 1e-12);
 }
 
 // The closed form of Wilson's paper with z = 1.959964, evaluated by hand for 8 of 10.

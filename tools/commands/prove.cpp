@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <nlohmann/json.hpp>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -9,10 +10,11 @@
 #include "images/writers/product.h"
 #include "images/writers/summary.h"
 #include "scenes/experiment/toml_reader.h"
-#include "tools/proof/document.h"
 #include "tools/proof/files.h"
 #include "tools/runs/child_process.h"
 #include "tools/runs/console.h"
+#include "tools/scoring/document.h"
+#include "tools/scoring/replay.h"
 
 namespace photorque {
 namespace {
@@ -22,6 +24,7 @@ namespace fs = std::filesystem;
 struct ProveSettings {
   InjectedPlan plan;
   bool oracle = true;         // also diagnose with the truth told, for the held-out error
+  bool replay = true;         // also propagate every improved.toml
   int at_once = 1;            // diagnoses side by side
   double max_time_s = 900.0;  // for one diagnosis
   size_t max_cases = 100000;
@@ -58,6 +61,7 @@ ProveSettings read_settings(const CommandLine& line) {
   if (plan.rates_Hz.empty()) throw s.error("rates_Hz", "[]", "at least one rate");
   plan.dirty_fraction = s.number_or("dirty_share", plan.dirty_fraction, Range::fraction());
   settings.oracle = s.flag_or("oracle", settings.oracle);
+  settings.replay = s.flag_or("replay", settings.replay);
   settings.at_once = static_cast<int>(s.integer_or("at_once", 1, 1, 1024));
   settings.max_time_s = s.number_or("longest_s", settings.max_time_s, Range::positive());
   settings.max_cases = static_cast<size_t>(s.integer_or("most_cases", most, 1, most));
@@ -117,6 +121,35 @@ std::vector<fs::path> cases_in(const fs::path& folder) {
   return folders;
 }
 
+// As the experiment file of a case states it; of cases made elsewhere, what most of them have.
+std::array<double, 3> camera_noise_arcsec(const fs::path& case_folder) {
+  const auto truth = nlohmann::json::parse(read_file(case_folder / "truth.json"), nullptr, false);
+  const std::array<double, 3> common = {37.0, 37.0, 12.0};
+  return truth.is_object() ? truth.value("camera_noise_arcsec", common) : common;
+}
+
+// Propagates the answer and compares with the recording; what a user would do first.
+nlohmann::json replayed(const fs::path& blind, const std::array<double, 3>& noise_arcsec,
+                        const ProveSettings& settings) {
+  nlohmann::json replay = nlohmann::json::object();
+  if (!fs::exists(blind / "diagnosis" / "improved.toml")) return replay;
+  // Without the camera's own noise, which would be added to that of the recording.
+  const ChildResult result =
+      run_child(own_program(),
+                {"propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads",
+                 "1", "--set", "sensors.camera.noise_arcsec=[0, 0, 0]"},
+                blind, settings.max_time_s);
+  replay["replay_status"] = result.status;
+  if (result.status == 0) {
+    replay["replay_chi2"] =
+        replayed_chi2(blind / "run1.csv.gz", blind / "replay" / "recording.csv", noise_arcsec);
+  } else {
+    write_file_whole(blind / "diagnosis" / "replay_error.txt", result.errors);
+  }
+  fs::remove_all(blind / "replay");
+  return replay;
+}
+
 // Diagnoses one experiment in a folder that holds nothing but what a user would have. Does nothing
 // when this very program has done so before.
 void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
@@ -135,7 +168,11 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
        "--out", "diagnosis", "--quiet", "--threads", std::to_string(threads)},
       blind, settings.max_time_s);
   fs::create_directories(out);
-  write_file_whole(out / "wall_s.txt", std::to_string(result.wall_s) + "\n");
+  nlohmann::json runs = {{"wall_s", result.wall_s}, {"exit_status", result.status}};
+  if (settings.replay && result.status == 0) {
+    runs.update(replayed(blind, camera_noise_arcsec(case_folder), settings));
+  }
+  write_file_whole(out / "runs.json", runs.dump(1) + "\n");
   if (result.status != 0 || !result.errors.empty()) {
     write_file_whole(out / "error.txt",
                      "exit " + std::to_string(result.status) + ": " + result.errors);
@@ -145,12 +182,20 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
   write_file_whole(stamp, program_hash);
 }
 
+// Whether the program given the truth can say how well these recordings can be predicted.
+bool has_oracle(const fs::path& case_folder, const CaseScore& score) {
+  return score.verdict == "missing_physics" && !is_outside(score) &&
+         fs::exists(case_folder / "oracle.toml");
+}
+
 std::vector<CaseScore> diagnose_and_score(const std::vector<fs::path>& folders,
                                           const ProveSettings& settings, const CommandLine& line,
                                           Console& console) {
   const fs::path out = line.out_folder();
   const std::string program = content_hash(read_file(own_program()));
   const int threads = std::max(1, line.threads);
+  ProveSettings of_oracle = settings;
+  of_oracle.replay = false;
   std::vector<CaseScore> scores(folders.size());
   std::atomic<size_t> done = 0;
   const auto progress = console.progress("diagnosing");
@@ -159,9 +204,8 @@ std::vector<CaseScore> diagnose_and_score(const std::vector<fs::path>& folders,
     const fs::path blind = out / "blind" / name, oracle = out / "oracle" / name;
     diagnose_blind(folders[i], "experiment.toml", blind, program, settings, threads);
     CaseScore score = score_case(folders[i], blind / "diagnosis", oracle / "diagnosis");
-    if (settings.oracle && score.right && !score.kinds.empty() &&
-        fs::exists(folders[i] / "oracle.toml")) {
-      diagnose_blind(folders[i], "oracle.toml", oracle, program, settings, threads);
+    if (settings.oracle && has_oracle(folders[i], score)) {
+      diagnose_blind(folders[i], "oracle.toml", oracle, program, of_oracle, threads);
       score = score_case(folders[i], blind / "diagnosis", oracle / "diagnosis");
     }
     scores[i] = std::move(score);
@@ -175,8 +219,8 @@ std::vector<CaseScore> diagnose_and_score(const std::vector<fs::path>& folders,
 Product proof_product(const std::vector<CaseScore>& scores) {
   Product product;
   product.quantities = proof_quantities(scores);
-  product.tables = {proof_summary(scores), proof_by_kind(scores), proof_reliability(scores),
-                    proof_cases(scores)};
+  product.tables = {proof_summary(scores),     proof_by_family(scores),   proof_by_kind(scores),
+                    proof_reliability(scores), proof_calibration(scores), proof_cases(scores)};
   return product;
 }
 
@@ -208,9 +252,19 @@ std::string plan_text(const ProveSettings& s) {
   const InjectedPlan& p = s.plan;
   std::string rates;
   for (const double rate : p.rates_Hz) rates += (rates.empty() ? "" : ", ") + show(rate);
-  return std::to_string(p.per_kind) + " of every kind, " + std::to_string(p.pairs) + " pairs, " +
-         std::to_string(p.outside) + " of every law outside the catalogue, " +
-         std::to_string(p.none) + " with nothing missing; recordings of " + show(p.duration_s) +
+  const auto counted = [](int count, const std::string& what) {
+    return count > 0 ? std::to_string(count) + " " + what + ", " : "";
+  };
+  std::string text = counted(p.per_kind, "of every kind") + counted(p.pairs, "pairs") +
+                     counted(p.triples, "triples") +
+                     counted(p.known_unknown, "with a known effect and an unknown law") +
+                     counted(p.outside, "of every law outside the catalogue") +
+                     counted(p.none, "with nothing missing") +
+                     counted(p.noise_none, "with nothing missing and noise not as stated") +
+                     counted(p.noise_effect, "of one effect under correlated noise");
+  if (!text.empty()) text.replace(text.size() - 2, 2, "; ");
+  return text + show(100.0 * p.second_fraction) +
+         " % of the second maker, the others recordings of " + show(p.duration_s) +
          " s and hold-outs of " + show(p.holdout_s) + " s at " + rates + " Hz, " +
          show(100.0 * p.dirty_fraction) + " % of the files dirty; seed " + std::to_string(p.seed) +
          ".";

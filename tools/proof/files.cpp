@@ -74,20 +74,24 @@ void add_noise(Json& json, const char* instrument, const InjectedNoise& noise) {
                       {"step_sigma", noise.step_sigma}};
 }
 
-}  // namespace
-
-std::string injected_experiment(const InjectedCase& c, bool told_truth) {
-  const InjectedPriors& priors = c.priors;
+std::string platform_text(const InjectedCase& c) {
   const auto& inertia = c.world.inertia_kg_m2;
-  std::string text = "# The nominal model of this platform and its laboratory.\n[platform]\n";
-  text += "topology = \"" + c.topology + "\"\n";
+  std::string text = "[platform]\ntopology = \"" + c.topology + "\"\n";
   text += print("mass_kg = %.6g\n", c.world.mass_kg);
   text += print("inertia_kg_m2 = [[%.6g, 0, 0], [0, %.6g, 0], [0, 0, %.6g]]\n", inertia[0][0],
                 inertia[1][1], inertia[2][2]);
   text += print("\n[environment]\ngravity_m_s2 = %.7g\n", c.world.gravity_m_s2);
   text += "magnetic_field_T = " + array_text(c.world.magnetic_field_T) +
           "   # lab axes: east, north, up\n";
-  text += print("latitude_deg = %.6g\n", c.world.latitude_rad * 180.0 / pi);
+  return text + print("latitude_deg = %.6g\n", c.world.latitude_rad * 180.0 / pi);
+}
+
+}  // namespace
+
+std::string injected_experiment(const InjectedCase& c, bool told_truth) {
+  std::string text = "# The nominal model of this platform and its laboratory.\n";
+  text += platform_text(c);
+  const InjectedPriors& priors = c.priors;
   text += "\n[[disturbance]]\nkind = \"" + std::string(nominal_unbalance) + "\"\noffset_m = " +
           with_sigma(array_text(priors.offset_m), array_text(priors.offset_sigma_m),
                      priors.offset_sigma_m[0] == 0.0) +
@@ -101,13 +105,39 @@ std::string injected_experiment(const InjectedCase& c, bool told_truth) {
   }
   text += "\n[sensors.camera]\nnoise_arcsec = " + array_text(c.sensors.camera_noise_arcsec) +
           "   # about lab x, y (out of plane) and z (in plane)\n";
-  const std::string bias = print("%g", priors.gyro_bias_sigma_rad_s);
   if (!c.sensors.has_gyro) return text;
+  const std::string bias = print("%g", priors.gyro_bias_sigma_rad_s);
   text += print("\n[sensors.gyro]\nnoise_rad_s = %g\n", c.sensors.gyro_noise_rad_s);
   text += "bias_rad_s = " +
           with_sigma("[0, 0, 0]", "[" + bias + ", " + bias + ", " + bias + "]",
                      priors.gyro_bias_sigma_rad_s == 0.0) +
           "\n";
+  return text;
+}
+
+std::string injected_truth_toml(const InjectedCase& c, size_t run_index) {
+  for (const InjectedEffect& effect : c.world.effects) {
+    if (is_outside_catalogue(effect.kind)) return "";
+  }
+  const auto exactly = [](const Triple& v) { return array_text(list(v), "%.15g"); };
+  std::string text = "# What acted, and how it began.\n" + platform_text(c);
+  text += "\n[[disturbance]]\nkind = \"" + std::string(nominal_unbalance) +
+          "\"\noffset_m = " + exactly(c.world.offset_m) + "\n";
+  text += "\n[[disturbance]]\nkind = \"" + std::string(nominal_drag) + "\"\n" +
+          print("coefficient_N_m_s = %.15g\n", c.world.drag_N_m_s);
+  for (const InjectedEffect& effect : c.world.effects) text += effect_text(effect);
+  // At the clock's zero: the motion itself starts before.
+  const InjectedRun& run = c.runs[run_index];
+  const InjectedContext begin =
+      injected_motion(c.world, run.commands, run.start, start_s, {0.0}, step_s, bend_rad_s).front();
+  text += "\n[sensors.camera]\nnoise_arcsec = [0, 0, 0]\n";
+  text += print("\n[propagate]\nduration_s = %.9g\noutput_rate_Hz = %.9g\n", run.duration_s,
+                c.sensors.rate_Hz);
+  text +=
+      "initial_attitude = " + array_text({begin.attitude.begin(), begin.attitude.end()}, "%.15g") +
+      "\n";
+  text += "initial_rate_rad_s = " + exactly(begin.rate_rad_s) + "\n";
+  if (c.sensors.has_commands) text += print("commands = 'run%zu.csv.gz'\n", run_index + 1);
   return text;
 }
 
@@ -175,6 +205,7 @@ std::string injected_truth_json(const InjectedCase& c) {
   json["chi2_gain"] = c.chi2_gain;
   json["dirty"] = c.sensors.dirty;
   json["rate_Hz"] = c.sensors.rate_Hz;
+  json["camera_noise_arcsec"] = c.sensors.camera_noise_arcsec;
   Json noise = Json::object();
   add_noise(noise, "camera", c.sensors.camera);
   add_noise(noise, "gyro", c.sensors.gyro);
@@ -198,6 +229,11 @@ void write_injected_case(const InjectedCase& injected, const std::filesystem::pa
   write_file_whole(folder / "oracle.toml", injected_experiment(injected, true));
   write_file_whole(folder / "run1.csv.gz", gzip(injected_recording(injected, 0)));
   write_file_whole(folder / "run2.csv.gz", gzip(injected_recording(injected, 1)));
+  for (size_t run = 0; run < 2; ++run) {
+    const std::string truth = injected_truth_toml(injected, run);
+    const std::string name = "truth" + std::to_string(run + 1) + ".toml";
+    if (!truth.empty()) write_file_whole(folder / name, truth);
+  }
   write_file_whole(folder / "truth.json", injected_truth_json(injected));
 }
 

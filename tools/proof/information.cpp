@@ -52,9 +52,12 @@ InjectedInformation::InjectedInformation(const InjectedCase& injected) : case_(i
     const double at = static_cast<double>(i) + unit_interval(hash_words(case_.seed, 5, i));
     times_s_.push_back(duration_s * at / static_cast<double>(count));
   }
-  // Good to 1e-5 of an effect at up to 1 rad/s, to a per cent of the fastest tones; over an hour
-  // to ten times that.
-  step_s_ = duration_s > 1000.0 ? 0.1 : 0.05;
+  // Good to 1e-5 of an effect at up to 0.3 rad/s, and in half the step at 1 rad/s, where the
+  // fastest tones are good to a per cent.
+  const bool has_tone = std::ranges::any_of(
+      case_.world.effects, [](const auto& e) { return e.parameters.contains("frequency_Hz"); });
+  const bool is_fast = has_tone || length(case_.runs[0].start.rate_rad_s) > 0.3;
+  step_s_ = is_fast && duration_s < 1000.0 ? 0.05 : 0.1;
   const InjectedSensors& sensors = case_.sensors;
   const double rows = duration_s * sensors.rate_Hz, interval_s = 1.0 / sensors.rate_Hz;
   const double each = rows / static_cast<double>(count);

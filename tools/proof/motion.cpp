@@ -27,6 +27,14 @@ PlainPlatform changed(const InjectedWorld& world) {
   return platform;
 }
 
+// Times a lab vector: the vector in body axes.
+Matrix lab_axes(const Quaternion& q) {
+  const auto& [w, x, y, z] = q;
+  return {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+           {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+           {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
+}
+
 class Equations {
  public:
   explicit Equations(const InjectedWorld& world) : world_(world), platform_(changed(world)) {
@@ -120,11 +128,12 @@ class Equations {
     s.mass_kg = world_.mass_kg;
     s.offset_m = world_.offset_m;
     s.inertia = platform_.inertia;
-    s.gravity = to_body(s.attitude, platform_.gravity_lab);
+    const Matrix lab = lab_axes(s.attitude);
+    s.gravity = times(lab, platform_.gravity_lab);
     s.gravity_level = platform_.gravity_lab;
     s.gravity_m_s2 = world_.gravity_m_s2;
-    s.field = to_body(s.attitude, world_.magnetic_field_T);
-    s.up = to_body(s.attitude, {0, 0, 1});
+    s.field = times(lab, world_.magnetic_field_T);
+    s.up = {lab[0][2], lab[1][2], lab[2][2]};
     s.command_N_m = command.torque_N_m;
     return s;
   }

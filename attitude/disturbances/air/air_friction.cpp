@@ -51,7 +51,8 @@ DisturbanceKind air_friction_kind() {
           .injection = {.draw = injected::fixed_size(braking.name, 3e-5),
                         .torque = plain_torque,
                         .strength = braking.name,
-                        .step = 1e-8},
+                        .step = 1e-8,
+                        .pairs = true},
           .budget = {.paper_figure = "lumped_drag_at_1_rpm_N_m"}};
 }
 

@@ -52,7 +52,8 @@ DisturbanceKind dry_friction_kind() {
           .injection = {.draw = injected::fixed_size(friction.name, 3e-6),
                         .torque = plain_torque,
                         .strength = friction.name,
-                        .step = 1e-9}};
+                        .step = 1e-9,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

@@ -45,7 +45,8 @@ DisturbanceKind tether_kind() {
                         .torque = plain_torque,
                         .strength = stiffness.name,
                         .step = 1e-8,
-                        .needs_small_turns = true}};
+                        .needs_small_turns = true,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

@@ -79,7 +79,8 @@ DisturbanceKind inertia_error_kind() {
                         .alter = plain_change,
                         .strength = delta.name,
                         .step = 1e-6,
-                        .max_factor = 5.0}};
+                        .max_factor = 5.0,
+                        .pairs = true}};
 }
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-#include "tools/proof/document.h"
+#include "tools/scoring/document.h"
 
 #include <cmath>
 #include <cstdio>
@@ -101,6 +101,9 @@ std::string proof_markdown(const ProofSet& set) {
   text += headline(set.scores) + "\n" + figures(set.scores) + "\n";
   text += "Stated probability of every effect named, beside how often the name was right:\n\n" +
           table_markdown(proof_reliability(set.scores), "%.3g") + "\n";
+  text += "Stated confidence of every answer, beside how often verdict and names were right:\n\n" +
+          table_markdown(proof_calibration(set.scores), "%.3g") + "\n";
+  text += "By family and maker:\n\n" + table_markdown(proof_by_family(set.scores), "%.3g") + "\n";
   text += "By the injected effect:\n\n" + table_markdown(proof_by_kind(set.scores), "%.0f") + "\n";
   return text + "What went wrong:\n\n" + wrong_cases(set.scores);
 }

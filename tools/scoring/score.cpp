@@ -1,4 +1,4 @@
-#include "tools/proof/score.h"
+#include "tools/scoring/score.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "tools/scoring/signs.h"
 
 namespace photorque {
 namespace {
@@ -84,6 +85,19 @@ void add_pulls(const Json& found, const Json& truth, std::vector<double>& pulls)
   }
 }
 
+// Adds "tether.stiffness_N_m_per_rad" where a fitted number is beyond physics.
+void add_impossible(const Json& found, const std::string& nominal, CaseScore& score) {
+  const std::string kind = found.at("kind");
+  const bool is_nominal = nominal.find("\"" + kind + "\"") != std::string::npos;
+  const Json parameters = found.value("parameters", Json::object());
+  for (const auto& [key, fitted] : parameters.items()) {
+    if (!fitted.is_object()) continue;
+    if (!is_possible(kind, key, numbers_of(fitted.value("value", Json())), is_nominal)) {
+      score.impossible.push_back(kind + "." + key);
+    }
+  }
+}
+
 // Whether the set of names, each swapped for itself or one of its doubles, can be `wanted`.
 bool can_be(const std::vector<std::vector<std::string>>& doubles,
             const std::vector<std::string>& wanted) {
@@ -112,10 +126,11 @@ void read_truth(const Json& truth, CaseScore& score) {
   for (const Json& effect : truth.at("effects")) score.true_kinds.push_back(effect.at("kind"));
   score.name = truth.value("name", score.name);
   score.family = truth.value("family", "case");
+  score.maker = truth.value("maker", "");
   score.chi2_gain = number_or_nan(truth, "chi2_gain");
 }
 
-void judge(const Json& truth, const Json& diagnosis, CaseScore& score) {
+void judge(const Json& truth, const Json& diagnosis, const std::string& nominal, CaseScore& score) {
   const auto accept = truth.at("accept").get<std::vector<std::vector<std::string>>>();
   const bool outside = score.true_verdict == "unexplained";
   std::vector<std::vector<std::string>> doubles;
@@ -128,6 +143,7 @@ void judge(const Json& truth, const Json& diagnosis, CaseScore& score) {
     for (const Json& other : effect.value("indistinguishable_from", Json::array())) {
       doubles.back().push_back(other);
     }
+    add_impossible(effect, nominal, score);
     const bool known = acceptable.contains(kind);
     score.wrong_name = score.wrong_name || !known;
     score.claims.emplace_back(number_or_nan(effect, "probability"), known);
@@ -142,6 +158,7 @@ void judge(const Json& truth, const Json& diagnosis, CaseScore& score) {
     score.right = score.right || sorted(names) == sorted(score.kinds);
     score.right_within_group = score.right_within_group || can_be(doubles, names);
   }
+  score.known_named = outside && score.right && !score.kinds.empty();
   // Below the limit, what acts may be said, or nothing.
   const bool either = std::ranges::any_of(accept, [](const auto& names) { return names.empty(); });
   score.verdict_right = score.verdict == score.true_verdict ||
@@ -155,7 +172,25 @@ void judge(const Json& truth, const Json& diagnosis, CaseScore& score) {
         std::ranges::find(wanted, depends[0].value("variable", "")) != wanted.end();
   }
   const Json holdout = diagnosis.value("holdout", Json());
-  if (holdout.is_object()) score.holdout_chi2 = number_or_nan(holdout, "chi2_per_sample_after");
+  if (holdout.is_object()) {
+    score.holdout_chi2 = number_or_nan(holdout, "chi2_per_sample_after");
+    score.predictive_chi2 = number_or_nan(holdout, "predictive_chi2_per_sample");
+    score.predictive_sigma = number_or_nan(holdout, "predictive_sigma");
+  }
+  score.fit_chi2 = number_or_nan(diagnosis.value("fit", Json::object()), "chi2_per_sample_after");
+}
+
+// What prove noted of the runs themselves.
+void read_runs(const std::filesystem::path& folder, CaseScore& score) {
+  if (std::filesystem::exists(folder / "error.txt")) {
+    score.failure = read_file(folder / "error.txt");
+  }
+  if (!std::filesystem::exists(folder / "runs.json")) return;
+  const Json runs = parsed(folder / "runs.json");
+  score.wall_s = number_or_nan(runs, "wall_s");
+  score.exit_status = runs.value("exit_status", 0);
+  score.replay_status = number_or_nan(runs, "replay_status");
+  score.replay_chi2 = number_or_nan(runs, "replay_chi2");
 }
 
 }  // namespace
@@ -165,7 +200,8 @@ CaseScore score_case(const std::filesystem::path& truth_folder,
                      const std::filesystem::path& oracle_folder) {
   CaseScore score;
   score.name = truth_folder.filename().string();
-  score.holdout_chi2 = score.oracle_chi2 = nan;
+  score.holdout_chi2 = score.oracle_chi2 = score.predictive_chi2 = score.predictive_sigma = nan;
+  score.fit_chi2 = score.replay_status = score.replay_chi2 = score.confidence = nan;
   const Json truth = parsed(truth_folder / "truth.json");
   try {
     read_truth(truth, score);
@@ -173,19 +209,16 @@ CaseScore score_case(const std::filesystem::path& truth_folder,
     throw InputError({(truth_folder / "truth.json").string(), 0}, "", error.what(),
                      "verdict, effects and accept");
   }
-  if (std::filesystem::exists(diagnosis_folder / "error.txt")) {
-    score.failure = read_file(diagnosis_folder / "error.txt");
-  }
+  read_runs(diagnosis_folder, score);
+  const auto experiment = truth_folder / "experiment.toml";
+  const std::string nominal = std::filesystem::exists(experiment) ? read_file(experiment) : "";
   try {
-    judge(truth, parsed(diagnosis_folder / "diagnosis.json"), score);
+    judge(truth, parsed(diagnosis_folder / "diagnosis.json"), nominal, score);
     score.answered = true;
   } catch (const Json::exception& error) {
     score.failure += error.what();
   } catch (const InputError& error) {
     if (score.failure.empty()) score.failure = error.what();
-  }
-  if (std::filesystem::exists(diagnosis_folder / "wall_s.txt")) {
-    score.wall_s = std::atof(read_file(diagnosis_folder / "wall_s.txt").c_str());
   }
   if (std::filesystem::exists(oracle_folder / "diagnosis.json")) {
     const Json oracle = parsed(oracle_folder / "diagnosis.json");

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/provenance.h"
-#include "tools/proof/score.h"
+#include "tools/scoring/score.h"
 
 namespace photorque {
 
