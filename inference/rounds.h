@@ -34,6 +34,13 @@ class Rounds {
     bool scan = false;
     for (int round = 0; round < limits_.search.max_rounds; ++round) {
       std::vector<Trial> found = scan ? scanned(at) : foretold(at, round == 0);
+      // Slow effects may stand in for one that is fast: the scan also begins without them.
+      if (scan && may_be_stand_ins(at)) {
+        for (Trial& t : scanned(trials_.front())) found.push_back(std::move(t));
+      }
+      if (!scan) {
+        for (Trial& t : switched_on(at)) found.push_back(std::move(t));
+      }
       std::vector<Trial> parents = {at};
       settle_leaders(domain_, set_.runs, threads_, found, parents);
       for (Trial& parent : parents) keep(std::move(parent));
@@ -53,6 +60,12 @@ class Rounds {
   }
 
  private:
+  bool may_be_stand_ins(const Trial& at) const {
+    if (at.candidates.empty() || has_diverged(trials_.front(), limits_)) return false;
+    return at.candidates.size() > 1 ||
+           domain_.excess_sigma(at, set_.runs) > limits_.search.explained_sigma;
+  }
+
   // In pieces of the runs a faint line or jump cannot be told; the whole is searched later.
   bool is_worth_a_scan(const Trial& at) const {
     return set_.pieces == 1 ||
@@ -190,14 +203,26 @@ class Rounds {
     return found;
   }
 
-  // What acts faster than averages show, and what acts or does not.
+  // What acts or does not, and has no strength of which a forecast could be made.
+  std::vector<Trial> switched_on(const Trial& at) const {
+    if (at.candidates.size() >= max_effects_) return {};
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    std::vector<Task<D>> tasks;
+    for (size_t c = 0; c < all.size(); ++c) {
+      if (all[c].parameters > 0 || acts_already(at.candidates, c, all)) continue;
+      tasks.push_back({c, domain_.start_of(c)});
+    }
+    return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
+  }
+
+  // What acts faster than averages show.
   std::vector<Trial> scanned(const Trial& at) const {
     if (at.candidates.size() >= max_effects_) return {};
     const Runs averages = slow_runs(domain_, at, set_);
     const std::vector<CandidateTraits>& all = domain_.candidates();
     std::vector<size_t> others;
     for (size_t c = 0; c < all.size(); ++c) {
-      if (!all[c].is_fast && all[c].has_strength) continue;
+      if (!all[c].is_fast && (all[c].has_strength || all[c].parameters == 0)) continue;
       if (!acts_already(at.candidates, c, all)) others.push_back(c);
     }
     const auto starts = domain_.starts(at, others, set_.runs, averages, threads_);

@@ -21,8 +21,12 @@ class Search {
     Trial from = nominal;
     if (has_diverged(nominal, limits_)) {
       for (Trial& t : by_pieces(nominal)) trials_.push_back(std::move(t));
+      // Nothing can be foretold about a prediction that is elsewhere.
       const Trial& best = trials_[best_allowed()];
-      if (!has_diverged(best, limits_)) from = best;
+      if (has_diverged(best, limits_) || best.fit.samples != nominal.fit.samples) {
+        return without_twins(std::move(trials_));
+      }
+      from = best;
     }
     auto found = rounds({runs_}, nominal).run(from);
     for (size_t i = 1; i < found.size(); ++i) trials_.push_back(std::move(found[i]));

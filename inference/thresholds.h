@@ -96,6 +96,8 @@ struct Thresholds {
     size_t max_refits_of_averages = 4, max_refits_of_pieces = 6;
     // Sets of candidates that a forecast keeps of each size, to be enlarged.
     size_t beam = 40;
+    // Residual structure of a single effect [sigma], below which it is no stand-in for a fast one.
+    double explained_sigma = 3.0;
     // Rounds of forecast and fit; the foretold sets that a round fits; and the log evidence below
     // the best forecast within which a set is worth that.
     int max_rounds = 6;
@@ -135,10 +137,10 @@ struct Thresholds {
     double log_prior_effect = -3.4, log_prior_empirical = -5.0;
     // Widths of the fit's own prior over those expected: keeps what the data do not determine from
     // running away, no more.
-    double fit_prior_widths = 30.0;
+    double fit_prior_widths = 300.0;
     // The width of the prior of an effect's strengths, over the expected one, is uniform in its
     // logarithm: so many steps of half a decade from 10^−6.
-    int strength_widths = 15;
+    int strength_widths = 19;
     double first_log10_width = -6.0, step_log10_width = 0.5;
     // Standard deviation of the start of a candidate's own state in its unit (an appendage begins
     // near rest against the body).

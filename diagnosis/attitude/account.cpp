@@ -174,10 +174,15 @@ std::vector<FittedParameter> refined_priors(const Trial& chosen) {
 std::vector<std::string> contradicted_beliefs(const Trial& chosen,
                                               const Thresholds::Decision& limits) {
   std::vector<std::string> sentences;
-  for (const inference::Parameter& p : chosen.fit.parameters.shared) {
+  size_t shared = 0;
+  for (const Free& f : chosen.fit.best.free) {
+    if (f.per_run) continue;
+    if (shared == chosen.fit.parameters.shared.size()) break;  // it was never fitted
+    const inference::Parameter& p = chosen.fit.parameters.shared[shared++];
+    const auto& found = chosen.disturbances;
+    const bool is_found = std::find(found.begin(), found.end(), f.disturbance) != found.end();
     const double off = (p.value - p.mean) / p.sigma;
-    if (sentences.size() == chosen.fit.best.free.size()) break;
-    if (!p.has_prior() || !(std::abs(off) > limits.doubtful_belief_sigma)) continue;
+    if (is_found || !p.has_prior() || !(std::abs(off) > limits.doubtful_belief_sigma)) continue;
     char text[200];
     const bool is_contradicted = std::abs(off) > limits.contradicted_belief_sigma;
     std::snprintf(text, sizeof text, "%s: stated %.4g ± %.2g, fitted %.4g: %s by %.1f σ",
@@ -190,6 +195,8 @@ std::vector<std::string> contradicted_beliefs(const Trial& chosen,
 }
 
 std::string sentence_of(const Diagnosis& d) {
+  // Of χ² held out: a factor, and an excess per number.
+  constexpr double worth_saying = 1.5, leaves_something = 0.2;
   if (d.verdict == Verdict::consistent) {
     return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";
   }
@@ -205,7 +212,20 @@ std::string sentence_of(const Diagnosis& d) {
   if (!d.where.depends_on.empty()) {
     text += "; it depends on " + d.where.depends_on.front().variable;
   }
-  return text + ".";
+  if (!d.because.empty()) text += " (" + d.because + ")";
+  if (!d.holdout || d.alternatives.empty()) return text + ".";
+  const double before = d.holdout->chi2_per_sample_before, after = d.holdout->chi2_per_sample_after;
+  const auto chosen = std::find_if(d.alternatives.begin(), d.alternatives.end(),
+                                   [](const Alternative& a) { return a.chosen; });
+  if (chosen == d.alternatives.end() || !(before > worth_saying * after)) return text + ".";
+  char times[32];
+  std::snprintf(times, sizeof times, "%.3g", before / after);
+  std::string names = chosen->label;
+  for (const std::string& kind : chosen->kinds) {
+    if (chosen->label.empty()) names += (names.empty() ? "" : " and ") + in_words(kind);
+  }
+  return text + ". Held out, " + names + " lowers χ² by a factor of " + times +
+         (after > 1.0 + leaves_something ? ", and leaves more than noise." : ".");
 }
 
 }  // namespace photorque

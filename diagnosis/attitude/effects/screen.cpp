@@ -135,8 +135,11 @@ inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
   std::vector<Eigen::Index> columns;
   // The sums' columns: the runs' own, the shared ones in the order of h.free, the extra ones. A new
   // disturbance with states of its own would move them: those are fast, and make no group.
-  const Eigen::Index first_shared = at.fit.first_shared;
-  Eigen::Index next = at.fit.hessian.rows();
+  const RunStart& run = h.runs.front();
+  const auto first_shared =
+      static_cast<Eigen::Index>(h.runs.size() * (6 + run.initial.extra.size() + run.own.size()));
+  Eigen::Index next = first_shared;
+  for (const Free& f : h.free) next += f.per_run ? 0 : 1;
   for (size_t t = 0; t < terms.size(); ++t) {
     const Candidate& c = all[terms[t].candidate];
     if (c.effect.how.fast || !c.has_linear_strength()) continue;
