@@ -29,6 +29,8 @@ Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) 
   return c;
 }
 
+}  // namespace
+
 Candidate candidate_of(const EmpiricalLaw& law) {
   Candidate c;
   c.label = "unknown in " + law.variable + ": " + law.description;
@@ -45,6 +47,8 @@ Candidate candidate_of(const EmpiricalLaw& law) {
   }
   return c;
 }
+
+namespace {
 
 // Laplace's approximation of the evidence. The fit's own prior is far wider than the nominal model
 // of an effect; here it is replaced.
@@ -207,6 +211,9 @@ CoveredMotion covered_by(const std::vector<Observation>& runs) {
       covered.has_commands = covered.has_commands || held.command_body_N_m.norm() > 0.0;
     }
     for (size_t i = 0; i < seen.blocks(); ++i) {
+      if ((seen.gyro_rows[i].array() > 0.0).all()) {
+        covered.rate_rad_s = std::max(covered.rate_rad_s, seen.gyro_rad_s[i].norm());
+      }
       if (!(seen.attitude_rows[i] > 0.0)) continue;
       const double up = (seen.attitude[i] * Vec3::UnitZ()).z();
       covered.tilt_rad = std::max(covered.tilt_rad, std::acos(std::clamp(up, -1.0, 1.0)));
@@ -278,14 +285,12 @@ void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observati
   h.runs = seen_starts(h, runs);
 }
 
-// Adds a candidate with all that is fitted of it. Returns its disturbance.
-size_t add_free(Hypothesis& h, const Candidate& c, const Disturbance& start,
-                const Thresholds& limits) {
-  const size_t index = add_disturbance(h, start);
+// All that is fitted of a candidate that stands at `index` in the model.
+void free_parameters(Hypothesis& h, const Candidate& c, size_t index, const Thresholds& limits) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (!c.is_fitted(p)) continue;
     Free f{index, static_cast<int>(p)};
-    f.mean = c.searched[p] ? start.parameters[p].value : 0.0;
+    f.mean = c.searched[p] ? h.parameter(f).value : 0.0;
     f.sigma = limits.evidence.fit_prior_widths * c.scale[p];
     if (c.searched[p]) {
       f.lowest = c.lowest[p];
@@ -293,6 +298,13 @@ size_t add_free(Hypothesis& h, const Candidate& c, const Disturbance& start,
     }
     h.free.push_back(f);
   }
+}
+
+// Adds a candidate with all that is fitted of it. Returns its disturbance.
+size_t add_free(Hypothesis& h, const Candidate& c, const Disturbance& start,
+                const Thresholds& limits) {
+  const size_t index = add_disturbance(h, start);
+  free_parameters(h, c, index, limits);
   return index;
 }
 
@@ -389,6 +401,21 @@ Trial assemble(const Trial& from, const Candidates& all, const inference::Member
   }
   judge(trial, all);
   return trial;
+}
+
+Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t candidate,
+               const Disturbance& start, const std::vector<Observation>& runs,
+               const FitSettings& settings) {
+  Trial result = trial;
+  const size_t index = trial.disturbances[which];
+  result.candidates[which] = candidate;
+  Hypothesis h = trial.fit.best;
+  h.model.disturbances[index] = start;
+  std::erase_if(h.free, [&](const Free& f) { return f.disturbance == index; });
+  free_parameters(h, all[candidate], index, all.limits);
+  result.fit = fit(h, runs, settings);
+  judge(result, all);
+  return result;
 }
 
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
