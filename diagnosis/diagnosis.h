@@ -133,6 +133,8 @@ struct Replay {
   double output_rate_Hz = 10.0;
   std::array<double, 4> initial_attitude = {1, 0, 0, 0};  // w, x, y, z
   Vec3 initial_rate_rad_s = Vec3::Zero();                 // body axes
+  double initial_time_s = 0.0;                            // as in the recording
+  double initial_charge_C = 0.0;                          // drawn from the battery
 };
 
 // What the files held.

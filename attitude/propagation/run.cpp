@@ -205,6 +205,7 @@ PropagationRun read_propagation(const Settings& root) {
                          "at most platform.tilt_limit_deg");
   }
   run.initial.charge_drawn_C = settings.number_or("initial_charge_Ah", 0.0);
+  run.initial.time_s = settings.number_or("initial_time_s", 0.0);
   settings.finish();
   return run;
 }

@@ -45,6 +45,7 @@ NominalModel read_attitude_model(const Settings& root);
 //     time history at most, default 20000); tolerance (default 1e-8); longest_step_s; seed (1);
 //   initial_attitude = [w, x, y, z], or initial_tilt_deg and initial_heading_deg (default 0), see
 //     lab_from_body_at(); initial_rate_rad_s[3] (default 0); initial_charge_Ah (drawn, default 0);
+//   initial_time_s (default 0): the time of the first row;
 //   commands: a CSV with t_s and command_x_N_m … or battery_current_A (relative to the experiment),
 //     or [[propagate.command]] with time_s, torque_N_m[3], battery_current_A (rising times);
 //   epoch (default "2000-01-01T00:00:00").

@@ -14,6 +14,7 @@
 #include "diagnosis/attitude/locate.h"
 #include "diagnosis/attitude/manoeuvre.h"
 #include "diagnosis/attitude/recorded_data.h"
+#include "diagnosis/attitude/refine.h"
 #include "inference/decide.h"
 #include "inference/search.h"
 #include "inference/weigh.h"
@@ -70,6 +71,10 @@ Answer explain(const NominalModel& nominal, const Fit& nominal_fit, const Record
   };
   a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), excess,
                                  options.limits.decision);
+  if (a.decision.finding == inference::Finding::unknown) {
+    Trial& chosen = a.trials[a.decision.chosen];
+    chosen = refined_in_time(chosen, a.all, data.train);
+  }
   return a;
 }
 
@@ -180,6 +185,8 @@ Replay replay_of(const Fit& fit, const Observation& seen) {
   const Quat& q = initial.lab_from_body;
   replay.initial_attitude = {q.w(), q.x(), q.y(), q.z()};
   replay.initial_rate_rad_s = initial.rate_body_rad_s;
+  replay.initial_time_s = initial.time_s;
+  replay.initial_charge_C = initial.charge_drawn_C;
   return replay;
 }
 

@@ -1,8 +1,12 @@
 #include "diagnosis/report/improved.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <regex>
+
+#include "core/settings/settings.h"
 
 namespace photorque {
 namespace {
@@ -83,27 +87,111 @@ std::string replay_text(const Replay& replay, const std::filesystem::path& folde
   text += "output_rate_Hz = " + print("%.6g", replay.output_rate_Hz) + "\n";
   text += "initial_attitude = " + array_text({q[0], q[1], q[2], q[3]}, "%.12g") + "\n";
   text += "initial_rate_rad_s = " + array_text({w.x(), w.y(), w.z()}, "%.12g") + "\n";
+  if (replay.initial_time_s != 0.0) {
+    text += "initial_time_s = " + print("%.12g", replay.initial_time_s) + "\n";
+  }
+  if (replay.initial_charge_C != 0.0) {
+    text += "initial_charge_Ah = " + print("%.9g", replay.initial_charge_C / 3600.0) + "\n";
+  }
   if (!replay.has_commands) return text;
   const auto path = std::filesystem::absolute(replay.recording);
   const auto relative = path.lexically_proximate(std::filesystem::absolute(folder));
   return text + "commands = '" + relative.generic_string() + "'\n";
 }
 
+// Where the value that begins at `from` ends: the end of its line, a comment, or, of an array or a
+// table, its last bracket.
+size_t end_of_value(const std::string& text, size_t from) {
+  int depth = 0;
+  for (size_t i = from; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"' || c == '\'') {
+      i = std::min(text.find(c, i + 1), text.size());
+    } else if (c == '[' || c == '{') {
+      ++depth;
+    } else if (c == ']' || c == '}') {
+      if (--depth == 0) return i + 1;
+    } else if (depth == 0 && (c == '\n' || c == '#')) {
+      return i;
+    } else if (c == '#') {
+      i = std::min(text.find('\n', i), text.size());
+    }
+  }
+  return text.size();
+}
+
+// The assignment of a key, perhaps in another unit, within the `number`-th [[disturbance]]; none
+// where the file says it in another way.
+struct Assignment {
+  size_t begin = 0, value = 0, end = 0;
+};
+std::optional<Assignment> find_assignment(const std::string& text, size_t number,
+                                          const std::string& key) {
+  static const std::regex header(R"((?:^|\n)[ \t]*\[\[[ \t]*disturbance[ \t]*\]\])");
+  static const std::regex begin_of_line(R"([ \t]*(\[|([A-Za-z0-9_-]+)[ \t]*=))");
+  auto table = std::sregex_iterator(text.begin(), text.end(), header);
+  for (size_t i = 0; i < number && table != std::sregex_iterator(); ++i) ++table;
+  if (table == std::sregex_iterator()) return std::nullopt;
+  const KeyUnit wanted = unit_of_key(key);
+  auto line = static_cast<size_t>(table->position() + table->length());
+  while ((line = text.find('\n', line)) != std::string::npos) {
+    ++line;
+    std::smatch found;
+    const auto from = text.begin() + static_cast<std::ptrdiff_t>(line);
+    if (!std::regex_search(from, text.end(), found, begin_of_line,
+                           std::regex_constants::match_continuous)) {
+      continue;
+    }
+    if (found[1].str() == "[") return std::nullopt;
+    const size_t value = line + static_cast<size_t>(found.length());
+    const size_t end = end_of_value(text, value);
+    const KeyUnit unit = unit_of_key(found[2].str());
+    if (unit.stem == wanted.stem && unit.dimension == wanted.dimension) {
+      return Assignment{line, value, end};
+    }
+    line = end;
+  }
+  return std::nullopt;
+}
+
+// What the fit says about uncertain numbers of the nominal model, in their places; as they were
+// written they stay as comments. What is not found goes to `others`.
+std::string with_refined(std::string text, const std::vector<FittedParameter>& refined,
+                         std::vector<FittedParameter>& others) {
+  static const std::regex place(R"(disturbance\[([0-9]+)\]\.(.+))");
+  for (const FittedParameter& p : refined) {
+    std::smatch name;
+    std::optional<Assignment> at;
+    if (std::regex_match(p.key, name, place)) {
+      at = find_assignment(text, std::stoul(name[1].str()), name[2].str());
+    }
+    if (!at) {
+      others.push_back(p);
+      continue;
+    }
+    const std::string before = text.substr(at->begin, at->end - at->begin);
+    text.replace(at->begin, at->end - at->begin,
+                 comment("before the fit: " + before) + name[2].str() + " = " + value_text(p));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string improved_experiment(const std::string& text, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder) {
-  std::string improved = text;
+  std::vector<FittedParameter> others;
+  std::string improved = with_refined(text, diagnosis.priors_refined, others);
   if (!improved.empty() && improved.back() != '\n') improved += '\n';
   improved += "\n" + comment("---- Added by the diagnosis: " + diagnosis.sentence);
   for (const FoundEffect& effect : diagnosis.effects) improved += effect_text(effect);
   for (const FoundEffect& effect : diagnosis.unnamed) improved += unnamed_text(effect);
   for (const EmpiricalTorque& torque : diagnosis.empirical) improved += empirical_text(torque);
-  if (!diagnosis.priors_refined.empty()) {
+  if (!others.empty()) {
     improved +=
         "\n" + comment("The same recordings narrow the uncertain numbers of the nominal model to:");
   }
-  for (const FittedParameter& p : diagnosis.priors_refined) {
+  for (const FittedParameter& p : others) {
     improved += comment("  " + p.key + " = " + value_text(p));
   }
   static const std::regex propagates(R"((^|\n)\s*\[\s*propagate\s*[\].])");

@@ -8,12 +8,13 @@
 
 namespace photorque {
 
-// `text` is the experiment as written and is kept to the last comment. Appended are: every found
-// effect as a [[disturbance]] with its fitted values and standard errors, by which it can be
-// diagnosed and propagated again; what the fit says about uncertain priors, as comments; and, if
-// the text has none, a [propagate] that propagates the first recording again. An empirical torque
-// that no kind of the catalogue can hold is described in a comment. `folder` is where the result
-// will stand: paths in it are relative to that.
+// `text` is the experiment as written and is kept to the last comment. Uncertain numbers of its
+// disturbances that were fitted stand in it as fitted, beneath the line as it was written. Appended
+// are: every found effect as a [[disturbance]] with its fitted values and standard errors; effects
+// and torques without a law that were fitted beside them, so that the file is the model that was
+// reported; uncertain numbers that have no place in the text, as comments; and, if the text has
+// none, a [propagate] that propagates the first recording again. `folder` is where the result will
+// stand: paths in it are relative to that.
 std::string improved_experiment(const std::string& text, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder);
 

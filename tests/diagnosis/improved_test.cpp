@@ -11,6 +11,7 @@
 namespace photorque {
 namespace {
 
+using testing::HasSubstr;
 using testing::StartsWith;
 
 const std::string written = R"(# My laboratory, as I know it.
@@ -37,7 +38,58 @@ Settings read(const std::string& text) {
 }
 
 TEST(Improved, KeepsTheUsersTextToTheLastComment) {
-  EXPECT_THAT(improved_experiment(written, sample_diagnosis(), "."), StartsWith(written + "\n"));
+  Diagnosis d = sample_diagnosis();
+  d.priors_refined.clear();
+  EXPECT_THAT(improved_experiment(written, d, "."), StartsWith(written + "\n"));
+}
+
+// What was uncertain and fitted acts as fitted; as it was written it stays as a comment.
+TEST(Improved, PutsFittedNominalValuesInTheirPlaces) {
+  const std::string text = improved_experiment(written, sample_diagnosis(), ".");
+  const Disturbance unbalance = read_attitude_model(read(text)).model.disturbances.at(0);
+  const double value[] = {1e-6, 2e-6, -3e-5};
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(unbalance.parameters[i].value, value[i]);
+    EXPECT_DOUBLE_EQ(unbalance.parameters[i].sigma, 1e-8);
+  }
+  EXPECT_THAT(text,
+              HasSubstr("# before the fit: offset_m = { value = [-8.7e-7, -2.7e-6, -4.3e-5]"));
+  for (const char* kept :
+       {"mass_kg = 8.7   # weighed twice", "[sensors.gyro]\nnoise_rad_s = 2e-4"}) {
+    EXPECT_THAT(text, HasSubstr(kept));
+  }
+}
+
+// Of the second disturbance, in another unit, over several lines, beside comments and brackets in
+// texts; what the file says in another way is told in a comment.
+TEST(Improved, FindsNominalValuesHoweverTheyAreWritten) {
+  const std::string many = R"([platform]
+topology = "tabletop"
+mass_kg = 8.7
+inertia_kg_m2 = [[0.116, 0, 0], [0, 0.119, 0], [0, 0, 0.183]]
+[[disturbance]]
+kind = "bearing_drag"   # not [this]
+coefficient_N_m_s = { value = 2e-5, sigma = 1e-6 }
+[[ disturbance ]]
+kind = "static_unbalance"
+offset_um = [   # micrometres
+  1, 2,         # across ]
+  -40
+]               # along
+[environment]
+latitude_deg = 40
+)";
+  Diagnosis d = sample_diagnosis();
+  d.effects.clear();
+  d.priors_refined = {{"disturbance[1].offset_m", {3e-6, 4e-6, -5e-5}, {1e-8, 1e-8, 1e-8}},
+                      {"disturbance[7].scale", {1.5}, {0.5}}};
+  const std::string text = improved_experiment(many, d, ".");
+  const AttitudeModel model = read_attitude_model(read(text)).model;
+  EXPECT_DOUBLE_EQ(model.disturbances.at(0).parameters[0].value, 2e-5);
+  EXPECT_DOUBLE_EQ(model.disturbances.at(1).parameters[0].value, 3e-6);
+  EXPECT_DOUBLE_EQ(model.disturbances.at(1).parameters[2].value, -5e-5);
+  EXPECT_THAT(text, HasSubstr("#   disturbance[7].scale = "));
+  EXPECT_THAT(text, HasSubstr("  # along\n"));
 }
 
 TEST(Improved, ActsWithTheFittedNumbersAndTheirErrors) {

@@ -17,6 +17,7 @@ constexpr double mass_kg = 7.0, gravity_m_s2 = 9.80665, drag_N_m_s = 2e-5;
 struct State {
   Quat lab_from_body;
   Vec3 rate_rad_s;
+  double time_s = 0.0;
 };
 
 // What acts besides gravity and drag, in body axes.
@@ -42,12 +43,14 @@ inline State after(const State& s, double step_s, const Extra& extra) {
     State moved = s;
     moved.lab_from_body.coeffs() += h * d.first;
     moved.rate_rad_s += h * d.second;
+    moved.time_s += h;
     return moved;
   };
   const auto a = slope(s, extra), b = slope(along(0.5 * step_s, a), extra);
   const auto c = slope(along(0.5 * step_s, b), extra), d = slope(along(step_s, c), extra);
   State next = along(step_s / 6.0, {a.first + 2.0 * b.first + 2.0 * c.first + d.first,
                                     a.second + 2.0 * b.second + 2.0 * c.second + d.second});
+  next.time_s = s.time_s + step_s;
   next.lab_from_body.normalize();
   return next;
 }

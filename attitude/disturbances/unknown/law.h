@@ -126,7 +126,7 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
         c = next;
       }
       visit(term++, c);
-      visit(term++, s);
+      if (wanted > 0) visit(term++, s);  // the sine of nothing is none
     }
   }
 

@@ -82,7 +82,7 @@ MotionFunction read_function(const Settings& settings, MotionVariable variable,
         return f;
       }
       f.own = settings.uncertain(form.key, Range::positive()).value;
-      f.orders = read_orders(settings, "time_orders", 1);
+      f.orders = read_orders(settings, "time_orders", 0);
       break;
     case FunctionForm::power:
       f.own = settings.uncertain(form.key, Range::positive()).value;
@@ -184,7 +184,7 @@ std::string unit_of(MotionVariable variable) {
 size_t MotionFunction::terms() const {
   switch (form) {
     case FunctionForm::harmonics:
-      return 2 * orders.size();
+      return 2 * orders.size() - (orders.front() == 0 ? 1 : 0);
     case FunctionForm::power:
     case FunctionForm::decay:
       return 1;

@@ -29,6 +29,7 @@ enum class MotionVariable { heading, tilt, rate, time, charge, command };
 
 enum class FunctionForm {
   harmonics,  // cos n x, sin n x of the heading, or of 2π t/period, for each order n
+              // (0: a constant)
   power,      // (x/reference)^exponent
   powers,     // (x/reference)^n for each order n
   decay,      // exp(−t/τ)

@@ -31,12 +31,20 @@ MotionFunction harmonic(int order) {
   return {.of = MotionVariable::heading, .form = harmonics, .orders = {order}};
 }
 
-// Of tilt or rate, 1 at a tenth of a radian (a second).
-MotionFunction power_of(MotionVariable variable, double exponent) {
-  return {.of = variable, .form = power, .reference = 0.1, .own = exponent};
+// A formula is believed up to twice what was seen, a table only as far as that.
+constexpr double formula_reach = 2.0;
+
+// Of tilt or rate, 1 at a tenth of a radian (a second); `seen` is the largest in the recordings.
+MotionFunction power_of(MotionVariable variable, double exponent, double seen) {
+  MotionFunction f{.of = variable, .form = power, .reference = 0.1, .own = exponent};
+  if (seen > 0.0) f.range = {{0.0, formula_reach * seen}};
+  return f;
 }
-MotionFunction powers_of(MotionVariable variable, std::vector<int> orders) {
-  return {.of = variable, .form = powers, .orders = std::move(orders), .reference = 0.1};
+MotionFunction powers_of(MotionVariable variable, std::vector<int> orders, double seen) {
+  MotionFunction f = power_of(variable, 0.0, seen);
+  f.form = powers;
+  f.orders = std::move(orders);
+  return f;
 }
 
 std::vector<int> up_to(int last) {
@@ -71,23 +79,27 @@ void add_of_attitude_and_rate(const CoveredMotion& covered, double torque_N_m,
     all.push_back(law(std::to_string(order) + " periods a turn", {{vertical}, {harmonic(order)}},
                       torque_N_m));
   }
-  all.push_back(with_free(law("a power", {{lean, vertical}, {power_of(tilt, 3.0)}}, torque_N_m),
-                          {2, 3, 4, 5}, 0.3, 9.0, 1.0));
+  all.push_back(with_free(
+      law("a power", {{lean, vertical}, {power_of(tilt, 3.0, covered.tilt_rad)}}, torque_N_m),
+      {2, 3, 4, 5}, 0.3, 9.0, 1.0));
   if (covered.tilt_rad > 0.02) {
     all.push_back(
         law("a smooth function", {{lean, vertical}, {tilt_table(covered.tilt_rad)}}, torque_N_m));
   }
-  all.push_back(with_free(law("a power", {{rate_by_axis}, {power_of(rate, 2.0)}}, torque_N_m),
-                          {1, 2, 3, 4}, 0.3, 7.0, 1.0));
+  all.push_back(with_free(
+      law("a power", {{rate_by_axis}, {power_of(rate, 2.0, covered.rate_rad_s)}}, torque_N_m),
+      {1, 2, 3, 4}, 0.3, 7.0, 1.0));
   for (int order = 1; order <= 4; ++order) {
     all.push_back(law("a drag with " + std::to_string(order) + " periods a turn",
-                      {{TorqueAxes::rate}, {harmonic(order), powers_of(MotionVariable::rate, {1})}},
+                      {{TorqueAxes::rate},
+                       {harmonic(order), powers_of(MotionVariable::rate, {1}, covered.rate_rad_s)}},
                       torque_N_m));
   }
-  all.push_back(
-      law("a drag that depends on the tilt",
-          {{TorqueAxes::rate}, {powers_of(tilt, {1, 2}), powers_of(MotionVariable::rate, {1})}},
-          torque_N_m));
+  all.push_back(law("a drag that depends on the tilt",
+                    {{TorqueAxes::rate},
+                     {powers_of(tilt, {1, 2}, covered.tilt_rad),
+                      powers_of(MotionVariable::rate, {1}, covered.rate_rad_s)}},
+                    torque_N_m));
 }
 
 void add_of_time(double duration_s, double torque_N_m, std::vector<EmpiricalLaw>& all) {

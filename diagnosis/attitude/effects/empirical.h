@@ -25,8 +25,9 @@ struct EmpiricalLaw {
 // What the recordings cover, by which the laws are scaled.
 struct CoveredMotion {
   double duration_s = 0.0;
-  double tilt_rad = 0.0;  // the largest
-  double charge_C = 0.0;  // 0: no current was recorded
+  double tilt_rad = 0.0;    // the largest
+  double rate_rad_s = 0.0;  // the largest; 0: no rates were recorded
+  double charge_C = 0.0;    // 0: no current was recorded
   bool has_commands = false;
 };
 

@@ -12,40 +12,6 @@
 namespace photorque {
 namespace {
 
-Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) {
-  Candidate c;
-  c.label = effect.kind;
-  c.effect = effect;
-  c.start = disturbance_of(effect, context);
-  for (const Parameter& parameter : c.start.parameters) {
-    // A fixed detail of the law (where a rubbing contact begins to creep) is not fitted.
-    const auto key = std::find_if(effect.keys.begin(), effect.keys.end(),
-                                  [&](const EffectKey& k) { return k.key == parameter.key; });
-    c.scale.push_back(key == effect.keys.end() ? 0.0 : key->scale);
-    c.lowest.push_back(key == effect.keys.end() ? -1e308 : key->lowest);
-    c.highest.push_back(key == effect.keys.end() ? 1e308 : key->highest);
-    c.searched.push_back(key != effect.keys.end() && key->searched);
-  }
-  return c;
-}
-
-Candidate candidate_of(const EmpiricalLaw& law) {
-  Candidate c;
-  c.label = "unknown in " + law.variable + ": " + law.description;
-  c.variable = law.variable;
-  c.law = law;
-  c.start = law.disturbance;
-  for (size_t p = 0; p < law.disturbance.parameters.size(); ++p) {
-    // An exponent, a time constant.
-    const bool own = p < law.shape.first_coefficient();
-    c.scale.push_back(own ? law.own_scale : law.scale);
-    c.lowest.push_back(own ? law.lowest : -1e308);
-    c.highest.push_back(own ? law.highest : 1e308);
-    c.searched.push_back(own);
-  }
-  return c;
-}
-
 // Laplace's approximation of the evidence. The fit's own prior is far wider than the nominal model
 // of an effect; here it is replaced.
 double log_evidence(const Trial& trial, const Candidates& all) {
@@ -197,76 +163,6 @@ void judge(Trial& trial, const Candidates& all) {
   trial.objection = objection_to(trial, all);
 }
 
-CoveredMotion covered_by(const std::vector<Observation>& runs) {
-  CoveredMotion covered;
-  for (const Observation& seen : runs) {
-    covered.duration_s = std::max(covered.duration_s, seen.time_s.back());
-    const Observation last = seen.part(seen.blocks() - 1, seen.blocks());
-    covered.charge_C = std::max(covered.charge_C, std::abs(last.initial_charge_C));
-    for (const ZeroOrderHold& held : seen.schedule.held) {
-      covered.has_commands = covered.has_commands || held.command_body_N_m.norm() > 0.0;
-    }
-    for (size_t i = 0; i < seen.blocks(); ++i) {
-      if (!(seen.attitude_rows[i] > 0.0)) continue;
-      const double up = (seen.attitude[i] * Vec3::UnitZ()).z();
-      covered.tilt_rad = std::max(covered.tilt_rad, std::acos(std::clamp(up, -1.0, 1.0)));
-    }
-  }
-  return covered;
-}
-
-}  // namespace
-
-Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
-                          const Thresholds& limits) {
-  const DisturbanceContext context{nominal.model.platform, nominal.model.environment};
-  const CoveredMotion covered = covered_by(runs);
-  const auto has_channel = [&](Requirement channel) {
-    switch (channel) {
-      case Requirement::command:
-        return covered.has_commands;
-      case Requirement::charge:
-        return covered.charge_C != 0.0;
-      case Requirement::field:
-        return nominal.model.environment.magnetic_field_lab_T.norm() > 0.0;
-      case Requirement::none:
-        break;
-    }
-    return true;
-  };
-  Candidates all{{}, limits};
-  for (const Observation& seen : runs) {
-    all.longest_run_s = std::max(all.longest_run_s, seen.duration_s());
-  }
-  for (const Effect& effect : catalogue(nominal.model.platform)) {
-    if (!has_channel(effect.how.needs)) continue;
-    // A law without parameters acts already or not.
-    const auto& acting = nominal.model.disturbances;
-    const bool acts = std::any_of(acting.begin(), acting.end(),
-                                  [&](const Disturbance& d) { return d.kind == effect.kind; });
-    if (effect.keys.empty() && acts) continue;
-    all.list.push_back(candidate_of(effect, context));
-  }
-  const double torque_N_m = 5e-6;
-  for (const EmpiricalLaw& law : empirical_laws(covered, torque_N_m)) {
-    all.list.push_back(candidate_of(law));
-  }
-  return all;
-}
-
-std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which) {
-  std::vector<Eigen::Index> result;
-  Eigen::Index shared = 0;
-  for (const Free& f : trial.fit.best.free) {
-    if (f.per_run) continue;
-    if (f.disturbance == trial.disturbances[which]) result.push_back(shared);
-    ++shared;
-  }
-  return result;
-}
-
-namespace {
-
 // Where a fit diverged, its parameters are no start: back to the nominal model and to what was
 // seen at the beginning of each run.
 void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observation>& runs) {
@@ -278,14 +174,12 @@ void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observati
   h.runs = seen_starts(h, runs);
 }
 
-// Adds a candidate with all that is fitted of it. Returns its disturbance.
-size_t add_free(Hypothesis& h, const Candidate& c, const Disturbance& start,
-                const Thresholds& limits) {
-  const size_t index = add_disturbance(h, start);
+// All that is fitted of a candidate that stands at `index` in the model.
+void free_parameters(Hypothesis& h, const Candidate& c, size_t index, const Thresholds& limits) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (!c.is_fitted(p)) continue;
     Free f{index, static_cast<int>(p)};
-    f.mean = c.searched[p] ? start.parameters[p].value : 0.0;
+    f.mean = c.searched[p] ? h.parameter(f).value : 0.0;
     f.sigma = limits.evidence.fit_prior_widths * c.scale[p];
     if (c.searched[p]) {
       f.lowest = c.lowest[p];
@@ -293,6 +187,13 @@ size_t add_free(Hypothesis& h, const Candidate& c, const Disturbance& start,
     }
     h.free.push_back(f);
   }
+}
+
+// Adds a candidate with all that is fitted of it. Returns its disturbance.
+size_t add_free(Hypothesis& h, const Candidate& c, const Disturbance& start,
+                const Thresholds& limits) {
+  const size_t index = add_disturbance(h, start);
+  free_parameters(h, c, index, limits);
   return index;
 }
 
@@ -313,6 +214,17 @@ Hypothesis nominal_part(const Trial& trial) {
 }
 
 }  // namespace
+
+std::vector<Eigen::Index> shared_indices(const Trial& trial, size_t which) {
+  std::vector<Eigen::Index> result;
+  Eigen::Index shared = 0;
+  for (const Free& f : trial.fit.best.free) {
+    if (f.per_run) continue;
+    if (f.disturbance == trial.disturbances[which]) result.push_back(shared);
+    ++shared;
+  }
+  return result;
+}
 
 Trial nominal_trial(const Fit& nominal, const Candidates& all) {
   Trial trial;
@@ -389,6 +301,21 @@ Trial assemble(const Trial& from, const Candidates& all, const inference::Member
   }
   judge(trial, all);
   return trial;
+}
+
+Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t candidate,
+               const Disturbance& start, const std::vector<Observation>& runs,
+               const FitSettings& settings) {
+  Trial result = trial;
+  const size_t index = trial.disturbances[which];
+  result.candidates[which] = candidate;
+  Hypothesis h = trial.fit.best;
+  h.model.disturbances[index] = start;
+  std::erase_if(h.free, [&](const Free& f) { return f.disturbance == index; });
+  free_parameters(h, all[candidate], index, all.limits);
+  result.fit = fit(h, runs, settings);
+  judge(result, all);
+  return result;
 }
 
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,

@@ -57,6 +57,8 @@ struct Candidates {
   const Candidate& operator[](size_t i) const { return list[i]; }
   size_t size() const { return list.size(); }
 };
+// A law without a name as a candidate.
+Candidate candidate_of(const EmpiricalLaw& law);
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits = {});
 
@@ -72,6 +74,12 @@ Trial nominal_trial(const Fit& nominal, const Candidates& all);
 // Adds a candidate, its parameters starting from `start`, and fits.
 Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Disturbance& start,
              const std::vector<Observation>& runs, const FitSettings& settings = {});
+
+// The same with another candidate in the place of the `which`-th of the trial, fitted from `start`.
+// Neither may have states of its own.
+Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t candidate,
+               const Disturbance& start, const std::vector<Observation>& runs,
+               const FitSettings& settings = {});
 
 // The same trial on other or more runs: shared parameters start from the fitted ones.
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,

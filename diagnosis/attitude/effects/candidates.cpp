@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/propagation/run.h"
+#include "diagnosis/attitude/effects/trial.h"
+
+namespace photorque {
+namespace {
+
+Candidate candidate_of(const Effect& effect, const DisturbanceContext& context) {
+  Candidate c;
+  c.label = effect.kind;
+  c.effect = effect;
+  c.start = disturbance_of(effect, context);
+  for (const Parameter& parameter : c.start.parameters) {
+    // A fixed detail of the law (where a rubbing contact begins to creep) is not fitted.
+    const auto key = std::find_if(effect.keys.begin(), effect.keys.end(),
+                                  [&](const EffectKey& k) { return k.key == parameter.key; });
+    c.scale.push_back(key == effect.keys.end() ? 0.0 : key->scale);
+    c.lowest.push_back(key == effect.keys.end() ? -1e308 : key->lowest);
+    c.highest.push_back(key == effect.keys.end() ? 1e308 : key->highest);
+    c.searched.push_back(key != effect.keys.end() && key->searched);
+  }
+  return c;
+}
+
+}  // namespace
+
+Candidate candidate_of(const EmpiricalLaw& law) {
+  Candidate c;
+  c.label = "unknown in " + law.variable + ": " + law.description;
+  c.variable = law.variable;
+  c.law = law;
+  c.start = law.disturbance;
+  for (size_t p = 0; p < law.disturbance.parameters.size(); ++p) {
+    // An exponent, a time constant.
+    const bool own = p < law.shape.first_coefficient();
+    c.scale.push_back(own ? law.own_scale : law.scale);
+    c.lowest.push_back(own ? law.lowest : -1e308);
+    c.highest.push_back(own ? law.highest : 1e308);
+    c.searched.push_back(own);
+  }
+  return c;
+}
+
+namespace {
+
+CoveredMotion covered_by(const std::vector<Observation>& runs) {
+  CoveredMotion covered;
+  for (const Observation& seen : runs) {
+    covered.duration_s = std::max(covered.duration_s, seen.time_s.back());
+    const Observation last = seen.part(seen.blocks() - 1, seen.blocks());
+    covered.charge_C = std::max(covered.charge_C, std::abs(last.initial_charge_C));
+    for (const ZeroOrderHold& held : seen.schedule.held) {
+      covered.has_commands = covered.has_commands || held.command_body_N_m.norm() > 0.0;
+    }
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      if ((seen.gyro_rows[i].array() > 0.0).all()) {
+        covered.rate_rad_s = std::max(covered.rate_rad_s, seen.gyro_rad_s[i].norm());
+      }
+      if (!(seen.attitude_rows[i] > 0.0)) continue;
+      const double up = (seen.attitude[i] * Vec3::UnitZ()).z();
+      covered.tilt_rad = std::max(covered.tilt_rad, std::acos(std::clamp(up, -1.0, 1.0)));
+    }
+  }
+  return covered;
+}
+
+}  // namespace
+
+Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
+                          const Thresholds& limits) {
+  const DisturbanceContext context{nominal.model.platform, nominal.model.environment};
+  const CoveredMotion covered = covered_by(runs);
+  const auto has_channel = [&](Requirement channel) {
+    switch (channel) {
+      case Requirement::command:
+        return covered.has_commands;
+      case Requirement::charge:
+        return covered.charge_C != 0.0;
+      case Requirement::field:
+        return nominal.model.environment.magnetic_field_lab_T.norm() > 0.0;
+      case Requirement::none:
+        break;
+    }
+    return true;
+  };
+  Candidates all{{}, limits};
+  for (const Observation& seen : runs) {
+    all.longest_run_s = std::max(all.longest_run_s, seen.duration_s());
+  }
+  for (const Effect& effect : catalogue(nominal.model.platform)) {
+    if (!has_channel(effect.how.needs)) continue;
+    // A law without parameters acts already or not.
+    const auto& acting = nominal.model.disturbances;
+    const bool acts = std::any_of(acting.begin(), acting.end(),
+                                  [&](const Disturbance& d) { return d.kind == effect.kind; });
+    if (effect.keys.empty() && acts) continue;
+    all.list.push_back(candidate_of(effect, context));
+  }
+  const double torque_N_m = 5e-6;
+  for (const EmpiricalLaw& law : empirical_laws(covered, torque_N_m)) {
+    all.list.push_back(candidate_of(law));
+  }
+  return all;
+}
+
+}  // namespace photorque
