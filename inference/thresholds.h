@@ -125,9 +125,6 @@ struct Thresholds {
     // χ² per sample that may be noise alone where the train runs have it too: the level of the
     // noise is known to a few per cent.
     double max_noise = 1.15;
-    // Significance [sigma] beyond which a name would be missed in any case: the evidence falls by
-    // half of its square.
-    double sure_sigma = 12.0;
   } held_out;
 
   // Priors of the evidence.

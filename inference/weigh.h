@@ -165,13 +165,11 @@ class Weighing {
     const Leader from = best();
     const auto terms = domain_.terms_of(from.joint);
     for (size_t i = 0; i < terms.size() && terms.size() > 1; ++i) {
-      const bool is_sure = domain_.candidates()[terms[i].candidate].has_strength &&
-                           from.joint.significance[i] > limits_.held_out.sure_sigma;
       auto fewer = terms;
       fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
       std::vector<size_t> candidates;
       for (const auto& term : fewer) candidates.push_back(term.candidate);
-      if (is_sure || leads(candidates)) continue;
+      if (leads(candidates)) continue;
       Members<typename D::Start> members;
       for (const auto& term : fewer) members.push_back({term});
       Trial joint = domain_.assemble(from.joint, members, all_runs_, patient(limits_));
