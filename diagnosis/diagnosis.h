@@ -137,6 +137,16 @@ struct Replay {
   double initial_charge_C = 0.0;                          // drawn from the battery
 };
 
+// What the readings show of the instruments themselves: noise that is not as the experiment states,
+// clocks. Never platform physics.
+struct InstrumentFinding {
+  std::string channel;  // "attitude_x_arcsec", "gyro_z_rad_s", "time"
+  std::string what;     // "noise_level", "noise_correlation_time_s", …; `value` is in its unit
+  double value = 0.0;
+  double sigma = 0.0;  // standard error of the value; 0: has none
+  std::string text;    // one sentence for people
+};
+
 // What the files held.
 struct DataQuality {
   int64_t rows = 0;
@@ -167,6 +177,7 @@ struct Diagnosis {
   std::vector<Manoeuvre> manoeuvres;
   // What was nominal with an uncertainty, after the fit; keys as "disturbance[0].offset_m".
   std::vector<FittedParameter> priors_refined;
+  std::vector<InstrumentFinding> instruments;
   std::vector<std::string> warnings;  // "the quaternions look conjugated", …
   DataQuality data;
   std::vector<RecordingSeries> series;

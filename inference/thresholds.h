@@ -28,6 +28,15 @@ struct Thresholds {
     // A noise level is corrected only where it is off by more than this fraction, which no decision
     // feels, and by more than so many standard errors: six channels are asked.
     double min_correction = 0.05, correction_sigma = 5.0;
+    // Twice the logarithm of the likelihood that a correlated noise must gain over white noise of
+    // the best level, to be used: by chance one parameter gains 25 once in 2 million.
+    double min_colour_gain = 25.0;
+    // The same for a white part beside the correlated one.
+    double min_mixture_gain = 16.0;
+    // Frequencies of a spectrum whose median measures the gyro's noise, at the least.
+    size_t min_frequencies = 16;
+    // Standard errors by which the camera's clock must run away from the gyro's, to be said.
+    double clock_sigma = 5.0;
     // Standard deviations of noise from what its neighbours say, for a reading to be dropped. White
     // noise reaches it in one of five million readings (drawn).
     double outlier_sigma = 9.0;

@@ -20,16 +20,16 @@ struct Neighbours {
     if (last == first) first = i;
     last = i + 1;
     time_sum_s += from.time_s[i];
-    const WhiteRow& white = propagated.residual[i];
+    const WhiteRow& off = propagated.off[i];
     const double rows = from.attitude_rows[i];
     if (rows > 0.0) {
-      attitude_sum += std::sqrt(rows) * white.head<3>().cwiseProduct(Vec3(from.noise.camera_rad));
+      attitude_sum += rows * off.head<3>();
       attitude_rows += rows;
     }
     for (int k = 0; k < 3; ++k) {
       const double read = from.gyro_rows[i][k];
       if (!(read > 0.0)) continue;
-      gyro_sum[k] += std::sqrt(read) * white[3 + k] * from.noise.gyro_rad_s[k];
+      gyro_sum[k] += read * off[3 + k];
       gyro_rows[k] += read;
     }
   }

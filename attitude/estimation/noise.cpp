@@ -30,21 +30,6 @@ double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
   }
 }
 
-bool correct_noise(const inference::Whiteness& found, const Thresholds::Noise& limits,
-                   std::vector<Observation>& runs) {
-  bool any = false;
-  for (size_t k = 0; k < 6; ++k) {
-    const std::optional<double> factor = inference::noise_correction(found, k, limits);
-    if (!factor) continue;
-    any = true;
-    for (Observation& seen : runs) {
-      (k < 3 ? seen.noise.camera_rad[static_cast<Eigen::Index>(k)]
-             : seen.noise.gyro_rad_s[static_cast<Eigen::Index>(k - 3)]) *= *factor;
-    }
-  }
-  return any;
-}
-
 int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
                       std::vector<Observation>& runs) {
   int64_t dropped = 0;

@@ -13,11 +13,6 @@ std::vector<inference::ChannelResiduals> channels_of(const std::vector<Predictio
 double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
                     const Thresholds::Noise& limits);
 
-// Gives every channel of the runs the noise that was found, where it is off beyond doubt. Returns
-// whether any was.
-bool correct_noise(const inference::Whiteness& found, const Thresholds::Noise& limits,
-                   std::vector<Observation>& runs);
-
 // Drops readings that stand out from what their neighbours' residuals lead to. Returns their
 // number.
 int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,

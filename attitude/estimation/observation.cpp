@@ -163,6 +163,20 @@ Vec3 rotation_vector(const Quat& rotation) {
   return 2.0 * side * std::atan2(sine, std::abs(rotation.w())) / sine * rotation.vec();
 }
 
+ChannelNoise NoiseLevels::of(int channel) const {
+  const int k = channel % 3;
+  if (channel < 3) return {camera_rad[k], camera_colour.fraction[k], camera_colour.time_s[k]};
+  return {gyro_rad_s[k], gyro_colour.fraction[k], gyro_colour.time_s[k]};
+}
+
+void NoiseLevels::set(int channel, const ChannelNoise& noise) {
+  const int k = channel % 3;
+  (channel < 3 ? camera_rad : gyro_rad_s)[k] = noise.level;
+  Colour& colour = channel < 3 ? camera_colour : gyro_colour;
+  colour.fraction[k] = noise.coloured;
+  colour.time_s[k] = noise.time_s;
+}
+
 NoiseLevels noise_levels(const Sensors& sensors) {
   NoiseLevels noise;
   if (sensors.camera && sensors.camera->noise_rad.minCoeff() > 0.0) {

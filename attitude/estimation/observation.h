@@ -11,10 +11,25 @@
 
 namespace photorque {
 
-// One standard deviation of one reading.
+// Noise of one reading of one channel: its standard deviation, of whose square a fraction is
+// correlated in time as exp(−t/τ) (an AR(1) process); the rest is white.
+struct ChannelNoise {
+  double level = 0.0;     // rad or rad/s
+  double coloured = 0.0;  // 0 to 1
+  double time_s = 0.0;    // τ
+};
+
 struct NoiseLevels {
+  // One standard deviation of one reading.
   Vec3 camera_rad = Vec3(37, 37, 12) * arcsecond_rad;  // about lab x, y, z
   Vec3 gyro_rad_s = Vec3::Constant(2e-4);              // body axes
+  struct Colour {
+    Vec3 fraction = Vec3::Zero(), time_s = Vec3::Zero();
+  } camera_colour, gyro_colour;
+
+  // Of channels 0 to 5: camera about lab x, y, z, gyro about body x, y, z.
+  ChannelNoise of(int channel) const;
+  void set(int channel, const ChannelNoise& noise);
 };
 
 // Those of the instruments; where they state none, the usual ones above.
@@ -37,6 +52,10 @@ struct Observation {
   int64_t rows = 0;             // of the file
 
   size_t blocks() const { return time_s.size(); }
+  // Of a channel as in NoiseLevels.
+  double rows_of(size_t block, int channel) const {
+    return channel < 3 ? attitude_rows[block] : gyro_rows[block][channel - 3];
+  }
   double duration_s() const { return time_s.back() - time_s.front(); }
   // The blocks [first, last) alone, the charge drawn before them counted.
   Observation part(size_t first, size_t last) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/estimation/whitening.h"
 #include "core/errors.h"
 
 namespace photorque {
@@ -75,6 +76,9 @@ class Comparison {
         slope_(6, static_cast<Eigen::Index>(variables)),
         keep_(keep) {
     slope_.setZero();
+    for (int channel = 0; channel < 6; ++channel) {
+      whitening_.emplace_back(seen, channel, slope_.cols() + 1);
+    }
   }
 
   void add(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples) {
@@ -106,33 +110,34 @@ class Comparison {
  private:
   void add_block(size_t block, const PlatformState& state, const Vec3& camera_offset_body,
                  const Vec3& gyro_rad_s) {
-    WhiteRow white = WhiteRow::Constant(NAN);
+    WhiteRow white = WhiteRow::Constant(NAN), off = white;
     if (seen_.attitude_rows[block] > 0.0) {
-      const Vec3 off = rotation_vector(seen_.attitude[block] * state.lab_from_body.conjugate()) -
-                       state.lab_from_body * camera_offset_body;
-      const double root = std::sqrt(seen_.attitude_rows[block]);
-      for (int k = 0; k < 3; ++k) put(k, off[k], root / seen_.noise.camera_rad[k], white);
+      off.head<3>() = rotation_vector(seen_.attitude[block] * state.lab_from_body.conjugate()) -
+                      state.lab_from_body * camera_offset_body;
     }
-    for (int k = 0; k < 3; ++k) {
-      const double rows = seen_.gyro_rows[block][k];
-      if (!(rows > 0.0)) continue;
-      put(3 + k, seen_.gyro_rad_s[block][k] - gyro_rad_s[k],
-          std::sqrt(rows) / seen_.noise.gyro_rad_s[k], white);
+    off.tail<3>() = seen_.gyro_rad_s[block] - gyro_rad_s;
+    for (int channel = 0; channel < 6; ++channel) {
+      const double rows = seen_.rows_of(block, channel);
+      if (rows > 0.0) white[channel] = put(channel, block, rows, off[channel]);
+      if (!(rows > 0.0)) off[channel] = NAN;
     }
     if (!keep_) return;
     result_.residual.push_back(white);
+    result_.off.push_back(off);
     result_.states.push_back(state);
     result_.camera_offset_lab_rad.emplace_back(state.lab_from_body * camera_offset_body);
     result_.gyro_rad_s.push_back(gyro_rad_s);
   }
 
-  void put(int reading, double off, double weight, WhiteRow& white) {
-    white[reading] = off * weight;
-    chi2_ += white[reading] * white[reading];
+  // Slopes and residual, whitened alike. Returns the whitened residual.
+  double put(int channel, size_t block, double rows, double off) {
     auto row = sums_.next();
     const Eigen::Index n = slope_.cols();
-    row.head(n) = weight * slope_.row(reading);
-    row[n] = white[reading];
+    row.head(n) = slope_.row(channel);
+    row[n] = off;
+    whitening_[static_cast<size_t>(channel)].apply(seen_.time_s[block], rows, row);
+    chi2_ += row[n] * row[n];
+    return row[n];
   }
 
   // Times the fastest motion seen: no trial of parameters is worth more.
@@ -142,6 +147,7 @@ class Comparison {
   double max_chi2_, max_rate_rad_s_, chi2_ = 0.0;
   inference::SumsOfRows sums_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> slope_;
+  std::vector<Whitening> whitening_;  // of each channel
   bool keep_;
   Prediction result_;
 };

@@ -11,14 +11,15 @@
 
 namespace photorque {
 
-// Six whitened residuals of a block: attitude about lab x, y, z, then gyro x, y, z; (measured −
-// predicted)/noise, NaN where nothing was measured.
+// Six residuals of a block: attitude about lab x, y, z, then gyro x, y, z; NaN where nothing was
+// measured.
 using WhiteRow = Eigen::Matrix<double, 6, 1>;
 
 struct Prediction {
   inference::NormalSums sums;
   // Filled on request.
-  std::vector<WhiteRow> residual;
+  std::vector<WhiteRow> residual;  // whitened: independent, in units of their standard deviation
+  std::vector<WhiteRow> off;       // measured − predicted [rad, rad/s]
   std::vector<PlatformState> states;
   std::vector<Vec3> camera_offset_lab_rad;  // from the state's attitude to what the camera reports
   std::vector<Vec3> gyro_rad_s;             // what the gyro reads

@@ -78,6 +78,7 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
     sensors.power.current_noise_A = s.number_or("current_noise_A", 0.0, not_negative);
     sensors.power.power_noise_W = s.number_or("power_noise_W", 0.0, not_negative);
   }
+  sensors.noise_is_stated = settings.choice_or("noise_is", {"found", "stated"}, 0) == 1;
   return sensors;
 }
 

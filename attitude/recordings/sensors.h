@@ -41,6 +41,8 @@ struct Sensors {
   std::optional<Gyro> gyro;
   std::optional<Encoder> encoder;
   Power power;
+  // The noise is what is stated here, whatever a recording shows.
+  bool noise_is_stated = false;
   // bias, scale, misalignment and latency as the file gives them.
   std::vector<Disturbance> errors;
 };
@@ -50,7 +52,8 @@ struct Sensors {
 //   gyro: noise_rad_s, bias_rad_s[3], bias_drift (rad/s per √s), scale[3], misalignment_rad[3],
 //     rate_Hz;
 //   encoder: resolution_arcsec;
-//   power: current_noise_A, power_noise_W.
+//   power: current_noise_A, power_noise_W;
+//   noise_is: "found" (diagnose looks for the noise in the recording) or "stated".
 Sensors read_sensors(const Settings& settings, const DisturbanceContext& context);
 // A camera and a gyro without errors: what is recorded when nothing is said.
 Sensors perfect_sensors();

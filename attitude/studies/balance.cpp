@@ -50,10 +50,8 @@ void add_camera_residuals(const Observation& seen, BalanceResult& result) {
   const Prediction predicted = std::move(residuals_of(result.fit, {seen}).front());
   for (size_t i = 0; i < seen.blocks(); ++i) {
     if (!(seen.attitude_rows[i] > 0.0)) continue;
-    const Vec3 white = predicted.residual[i].head<3>();
     result.residual_time_s.push_back(seen.time_s[i]);
-    result.camera_residual_rad.emplace_back(white.cwiseProduct(seen.noise.camera_rad) /
-                                            std::sqrt(seen.attitude_rows[i]));
+    result.camera_residual_rad.emplace_back(predicted.off[i].head<3>());
   }
 }
 

@@ -5,7 +5,6 @@
 
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/noise.h"
-#include "attitude/estimation/nominal_model.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/account.h"
 #include "diagnosis/attitude/domain.h"
@@ -15,29 +14,13 @@
 #include "diagnosis/attitude/manoeuvre.h"
 #include "diagnosis/attitude/recorded_data.h"
 #include "diagnosis/attitude/refine.h"
+#include "diagnosis/attitude/settle.h"
 #include "inference/decide.h"
 #include "inference/search.h"
 #include "inference/weigh.h"
 
 namespace photorque {
 namespace {
-
-// The nominal model fitted; readings that stand out are dropped and wrong noise levels repaired on
-// the way.
-Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
-  Fit fitted = fit_nominal(nominal, data.train, limits);
-  // One that cannot be propagated along the recording says nothing of its readings.
-  if (!std::isfinite(fitted.chi2)) return fitted;
-  const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
-  data.outliers = drop_outliers(residuals, limits.noise, data.train);
-  const inference::Whiteness found = inference::whiteness(channels_of(residuals), limits.noise);
-  data.noise_corrected = correct_noise(found, limits.noise, data.train);
-  correct_noise(found, limits.noise, data.held);
-  if (data.outliers > 0 || data.noise_corrected) fitted = fit(fitted.best, data.train);
-  const Fit held = propagate_model(fitted, data.held, limits);
-  data.outliers += drop_outliers(residuals_of(held, data.held), limits.noise, data.held);
-  return fitted;
-}
 
 // All that was fitted, and what is made of it.
 struct Answer {
@@ -160,11 +143,7 @@ void say_how_well(const Fit& before, const Trial& chosen, const RecordedData& da
 std::vector<std::string> warnings_of(const RecordedData& data,
                                      const inference::Decision& decision) {
   std::vector<std::string> warnings = data.warnings;
-  if (data.noise_corrected) {
-    warnings.push_back(
-        "the noise of the readings is not what the experiment states: the level "
-        "found in the recording was used");
-  }
+  for (const InstrumentFinding& finding : data.instruments) warnings.push_back(finding.text);
   if (decision.undecided) {
     warnings.push_back(
         "the recordings and what was held out show together what neither shows alone, but not "
@@ -206,6 +185,7 @@ Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording
   for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);
   }
+  d.instruments = data.instruments;
   d.data = quality_of(recordings, holdouts, data);
   d.replay = replay_of(answer.chosen().fit, data.train.front());
   d.sentence = sentence_of(d);

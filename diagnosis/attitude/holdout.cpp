@@ -20,12 +20,8 @@ double noise_of(const Observation& seen, Eigen::Index k) {
   return k < 3 ? seen.noise.camera_rad[k] / arcsecond_rad : seen.noise.gyro_rad_s[k - 3];
 }
 
-double rows_of(const Observation& seen, size_t block, Eigen::Index k) {
-  return k < 3 ? seen.attitude_rows[block] : seen.gyro_rows[block][k - 3];
-}
-
-double in_unit(const WhiteRow& row, const Observation& seen, size_t block, Eigen::Index k) {
-  return row[k] * noise_of(seen, k) / std::sqrt(std::max(1.0, rows_of(seen, block, k)));
+double in_unit(const WhiteRow& off, Eigen::Index k) {
+  return k < 3 ? off[k] / arcsecond_rad : off[k];
 }
 
 std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
@@ -35,8 +31,8 @@ std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
     double sum = 0.0;
     int64_t count = 0;
     for (size_t run = 0; run < runs.size(); ++run) {
-      for (size_t i = 0; i < residuals[run].residual.size(); ++i) {
-        const double x = in_unit(residuals[run].residual[i], runs[run], i, k);
+      for (size_t i = 0; i < residuals[run].off.size(); ++i) {
+        const double x = in_unit(residuals[run].off[i], k);
         if (!std::isfinite(x)) continue;
         sum += x * x;
         ++count;
@@ -97,14 +93,14 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
       c.residual_unit = c.unit;
       c.noise = noise_of(seen, k);
       for (size_t i = 0; i < seen.blocks(); ++i) {
-        const bool read = rows_of(seen, i, k) > 0.0;
+        const bool read = seen.rows_of(i, static_cast<int>(k)) > 0.0;
         // A camera may see every second row only: what was not read is left out, and a longer gap
         // stays one.
         const bool in_gap = !c.time_s.empty() && seen.time_s[i] - c.time_s.back() > max_gap_s;
         if (!read && !in_gap) continue;
         c.time_s.push_back(seen.time_s[i]);
-        c.residual_before.push_back(in_unit(a.residual[i], seen, i, k));
-        c.residual_after.push_back(in_unit(b.residual[i], seen, i, k));
+        c.residual_before.push_back(in_unit(a.off[i], k));
+        c.residual_after.push_back(in_unit(b.off[i], k));
         if (k < 3) continue;
         const double rate = seen.gyro_rad_s[i][k - 3];
         c.measured.push_back(rate);

@@ -9,7 +9,7 @@ namespace photorque {
 struct RecordedData {
   std::vector<Observation> train, held;
   int64_t outliers = 0;  // readings dropped
-  bool noise_corrected = false;
+  std::vector<InstrumentFinding> instruments;
   std::vector<std::string> warnings;
 };
 

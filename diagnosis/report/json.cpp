@@ -127,6 +127,14 @@ Json manoeuvre_json(const Manoeuvre& manoeuvre) {
           {"log_evidence_expected", number(manoeuvre.log_evidence_expected)}};
 }
 
+Json instrument_json(const InstrumentFinding& finding) {
+  return {{"channel", finding.channel},
+          {"what", finding.what},
+          {"value", number(finding.value)},
+          {"sigma", number(finding.sigma)},
+          {"text", finding.text}};
+}
+
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
@@ -146,6 +154,7 @@ std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
   json["empirical_torque"] = list(d.empirical, empirical_json);
   json["manoeuvres"] = list(d.manoeuvres, manoeuvre_json);
   json["beliefs_refined"] = parameters_json(d.priors_refined);
+  json["instruments"] = list(d.instruments, instrument_json);
   json["warnings"] = d.warnings;
   json["data"] = {{"rows", d.data.rows},
                   {"used", d.data.used},

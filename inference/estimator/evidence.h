@@ -32,8 +32,8 @@ struct Strengths {
 
 // ln ∫ N(θ; 0, S) … over the widths of S: the width of the prior of each effect's strengths, a
 // common factor of the expected ones, is uniform in its logarithm over the range that `limits`
-// gives (a millionth to a thousand times). With θ̂ and C from a fit with a flat prior, a width contributes
-// N(θ̂; 0, C + S) but for a constant. −1e300 where the covariance is not finite.
+// gives (a millionth to a thousand times). With θ̂ and C from a fit with a flat prior, a width
+// contributes N(θ̂; 0, C + S) but for a constant. −1e300 where the covariance is not finite.
 double log_strength_evidence(const Strengths& strengths, const Eigen::MatrixXd& covariance,
                              size_t effects, const Thresholds::Evidence& limits = {});
 

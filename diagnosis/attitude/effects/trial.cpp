@@ -297,7 +297,9 @@ Trial assemble(const Trial& from, const Candidates& all, const inference::Member
                                  all.limits.diverged_chi2_per_sample * from.fit.samples);
   Trial trial = assembled(from, all, members, runs, near);
   if (!std::isfinite(trial.fit.chi2)) {
-    trial = assembled(from, all, without_forecast(members), runs, settings);
+    FitSettings growing = settings;
+    growing.windows = all.limits.fitting.diverged_windows;
+    trial = assembled(from, all, without_forecast(members), runs, growing);
   }
   judge(trial, all);
   return trial;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/estimation/whitening.h"
+
 #include "core/constants.h"
 
 namespace photorque {
@@ -58,21 +60,21 @@ Eigen::MatrixXd answers(const PropagatedRun& run, const std::vector<Swing>& swin
   const Observation& seen = run.seen;
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(seen.blocks()), count + 1);
   Eigen::Index used = 0;
+  Whitening whitening(seen, static_cast<int>(channel), count);
   for (size_t i = 0; i < seen.blocks(); ++i) {
     const bool camera = channel < 3;
     const Eigen::Index k = channel % 3;
-    const double readings = camera ? seen.attitude_rows[i] : seen.gyro_rows[i][k];
+    const double readings = seen.rows_of(i, static_cast<int>(channel));
     if (!(readings > 0.0)) continue;
-    const double noise = camera ? seen.noise.camera_rad[k] : seen.noise.gyro_rad_s[k];
-    const double weight = std::sqrt(readings) / noise;
     const Vec3& moved = camera ? swing[i].angle_rad : swing[i].rate_rad_s;
     const Vec3 unit = Vec3::Unit(k);
     const Vec3 along =
         camera ? Vec3(run.propagated.states[i].lab_from_body.conjugate() * unit) : unit;
     for (Eigen::Index a = 0; a < count; ++a) {
       const auto at = static_cast<size_t>(a);
-      rows(used, a) = weight * along.dot(answer_body[at]) * axes[at].dot(moved);
+      rows(used, a) = along.dot(answer_body[at]) * axes[at].dot(moved);
     }
+    whitening.apply(seen.time_s[i], readings, rows.row(used).head(count));
     rows(used++, count) = run.propagated.residual[i][channel];
   }
   return rows.topRows(used);

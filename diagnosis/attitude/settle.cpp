@@ -1,0 +1,83 @@
+#include "diagnosis/attitude/settle.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "attitude/estimation/noise.h"
+#include "attitude/noise/search.h"
+#include "core/constants.h"
+#include "diagnosis/attitude/holdout.h"
+
+namespace photorque {
+namespace {
+
+constexpr const char* keys[] = {"attitude_x_arcsec", "attitude_y_arcsec", "attitude_z_arcsec",
+                                "gyro_x_rad_s",      "gyro_y_rad_s",      "gyro_z_rad_s"};
+constexpr const char* spoken[] = {"the camera about lab x", "the camera about lab y",
+                                  "the camera about lab z", "the gyro about body x",
+                                  "the gyro about body y",  "the gyro about body z"};
+
+template <typename... Values>
+std::string written(const char* format, Values... values) {
+  char text[400];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
+  const double unit = k < 3 ? arcsecond_rad : 1.0;
+  const double value = found.noise.level / unit;
+  return {keys[k], "noise_level", value, found.level_sigma * value,
+          written("the noise of %s is not what the experiment states: %.3g %s were found in the "
+                  "recording and used, %.3g are stated",
+                  spoken[k], value, k < 3 ? "arcsec" : "rad/s", stated / unit)};
+}
+
+InstrumentFinding colour_finding(int k, const FoundNoise& found) {
+  const bool all = !(found.noise.coloured < 1.0);
+  return {
+      keys[k], "noise_correlation_time_s", found.noise.time_s, found.time_sigma_s,
+      written(
+          "the noise of %s is correlated over %.3g s%s: neighbouring readings count for "
+          "less",
+          spoken[k], found.noise.time_s,
+          all ? "" : written(" (%.0f %% of its variance)", 100.0 * found.noise.coloured).c_str())};
+}
+
+// Gives the runs the noise that was found, and tells of it. Returns whether any changed.
+bool use_noise(const NoiseFindings& findings, RecordedData& data) {
+  bool changed = false;
+  const NoiseLevels stated = data.train.front().noise;
+  for (int k = 0; k < 6; ++k) {
+    const FoundNoise& found = findings.channel[static_cast<size_t>(k)];
+    if (found.level_found) data.instruments.push_back(level_finding(k, found, stated.of(k).level));
+    if (found.colour_found) data.instruments.push_back(colour_finding(k, found));
+    if (!found.level_found && !found.colour_found) continue;
+    changed = true;
+    for (auto* runs : {&data.train, &data.held}) {
+      for (Observation& seen : *runs) seen.noise.set(k, found.noise);
+    }
+  }
+  return changed;
+}
+
+}  // namespace
+
+Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
+  Fit fitted = fit_nominal(nominal, data.train, limits);
+  // One that cannot be propagated along the recording says nothing of its readings.
+  if (!std::isfinite(fitted.chi2)) return fitted;
+  const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
+  data.outliers = drop_outliers(residuals, limits.noise, data.train);
+  bool changed = data.outliers > 0;
+  if (!nominal.sensors.noise_is_stated) {
+    changed = use_noise(find_noise(data.train, residuals, limits.noise), data) || changed;
+  }
+  if (changed) fitted = fit(fitted.best, data.train);
+  const Fit held = propagate_model(fitted, data.held, limits);
+  if (!std::isfinite(held.chi2)) return fitted;
+  data.outliers += drop_outliers(residuals_of(held, data.held), limits.noise, data.held);
+  return fitted;
+}
+
+}  // namespace photorque
