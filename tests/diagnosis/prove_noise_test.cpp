@@ -11,10 +11,10 @@ namespace {
 using injected::Errors;
 using injected::RandomDraw;
 
-constexpr double interval_s = 0.1;
+constexpr double row_interval_s = 0.1;
 
 std::vector<double> drawn(const InjectedNoise& noise, size_t count) {
-  Errors errors(noise, interval_s);
+  Errors errors(noise, row_interval_s);
   RandomDraw draw(7, 11);
   std::vector<double> all;
   while (all.size() < count) {
@@ -69,10 +69,10 @@ TEST(ProveNoise, OutliersAreFiveTimesTheLevel) {
 }
 
 TEST(ProveNoise, QuantisedReadingsAreMultiplesOfTheStep) {
-  const Errors errors({.step_sigma = 2.0}, interval_s);
+  const Errors errors({.step_sigma = 2.0}, row_interval_s);
   EXPECT_DOUBLE_EQ(errors.rounded(3.9e-4, 1e-4), 4e-4);
   EXPECT_DOUBLE_EQ(errors.rounded(-2.9e-4, 1e-4), -2e-4);
-  EXPECT_EQ(Errors({}, interval_s).rounded(1.23456e-4, 1e-4), 1.23456e-4);
+  EXPECT_EQ(Errors({}, row_interval_s).rounded(1.23456e-4, 1e-4), 1.23456e-4);
 }
 
 }  // namespace
