@@ -125,9 +125,10 @@ bool attempt(InjectedCase& c, const InjectedPlan& plan, const Choice& choice, ui
 }  // namespace
 
 InjectedCase draw_case(const InjectedPlan& plan, size_t index) {
-  const Choice choice = choose(plan, index);
   InjectedCase c;
   for (uint64_t trial = 0; trial < 40; ++trial) {
+    // Effects that never show together make room for others.
+    const Choice choice = choose(plan, index, trial / 8);
     try {
       if (!attempt(c, plan, choice, index * 100 + trial)) continue;
     } catch (const NumericalError&) {
@@ -138,7 +139,7 @@ InjectedCase draw_case(const InjectedPlan& plan, size_t index) {
     if (choice.family.starts_with("noise")) c.name = choice.family + "_" + c.name;
     return c;
   }
-  throw NumericalError("no visible case of " + choice.name + " in forty trials");
+  throw NumericalError("no visible case of " + choose(plan, index).name + " in forty trials");
 }
 
 }  // namespace photorque

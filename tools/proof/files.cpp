@@ -16,7 +16,6 @@ namespace {
 using namespace injected;
 using Json = nlohmann::ordered_json;
 
-constexpr double start_s = injected_start_s;
 constexpr double step_s = 0.01;
 // A hundred kinks bent by this much are off by less than the instruments' noise after minutes.
 constexpr double bend_rad_s = 2e-8;
@@ -129,7 +128,9 @@ std::string injected_truth_toml(const InjectedCase& c, size_t run_index) {
   // At the clock's zero: the motion itself starts before.
   const InjectedRun& run = c.runs[run_index];
   const InjectedContext begin =
-      injected_motion(c.world, run.commands, run.start, start_s, {0.0}, step_s, bend_rad_s).front();
+      injected_motion(c.world, run.commands, run.start, injected_start_s(c.world), {0.0}, step_s,
+                      bend_rad_s)
+          .front();
   text += "\n[sensors.camera]\nnoise_arcsec = [0, 0, 0]\n";
   text += print("\n[propagate]\nduration_s = %.9g\noutput_rate_Hz = %.9g\n", run.duration_s,
                 c.sensors.rate_Hz);
@@ -147,7 +148,8 @@ std::string injected_recording(const InjectedCase& c, size_t run_index) {
   Rows rows = draw_rows(draw, c.sensors, run.duration_s);
   const auto commands = on_rows(run.commands, rows);
   const auto motion_at = [&](const std::vector<double>& times_s) {
-    return injected_motion(c.world, commands, run.start, start_s, times_s, step_s, bend_rad_s);
+    return injected_motion(c.world, commands, run.start, injected_start_s(c.world), times_s, step_s,
+                           bend_rad_s);
   };
   const auto moments = motion_at(rows.time_s);
   const double latency_s = std::min(0.49, injected_latency_s(c.world));
@@ -217,7 +219,9 @@ std::string injected_truth_json(const InjectedCase& c) {
                       {"gyro_bias", c.world.gyro_bias_rad_s}};
   Json runs = Json::array();
   for (const InjectedRun& run : c.runs) {
-    runs.push_back({{"t0", start_s}, {"q0", run.start.attitude}, {"w0", run.start.rate_rad_s}});
+    runs.push_back({{"t0", injected_start_s(c.world)},
+                    {"q0", run.start.attitude},
+                    {"w0", run.start.rate_rad_s}});
   }
   json["runs"] = runs;
   return json.dump(1) + "\n";

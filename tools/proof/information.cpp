@@ -12,7 +12,6 @@ namespace {
 
 using namespace injected;
 
-constexpr double start_s = injected_start_s;
 constexpr double arcsecond = pi / 180.0 / 3600.0;
 
 // Kinds whose readings change in proportion to all their numbers, or that have none, those that
@@ -113,7 +112,7 @@ void InjectedInformation::add_nuisances() {
 
 InjectedInformation::Sampled InjectedInformation::sample(const InjectedWorld& world,
                                                          const InjectedStart& start) const {
-  const double latency_s = injected_latency_s(world);
+  const double latency_s = injected_latency_s(world), start_s = injected_start_s(case_.world);
   const auto& commands = case_.runs[0].commands;
   const auto moments = injected_motion(world, commands, start, start_s, times_s_, step_s_);
   Sampled sampled;

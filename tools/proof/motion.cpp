@@ -192,6 +192,10 @@ void scale_effect(InjectedEffect& effect, double by) {
   for (double& number : strength->second) number *= by;
 }
 
+double injected_start_s(const InjectedWorld& world) {
+  return changed(world).appendage ? 0.0 : -0.5;
+}
+
 double injected_latency_s(const InjectedWorld& world) {
   return changed(world).camera_latency_s;
 }

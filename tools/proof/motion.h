@@ -59,8 +59,9 @@ double injected_latency_s(const InjectedWorld& world);
 // With what the effects add, about the body axes.
 std::array<Triple, 3> injected_inertia_kg_m2(const InjectedWorld& world);
 
-// The motion of a case starts before its clock, so that a camera may lag.
-inline constexpr double injected_start_s = -0.5;
+// The motion of a case starts before its clock, so that a camera may lag; where an appendage
+// swings, with the clock, at which a model takes it to be at rest.
+double injected_start_s(const InjectedWorld& world);
 
 // Noiseless readings at `times_s` (rising, not before `from_s`, where the motion starts). Steps of
 // at most `step_s` that end at every jump; the error falls with its fourth power: 1e-9 rad for

@@ -51,15 +51,16 @@ std::vector<Recipe> draw_companions(RandomDraw& draw, size_t count) {
   return chosen;
 }
 
-Choice several(const InjectedPlan& plan, const std::string& family, size_t count, int i) {
-  RandomDraw draw(plan.seed, 1000003 * count + static_cast<uint64_t>(i));
+Choice several(const InjectedPlan& plan, const std::string& family, size_t count, int i,
+               uint64_t variant) {
+  RandomDraw draw(plan.seed, 1000003 * count + static_cast<uint64_t>(i) + 100003 * variant);
   Choice choice{family, "", draw_companions(draw, count), i};
   for (const Recipe& r : choice.recipes) choice.name += (choice.name.empty() ? "" : "+") + r.kind;
   return choice;
 }
 
-Choice known_and_unknown(const InjectedPlan& plan, int i) {
-  RandomDraw draw(plan.seed, 7000003 + static_cast<uint64_t>(i));
+Choice known_and_unknown(const InjectedPlan& plan, int i, uint64_t variant) {
+  RandomDraw draw(plan.seed, 7000003 + static_cast<uint64_t>(i) + 100003 * variant);
   const std::vector<Recipe>& outside = kinds().outside;
   const Recipe known = draw_companions(draw, 1)[0];
   const Recipe& unknown = outside[static_cast<size_t>(i) % outside.size()];
@@ -76,14 +77,14 @@ Choice single(int i) {
   return {"single", recipe.kind, {recipe}, number, turn < 2 ? turn : 2 + (turn + i) % 2};
 }
 
-Choice of_family(const InjectedPlan& plan, int i) {
+Choice of_family(const InjectedPlan& plan, int i, uint64_t variant) {
   const auto& [inside, companions, adjustable, outside] = kinds();
   if (i < plan.none) return {"none", "none", {}, i};
   i -= plan.none;
   const int singles = plan.per_kind * static_cast<int>(inside.size());
   if (i < singles) return single(i);
   i -= singles;
-  if (i < plan.pairs) return several(plan, "pair", 2, i);
+  if (i < plan.pairs) return several(plan, "pair", 2, i, variant);
   i -= plan.pairs;
   const auto laws = static_cast<int>(outside.size());
   if (i < plan.outside * laws) {
@@ -91,9 +92,9 @@ Choice of_family(const InjectedPlan& plan, int i) {
     return {"outside", law.kind, {law}, i / laws};
   }
   i -= plan.outside * laws;
-  if (i < plan.triples) return several(plan, "triple", 3, i);
+  if (i < plan.triples) return several(plan, "triple", 3, i, variant);
   i -= plan.triples;
-  if (i < plan.known_unknown) return known_and_unknown(plan, i);
+  if (i < plan.known_unknown) return known_and_unknown(plan, i, variant);
   i -= plan.known_unknown;
   if (i < plan.noise_none) return {"noise_none", "none", {}, i};
   i -= plan.noise_none;
@@ -114,8 +115,8 @@ bool is_of_second_maker(const InjectedPlan& plan, size_t index) {
 
 }  // namespace
 
-Choice choose(const InjectedPlan& plan, size_t index) {
-  Choice choice = of_family(plan, static_cast<int>(index));
+Choice choose(const InjectedPlan& plan, size_t index, uint64_t variant) {
+  Choice choice = of_family(plan, static_cast<int>(index), variant);
   choice.second = is_of_second_maker(plan, index);
   return choice;
 }

@@ -18,8 +18,8 @@ struct Choice {
   bool second = false;
 };
 
-// The i-th of case_count(plan).
-Choice choose(const InjectedPlan& plan, size_t index);
+// The i-th of case_count(plan). Other effects stand together in another `variant`.
+Choice choose(const InjectedPlan& plan, size_t index, uint64_t variant = 0);
 
 // Platform, nominal model, instruments and both runs, such that `recipes` can act.
 void draw_first_setting(RandomDraw& draw, InjectedCase& c, const InjectedPlan& plan,

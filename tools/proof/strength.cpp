@@ -136,7 +136,7 @@ bool stays_physical(const InjectedCase& c) {
     std::vector<double> times_s;
     for (double t = 0.0; t < run.duration_s; t += 0.5) times_s.push_back(t);
     const auto moments =
-        injected_motion(c.world, run.commands, run.start, injected_start_s, times_s, 0.05);
+        injected_motion(c.world, run.commands, run.start, injected_start_s(c.world), times_s, 0.05);
     for (const InjectedContext& m : moments) {
       const double rate = length(m.rate_rad_s);
       const double up = to_body(m.attitude, {0, 0, 1})[2];
