@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "inference/predictive.h"
+#include "inference/estimator/predictive.h"
+#include "inference/limits/thresholds.h"
 #include "inference/subsets.h"
-#include "inference/thresholds.h"
 
 namespace photorque::inference {
 

@@ -9,7 +9,7 @@ namespace photorque::inference {
 template <Domain D>
 using Terms = std::vector<Term<typename D::Start>>;
 
-// Each round linearises the problem about one trial, foretells what every set of candidates would
+// Each round linearises the problem about one trial, predicts what every set of candidates would
 // gain (subsets.h), and fits the few best; the next round is about the best of all. Where nothing
 // gains any more, what only a scan can find is added to the best, and the rounds go on or end.
 template <Domain D>
@@ -33,7 +33,7 @@ class Rounds {
     Trial at = from;
     bool scan = false;
     for (int round = 0; round < limits_.search.max_rounds; ++round) {
-      std::vector<Trial> found = scan ? scanned(at) : foretold(at, round == 0);
+      std::vector<Trial> found = scan ? scanned(at) : predicted(at, round == 0);
       // Slow effects may stand in for one that is fast: the scan also begins without them.
       if (scan && may_be_stand_ins(at)) {
         for (Trial& t : scanned(trials_.front())) found.push_back(std::move(t));
@@ -52,7 +52,7 @@ class Rounds {
       const bool gained =
           best.log_evidence > before.log_evidence + limits_.search.min_log_evidence_gain;
       at = gained ? best : before;
-      // What needs a scan is looked for where nothing foretold gains any more.
+      // What needs a scan is looked for where nothing predicted gains any more.
       if (!gained && (scan || !is_worth_a_scan(at))) break;
       scan = !gained;
     }
@@ -92,8 +92,8 @@ class Rounds {
     return terms;
   }
 
-  // Fits of what is foretold about `at`.
-  std::vector<Trial> foretold(const Trial& at, bool first) const {
+  // Fits of the sets predicted about `at`.
+  std::vector<Trial> predicted(const Trial& at, bool first) const {
     const Runs averages = slow_runs(domain_, at, set_);
     Terms<D> terms = domain_.terms_of(at);
     const size_t own = terms.size();

@@ -21,7 +21,7 @@ class Search {
     Trial from = nominal;
     if (has_diverged(nominal, limits_)) {
       for (Trial& t : by_pieces(nominal)) trials_.push_back(std::move(t));
-      // Nothing can be foretold about a prediction that is elsewhere.
+      // Nothing can be predicted about a prediction that is elsewhere.
       const Trial& best = trials_[best_allowed()];
       if (has_diverged(best, limits_) || best.fit.samples != nominal.fit.samples) {
         return without_twins(std::move(trials_));

@@ -1,4 +1,4 @@
-// Which candidates together explain what is left, foretold without a fit.
+// Which candidates together explain what is left, predicted without a fit.
 //
 // About a trial the problem is a quadratic form: one pass over the recordings gives the information
 // matrix H and the gradient g = −½ ∂χ²/∂θ of the strengths of all candidates, those that the trial
@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "inference/thresholds.h"
+#include "inference/limits/thresholds.h"
 
 namespace photorque::inference {
 

@@ -172,7 +172,7 @@ class Weighing {
       if (leads(candidates)) continue;
       Members<typename D::Start> members;
       for (const auto& term : fewer) members.push_back({term});
-      // Without it the rest may have to go far: beliefs that it stood in for, to begin with.
+      // Without it the rest may have to go far: nominal values that it stood in for, to begin with.
       const Effort growing{limits_.fitting.diverged_windows, limits_.fitting.patient_iterations};
       Trial joint = domain_.assemble(from.joint, members, all_runs_, growing);
       Trial train = assembled(joint, domain_.terms_of(joint));

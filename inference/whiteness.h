@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "inference/thresholds.h"
+#include "inference/limits/thresholds.h"
 
 namespace photorque::inference {
 

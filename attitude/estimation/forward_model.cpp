@@ -5,7 +5,7 @@
 
 #include "attitude/estimation/prediction.h"
 #include "core/errors.h"
-#include "inference/thresholds.h"
+#include "inference/limits/thresholds.h"
 
 namespace photorque {
 namespace {

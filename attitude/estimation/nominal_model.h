@@ -5,7 +5,7 @@
 
 #include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
-#include "inference/thresholds.h"
+#include "inference/limits/thresholds.h"
 
 namespace photorque {
 

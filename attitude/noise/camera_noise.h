@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "attitude/noise/angle_likelihood.h"
-#include "inference/thresholds.h"
+#include "inference/limits/thresholds.h"
 
 namespace photorque {
 

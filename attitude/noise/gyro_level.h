@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "attitude/noise/kinematics.h"
-#include "inference/thresholds.h"
+#include "inference/limits/thresholds.h"
 
 namespace photorque {
 

@@ -25,11 +25,10 @@ class NoiseSearch {
   }
 
   NoiseFindings run() {
-    // Without a gyro, noise and motion look alike about a curve through the attitudes.
-    if (!has_gyro_ && std::any_of(left_.begin(), left_.end(),
-                                  [](const KinematicRun& run) { return run.about_readings; })) {
-      return result_;
-    }
+    // About a curve through the attitudes, noise and the kinks of a fast motion look alike.
+    result_.is_open = std::any_of(left_.begin(), left_.end(),
+                                  [](const KinematicRun& run) { return run.about_readings; });
+    if (result_.is_open) return result_;
     gyro_.gyro_rad_s = stated_.gyro_rad_s;
     for (int k = 0; k < 3; ++k) find_gyro_level(k);
     if (has_gyro_) {

@@ -15,6 +15,9 @@ struct ClockDrift {
 };
 
 struct NoiseFindings {
+  // The model that the readings were compared with is far from them: the noise stays as stated
+  // until a better one is at hand.
+  bool is_open = false;
   std::array<FoundNoise, 6> channel;  // camera about lab x, y, z; gyro x, y, z
   std::optional<ClockDrift> drift;    // where there is a gyro
 };

@@ -82,7 +82,8 @@ RecordingOptions read_recording_options(const Settings& settings);
 // with t_s, no usable row, more cells than allowed, or mostly falling times.
 Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options = {});
 
-// Reads a schedule of commands: like a recording, but times that do not rise are an error.
+// Reads a schedule of commands: like a recording, but times that do not rise are an error where
+// the file has no attitude, that is, no clock of an instrument.
 Schedule read_command_file(const std::filesystem::path& path);
 
 // Writes the contract's CSV, compressed when the name ends in ".gz"; `preamble` lines are written

@@ -176,8 +176,13 @@ Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
   RecordedData data = read_data(nominal, recordings, holdouts, options);
   tell(options, "fitting the nominal model");
-  const Fit nominal_fit = settle(nominal, options.limits, data);
-  const Answer answer = explain(nominal, nominal_fit, data, options);
+  Fit nominal_fit = settle(nominal, options.limits, data);
+  Answer answer = explain(nominal, nominal_fit, data, options);
+  if (settle_again(answer.chosen().fit, options.limits, data)) {
+    tell(options, "again, with the noise that was found");
+    nominal_fit = fit(nominal_fit.best, data.train);
+    answer = explain(nominal, nominal_fit, data, options);
+  }
   Diagnosis d;
   say_what_was_found(answer, nominal_fit, data, options, d);
   say_how_well(nominal_fit, answer.chosen(), data, options.limits, d);

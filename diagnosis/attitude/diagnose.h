@@ -11,7 +11,7 @@
 #include "attitude/propagation/run.h"
 #include "attitude/recordings/recording.h"
 #include "diagnosis/diagnosis.h"
-#include "inference/thresholds.h"
+#include "inference/limits/thresholds.h"
 
 namespace photorque {
 

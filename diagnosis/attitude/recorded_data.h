@@ -10,6 +10,7 @@ struct RecordedData {
   std::vector<Observation> train, held;
   int64_t outliers = 0;  // readings dropped
   std::vector<InstrumentFinding> instruments;
+  bool noise_is_open = false;  // the nominal model is too far off to tell noise from motion
   std::vector<std::string> warnings;
 };
 

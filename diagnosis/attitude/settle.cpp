@@ -71,13 +71,23 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
   data.outliers = drop_outliers(residuals, limits.noise, data.train);
   bool changed = data.outliers > 0;
   if (!nominal.sensors.noise_is_stated) {
-    changed = use_noise(find_noise(data.train, residuals, limits.noise), data) || changed;
+    const NoiseFindings findings = find_noise(data.train, residuals, limits.noise);
+    data.noise_is_open = findings.is_open;
+    changed = use_noise(findings, data) || changed;
   }
   if (changed) fitted = fit(fitted.best, data.train);
   const Fit held = propagate_model(fitted, data.held, limits);
   if (!std::isfinite(held.chi2)) return fitted;
   data.outliers += drop_outliers(residuals_of(held, data.held), limits.noise, data.held);
   return fitted;
+}
+
+bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data) {
+  if (!data.noise_is_open) return false;
+  if (!(explained.chi2_per_sample() < limits.diverged_chi2_per_sample)) return false;
+  data.noise_is_open = false;
+  const std::vector<Prediction> residuals = residuals_of(explained, data.train);
+  return use_noise(find_noise(data.train, residuals, limits.noise), data);
 }
 
 }  // namespace photorque

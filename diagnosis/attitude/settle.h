@@ -12,4 +12,8 @@ namespace photorque {
 // that cannot be propagated has infinite χ², and the noise stays as stated.
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data);
 
+// Where the nominal model left the noise open, it is found about a model that comes near the
+// readings. Returns whether it changed.
+bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
+
 }  // namespace photorque

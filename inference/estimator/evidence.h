@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "inference/estimator/fit.h"
-#include "inference/thresholds.h"
+#include "inference/limits/thresholds.h"
 
 namespace photorque::inference {
 

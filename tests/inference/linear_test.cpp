@@ -214,10 +214,10 @@ TEST(Evidence, OfAStrengthIsTheMeanOverTheWidthsOfItsPrior) {
   const Strengths one{{0}, {0}, {value}, {scale}};
   const double found = log_strength_evidence(one, Eigen::MatrixXd::Constant(1, 1, variance), 1);
   double mean = 0.0;
-  for (int k = 0; k < 15; ++k) {
+  for (int k = 0; k < 19; ++k) {
     const double width = scale * std::pow(10.0, -6.0 + 0.5 * k);
     const double v = variance + width * width;
-    mean += std::exp(-0.5 * value * value / v) / std::sqrt(v) / 15.0;
+    mean += std::exp(-0.5 * value * value / v) / std::sqrt(v) / 19.0;
   }
   EXPECT_NEAR(found, std::log(mean), 1e-9);
 }

@@ -62,7 +62,7 @@ struct Thresholds {
     // Iterations of a fit: of a first try; of a second chance, enough to see whether it falls into
     // another local minimum; of a leader, which is to converge.
     int trial_iterations = 12, brief_iterations = 10, patient_iterations = 60;
-    // χ² at a foretold start over that of the trial from which it was foretold.
+    // χ² at a predicted start over that of the trial from which it was predicted.
     double max_start_growth = 10.0;
     // Blocks into which recordings are averaged for what changes slowly: several times faster than
     // all, and fine enough for every slow law of the catalogue.
@@ -107,7 +107,7 @@ struct Thresholds {
     size_t beam = 40;
     // Residual structure of a single effect [sigma], below which it is no stand-in for a fast one.
     double explained_sigma = 3.0;
-    // Rounds of forecast and fit; the foretold sets that a round fits; and the log evidence below
+    // Rounds of forecast and fit; the predicted sets that a round fits; and the log evidence below
     // the best forecast within which a set is worth that.
     int max_rounds = 6;
     size_t max_fits_of_round = 6;
@@ -172,7 +172,7 @@ struct Thresholds {
     double min_log_odds = 4.5;
     // Significance of every named effect [sigma].
     double min_significance = 4.0;
-    // Of the held-out runs beyond the predictive distribution [sigma], for a model to be believed.
+    // Of the held-out runs beyond the predictive distribution [sigma], for a model to be accepted.
     double max_predictive_sigma = 5.0;
     // Log evidence that a name may cost in predicting them: an effect that shows in the train runs
     // alone predicts nothing.
