@@ -42,7 +42,8 @@ class Rounds {
         for (Trial& t : switched_on(at)) found.push_back(std::move(t));
       }
       std::vector<Trial> parents = {at};
-      settle_leaders(domain_, set_.runs, threads_, found, parents);
+      // Pieces only say which sets to fit to the whole: there is no need to converge on them.
+      if (set_.pieces == 1) settle_leaders(domain_, set_.runs, threads_, found, parents);
       for (Trial& parent : parents) keep(std::move(parent));
       for (Trial& trial : found) keep(std::move(trial));
       const Trial& best = best_to_go_on();
@@ -54,6 +55,7 @@ class Rounds {
       at = gained ? best : before;
       // What needs a scan is looked for where nothing predicted gains any more.
       if (!gained && (scan || !is_worth_a_scan(at))) break;
+      if (scan && set_.pieces > 1) break;
       scan = !gained;
     }
     return std::move(trials_);

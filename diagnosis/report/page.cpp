@@ -226,6 +226,17 @@ std::string priors(const Diagnosis& d) {
                             parameter_table(d.priors_refined));
 }
 
+// What the gate asks: the same data against the prediction with its uncertainty.
+std::string of_the_prediction(const Holdout& holdout) {
+  if (!holdout.predictive) return "";
+  return tag("p", "With the uncertainty of its parameters the model predicts these data to χ² = " +
+                      html_number(holdout.predictive->chi2_per_sample, 4) + " per number, " +
+                      html_number(holdout.predictive->sigma, 2) +
+                      " standard errors beyond what noise makes (up to 5 pass). Of what the "
+                      "nominal model leaves of them beyond noise, " +
+                      html_number(100.0 * holdout.explained_fraction, 3) + " % are explained.");
+}
+
 std::string holdout_table(const Holdout& holdout) {
   if (holdout.rms_before.empty()) return "";
   std::string rows = row({"Channel", "RMS before", "RMS after"}, "th");
@@ -238,7 +249,7 @@ std::string holdout_table(const Holdout& holdout) {
                             tag("p",
                                 "Root mean square of what the prediction misses, in the unit "
                                 "that each channel's name ends in.") +
-                            tag("table", rows, "numbers"));
+                            of_the_prediction(holdout) + tag("table", rows, "numbers"));
 }
 
 std::string data_section(const DataQuality& data) {

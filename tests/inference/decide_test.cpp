@@ -1,0 +1,78 @@
+// The verdict on explanations that are written out: what is said has to predict, and every name has
+// to be missed. Each expectation fails under a mutant, other limits.
+#include "inference/decide.h"
+
+#include <gtest/gtest.h>
+
+namespace photorque::inference {
+namespace {
+
+const std::vector<CandidateTraits> candidates = {{.name = "first"}, {.name = "second"}};
+
+Explanation explanation(std::vector<size_t> which, double log_evidence, double predictive_sigma,
+                        double log_score = 0.0) {
+  Explanation e;
+  e.significance.assign(which.size(), 20.0);
+  e.candidates = std::move(which);
+  e.log_evidence = log_evidence;
+  e.predictive = Predictive{1.0, predictive_sigma, log_score};
+  return e;
+}
+
+Decision decided(const std::vector<Explanation>& trials,
+                 const Thresholds::Decision& limits = Thresholds().decision) {
+  return decide(
+      trials, candidates, [](size_t) { return 0.0; }, limits);
+}
+
+TEST(Decide, NamesWhatPredicts) {
+  const Decision d = decided({explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0)});
+  EXPECT_EQ(d.finding, Finding::named);
+  EXPECT_EQ(d.chosen, 1u);
+  EXPECT_TRUE(d.because.empty());
+}
+
+TEST(Decide, NothingThatDoesNotPredictIsSaid) {
+  Thresholds::Decision mutant;
+  mutant.max_predictive_sigma = 1e9;
+  const std::vector<Explanation> named = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 9.0)};
+  EXPECT_EQ(decided(named).finding, Finding::unknown);
+  EXPECT_FALSE(decided(named).because.empty());
+  EXPECT_EQ(decided(named, mutant).finding, Finding::named);
+  // "Nothing is missing" has to predict as well.
+  const std::vector<Explanation> nothing = {explanation({}, 0.0, 9.0)};
+  EXPECT_EQ(decided(nothing).finding, Finding::unknown);
+  EXPECT_EQ(decided(nothing, mutant).finding, Finding::nothing_missing);
+}
+
+// 3 of log evidence are odds of 20 to 1 for the second name, and too few to say it.
+TEST(Decide, ANameThatIsHardlyMissedIsNotSaid) {
+  const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
+                                           explanation({0, 1}, 103.0, 1.0)};
+  EXPECT_EQ(decided(trials).chosen, 1u);
+  // What may act besides makes the name no less sure.
+  EXPECT_GT(decided(trials).confidence, 0.99);
+  Thresholds::Decision mutant;
+  mutant.min_log_odds = 1.0;
+  EXPECT_EQ(decided(trials, mutant).chosen, 2u);
+}
+
+// Evidence enough, all of it from the recordings that were fitted: what was held out it predicts
+// worse.
+TEST(Decide, ANameThatPredictsWorseIsNotSaid) {
+  const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0, -90.0),
+                                           explanation({0}, 100.0, 1.0, -50.0),
+                                           explanation({0, 1}, 120.0, 1.0, -55.0)};
+  EXPECT_EQ(decided(trials).chosen, 1u);
+  Thresholds::Decision mutant;
+  mutant.max_predictive_loss = 1e9;
+  EXPECT_EQ(decided(trials, mutant).chosen, 2u);
+}
+
+TEST(Decide, HopelessEvidenceHasAProbabilityAsWell) {
+  const Decision d = decided({explanation({}, -1e300, 40.0), explanation({0}, -1e300, 1.0)});
+  EXPECT_TRUE(std::isfinite(d.confidence));
+}
+
+}  // namespace
+}  // namespace photorque::inference
