@@ -9,8 +9,6 @@
 namespace photorque {
 namespace {
 
-constexpr const char* names[] = {"attitude_x_arcsec", "attitude_y_arcsec", "attitude_z_arcsec",
-                                 "gyro_x_rad_s",      "gyro_y_rad_s",      "gyro_z_rad_s"};
 constexpr const char* labels[] = {"Attitude about lab x", "Attitude about lab y",
                                   "Attitude about lab z", "Rate about body x",
                                   "Rate about body y",    "Rate about body z"};
@@ -38,7 +36,7 @@ std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
         ++count;
       }
     }
-    if (count > 0) result[names[k]] = std::sqrt(sum / static_cast<double>(count));
+    if (count > 0) result[channel_names[k]] = std::sqrt(sum / static_cast<double>(count));
   }
   return result;
 }
@@ -87,7 +85,7 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
     const Prediction a = propagated(before), b = propagated(after);
     for (Eigen::Index k = 0; k < 6; ++k) {
       ChannelSeries c;
-      c.name = names[k];
+      c.name = channel_names[k];
       c.label = labels[k];
       c.unit = k < 3 ? "arcsec" : "rad/s";
       c.residual_unit = c.unit;

@@ -11,8 +11,6 @@
 namespace photorque {
 namespace {
 
-constexpr const char* keys[] = {"attitude_x_arcsec", "attitude_y_arcsec", "attitude_z_arcsec",
-                                "gyro_x_rad_s",      "gyro_y_rad_s",      "gyro_z_rad_s"};
 constexpr const char* spoken[] = {"the camera about lab x", "the camera about lab y",
                                   "the camera about lab z", "the gyro about body x",
                                   "the gyro about body y",  "the gyro about body z"};
@@ -27,7 +25,7 @@ std::string written(const char* format, Values... values) {
 InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
   const double unit = k < 3 ? arcsecond_rad : 1.0;
   const double value = found.noise.level / unit;
-  return {keys[k], "noise_level", value, found.level_sigma * value,
+  return {channel_names[k], "noise_level", value, found.level_sigma * value,
           written("the noise of %s is not what the experiment states: %.3g %s were found in the "
                   "recording and used, %.3g are stated",
                   spoken[k], value, k < 3 ? "arcsec" : "rad/s", stated / unit)};
@@ -36,7 +34,7 @@ InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
 InstrumentFinding colour_finding(int k, const FoundNoise& found) {
   const bool all = !(found.noise.coloured < 1.0);
   return {
-      keys[k], "noise_correlation_time_s", found.noise.time_s, found.time_sigma_s,
+      channel_names[k], "noise_correlation_time_s", found.noise.time_s, found.time_sigma_s,
       written(
           "the noise of %s is correlated over %.3g s%s: neighbouring readings count for "
           "less",
