@@ -29,6 +29,9 @@ struct Map {
   std::vector<double> value;
   std::vector<double> standard_error;
   bool equal_scale = true;  // x and y have the same unit and are drawn to the same scale
+  // Values are those at the middles of the bins of a field that is smooth between them: drawn
+  // interpolated, with contour lines.
+  bool smooth = false;
 };
 
 // Columns of equal length; the name of a column ends in its unit. Text columns (labels) come first.

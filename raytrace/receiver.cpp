@@ -7,17 +7,31 @@ namespace photorque {
 Estimate BinSums::estimate(size_t bin) const {
   std::vector<double> values(static_cast<size_t>(replicates));
   for (int r = 0; r < replicates; ++r) values[static_cast<size_t>(r)] = of(r)[bin];
-  return with_common_error(estimate_from_replicates(values), common_error);
+  return with_bound(estimate_from_replicates(values), bound_of(bin));
+}
+
+double BinSums::common_error() const {
+  if (bound.empty()) return 0.0;
+  double size = 0.0, bounds = 0.0;
+  for (int r = 0; r < replicates; ++r) {
+    for (const double value : of(r)) size += std::abs(value) / replicates;
+  }
+  for (const double one : bound) bounds += one;
+  return size > 0.0 ? bounds / size : 0.0;
 }
 
 Estimate BinSums::estimate(const std::function<double(std::span<const double>)>& linear) const {
   std::vector<double> values(static_cast<size_t>(replicates));
   for (int r = 0; r < replicates; ++r) values[static_cast<size_t>(r)] = linear(of(r));
-  return with_common_error(estimate_from_replicates(values), common_error);
+  return with_common_error(estimate_from_replicates(values), common_error());
+}
+
+Estimate with_bound(const Estimate& estimate, double bound) {
+  return {estimate.value, std::hypot(estimate.standard_error, bound)};
 }
 
 Estimate with_common_error(const Estimate& estimate, double common_error) {
-  return {estimate.value, std::hypot(estimate.standard_error, common_error * estimate.value)};
+  return with_bound(estimate, common_error * estimate.value);
 }
 
 }  // namespace photorque

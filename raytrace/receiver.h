@@ -46,20 +46,26 @@ struct BinSums {
   size_t bins = 0;
   int replicates = 0;
   std::vector<double> sums;  // replicate-major: sums[replicate · bins + bin]
-  // Bound of the relative error that all replicates have in common (of a quadrature), which their
-  // scatter cannot show; joins every standard error.
-  double common_error = 0.0;
+  // Bounds of the errors that all replicates have in common (of a quadrature), bin by bin, which
+  // their scatter cannot show; they join every standard error. Empty where there are none.
+  std::vector<double> bound = {};
 
   std::span<const double> of(int replicate) const {
     return std::span(sums).subspan(static_cast<size_t>(replicate) * bins, bins);
   }
+  double bound_of(size_t bin) const { return bound.empty() ? 0.0 : bound[bin]; }
+  // All bounds together over the sum of all bins' sizes: taken for the relative error of anything
+  // that is computed from many bins.
+  double common_error() const;
   // Mean and standard error of one bin.
   Estimate estimate(size_t bin) const;
   // Mean and standard error of a linear function of the bins (a total, a moment).
   Estimate estimate(const std::function<double(std::span<const double>)>& linear) const;
 };
 
-// `estimate` with the relative error `common_error` of its value added in quadrature.
+// `estimate` with an error that its scatter does not show added in quadrature: of its own unit, or
+// relative to its value.
+Estimate with_bound(const Estimate& estimate, double bound);
 Estimate with_common_error(const Estimate& estimate, double common_error);
 
 // Something with bins that hits add to. Immutable; called from many threads at once.

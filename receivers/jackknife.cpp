@@ -31,7 +31,7 @@ Estimate jackknife(const BinSums& sums,
   const Estimate spread = estimate_from_replicates(left_out);
   return with_common_error({count * statistic(all) - (count - 1.0) * spread.value,
                             (count - 1.0) * spread.standard_error},
-                           sums.common_error);
+                           sums.common_error());
 }
 
 }  // namespace photorque

@@ -38,15 +38,21 @@ double chebyshev_weight(size_t n, size_t k, double angle_rad) {
          std::cos(static_cast<double>(k) * angle_rad);
 }
 
-Eigen::MatrixXd chebyshev_cell_means(size_t n, size_t cells) {
-  const auto points = static_cast<Eigen::Index>(n), parts = static_cast<Eigen::Index>(cells);
-  Eigen::MatrixXd coefficients(points, points), means(parts, points);
+Eigen::MatrixXd chebyshev_coefficients(size_t n) {
+  const auto points = static_cast<Eigen::Index>(n);
+  Eigen::MatrixXd coefficients(points, points);
   for (Eigen::Index i = 0; i < points; ++i) {
     const double angle = pi * (1.0 - (static_cast<double>(i) + 0.5) / static_cast<double>(n));
     for (Eigen::Index k = 0; k < points; ++k) {
       coefficients(k, i) = chebyshev_weight(n, static_cast<size_t>(k), angle);
     }
   }
+  return coefficients;
+}
+
+Eigen::MatrixXd chebyshev_cell_means(size_t n, size_t cells) {
+  const auto points = static_cast<Eigen::Index>(n), parts = static_cast<Eigen::Index>(cells);
+  Eigen::MatrixXd means(parts, points);
   const double width = 2.0 / static_cast<double>(cells);
   std::vector<double> before = antiderivatives(n, -1.0);
   for (Eigen::Index c = 0; c < parts; ++c) {
@@ -57,7 +63,7 @@ Eigen::MatrixXd chebyshev_cell_means(size_t n, size_t cells) {
     }
     before = std::move(after);
   }
-  return means * coefficients;
+  return means * chebyshev_coefficients(n);
 }
 
 }  // namespace photorque

@@ -17,6 +17,10 @@ double chebyshev_fraction(size_t n, size_t i);
 // Source: NIST DLMF 3.11.24 and 18.3.
 double chebyshev_weight(size_t n, size_t k, double angle_rad);
 
+// Row k gives the coefficient of T_k on [0, 1] of the polynomial through values at the n points,
+// rising, as weights of these values.
+Eigen::MatrixXd chebyshev_coefficients(size_t n);
+
 // Row c gives the mean over the c-th of `cells` even parts of [0, 1] of the polynomial through
 // values at the n points, as weights of these values.
 Eigen::MatrixXd chebyshev_cell_means(size_t n, size_t cells);

@@ -47,7 +47,7 @@ MapLayout map_layout(const Map& map, const Provenance& provenance) {
   layout.bar_x = layout.grid.right() + 20.0;
   layout.width =
       std::ceil(std::max(narrowest_page, layout.bar_x + layout.bar.width() + page_margin));
-  layout.text = page_text(map.title, map_caption(map), provenance.one_line(), layout.width);
+  layout.text = page_text(map.title, map_caption(map), provenance, layout.width);
   layout.bar_y = std::ceil(layout.text.body_top() + colour_bar_unit_height);
   layout.grid.y = layout.bar_y + std::floor(0.5 * (layout.bar_height - layout.grid.height));
   const double grid_bottom = layout.grid.bottom() + horizontal_axis_height(layout.x);

@@ -8,6 +8,7 @@ namespace {
 constexpr double bar_thickness = 16.0;
 constexpr double caption_gap = 10.0;
 constexpr Rgb grey = {0.45, 0.45, 0.45};
+constexpr Rgb alarm = {0.78, 0.1, 0.05};
 
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words(1);
@@ -90,7 +91,7 @@ void draw_text(Canvas& canvas, const TextBlock& block, const PagePoint& top_left
 }
 
 double PageText::body_top() const {
-  return page_margin + title.height() + 9.0;
+  return page_margin + title.height() + warnings.height() + 9.0;
 }
 
 double PageText::page_height(double body_height) const {
@@ -99,17 +100,25 @@ double PageText::page_height(double body_height) const {
 }
 
 PageText page_text(const std::string& title, const std::string& caption,
-                   const std::string& provenance, double page_width) {
+                   const Provenance& provenance, double page_width) {
   const double width = page_width - 2.0 * page_margin;
+  std::string warnings;
+  for (const std::string& warning : provenance.warnings) {
+    warnings += (warnings.empty() ? "WARNING: " : "; ") + warning;
+  }
+  const TextStyle loud = {.size = 10.5, .colour = alarm, .bold = true};
   PageText page{fitted_text(title, width, {.size = 15.0, .bold = true}, 10.0, 2),
+                fitted_text(warnings, width, loud, 7.5, 4),
                 fitted_text(caption, width, {.size = 10.5}, 8.5, 3),
-                fitted_text(provenance, width, {.size = 7.5, .colour = grey}, 6.5, 2)};
+                fitted_text(provenance.one_line(), width, {.size = 7.5, .colour = grey}, 6.5, 2)};
   if (caption.empty()) page.caption.lines.clear();
+  if (warnings.empty()) page.warnings.lines.clear();
   return page;
 }
 
 void draw_page_text(Canvas& canvas, const PageText& text, double body_height) {
   draw_text(canvas, text.title, {page_margin, page_margin});
+  draw_text(canvas, text.warnings, {page_margin, page_margin + text.title.height() + 2.0});
   const double caption_top = text.body_top() + body_height + caption_gap;
   draw_text(canvas, text.caption, {page_margin, caption_top});
   draw_text(canvas, text.provenance, {page_margin, caption_top + text.caption.height() + 4.0});

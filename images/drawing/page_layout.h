@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/provenance.h"
 #include "images/canvas/canvas.h"
 #include "images/drawing/axis.h"
 #include "images/drawing/colour_map.h"
@@ -31,13 +32,14 @@ void draw_text(Canvas& canvas, const TextBlock& block, const PagePoint& top_left
 // The texts of a page; the body stands between title and caption.
 struct PageText {
   TextBlock title;
+  TextBlock warnings;  // beneath the title; no lines where all is well
   TextBlock caption;
   TextBlock provenance;
   double body_top() const;
   double page_height(double body_height) const;
 };
 PageText page_text(const std::string& title, const std::string& caption,
-                   const std::string& provenance, double page_width);
+                   const Provenance& provenance, double page_width);
 void draw_page_text(Canvas& canvas, const PageText& text, double body_height);
 
 // An upright colour bar with numbers on its right and the unit above it.

@@ -28,7 +28,7 @@ struct PlotPage {
 PlotPage page_of(const Plot& plot, const Provenance& provenance) {
   require_consistent(plot);
   PlotPage page;
-  page.text = page_text(plot.title, caption_of(plot), provenance.one_line(), page_width);
+  page.text = page_text(plot.title, caption_of(plot), provenance, page_width);
   page.layout = plot_layout(plot, {.left = page_margin,
                                    .right = page_width - page_margin,
                                    .top = std::ceil(page.text.body_top())});

@@ -93,7 +93,7 @@ Picture scene_picture(const SceneView& view, const SceneLabels& labels,
   const double bar_room = largest ? 18.0 + bar.width() : 0.0;
   const double page_width =
       std::ceil(std::max(narrowest_scene_page, image.right() + bar_room + page_margin));
-  const PageText text = page_text(labels.title, labels.caption, provenance.one_line(), page_width);
+  const PageText text = page_text(labels.title, labels.caption, provenance, page_width);
   image.y = std::ceil(text.body_top()) + 2.0;
   const double body_height =
       std::max(image.height, bar_height + colour_bar_unit_height) + image.y - text.body_top();

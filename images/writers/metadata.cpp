@@ -9,11 +9,15 @@ using Json = nlohmann::ordered_json;
 Json provenance_json(const Provenance& provenance) {
   Json inputs = Json::object();
   for (const auto& [file, hash] : provenance.inputs) inputs[clean_text(file)] = clean_text(hash);
-  return {{"program", clean_text(provenance.program)},
-          {"version", clean_text(provenance.version)},
-          {"git_hash", clean_text(provenance.git_hash)},
-          {"seed", provenance.seed},
-          {"inputs", inputs}};
+  Json json = {{"program", clean_text(provenance.program)},
+               {"version", clean_text(provenance.version)},
+               {"git_hash", clean_text(provenance.git_hash)},
+               {"seed", provenance.seed},
+               {"inputs", inputs}};
+  for (const std::string& warning : provenance.warnings) {
+    json["warnings"].push_back(clean_text(warning));
+  }
+  return json;
 }
 
 Json map_json(const Map& map, const Provenance& provenance) {

@@ -8,7 +8,11 @@ namespace photorque {
 
 std::string summary_json(const Product& product, const Provenance& provenance,
                          const RunCost& cost) {
-  nlohmann::ordered_json summary = {{"schema", "photorque.summary/1"}};
+  nlohmann::ordered_json summary = {{"schema", "photorque.summary/1"},
+                                    {"warnings", nlohmann::ordered_json::array()}};
+  for (const std::string& warning : provenance.warnings) {
+    summary["warnings"].push_back(clean_text(warning));
+  }
   for (const auto& [name, estimate] : product.quantities) {
     const std::string key = clean_text(name);
     if (summary.contains(key) || key == "provenance") {

@@ -171,7 +171,7 @@ Estimates estimate(const PreparedArray& array, const ArrayLight& light, const Li
       squares += (h.value[k] - average) * (h.value[k] - average);
     }
     estimates[k].standard_error = std::sqrt((count - 1.0) / count * squares);
-    estimates[k] = with_common_error(estimates[k], light.power_W.common_error);
+    estimates[k] = with_common_error(estimates[k], light.power_W.common_error());
   }
   return estimates;
 }

@@ -41,8 +41,7 @@ ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums, con
                    grid.area_m2,
                    {},
                    entry};
-  light.power_W = {
-      grid.bins() * static_cast<size_t>(light.bands), sums.replicates, {}, sums.common_error};
+  light.power_W = {grid.bins() * static_cast<size_t>(light.bands), sums.replicates, {}, {}};
   const size_t bounced = receiver.direct_entries();
   for (int r = 0; r < sums.replicates; ++r) {
     const auto all = sums.of(r);
@@ -50,6 +49,7 @@ ArrayLight array_light(const FluxMapReceiver& receiver, const BinSums& sums, con
       for (size_t band = 0; band < static_cast<size_t>(light.bands); ++band) {
         const size_t incident = receiver.entry(bin, band);
         light.power_W.sums.push_back(all[incident] + all[bounced + incident]);
+        if (r == 0) light.power_W.bound.push_back(sums.bound_of(incident));
       }
     }
   }

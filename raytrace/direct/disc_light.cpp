@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/constants.h"
@@ -11,26 +10,37 @@
 namespace photorque {
 namespace {
 
-constexpr size_t segment_steps = 4096;
-
-double rise_of(double angle_rad) {
-  const double sine = std::sin(0.5 * angle_rad);
-  return 2.0 * sine * sine;
-}
-
-double angle_of(double rise) {
-  return 2.0 * std::asin(std::sqrt(std::clamp(0.5 * rise, 0.0, 1.0)));
+// ∫ sin²ω/u² dω from ω to π, with sin(ω/2) = `half_sine`, u² = R² + d² − 2Rd cos ω.
+// Source: I. S. Gradshteyn, I. M. Ryzhik, Table of Integrals, 2.553 and 2.555.
+double tail_integral(double radius_m, double distance_m, double half_sine) {
+  const double a = radius_m * radius_m + distance_m * distance_m;
+  const double b = 2.0 * radius_m * distance_m;
+  const double half_turn = std::asin(half_sine), turn = 2.0 * half_turn;
+  constexpr double flat = 0.05;  // the closed form cancels where u hardly changes
+  if (b < flat * a) {
+    return integrate(
+        gauss_8,
+        [&](double w) {
+          const double sine = std::sin(w);
+          return sine * sine / (a - b * std::cos(w));
+        },
+        turn, pi);
+  }
+  const double half_cosine = std::sqrt(1.0 - half_sine * half_sine);
+  const double gap = std::abs(radius_m - distance_m), sum = radius_m + distance_m;
+  return (a * (pi - turn) - 2.0 * b * half_sine * half_cosine -
+          2.0 * gap * sum * std::atan2(gap * half_cosine, sum * half_sine)) /
+         (b * b);
 }
 
 }  // namespace
 
 DiscLight::DiscLight(const Emitter& emitter, UniformAperture aperture)
     : emitter_(emitter), aperture_(std::move(aperture)) {
+  parallel_irradiance_W_m2_ = aperture_.exitance_W_m2;
   if (aperture_.edges_rad.back() > 0.0) {
-    tabulate();
-    find_angles();
-  } else {
-    parallel_irradiance_W_m2_ = aperture_.exitance_W_m2;
+    angles_.emplace(emitter, aperture_.edges_rad);
+    parallel_irradiance_W_m2_ *= angles_->mean_cosine();
   }
 }
 
@@ -38,150 +48,182 @@ bool DiscLight::parallel() const {
   return std::isinf(aperture_.radius_m);
 }
 
-void DiscLight::tabulate() {
-  constexpr double inside = 1.0 - 1e-14;  // a profile may end at the edge itself
-  double low_rad = 0.0, flux = 0.0;
-  for (const double high_rad : aperture_.edges_rad) {
-    Segment segment{rise_of(low_rad), rise_of(high_rad), 0.0, {}};
-    const double step = (segment.high - segment.low) / static_cast<double>(segment_steps);
-    segment.per_step = 1.0 / step;
-    for (size_t i = 0; i <= segment_steps; ++i) {
-      const double angle = angle_of(segment.low + step * static_cast<double>(i));
-      const double within = std::clamp(angle, low_rad * (2.0 - inside), high_rad * inside);
-      segment.value.push_back(emitter_.relative_intensity(within));
-    }
-    for (size_t i = 0; i < segment_steps; i += 2) {  // Simpson
-      flux += 2.0 * pi * step / 3.0 *
-              (segment.value[i] + 4.0 * segment.value[i + 1] + segment.value[i + 2]);
-    }
-    segments_.push_back(std::move(segment));
-    low_rad = high_rad;
-  }
-  double jump = segments_.back().value.back();
-  for (size_t i = 0; i + 1 < segments_.size(); ++i) {
-    jump = std::max(jump, std::abs(segments_[i].value.back() - segments_[i + 1].value.front()));
-  }
-  fades_out_ = jump < 1e-9 * segments_.front().value.front();
-  for (Segment& segment : segments_) {
-    for (double& value : segment.value) value /= flux;
-  }
-}
-
-// Sums the table from the edge inwards: what lies outside an angle is then small and exact.
-void DiscLight::find_angles() {
-  constexpr double negligible = 1e-9;
-  double outside = 0.0, projected = 0.0;
-  reach_rad_ = aperture_.edges_rad.back();
-  for (size_t s = segments_.size(); s-- > 0;) {
-    const Segment& segment = segments_[s];
-    const double step = 1.0 / segment.per_step;
-    for (size_t i = segment_steps; i-- > 0;) {
-      const double ring = pi * step * (segment.value[i] + segment.value[i + 1]);
-      const double rise = segment.low + step * static_cast<double>(i);
-      projected += ring * (1.0 - rise - 0.5 * step);
-      if (outside < negligible) reach_rad_ = angle_of(rise + step);
-      if (outside < 0.5 && outside + ring >= 0.5) {
-        half_flux_rad_ = angle_of(rise + step * (outside + ring - 0.5) / ring);
-      }
-      outside += ring;
-    }
-  }
-  parallel_irradiance_W_m2_ = aperture_.exitance_W_m2 * projected / outside;
-  half_flux_slope_ = std::tan(std::min(half_flux_rad_, 1.5));
-  // The edge of all light is taken where hardly any is left.
-  for (const double edge_rad : aperture_.edges_rad) {
-    const double end_rad = std::min(edge_rad, reach_rad_);
-    edge_slopes_.push_back(end_rad < 1.57 ? std::tan(end_rad)
-                                          : std::numeric_limits<double>::infinity());
-  }
-}
-
 bool DiscLight::lights_front(const Vec3& normal) const {
   const double tilt = std::acos(std::clamp(-normal.z(), -1.0, 1.0));
-  return tilt + aperture_.edges_rad.back() < 0.5 * pi;
+  return tilt + reach_rad() < 0.5 * pi;
 }
 
-// Per du, over the exitance.
-double DiscLight::integrand(double u_m, double height_m, double half_arc, double sine_arc,
-                            double normal_axis, double normal_away) const {
-  const double u2 = u_m * u_m;
-  const double distance = std::sqrt(height_m * height_m + u2);
-  const double cosine = height_m / distance, sine = u_m / distance;
-  const double rise = sine * sine / (1.0 + cosine);
-  const double facing = -normal_axis * cosine * half_arc - normal_away * sine * sine_arc;
-  return 2.0 * facing * intensity_per_flux(rise) * u_m / (distance * distance);
-}
-
-// The mean over the disc by the rule of degree 7 with 12 points.
-// Source: A. H. Stroud, Approximate Calculation of Multiple Integrals (1971), S2: 7-1.
-double DiscLight::from_small_disc(const Vec3& point_m, const Vec3& normal) const {
-  constexpr double a = 0.86602540378443864676, a_weight = 2.0 / 27.0;  // a² = 3/4
-  constexpr double b = 0.3229149920674005;                             // b² = (27 − 3 √29)/104
-  constexpr double b_weight = 0.12321068919101448;                     // (551 + 41 √29)/6264
-  constexpr double c = 0.6441713103894645;                             // c² = (27 + 3 √29)/104
-  constexpr double c_weight = 0.05271523673491145;                     // (551 − 41 √29)/6264
-  constexpr double node[12][3] = {{a, 0, a_weight},  {-a, 0, a_weight},  {0, a, a_weight},
-                                  {0, -a, a_weight}, {b, b, b_weight},   {b, -b, b_weight},
-                                  {-b, b, b_weight}, {-b, -b, b_weight}, {c, c, c_weight},
-                                  {c, -c, c_weight}, {-c, c, c_weight},  {-c, -c, c_weight}};
-  const double z = point_m.z(), radius = aperture_.radius_m;
-  double sum = 0.0;
-  for (const auto& [node_x, node_y, weight] : node) {
-    const double x = point_m.x() - radius * node_x, y = point_m.y() - radius * node_y;
-    const double across2 = x * x + y * y, distance2 = across2 + z * z;
-    const double distance = std::sqrt(distance2);
-    const double facing = -(normal.x() * x + normal.y() * y + normal.z() * z);
-    const double rise = across2 / (distance * (distance + z));
-    sum += weight * intensity_per_flux(rise) * facing / (distance2 * distance);
-  }
-  return pi * radius * radius * aperture_.exitance_W_m2 * sum;
+double DiscLight::typical_W_m2(double height_m) const {
+  const double foot_m = height_m * std::tan(std::min(half_flux_rad(), 1.4));
+  const double area_m2 = pi * (radius_m() * radius_m() + foot_m * foot_m);
+  return 0.5 * exitance_W_m2() * pi * radius_m() * radius_m() / area_m2;
 }
 
 double DiscLight::irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const {
   if (parallel()) return -normal.z() * parallel_irradiance_W_m2_;
-  const double h = point_m.z();
-  if (!(h > 0.0)) return 0.0;
-  const double radius = aperture_.radius_m;
-  const double half_flux = h * half_flux_slope_;
-  const bool small = radius < std::min(0.6 * half_flux, 0.35 * h);
-  if (fades_out_ && small) return from_small_disc(point_m, normal);
+  if (!(point_m.z() > 0.0)) return 0.0;
   const double d = std::hypot(point_m.x(), point_m.y());
   const double away = d > 0.0 ? (normal.x() * point_m.x() + normal.y() * point_m.y()) / d : 0.0;
-  const auto rule_for = [&](double range, size_t least) {
-    const double wanted = 3.0 + 6.0 * range / half_flux;
-    return gauss_legendre(std::max(least, static_cast<size_t>(std::min(wanted, 64.0))));
+  const Eigen::Array2d factors = factors_W_m2(d, point_m.z());
+  return -normal.z() * factors[0] - away * factors[1];
+}
+
+Eigen::Array2d DiscLight::factors_W_m2(double distance_m, double height_m) const {
+  const double h = height_m, d = distance_m, radius = aperture_.radius_m;
+  // Per du, over the exitance.
+  const auto density = [&](double u, double half_arc, double sine_arc) -> Eigen::Array2d {
+    const double distance2 = h * h + u * u, distance = std::sqrt(distance2);
+    const double rise = u * u / (distance * (distance + h));
+    const double ring = 2.0 * angles_->intensity_per_flux(rise) * u / (distance2 * distance);
+    return {ring * h * half_arc, ring * u * sine_arc};
+  };
+  const auto whole_circle = [&](double u) { return density(u, pi, 0.0); };
+  const double middle = std::max(radius, d), width = std::min(radius, d);
+  const auto arc = [&](double psi) -> Eigen::Array2d {
+    const double half_sine = std::sin(0.5 * psi);
+    const double half_cosine = std::sqrt(std::max(0.0, 1.0 - half_sine * half_sine));
+    const double sine = 2.0 * half_sine * half_cosine;
+    const double u = middle - width + 2.0 * width * half_sine * half_sine;
+    if (!(u > 0.0)) return Eigen::Array2d::Zero();
+    // Half of α by its sine or cosine, neither of which cancels.
+    const double part =
+        std::min(1.0, d > radius ? radius * sine / std::sqrt(4.0 * u * d)
+                                 : half_sine * std::sqrt((u + d + radius) / (2.0 * u)));
+    const double half = std::asin(part);
+    return width * sine *
+           density(u, d > radius ? 2.0 * half : pi - 2.0 * half,
+                   2.0 * part * std::sqrt(1.0 - part * part));
+  };
+  const auto turn = [&](double u) {
+    return std::acos(std::clamp((middle - u) / width, -1.0, 1.0));
   };
 
-  double sum = 0.0, low = 0.0;
-  for (const double slope : edge_slopes_) {
-    const double from_m = low, high = std::min(h * slope, radius + d);
-    low = high;
-    // Whole circles on the disc.
-    const double whole = std::min(high, radius - d);
-    if (whole > from_m) {
-      const double half = 0.5 * (whole - from_m);
-      for (const auto& [x, w] : rule_for(whole - from_m, 6)) {
-        sum += w * half * integrand(from_m + half * (1.0 + x), h, pi, 0.0, normal.z(), away);
-      }
-    }
-    // Arcs.
-    const double inner = std::max(from_m, std::abs(radius - d)), outer = std::min(high, radius + d);
-    if (outer <= inner || d <= 0.0) continue;
-    const double middle = std::max(radius, d), width = std::min(radius, d);
-    const auto turn = [&](double u) {
-      return std::acos(std::clamp((middle - u) / width, -1.0, 1.0));
-    };
-    const double from = turn(inner), half = 0.5 * (turn(outer) - from);
-    for (const auto& [x, w] : rule_for(outer - inner, 10)) {
-      const double psi = from + half * (1.0 + x);
-      const double u = middle - width * std::cos(psi);
-      const double cosine =
-          std::clamp((u * u + d * d - radius * radius) / (2.0 * u * d), -1.0, 1.0);
-      sum += w * half * width * std::sin(psi) *
-             integrand(u, h, std::acos(cosine), std::sqrt(1.0 - cosine * cosine), normal.z(), away);
-    }
+  constexpr double relative = 2e-8;
+  const double tolerance = relative * typical_W_m2(h) / aperture_.exitance_W_m2;
+  Eigen::Array2d sum = Eigen::Array2d::Zero();
+  double low = 0.0;
+  for (const double slope : angles_->edge_slopes()) {
+    const double from = low, to = std::min(h * slope, radius + d);
+    low = to;
+    const double whole = std::min(to, radius - d);
+    if (whole > from) sum += integrate_adaptively(whole_circle, from, whole, tolerance).value;
+    const double inner = std::max(from, std::abs(radius - d));
+    if (to <= inner || d <= 0.0) continue;
+    const bool all = d > radius && inner == d - radius && to == d + radius;
+    sum += all ? integrate_half_turn(arc, tolerance).value
+               : integrate_adaptively(arc, turn(inner), turn(to), tolerance).value;
   }
   return aperture_.exitance_W_m2 * sum;
+}
+
+Integral<double> DiscLight::mean_within_W_m2(double distance_m, double height_m,
+                                             double tolerance_W_m2) const {
+  const double radius = aperture_.radius_m, h = height_m;
+  const double d = std::max(distance_m, 1e-7 * radius);  // M is even and smooth at the axis
+  const double gap = std::abs(radius - d), product = 4.0 * radius * d;
+  const double per_integral = 2.0 / pi * aperture_.exitance_W_m2 * radius * radius;  // 2Φ/π²
+  const auto density = [&](double w) {
+    const double half_sine = std::sin(0.5 * w), half_cosine2 = 1.0 - half_sine * half_sine;
+    const double u2 = gap * gap + product * half_sine * half_sine;
+    const double sine2 = 4.0 * half_sine * half_sine * half_cosine2;
+    return angles_->flux_within(rise_at_slope(u2 / (h * h))) * sine2 / u2;
+  };
+  // ω where u is this.
+  const auto half_sine_at = [&](double u) {
+    return std::sqrt(std::clamp((u - gap) * (u + gap) / product, 0.0, 1.0));
+  };
+  Integral<double> sum{0.0, 0.0};
+  double low = 0.0, low_turn = 0.0;
+  for (const double slope : angles_->edge_slopes()) {
+    const double half_sine = std::isfinite(slope) ? half_sine_at(h * slope) : 1.0;
+    if (half_sine <= low) continue;
+    const double turn = half_sine < 1.0 ? 2.0 * std::asin(half_sine) : pi;
+    const double aim = tolerance_W_m2 / per_integral;
+    const auto piece = low_turn == 0.0 && turn == pi
+                           ? integrate_half_turn(density, aim)
+                           : integrate_adaptively(density, low_turn, turn, aim);
+    sum = {sum.value + piece.value, sum.error + piece.error};
+    low = half_sine;
+    low_turn = turn;
+  }
+  if (low < 1.0) sum.value += tail_integral(radius, d, low);
+  return {per_integral * sum.value, per_integral * sum.error};
+}
+
+// Fractions of the way between two points at which the circle about the axis touches the rim of
+// the light of an edge: d = |R ± h tan θ|; rising, in (0, 1).
+std::vector<double> DiscLight::kinks_along(const Vec3& from_m, const Vec3& to_m) const {
+  std::vector<double> kinks;
+  if (angles_->fades_out()) return kinks;
+  const Vec3 way = to_m - from_m;
+  for (const double slope : angles_->edge_slopes()) {
+    if (!std::isfinite(slope)) continue;
+    for (const double side : {-slope, slope}) {
+      const double start = radius_m() + side * from_m.z(), change = side * way.z();
+      const double a = way.head<2>().squaredNorm() - change * change;
+      const double b = from_m.head<2>().dot(way.head<2>()) - start * change;
+      const double c = from_m.head<2>().squaredNorm() - start * start;
+      const double discriminant = b * b - a * c;
+      if (!(discriminant > 0.0)) continue;
+      const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+      for (const double root : {q / a, c / q}) {
+        if (root > 0.0 && root < 1.0) kinks.push_back(root);
+      }
+    }
+  }
+  std::sort(kinks.begin(), kinks.end());
+  return kinks;
+}
+
+// ½ ∫ M (x dy − y dx) along a straight line.
+Integral<double> DiscLight::along_edge_W(const Vec3& from_m, const Vec3& to_m,
+                                         double tolerance_W) const {
+  const double twice_area_m2 = from_m.x() * to_m.y() - from_m.y() * to_m.x();
+  Integral<double> sum{0.0, 0.0};
+  if (twice_area_m2 == 0.0) return sum;
+  const double half = 0.5 * twice_area_m2, tolerance_W_m2 = 0.5 * tolerance_W / std::abs(half);
+  double worst_W_m2 = 0.0;
+  const auto mean_within = [&](double s) {
+    const Vec3 at = from_m + s * (to_m - from_m);
+    const auto mean = mean_within_W_m2(at.head<2>().norm(), at.z(), tolerance_W_m2);
+    worst_W_m2 = std::max(worst_W_m2, mean.error);
+    return mean.value;
+  };
+  std::vector<double> ends = kinks_along(from_m, to_m);
+  ends.push_back(1.0);
+  double low = 0.0;
+  for (const double high : ends) {
+    const double part = high - low;
+    const auto piece =
+        integrate_adaptively(mean_within, low, high, std::max(part, 1e-3) * tolerance_W_m2);
+    sum = {sum.value + half * piece.value, sum.error + std::abs(half) * piece.error};
+    low = high;
+  }
+  sum.error += std::abs(half) * worst_W_m2;
+  return sum;
+}
+
+Integral<double> DiscLight::power_through_W(std::span<const Vec3> polygon_m,
+                                            double tolerance_W) const {
+  // Light is in front of the aperture's plane only.
+  std::vector<Vec3> corners;
+  for (size_t i = 0; i < polygon_m.size(); ++i) {
+    const Vec3 &from = polygon_m[i], &to = polygon_m[(i + 1) % polygon_m.size()];
+    if (from.z() >= lowest_m()) corners.push_back(from);
+    if ((from.z() >= lowest_m()) != (to.z() >= lowest_m())) {
+      corners.push_back(from + (lowest_m() - from.z()) / (to.z() - from.z()) * (to - from));
+    }
+  }
+  Integral<double> sum{0.0, 0.0};
+  double twice_area_m2 = 0.0;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Vec3 &from = corners[i], &to = corners[(i + 1) % corners.size()];
+    const auto side = along_edge_W(from, to, tolerance_W / static_cast<double>(corners.size()));
+    sum = {sum.value + side.value, sum.error + side.error};
+    twice_area_m2 += from.x() * to.y() - from.y() * to.x();
+  }
+  if (twice_area_m2 < 0.0) sum.value = -sum.value;
+  return sum;
 }
 
 }  // namespace photorque

@@ -11,30 +11,33 @@ namespace {
 
 constexpr double root_half = 0.70710678118654752440;
 
-double factor_a(const DiscLight& light, double distance_m, double height_m) {
-  return light.irradiance_W_m2({distance_m, 0.0, height_m}, -Vec3::UnitZ());
-}
-double factor_b(const DiscLight& light, double distance_m, double height_m) {
-  return light.irradiance_W_m2({distance_m, 0.0, height_m}, -Vec3::UnitX());
+// Terms of a series whose next falls by `ratio`: heights on a scale of their middle.
+size_t degrees_for(double ratio) {
+  constexpr double negligible = 1e-8;
+  if (ratio < 1e-9) return 1;
+  const double wanted = 1.0 + std::log(negligible) / std::log(std::min(ratio, 0.5));
+  return std::min<size_t>(static_cast<size_t>(wanted) + 1, IrradianceTable::max_degrees);
 }
 
 }  // namespace
 
-IrradianceTable::IrradianceTable(double low_m, double high_m, std::vector<Kink> kinks)
+IrradianceTable::IrradianceTable(double low_m, double high_m, std::vector<Kink> kinks, size_t steps)
     : middle_m_(0.5 * (low_m + high_m)),
       half_range_m_(0.5 * (high_m - low_m)),
-      degrees_(half_range_m_ > 1e-9 * middle_m_ ? max_degrees : 1),
+      degrees_(degrees_for(half_range_m_ / middle_m_)),
+      steps_(steps),
       kinks_(std::move(kinks)),
       nodes_(2 * (kinks_.size() - 1) * (steps + 1)) {}
 
 std::optional<IrradianceTable> IrradianceTable::make(const DiscLight& light, double low_m,
                                                      double high_m, int threads) {
-  if (light.parallel() || !(low_m > 0.0) || light.edge_slopes().empty()) return std::nullopt;
-  const double radius_m = light.radius_m(), last_slope = light.edge_slopes().back();
+  if (light.parallel() || !(low_m > 0.0)) return std::nullopt;
+  const std::vector<double>& slopes = light.angles().edge_slopes();
+  const double radius_m = light.radius_m(), last_slope = slopes.back();
   if (!(last_slope < 10.0)) return std::nullopt;
   std::vector<Kink> kinks = {{0.0, 0.0}, {radius_m, last_slope}};
   if (!light.fades_out()) {
-    for (const double slope : light.edge_slopes()) {
+    for (const double slope : slopes) {
       const double sign = radius_m > slope * low_m ? 1.0 : -1.0;
       kinks.push_back({sign * radius_m, -sign * slope});
       if (slope < last_slope) kinks.push_back({radius_m, slope});
@@ -49,52 +52,67 @@ std::optional<IrradianceTable> IrradianceTable::make(const DiscLight& light, dou
       if (!(kinks[k].at(height_m) - kinks[k - 1].at(height_m) > min_m)) return std::nullopt;
     }
   }
-  IrradianceTable table(low_m, high_m, std::move(kinks));
-  table.fill(light, threads);
-  if (!table.agrees_with(light)) return std::nullopt;
-  return table;
+  std::optional<IrradianceTable> coarser;
+  for (size_t steps = fewest_steps; steps <= most_steps; steps *= 2) {
+    IrradianceTable table(low_m, high_m, kinks, steps);
+    table.fill(light, coarser ? &*coarser : nullptr, threads);
+    if (table.agrees_with(light)) return table;
+    // Cubics gain four powers of two with every halving of the steps.
+    const double most_gain =
+        std::pow(static_cast<double>(most_steps) / static_cast<double>(steps), 4.0);
+    if (table.error_W_m2_ > 2.0 * most_gain * tolerance * light.typical_W_m2(middle_m)) break;
+    coarser = std::move(table);
+  }
+  return std::nullopt;
 }
 
 double IrradianceTable::distance_m(size_t half, double place, double height_m) const {
   const double from = kinks_[half / 2].at(height_m), to = kinks_[half / 2 + 1].at(height_m);
-  const double root = root_half * place / static_cast<double>(steps);
+  const double root = root_half * place / static_cast<double>(steps_);
   return half % 2 == 0 ? from + root * root * (to - from) : to - root * root * (to - from);
 }
 
-void IrradianceTable::fill(const DiscLight& light, int threads) {
+void IrradianceTable::fill(const DiscLight& light, const IrradianceTable* coarser, int threads) {
   parallel_for(nodes_.size(), threads, [&](size_t n) {
+    const size_t half = n / (steps_ + 1), place = n % (steps_ + 1);
     Node& node = nodes_[n];
+    if (coarser != nullptr && place % 2 == 0) {
+      node = coarser->nodes_[half * (coarser->steps_ + 1) + place / 2];
+      return;
+    }
     node.setZero();
     for (size_t j = 0; j < degrees_; ++j) {
       const double x = chebyshev_point(degrees_, j);
       const double h = middle_m_ + half_range_m_ * x;
-      const double d = distance_m(n / (steps + 1), static_cast<double>(n % (steps + 1)), h);
-      const std::array<double, 2> value = {factor_a(light, d, h), factor_b(light, d, h)};
+      const Eigen::Array2d factors =
+          light.factors_W_m2(distance_m(half, static_cast<double>(place), h), h);
       for (size_t k = 0; k < degrees_; ++k) {
         const double weight = chebyshev_weight(degrees_, k, std::acos(x));
-        for (size_t f = 0; f < 2; ++f) {
-          node(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(f)) += weight * value[f];
-        }
+        node.row(static_cast<Eigen::Index>(k)) += weight * factors.transpose();
       }
     }
   });
 }
 
-bool IrradianceTable::agrees_with(const DiscLight& light) const {
+bool IrradianceTable::agrees_with(const DiscLight& light) {
   constexpr size_t stride = 7;  // intervals between two that are looked at
   double largest = 0.0, worst = 0.0;
   for (const double x : {-0.97, 0.31}) {
     const double h = middle_m_ + half_range_m_ * x;
     for (size_t half = 0; half < 2 * (kinks_.size() - 1); ++half) {
-      for (size_t step = 0; step < steps; step += stride) {
+      for (size_t step = 0; step < steps_; step += stride) {
         const double d = distance_m(half, static_cast<double>(step) + 0.5, h);
-        const double a = factor_a(light, d, h), b = factor_b(light, d, h);
-        largest = std::max(largest, a);
-        worst = std::max({worst, std::abs(irradiance_W_m2({d, 0.0, h}, -Vec3::UnitZ()) - a),
-                          std::abs(irradiance_W_m2({d, 0.0, h}, -Vec3::UnitX()) - b)});
+        const Eigen::Array2d factors = light.factors_W_m2(d, h);
+        largest = std::max(largest, factors[0]);
+        for (const auto& [axis, factor] : {std::pair{Vec3(Vec3::UnitZ()), factors[0]},
+                                           std::pair{Vec3(Vec3::UnitX()), factors[1]}}) {
+          const double own = irradiance_W_m2({d, 0.0, h}, -axis);
+          worst = std::max(worst, std::abs(own - factor));
+        }
       }
     }
   }
+  error_W_m2_ = worst;
   return worst <= tolerance * largest;
 }
 
@@ -107,18 +125,26 @@ double IrradianceTable::irradiance_W_m2(const Vec3& point_m, const Vec3& normal)
   const double from = kinks_[piece].at(h), to = kinks_[piece + 1].at(h);
   const double along = (d - from) / (to - from);
   const bool near = along < 0.5;
-  const double place = std::sqrt(2.0 * (near ? along : 1.0 - along)) * static_cast<double>(steps);
+  const double place = std::sqrt(2.0 * (near ? along : 1.0 - along)) * static_cast<double>(steps_);
 
   // The cubic through four neighbours.
-  const auto first = std::min(static_cast<size_t>(std::max(place - 1.0, 0.0)), steps - 3);
+  const auto first = std::min(static_cast<size_t>(std::max(place - 1.0, 0.0)), steps_ - 3);
   const double t = place - static_cast<double>(first) - 1.0;
   const double left = t + 1.0, right = t - 1.0, far = t - 2.0;
   const std::array<double, 4> weight = {-t * right * far / 6.0, left * right * far / 2.0,
                                         -left * t * far / 2.0, left * t * right / 6.0};
-  const Node* node = &nodes_[(2 * piece + (near ? 0 : 1)) * (steps + 1) + first];
+  const Node* node = &nodes_[(2 * piece + (near ? 0 : 1)) * (steps_ + 1) + first];
+  const double away = d > 0.0 ? (normal.x() * point_m.x() + normal.y() * point_m.y()) / d : 0.0;
+  if (degrees_ == 1) {
+    std::array<double, 2> factor{};
+    for (Eigen::Index f = 0; f < 2; ++f) {
+      for (size_t i = 0; i < 4; ++i) factor[static_cast<size_t>(f)] += weight[i] * node[i](0, f);
+    }
+    return -normal.z() * factor[0] - away * factor[1];
+  }
   const Node series =
       weight[0] * node[0] + weight[1] * node[1] + weight[2] * node[2] + weight[3] * node[3];
-  const double x = degrees_ > 1 ? (h - middle_m_) / half_range_m_ : 0.0;
+  const double x = (h - middle_m_) / half_range_m_;
   std::array<double, 2> factor{};
   double term = 1.0, next = x;
   for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(degrees_); ++k) {
@@ -128,7 +154,6 @@ double IrradianceTable::irradiance_W_m2(const Vec3& point_m, const Vec3& normal)
     term = next;
     next = after;
   }
-  const double away = d > 0.0 ? (normal.x() * point_m.x() + normal.y() * point_m.y()) / d : 0.0;
   return -normal.z() * factor[0] - away * factor[1];
 }
 

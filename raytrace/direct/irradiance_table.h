@@ -23,14 +23,18 @@ class IrradianceTable {
   // within these heights, or light all the way to the side. The same bits at any `threads`.
   static std::optional<IrradianceTable> make(const DiscLight& light, double low_m, double high_m,
                                              int threads);
-  static constexpr double tolerance = 2e-6;
+  static constexpr double tolerance = 1e-7;
+
+  static constexpr int max_degrees = 8;  // of the series in h
+
+  // Largest difference from the light that was found, half-way between steps [W/m²].
+  double error_W_m2() const { return error_W_m2_; }
 
   // As DiscLight::irradiance_W_m2(), for points of these heights.
   double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const;
 
  private:
-  static constexpr size_t steps = 64;    // per half of a piece
-  static constexpr int max_degrees = 8;  // of the series in h
+  static constexpr size_t fewest_steps = 128, most_steps = 512;  // per half of a piece
 
   // A distance from the axis that moves with the height.
   struct Kink {
@@ -39,17 +43,19 @@ class IrradianceTable {
   };
   using Node = Eigen::Array<double, max_degrees, 2>;  // coefficients of A and of B
 
-  IrradianceTable(double low_m, double high_m, std::vector<Kink> kinks);
-  void fill(const DiscLight& light, int threads);
-  bool agrees_with(const DiscLight& light) const;
+  IrradianceTable(double low_m, double high_m, std::vector<Kink> kinks, size_t steps);
+  // `coarser` has half as many steps, or is null.
+  void fill(const DiscLight& light, const IrradianceTable* coarser, int threads);
+  bool agrees_with(const DiscLight& light);
   // The distance of a place in the table: node `place` (may be between two) of half 2 · piece or
   // 2 · piece + 1.
   double distance_m(size_t half, double place, double height_m) const;
 
   double middle_m_, half_range_m_;  // of the heights
-  size_t degrees_;
+  size_t degrees_, steps_;
+  double error_W_m2_ = 0.0;
   std::vector<Kink> kinks_;  // rising, from the axis to where the light ends
-  std::vector<Node> nodes_;  // half by half, steps + 1 each
+  std::vector<Node> nodes_;  // half by half, steps_ + 1 each
 };
 
 }  // namespace photorque

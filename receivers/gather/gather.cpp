@@ -24,7 +24,8 @@ class Gather {
         options_(options),
         triangles_(triangles_above(scene.scene(), plane_.patches().point_m, plane_.normal())),
         open_light_(plane_, tile_side),
-        open_W_(map.direct_entries(), 0.0) {
+        open_W_(map.direct_entries(), 0.0),
+        open_bound_W_(map.direct_entries(), 0.0) {
     const RigidTransform body_from_lab = lab_from_body.inverse();
     // The LEDs of an array share one emitter and its tables.
     std::map<const Emitter*, std::shared_ptr<const DiscLight>> lights;
@@ -64,7 +65,7 @@ class Gather {
 
   // A table of a light for all its lamps above the plane, where it pays.
   void make_table(const DiscLight& light) {
-    constexpr size_t min_pairs = 5000;  // of a bin and a lamp
+    constexpr size_t min_pairs = 2000;  // of a bin and a lamp
     double low_m = INFINITY, high_m = 0.0;
     std::vector<GatherLamp*> served;
     for (GatherLamp& lamp : lamps_) {
@@ -122,28 +123,21 @@ class Gather {
     const Ball ball = plane_.ball_of(tile);
     if (lamp.misses(ball)) return 0;
     const std::vector<uint32_t> occluders = in_shaft(ball, lamp, candidates);
-    if (lamp.lights_front() && occluders.empty()) return open_light_.add(tile, ball, lamp, open_W_);
+    if (lamp.lights_front() && occluders.empty()) {
+      return open_light_.add(tile, ball, lamp, {open_W_, open_bound_W_});
+    }
     if (tile.count() == 1) {
       const size_t bin = plane_.bin_at(tile.column, tile.row);
       if (!plane_.patches().of(bin).empty()) shaded.push_back({static_cast<uint32_t>(bin), index});
       return 0;
     }
-    BinTile low = tile, high = tile;
-    if (tile.columns >= tile.rows) {
-      low.columns = tile.columns / 2;
-      high.column += low.columns;
-      high.columns -= low.columns;
-    } else {
-      low.rows = tile.rows / 2;
-      high.row += low.rows;
-      high.rows -= low.rows;
-    }
+    const auto [low, high] = tile.halves();
     const size_t open = descend(low, index, occluders, shaded);
     return open + descend(high, index, occluders, shaded);
   }
 
   BinSums sample(int points, uint64_t& rays) const {
-    BinSums sums{plane_.map().direct_entries(), options_.replicates, {}, quadrature_error};
+    BinSums sums{plane_.map().direct_entries(), options_.replicates, {}, open_bound_W_};
     for (int r = 0; r < options_.replicates; ++r) {
       sums.sums.insert(sums.sums.end(), open_W_.begin(), open_W_.end());
     }
@@ -183,7 +177,9 @@ class Gather {
         for (size_t band = 0; band < bands; ++band) density[r] += all[map.entry(bin, band)];
         density[r] /= area_m2;
       }
-      bins.push_back(with_common_error(estimate_from_replicates(density), sums.common_error));
+      double bound_W = 0.0;
+      for (size_t band = 0; band < bands; ++band) bound_W += sums.bound_of(map.entry(bin, band));
+      bins.push_back(with_bound(estimate_from_replicates(density), bound_W / area_m2));
       peak = std::max(peak, bins.back().value);
     }
     double worst = 0.0;
@@ -202,7 +198,7 @@ class Gather {
   std::vector<std::vector<uint32_t>> occluders_;  // per lamp
   std::vector<BinTile> tiles_;
   OpenLight open_light_;
-  std::vector<double> open_W_;
+  std::vector<double> open_W_, open_bound_W_;
   std::vector<std::vector<ShadedPair>> shaded_;  // per tile, lamp by lamp
 };
 

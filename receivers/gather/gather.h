@@ -28,11 +28,9 @@ struct GatherOptions {
   double floor = 0.1;
 };
 
-// Bound of the relative error of what comes by quadrature, see disc_light.h.
-inline constexpr double quadrature_error = 1e-5;
-
 struct Gathered {
-  // The direct entries of the flux map, replicate by replicate; quadrature_error in common.
+  // The direct entries of the flux map, replicate by replicate, with the error of the quadrature
+  // as it was estimated for each.
   BinSums direct;
   size_t open_pairs = 0;  // of a bin and a beam, by quadrature
   size_t shaded_pairs = 0;

@@ -1,6 +1,7 @@
 #include "receivers/gather/open_light.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <set>
 
@@ -9,19 +10,34 @@
 namespace photorque {
 namespace {
 
-// 2 × 2 Gauss points, or the three-point rule of degree 2.
-double mean_irradiance_W_m2(const SurfacePatch& patch, const GatherLamp& lamp) {
-  const auto irradiance = [&](double a, double b) {
-    return lamp.irradiance_W_m2(patch.origin_m + a * patch.edge1_m + b * patch.edge2_m);
-  };
-  constexpr double third = 1.0 / 3.0, sixth = 1.0 / 6.0;
-  if (patch.triangle) {
-    return third *
-           (irradiance(sixth, sixth) + irradiance(4 * sixth, sixth) + irradiance(sixth, 4 * sixth));
+// How much the terms after the last of a Chebyshev series add, from its four highest coefficients
+// (rows) for any number of series (columns): they go on falling as they do.
+double remainder_of(const Eigen::MatrixXd& highest) {
+  double worst = 0.0;
+  for (Eigen::Index k = 0; k < highest.cols(); ++k) {
+    const double before = highest.col(k).head<2>().cwiseAbs().maxCoeff();
+    const double last = highest.col(k).tail<2>().cwiseAbs().maxCoeff();
+    const double ratio = before > 0.0 ? std::min(last / before, 0.9) : 0.9;
+    worst = std::max(worst, 2.0 * last * ratio / (1.0 - ratio));
   }
-  constexpr double low = 0.21132486540518712, high = 1.0 - low;
-  return 0.25 * (irradiance(low, low) + irradiance(high, low) + irradiance(low, high) +
-                 irradiance(high, high));
+  return worst;
+}
+
+// The mean of a function of the coordinates (a, b) over a triangle a, b ≥ 0, a + b ≤ 1, by the rule
+// of degree 5 with seven points; its error by a rule of degree 2.
+// Source: A. H. Stroud, Approximate Calculation of Multiple Integrals (1971), T2: 5-1 and 2-1.
+template <typename Function>
+Integral<double> triangle_mean(const Function& f) {
+  const auto ring = [&](double near) {  // three points towards the corners
+    const double far = 1.0 - 2.0 * near;
+    return f(near, near) + f(far, near) + f(near, far);
+  };
+  constexpr double inner = 0.47014206410511509, inner_weight = 0.13239415278850618;
+  constexpr double outer = 0.10128650732345634, outer_weight = 0.12593918054482715;
+  constexpr double third = 1.0 / 3.0;
+  const double mean =
+      0.225 * f(third, third) + inner_weight * ring(inner) + outer_weight * ring(outer);
+  return {mean, std::abs(mean - third * ring(1.0 / 6.0))};
 }
 
 }  // namespace
@@ -39,47 +55,64 @@ OpenLight::OpenLight(const GatherPlane& plane, int tile_side) : plane_(plane) {
     halve(std::min(bins, tile_side));
     if (bins > tile_side && bins % tile_side > 0) halve(bins % tile_side);
   }
-  const auto largest = static_cast<size_t>(tile_side);
-  for (const int cells : sizes) {
+  for (const int side : sizes) {
     for (size_t nodes = min_nodes; nodes <= max_nodes; ++nodes) {
-      if (nodes * nodes >= 4 * largest * largest) break;
-      cell_means_[{nodes, static_cast<size_t>(cells)}] =
-          chebyshev_cell_means(nodes, static_cast<size_t>(cells));
+      const auto cells = static_cast<size_t>(side);
+      interpolations_[{nodes, cells}] = {chebyshev_cell_means(nodes, cells),
+                                         chebyshev_coefficients(nodes).bottomRows(4)};
     }
   }
 }
 
 size_t OpenLight::add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp,
-                      std::span<double> entries) const {
-  // Fewer points than two Gauss points a side of every bin, where the irradiance is smooth.
-  const double turns = 2.0 * ball.radius_m / lamp.scale_m(ball);
-  const auto nodes = min_nodes + static_cast<size_t>(std::min(4.0 * turns, 100.0));
+                      const OpenEntries& entries) const {
+  Sides sides;
+  return add(tile, ball, lamp, sides, entries);
+}
+
+size_t OpenLight::add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp, Sides& sides,
+                      const OpenEntries& entries) const {
   const auto count = static_cast<size_t>(tile.count());
-  const bool smooth = nodes <= max_nodes && nodes * nodes < 4 * count && lamp.smooth_over(ball);
-  std::vector<double> mean_W_m2;
-  if (smooth) mean_W_m2 = interpolate(tile, nodes, lamp);
-  size_t open = 0, at = 0;
-  for (int row = tile.row; row < tile.row + tile.rows; ++row) {
-    for (int column = tile.column; column < tile.column + tile.columns; ++column, ++at) {
-      const size_t bin = plane_.bin_at(column, row);
-      for (const SurfacePatch& patch : plane_.patches().of(bin)) {
-        const double mean =
-            smooth && plane_.whole(bin) ? mean_W_m2[at] : mean_irradiance_W_m2(patch, lamp);
-        plane_.add_power(patch.area_m2 * mean, lamp.fraction(), bin, patch.instance, entries);
+  const double tolerance_W_m2 = tolerance * lamp.typical_W_m2(ball);
+  const double turns = 2.0 * ball.radius_m / lamp.scale_m(ball);
+  // More points than this are no gain over halving the tile, or over the outline of a bin.
+  const size_t most =
+      std::min(max_nodes,
+               count == 1 ? 8 : static_cast<size_t>(std::sqrt(16.0 * static_cast<double>(count))));
+  const auto fewest = min_nodes + static_cast<size_t>(std::min(3.0 * turns, 100.0));
+  if (fewest <= most && lamp.smooth_over(ball)) {
+    for (size_t nodes = fewest; nodes <= std::min(most, fewest + 4); nodes += 2) {
+      const TileMeans means = interpolate(tile, nodes, lamp);
+      if (means.error_W_m2 - lamp.table_error_W_m2() <= tolerance_W_m2) {
+        return add_smooth(tile, means, lamp, tolerance_W_m2, entries);
       }
-      open += plane_.patches().of(bin).empty() ? 0 : 1;
     }
+  }
+  if (count == 1) {
+    const size_t bin = plane_.bin_at(tile.column, tile.row);
+    const auto patches = plane_.patches().of(bin);
+    for (const SurfacePatch& patch : patches) {
+      const Integral<double> power =
+          plane_.whole(bin) ? power_W(tile.column, tile.row, lamp, tolerance_W_m2, sides)
+                            : power_W(patch, lamp, tolerance_W_m2);
+      add_patch(power, patch, bin, lamp, entries);
+    }
+    return patches.empty() ? 0 : 1;
+  }
+  size_t open = 0;
+  const auto [low, high] = tile.halves();
+  for (const BinTile& half : {low, high}) {
+    const Ball half_ball = plane_.ball_of(half);
+    if (!lamp.misses(half_ball)) open += add(half, half_ball, lamp, sides, entries);
   }
   return open;
 }
 
-// Mean irradiance of the whole bins of a tile, row by row, from its values at nodes × nodes
-// Chebyshev points.
-std::vector<double> OpenLight::interpolate(const BinTile& tile, size_t nodes,
-                                           const GatherLamp& lamp) const {
-  const auto columns = static_cast<size_t>(tile.columns), rows = static_cast<size_t>(tile.rows);
-  const Eigen::MatrixXd& across = cell_means_.at({nodes, columns});
-  const Eigen::MatrixXd& along = cell_means_.at({nodes, rows});
+// Mean irradiance of the whole bins of a tile from its values at nodes × nodes Chebyshev points.
+OpenLight::TileMeans OpenLight::interpolate(const BinTile& tile, size_t nodes,
+                                            const GatherLamp& lamp) const {
+  const Interpolation& across = interpolations_.at({nodes, static_cast<size_t>(tile.columns)});
+  const Interpolation& along = interpolations_.at({nodes, static_cast<size_t>(tile.rows)});
   std::vector<double> fraction;
   for (size_t i = 0; i < nodes; ++i) fraction.push_back(chebyshev_fraction(nodes, i));
   Eigen::MatrixXd values(nodes, nodes);
@@ -90,8 +123,96 @@ std::vector<double> OpenLight::interpolate(const BinTile& tile, size_t nodes,
       values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = lamp.irradiance_W_m2(at);
     }
   }
-  const Eigen::MatrixXd means = across * values * along.transpose();
-  return {means.data(), means.data() + means.size()};  // columns of the tile fastest
+  const double remainder = remainder_of(across.high_coefficients * values) +
+                           remainder_of(along.high_coefficients * values.transpose());
+  return {across.cell_means * values * along.cell_means.transpose(),
+          remainder + lamp.table_error_W_m2()};
+}
+
+size_t OpenLight::add_smooth(const BinTile& tile, const TileMeans& means, const GatherLamp& lamp,
+                             double tolerance_W_m2, const OpenEntries& entries) const {
+  size_t open = 0;
+  for (int row = 0; row < tile.rows; ++row) {
+    for (int column = 0; column < tile.columns; ++column) {
+      const size_t bin = plane_.bin_at(tile.column + column, tile.row + row);
+      const auto patches = plane_.patches().of(bin);
+      for (const SurfacePatch& patch : patches) {
+        const bool whole = patches.size() == 1 && !patch.triangle;
+        const Integral<double> power =
+            whole ? Integral<double>{patch.area_m2 * means.mean_W_m2(column, row),
+                                     patch.area_m2 * means.error_W_m2}
+                  : power_on_smooth_W(patch, lamp, tolerance_W_m2);
+        add_patch(power, patch, bin, lamp, entries);
+      }
+      open += patches.empty() ? 0 : 1;
+    }
+  }
+  return open;
+}
+
+// Power on a patch of a smooth tile.
+Integral<double> OpenLight::power_on_smooth_W(const SurfacePatch& patch, const GatherLamp& lamp,
+                                              double tolerance_W_m2) const {
+  const auto irradiance = [&](double a, double b) {
+    return lamp.irradiance_W_m2(patch.origin_m + a * patch.edge1_m + b * patch.edge2_m);
+  };
+  const Integral<double> mean = triangle_mean(irradiance);
+  if (!patch.triangle || mean.error > tolerance_W_m2) return power_W(patch, lamp, tolerance_W_m2);
+  return {patch.area_m2 * mean.value, patch.area_m2 * (mean.error + lamp.table_error_W_m2())};
+}
+
+// Power on a patch by its outline.
+Integral<double> OpenLight::power_W(const SurfacePatch& patch, const GatherLamp& lamp,
+                                    double tolerance_W_m2) const {
+  const double tolerance_W =
+      std::min(tolerance_W_m2 * patch.area_m2, tolerance * lamp.light().emitter().power_W());
+  const Vec3& origin = patch.origin_m;
+  if (lamp.light().parallel()) return {patch.area_m2 * lamp.irradiance_W_m2(origin), 0.0};
+  std::array<Vec3, 4> corners = {origin, origin + patch.edge1_m, origin + patch.edge2_m, origin};
+  if (patch.triangle) return lamp.power_W(std::span(corners).first(3), tolerance_W);
+  corners = {origin, corners[1], corners[1] + patch.edge2_m, corners[2]};
+  return lamp.power_W(corners, tolerance_W);
+}
+
+// Power on a whole bin by its four sides.
+Integral<double> OpenLight::power_W(int column, int row, const GatherLamp& lamp,
+                                    double tolerance_W_m2, Sides& sides) const {
+  const size_t bin = plane_.bin_at(column, row);
+  const SurfacePatch& patch = plane_.patches().of(bin)[0];
+  const auto corner = [&](int right, int up) {
+    return lamp.emitter_from_body().point(plane_.point_m(column + right, row + up));
+  };
+  const std::array<Vec3, 4> corners = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+  const bool in_front = std::all_of(corners.begin(), corners.end(), [&](const Vec3& at) {
+    return at.z() > lamp.light().lowest_m();
+  });
+  if (lamp.light().parallel() || !in_front) return power_W(patch, lamp, tolerance_W_m2);
+  const double tolerance_W =
+      0.25 * std::min(tolerance_W_m2 * patch.area_m2, tolerance * lamp.light().emitter().power_W());
+  // A side that leads to the right or up from the corner of a bin.
+  const auto side = [&](int right, int up, bool upwards, const Vec3& from_m, const Vec3& to_m) {
+    const uint64_t key = 2 * (static_cast<uint64_t>(row + up) * (max_grid_bins + 1) +
+                              static_cast<uint64_t>(column + right)) +
+                         (upwards ? 1 : 0);
+    const auto [known, is_new] = sides.try_emplace(key);
+    if (is_new) known->second = lamp.light().along_edge_W(from_m, to_m, tolerance_W);
+    return known->second;
+  };
+  const auto bottom = side(0, 0, false, corners[0], corners[1]);
+  const auto right = side(1, 0, true, corners[1], corners[2]);
+  const auto top = side(0, 1, false, corners[3], corners[2]);
+  const auto left = side(0, 0, true, corners[0], corners[3]);
+  const double power = bottom.value + right.value - top.value - left.value;
+  const Vec3 across = corners[1] - corners[0], along = corners[3] - corners[0];
+  const bool mirrored = across.x() * along.y() < across.y() * along.x();
+  return {mirrored ? -power : power, bottom.error + right.error + top.error + left.error};
+}
+
+void OpenLight::add_patch(const Integral<double>& power_W, const SurfacePatch& patch, size_t bin,
+                          const GatherLamp& lamp, const OpenEntries& entries) const {
+  const double positive_W = std::max(power_W.value, 0.0);  // dark but for rounding
+  plane_.add_power(positive_W, lamp.fraction(), bin, patch.instance, entries.power_W);
+  plane_.add_power(power_W.error, lamp.fraction(), bin, patch.instance, entries.bound_W);
 }
 
 }  // namespace photorque

@@ -1,11 +1,26 @@
 #include "receivers/gather/plane.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/constants.h"
 
 namespace photorque {
+
+std::pair<BinTile, BinTile> BinTile::halves() const {
+  BinTile low = *this, high = *this;
+  if (columns >= rows) {
+    low.columns = columns / 2;
+    high.column += low.columns;
+    high.columns -= low.columns;
+  } else {
+    low.rows = rows / 2;
+    high.row += low.rows;
+    high.rows -= low.rows;
+  }
+  return {low, high};
+}
 
 GatherPlane::GatherPlane(const TraceableScene& scene, const FluxMapReceiver& map)
     : scene_(scene), map_(map), patches_(bin_patches(scene.scene(), map.grid())) {
@@ -47,7 +62,6 @@ GatherLamp::GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
       emitter_from_body_(body_from_emitter_.inverse()),
       normal_emitter_(emitter_from_body_.direction(plane.normal())),
       fraction_(band_fractions(beam.spectrum, plane.map().bands())),
-      lights_front_(light_->lights_front(normal_emitter_)),
       scene_diameter_m_(scene_diameter_m(plane.scene())),
       lean_rad_(std::acos(std::clamp(-normal_emitter_.z(), -1.0, 1.0))),
       reach_slope_(std::tan(std::min(light_->reach_rad(), 1.5))),
@@ -55,6 +69,10 @@ GatherLamp::GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
   double total = 0.0;
   for (const double fraction : fraction_) total += fraction;
   for (double& fraction : fraction_) fraction /= total;
+  // Either no ray comes from behind, or nothing of the aperture is behind.
+  const Vec3 way = body_from_emitter_.translation_m - plane.patches().point_m;
+  const double lowest_m = plane.normal().dot(way) - light_->radius_m() * std::sin(lean_rad_);
+  lights_front_ = light_->lights_front(normal_emitter_) || (!light_->parallel() && lowest_m > 0.0);
 }
 
 std::pair<double, double> GatherLamp::heights_m(const GatherPlane& plane) const {
@@ -97,15 +115,34 @@ bool GatherLamp::smooth_over(const Ball& ball) const {
   const Vec3 at = emitter_from_body_.point(ball.centre_m);
   if (at.z() < 2.0 * ball.radius_m) return false;
   if (light_->fades_out()) return true;
-  // The whole beam comes from within the disc.
-  const double foot = (at.z() + ball.radius_m) * reach_slope_;
-  return std::hypot(at.x(), at.y()) + ball.radius_m + foot < light_->radius_m();
+  // Kinks are where a circle about the axis touches the rim of an edge's light, d = |R ± h tan θ|.
+  const double d = at.head<2>().norm(), radius_m = light_->radius_m();
+  for (const double slope : light_->angles().edge_slopes()) {
+    if (std::isinf(slope)) continue;
+    const double foot_m = at.z() * slope, reach_m = ball.radius_m * std::hypot(1.0, slope);
+    for (const double kink_m : {radius_m + foot_m, radius_m - foot_m, foot_m - radius_m}) {
+      if (std::abs(d - kink_m) <= reach_m) return false;
+    }
+  }
+  return true;
 }
 
 double GatherLamp::scale_m(const Ball& ball) const {
   if (light_->parallel()) return INFINITY;
   const double h = emitter_from_body_.point(ball.centre_m).z();
-  return std::min(h, h * std::tan(std::min(light_->half_flux_rad(), 0.8)));
+  return std::min(h, h * std::tan(std::min(light_->angles().steepest_rad(), 0.8)));
+}
+
+double GatherLamp::typical_W_m2(const Ball& ball) const {
+  if (light_->parallel()) return light_->exitance_W_m2();
+  const double h = std::max(emitter_from_body_.point(ball.centre_m).z(), 0.0);
+  return light_->typical_W_m2(h);
+}
+
+Integral<double> GatherLamp::power_W(std::span<const Vec3> corners_m, double tolerance_W) const {
+  std::array<Vec3, 4> placed;
+  for (size_t i = 0; i < corners_m.size(); ++i) placed[i] = emitter_from_body_.point(corners_m[i]);
+  return light_->power_through_W(std::span(placed).first(corners_m.size()), tolerance_W);
 }
 
 }  // namespace photorque

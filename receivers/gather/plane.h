@@ -19,6 +19,8 @@ struct BinTile {
   int column, row, columns, rows;
 
   int count() const { return columns * rows; }
+  // Two halves of a tile of at least two bins.
+  std::pair<BinTile, BinTile> halves() const;
 };
 
 // The lit side of a flat flux map. Body frame.
@@ -78,11 +80,16 @@ class GatherLamp {
     return table_ ? table_->irradiance_W_m2(at, normal_emitter_)
                   : light_->irradiance_W_m2(at, normal_emitter_);
   }
+  // Its error, as far as it is the table's.
+  double table_error_W_m2() const { return table_ ? table_->error_W_m2() : 0.0; }
+  // Power on a piece of the plane with these corners (body frame), see
+  // DiscLight::power_through_W().
+  Integral<double> power_W(std::span<const Vec3> corners_m, double tolerance_W) const;
   // Gives the lamp a table of its light, for all heights of heights_m().
   void use(std::shared_ptr<const IrradianceTable> table) { table_ = std::move(table); }
   // The least and the largest height of the whole grid above the aperture.
   std::pair<double, double> heights_m(const GatherPlane& plane) const;
-  // Every ray of the beam meets the plane from the lit side.
+  // Every ray of the beam that meets the plane does so from the lit side (all but 1e-9 of them).
   bool lights_front() const { return lights_front_; }
 
   // No ray of the beam comes to the ball from the lit side.
@@ -91,8 +98,11 @@ class GatherLamp {
   Ball aperture_ball(const Ball& ball) const;
   // The unshaded irradiance has no kink or jump on the ball.
   bool smooth_over(const Ball& ball) const;
-  // Length over which the unshaded irradiance falls by half, at the distance of the ball [m].
+  // Length over which the unshaded irradiance falls by half or more, at the distance of the ball
+  // [m].
   double scale_m(const Ball& ball) const;
+  // The order of magnitude of the irradiance of the lit part of the plane near the ball.
+  double typical_W_m2(const Ball& ball) const;
 
  private:
   std::shared_ptr<const DiscLight> light_;

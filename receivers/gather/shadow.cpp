@@ -130,8 +130,8 @@ class ShadedSampler {
     if (!(between.z() > 0.0) || facing <= 0.0) return 0.0;
     const double distance = std::sqrt(distance2);
     const double rise = between.head<2>().squaredNorm() / (distance * (distance + between.z()));
-    return lamp_.light().emitter().power_W() * lamp_.light().intensity_per_flux(rise) * facing /
-           (distance2 * distance);
+    return lamp_.light().emitter().power_W() * lamp_.light().angles().intensity_per_flux(rise) *
+           facing / (distance2 * distance);
   }
 
   void add_ray(const Vec3& at, const Vec3& from) {

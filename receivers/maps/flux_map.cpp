@@ -20,9 +20,9 @@ struct Replicates {
   int count = 0;
 };
 
-Estimate estimate(std::span<const double> values, double common_error) {
+Estimate estimate(std::span<const double> values, double bound) {
   if (values.size() == 1) return {values[0], 0.0};
-  return with_common_error(estimate_from_replicates(values), common_error);
+  return with_bound(estimate_from_replicates(values), bound);
 }
 
 // The sum over the bands [first_band, last_band) of one channel.
@@ -39,6 +39,7 @@ FluxLayer layer(const SurfaceGrid& grid, size_t bands, const BinSums& sums, Repl
   const auto count = static_cast<size_t>(replicates.count);
   std::vector<double> totals(count, 0.0), values(count);
   FluxLayer result;
+  double all_bounds = 0.0;
   for (size_t bin = 0; bin < grid.bins(); ++bin) {
     for (size_t r = 0; r < count; ++r) {
       const auto all = sums.of(replicates.first + static_cast<int>(r)).subspan(bin * stride);
@@ -46,14 +47,18 @@ FluxLayer layer(const SurfaceGrid& grid, size_t bands, const BinSums& sums, Repl
                   sum_bands(all.subspan(bounced), channel, first_band, last_band);
       totals[r] += values[r];
     }
-    const Estimate power_W = estimate(values, sums.common_error);
+    const double bound = sums.bound.empty() ? 0.0
+                                            : sum_bands(std::span(sums.bound).subspan(bin * stride),
+                                                        channel, first_band, last_band);
+    all_bounds += bound;
+    const Estimate power_W = estimate(values, bound);
     const double area_m2 = grid.area_m2[bin];
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     result.per_bin_W_m2.push_back(
         area_m2 > 0.0 ? Estimate{power_W.value / area_m2, power_W.standard_error / area_m2}
                       : Estimate{nan, nan});
   }
-  result.power_W = estimate(totals, sums.common_error);
+  result.power_W = estimate(totals, all_bounds);
   return result;
 }
 

@@ -127,6 +127,22 @@ TEST_F(MapFiles, PngIsThePictureWithADescription) {
   expect_description_of(map, page.spec.get_string_attribute("ImageDescription"));
 }
 
+// The share of pixels of a saturated red, which no map of sequential colours has.
+double red_share(const Picture& picture) {
+  size_t red = 0;
+  for (size_t i = 0; i < picture.rgb.size(); i += 3) {
+    red += picture.rgb[i] > 150 && picture.rgb[i + 1] < 60 && picture.rgb[i + 2] < 60;
+  }
+  return static_cast<double>(red) / (picture.rgb.size() / 3.0);
+}
+
+TEST(MapPicture, ShowsTheChecksThatFailed) {
+  Provenance provenance = sample_provenance();
+  EXPECT_EQ(red_share(map_picture(sample_map(), provenance).picture), 0.0);
+  provenance.warnings = {"the two routes differ by 31 standard errors"};
+  EXPECT_GT(red_share(map_picture(sample_map(), provenance).picture), 5e-4);
+}
+
 // Where the middle of a bin stands in the picture.
 std::array<uint8_t, 3> pixel_of_bin(const MapPicture& drawn, const Map& map, int ix, int iy) {
   const double x = drawn.grid_left + drawn.grid_width * (ix + 0.5) / map.width;

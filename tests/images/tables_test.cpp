@@ -102,6 +102,15 @@ TEST(Summary, ReadsBackEqual) {
   EXPECT_EQ(made_by.at("wall_time_s").get<double>(), 1.25);
 }
 
+TEST(Summary, ListsTheChecksThatFailed) {
+  Provenance provenance = sample_provenance();
+  EXPECT_TRUE(nlohmann::json::parse(summary_json({}, provenance)).at("warnings").empty());
+  provenance.warnings = {"two routes differ", "power is lost"};
+  const auto json = nlohmann::json::parse(summary_json({}, provenance));
+  EXPECT_EQ(json.at("warnings"), nlohmann::json(provenance.warnings));
+  EXPECT_EQ(json.at("provenance").at("warnings"), nlohmann::json(provenance.warnings));
+}
+
 TEST(Summary, SaysNullForWhatIsNotFinite) {
   Product product;
   product.quantities = {{"a_W", {std::nan(""), HUGE_VAL}}};

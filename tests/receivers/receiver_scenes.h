@@ -51,7 +51,7 @@ inline Mesh ring(uint32_t corners, double inner_m, double outer_m) {
 }
 
 // A unit sphere cut along meridians and parallels, front outside.
-inline Mesh sphere(uint32_t meridians, uint32_t parallels) {
+inline Mesh unit_sphere(uint32_t meridians, uint32_t parallels) {
   Mesh mesh;
   for (uint32_t j = 0; j <= parallels; ++j) {
     const double polar = pi * j / parallels;

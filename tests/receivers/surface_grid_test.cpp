@@ -17,7 +17,7 @@ using testing::plate;
 using testing::polygon;
 using testing::ring;
 using testing::scene_of;
-using testing::sphere;
+using testing::unit_sphere;
 
 constexpr uint32_t first[] = {0};
 
@@ -147,7 +147,7 @@ TEST(SurfaceGrid, RingHasAHoleWithoutSurface) {
 }
 
 TEST(SurfaceGrid, CurvedSurfaceKeepsItsTrueArea) {
-  const Mesh mesh = sphere(48, 24);
+  const Mesh mesh = unit_sphere(48, 24);
   Mesh upper = mesh;
   std::erase_if(upper.triangles, [&](const auto& t) {
     return mesh.vertices_m[t[0]].z() + mesh.vertices_m[t[1]].z() + mesh.vertices_m[t[2]].z() < 0;

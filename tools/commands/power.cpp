@@ -22,7 +22,7 @@ void run_power(const CommandLine& line) {
   Table table = compare_published(array.report.published, run.experiment().file.attitude.tilt_rad,
                                   product, console);
   if (!table.columns.empty()) product.tables.push_back(std::move(table));
-  write_results(line, console, product, run.provenance(), result.rays, result.wall_s);
+  write_results(line, console, product, run.provenance(result), result.rays, result.wall_s);
 }
 
 }  // namespace

@@ -71,6 +71,7 @@ void map_over_attitude(const CommandLine& line, Console& console, OpticalRun& ru
   PowerTable powers(array.has_value());
   uint64_t rays = 0;
   double wall_s = 0.0;
+  Warnings warnings;
   const auto progress = console.progress("attitudes");
   for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
     for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
@@ -84,6 +85,9 @@ void map_over_attitude(const CommandLine& line, Console& console, OpticalRun& ru
       if (array) electric = evaluate(*array, run, result).power_W;
       powers.add(grid.tilt_rad[t], grid.heading_rad[h],
                  run.flux_map(flux_map).flux_map(result.sums[flux_map]).incident.power_W, electric);
+      warnings.add(run.warnings(result), "tilt " + show(stated_deg(grid.tilt_rad[t])) +
+                                             " deg, heading " +
+                                             show(stated_deg(grid.heading_rad[h])) + " deg");
       rays += result.rays;
       wall_s += result.wall_s;
       if (progress) progress(static_cast<double>(node + 1) / static_cast<double>(wrenches.nodes()));
@@ -112,7 +116,8 @@ void map_over_attitude(const CommandLine& line, Console& console, OpticalRun& ru
       console.line(angles + show(y, "N m"));
     }
   }
-  write_results(line, console, product, run.provenance(), rays, wall_s);
+  warnings.print(console);
+  write_results(line, console, product, warnings.into(run.provenance()), rays, wall_s);
 }
 
 void run_torque_map(const CommandLine& line) {

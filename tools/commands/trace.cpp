@@ -68,7 +68,7 @@ void run_trace(const CommandLine& line) {
   Table table =
       compare_published(published, run.experiment().file.attitude.tilt_rad, product, console);
   if (!table.columns.empty()) product.tables.push_back(std::move(table));
-  write_results(line, console, product, run.provenance(), result.rays, result.wall_s);
+  write_results(line, console, product, run.provenance(result), result.rays, result.wall_s);
   for (const RayFile& file : files) {
     write_file_whole(line.out_folder() / file.name, file.bytes);
     console.line("  " + file.name);

@@ -27,7 +27,8 @@ Estimate direct_total_W(const FluxMapReceiver& map, const BinSums& sums) {
 Estimate direct_bin_W(const FluxMapReceiver& map, const BinSums& sums, size_t bin) {
   std::vector<double> values;
   for (int r = 0; r < sums.replicates; ++r) values.push_back(direct_W(map, sums.of(r), bin));
-  return with_common_error(estimate_from_replicates(values), sums.common_error);
+  const double bound_W = sums.bound.empty() ? 0.0 : direct_W(map, sums.bound, bin);
+  return with_bound(estimate_from_replicates(values), bound_W);
 }
 
 DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays) {
@@ -61,7 +62,8 @@ void replace_direct(const FluxMapReceiver& map, const Gathered& gathered, BinSum
     std::copy(direct.begin(), direct.end(),
               sums.sums.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(r) * map.bins()));
   }
-  sums.common_error = gathered.direct.common_error;
+  sums.bound = gathered.direct.bound;
+  sums.bound.resize(map.bins(), 0.0);  // what bounces comes by rays
 }
 
 std::string cost_notice(const FluxMapReceiver& map, size_t pairs, uint64_t rays) {

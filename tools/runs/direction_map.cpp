@@ -105,6 +105,7 @@ void map_over_direction(const CommandLine& line, Console& console, const Optical
                                         grid.azimuth_rad);
   uint64_t rays = 0;
   double wall_s = 0.0;
+  Warnings warnings;
   const auto progress = console.progress("directions");
   for (size_t a = 0; a < grid.azimuth_rad.size(); ++a) {
     for (size_t e = 0; e < grid.elevation_rad.size(); ++e) {
@@ -118,6 +119,9 @@ void map_over_direction(const CommandLine& line, Console& console, const Optical
       const OpticalResult result = run.run(lab_from_body_with_sun(towards_body, sun.towards_lab),
                                            {}, run.experiment().file.torque_map_rays);
       set_node(table, node, run.wrench().total(result.sums[run.wrench_index()]));
+      warnings.add(run.warnings(result), "azimuth " + show(stated_deg(grid.azimuth_rad[a])) +
+                                             " deg, elevation " +
+                                             show(stated_deg(grid.elevation_rad[e])) + " deg");
       rays += result.rays;
       wall_s += result.wall_s;
       if (progress) progress(static_cast<double>(node + 1) / static_cast<double>(table.nodes()));
@@ -126,7 +130,9 @@ void map_over_direction(const CommandLine& line, Console& console, const Optical
   console.done();
   print_summary(console, table, sun);
 
-  write_results(line, console, wrench_table_product(table, "body"), run.provenance(), rays, wall_s);
+  warnings.print(console);
+  write_results(line, console, wrench_table_product(table, "body"), warnings.into(run.provenance()),
+                rays, wall_s);
   if (covers_sphere(table)) {
     const std::string body = run.experiment().file.path.stem().string();
     const SpadFile spad{body, scaled(table, 1.0 / sun.pressure_Pa), true};

@@ -109,6 +109,35 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
   }
 }
 
+std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const {
+  constexpr double loud_sigma = 4.0, lost = 1e-9;
+  std::vector<std::string> lines;
+  const PowerBalance& power_balance = result.power_balance;
+  if (power_balance.closure > lost) {
+    lines.push_back("the power balance is off by " + show(power_balance.closure) +
+                    " of what is emitted");
+  }
+  const double momentum = momentum_disagreement(power_balance, result.sums[wrench_], wrench());
+  if (momentum > loud_sigma) {
+    lines.push_back("force or torque summed over surfaces and from the rays differ by " +
+                    show(momentum) + " standard errors");
+  }
+  for (const DirectLight& direct : result.direct.gathered) {
+    const double difference = std::abs(direct.difference_sigma);
+    if (difference <= loud_sigma) continue;
+    lines.push_back("direct light on " + direct.name + ": gathered " +
+                    show(direct.gathered_W, "W") + " and by rays " + show(direct.rays_W, "W") +
+                    " differ by " + show(difference) + " standard errors");
+  }
+  return lines;
+}
+
+Provenance OpticalRun::provenance(const OpticalResult& result) const {
+  Provenance stamped = provenance_;
+  stamped.warnings = warnings(result);
+  return stamped;
+}
+
 size_t OpticalRun::flux_map_index(const std::string& name) const {
   std::string known;
   for (size_t i = 0; i < experiment_.receivers.size(); ++i) {
@@ -169,6 +198,29 @@ Product OpticalRun::product(const OpticalResult& result) const {
   return product;
 }
 
+void Warnings::add(const std::vector<std::string>& warnings, const std::string& where) {
+  constexpr size_t in_full = 3;
+  for (const std::string& warning : warnings) {
+    if (first_.size() < in_full) first_.push_back(where + ": " + warning);
+    ++count_;
+  }
+}
+
+std::vector<std::string> Warnings::lines() const {
+  std::vector<std::string> all = first_;
+  if (count_ > all.size()) all.push_back(std::to_string(count_ - all.size()) + " more of the kind");
+  return all;
+}
+
+void Warnings::print(const Console& console) const {
+  for (const std::string& line : lines()) console.line("WARNING: " + line);
+}
+
+Provenance Warnings::into(Provenance provenance) const {
+  provenance.warnings = lines();
+  return provenance;
+}
+
 void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result) {
   const PowerBalance& power_balance = result.power_balance;
   const auto row = [&](const std::string& name, const Estimate& power) {
@@ -222,6 +274,7 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
                " segments in " + show(result.wall_s) + " s (" +
                show(static_cast<double>(result.segments) / result.wall_s / 1e6) +
                " million segments/s)");
+  for (const std::string& warning : run.warnings(result)) console.line("WARNING: " + warning);
 }
 
 void append(Product& product, Product more) {

@@ -35,6 +35,11 @@ class OpticalRun {
   const Experiment& experiment() const { return experiment_; }
   const TraceableScene& scene() const { return scene_; }
   const Provenance& provenance() const { return provenance_; }
+  // The same with a warning for each self-check of this result that fails.
+  Provenance provenance(const OpticalResult& result) const;
+  // One line for each self-check that is off by more than four of its standard errors: the two
+  // routes to direct light and to force and torque; or power that was lost.
+  std::vector<std::string> warnings(const OpticalResult& result) const;
 
   // Adds one that is not in the experiment file, for all later runs; returns its place.
   size_t add_receiver(NamedReceiver receiver);
@@ -66,6 +71,22 @@ class OpticalRun {
   std::shared_ptr<const InsideLightReceiver> inside_light_;  // null where no part is closed
   size_t inside_index_ = 0;                                  // its place among the receivers
   int threads_ = 0;
+};
+
+// The warnings of several runs, each once: at most three in full, then how many more there are.
+class Warnings {
+ public:
+  // `where` says of which run: "tilt 5 deg, heading 0".
+  void add(const std::vector<std::string>& warnings, const std::string& where);
+  // All in lines for people, loud; and into what is written.
+  void print(const Console& console) const;
+  Provenance into(Provenance provenance) const;
+
+ private:
+  std::vector<std::string> lines() const;
+
+  std::vector<std::string> first_;
+  size_t count_ = 0;
 };
 
 // Where the light went and what it did, as text.
