@@ -277,6 +277,9 @@ struct Disturbance {
   std::vector<Parameter> parameters;
   std::vector<ExtraState> states;
   std::shared_ptr<const Law> law;
+  // The torque may change its sign within a far shorter time than the motion takes: the propagator
+  // then looks closely at the ends of its steps too.
+  bool is_abrupt = false;
 };
 
 // Parameters from settings, in SI, with their sigma. A missing key is an InputError, or

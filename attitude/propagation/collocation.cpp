@@ -9,6 +9,7 @@ namespace photorque {
 namespace {
 
 constexpr int max_iterations = 60;
+constexpr int max_newton_iterations = 12;
 
 double dot(const gauss::Row& row, const Lanes& x) {
   return sum(Lanes(row) * x);
@@ -25,6 +26,7 @@ CollocationStep::CollocationStep(const Dynamics& dynamics, double time_s, std::v
       accepted_increments_(y_.size()),
       stages_(y_.size()),
       rates_(y_.size()) {
+  for (const Disturbance& d : dynamics.model().disturbances) is_abrupt_ |= d.is_abrupt;
   for (const double scale : dynamics.scales()) inverse_scales_.push_back(1.0 / scale);
 }
 
@@ -49,22 +51,33 @@ void CollocationStep::predict(double h_s, const ZeroOrderHold& held) {
   for (size_t c = 0; c < y_.size(); ++c) increments_[c] = h_s * Lanes(gauss::weights) * rates_[c];
 }
 
-CollocationStep::Outcome CollocationStep::attempt(double h_s, const ZeroOrderHold& held,
-                                                  double settled) {
+// Makes a first guess; returns the size of the state, which rounding is relative to.
+double CollocationStep::begin_attempt(double h_s, const ZeroOrderHold& held) {
   predict(h_s, held);
   h_s_ = h_s;
   double size = 1.0;
   for (size_t c = 0; c < y_.size(); ++c) {
     size = std::max(size, inverse_scales_[c] * std::abs(y_[c]));
   }
+  return size;
+}
+
+void CollocationStep::place_stages() {
+  for (size_t c = 0; c < y_.size(); ++c) {
+    stages_[c] = y_[c] + (carry_[c] + gauss::times(gauss::mu_columns, increments_[c]));
+  }
+}
+
+CollocationStep::Outcome CollocationStep::attempt(double h_s, const ZeroOrderHold& held,
+                                                  double settled) {
+  const double size = begin_attempt(h_s, held);
+  is_stiff_ = false;
   const Lanes times_s = stage_times_s();
   const Lanes weighted_h_s = h_s * Lanes(gauss::weights);
   Outcome outcome;
   Settling settling(settled, 1e-14 * size);
   for (int iteration = 1; iteration <= max_iterations; ++iteration) {
-    for (size_t c = 0; c < y_.size(); ++c) {
-      stages_[c] = y_[c] + (carry_[c] + gauss::times(gauss::mu_columns, increments_[c]));
-    }
+    place_stages();
     dynamics_.rates(times_s, held, stages_.data(), rates_.data());
     Lanes largest_change = 0.0, finite = 0.0;
     for (size_t c = 0; c < y_.size(); ++c) {
@@ -81,6 +94,47 @@ CollocationStep::Outcome CollocationStep::attempt(double h_s, const ZeroOrderHol
     if (verdict == Settling::Verdict::settled) {
       outcome.converged = true;
       outcome.error = estimate_error();
+      if (is_abrupt_) outcome.error = std::max(outcome.error, estimate_error_of_ends(held));
+      return outcome;
+    }
+  }
+  return outcome;
+}
+
+CollocationStep::Outcome CollocationStep::attempt_stiff(double h_s, const ZeroOrderHold& held,
+                                                        double settled) {
+  const double size = begin_attempt(h_s, held);
+  is_stiff_ = true;
+  if (state_blocks_.empty()) state_blocks_ = state_blocks(dynamics_);
+  const Lanes times_s = stage_times_s();
+  const Lanes weighted_h_s = h_s * Lanes(gauss::weights);
+  std::vector<Lanes> move(y_.size());
+  Outcome outcome;
+  Settling settling(settled, 1e-14 * size, 3);
+  for (int iteration = 1; iteration <= max_newton_iterations; ++iteration) {
+    place_stages();
+    dynamics_.rates(times_s, held, stages_.data(), rates_.data());
+    for (size_t c = 0; c < y_.size(); ++c) move[c] = weighted_h_s * rates_[c] - increments_[c];
+    const std::vector<RateDerivative> jacobian =
+        rate_derivatives(dynamics_, state_blocks_, times_s, held, stages_.data());
+    StageSystem(y_.size(), h_s, jacobian).solve(move, 1);
+    Lanes largest_change = 0.0, finite = 0.0;
+    for (size_t c = 0; c < y_.size(); ++c) {
+      const Lanes moved = inverse_scales_[c] * move[c];
+      largest_change = larger_magnitude(largest_change, moved);
+      finite += moved;
+      increments_[c] += move[c];
+    }
+    outcome.iterations = iteration;
+    const double change = std::isfinite(sum(finite)) ? largest(largest_change) : sum(finite);
+    const Settling::Verdict verdict = settling.judge(change);
+    if (verdict == Settling::Verdict::failed) return outcome;
+    if (verdict == Settling::Verdict::settled) {
+      place_stages();
+      stiffness_ = h_s * stiffness_1_s(jacobian, dynamics_.scales());
+      outcome.converged = true;
+      outcome.error = estimate_error();
+      if (is_abrupt_) outcome.error = std::max(outcome.error, estimate_error_of_ends(held));
       return outcome;
     }
   }
@@ -106,6 +160,35 @@ double CollocationStep::estimate_error() const {
     const double square = fall * fall;
     const double at_end = last * square * square / end_fraction;
     error = std::max(error, inverse_scales_[c] * std::max(last, at_end));
+  }
+  return error;
+}
+
+// What the stages cannot have seen: a layer, as where friction turns its sign, between an end of
+// the step and the stage next to it. There the rates at the end are not those of the polynomial,
+// and what is missing is their difference over that stretch.
+double CollocationStep::estimate_error_of_ends(const ZeroOrderHold& held) const {
+  constexpr double just_inside = 1.0 - 1e-12;  // a law may jump at the end itself
+  const std::vector<double> end_y = end();
+  std::vector<Lanes> y(y_.size()), rates(y_.size());
+  for (size_t c = 0; c < y.size(); ++c) {
+    y[c] = end_y[c];
+    y[c].set(0, y_[c]);
+  }
+  Lanes times_s = time_s_ + just_inside * h_s_;
+  times_s.set(0, time_s_);
+  dynamics_.rates(times_s, held, y.data(), rates.data());
+  double error = 0.0;
+  for (size_t c = 0; c < y.size(); ++c) {
+    double at_start = 0.0, at_end = 0.0;
+    for (size_t k = 0; k < gauss::points; ++k) {
+      const double term = dot(gauss::projection[k], increments_[c]);
+      at_start += k % 2 == 0 ? term : -term;
+      at_end += term;
+    }
+    const double missed =
+        std::max(std::abs(h_s_ * rates[c][0] - at_start), std::abs(h_s_ * rates[c][1] - at_end));
+    error = std::max(error, inverse_scales_[c] * gauss::nodes[0] * missed);
   }
   return error;
 }

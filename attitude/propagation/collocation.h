@@ -1,11 +1,12 @@
 // One step of Gauss collocation with eight stages: order 16 at its end, a polynomial of degree 8 in
 // between.
 //
-// The stages are found by fixed-point iteration from the continued polynomial of the step before;
-// all eight are evaluated at once. Symmetric and symplectic: the norm of the quaternion, the energy
-// and the momentum of a free body change by rounding alone. Between the ends the polynomial is less
-// accurate than at the end itself; the error estimate is that of the polynomial, so that the dense
-// output is as good as the tolerance says and the ends are better.
+// The stages are found by fixed-point iteration from the continued polynomial of the step before,
+// or, where the equations are stiff, by Newton's method; all eight are evaluated at once. Symmetric
+// and symplectic: the norm of the quaternion, the energy and the momentum of a free body change by
+// rounding alone. Between the ends the polynomial is less accurate than at the end itself; the
+// error estimate is that of the polynomial, so that the dense output is as good as the tolerance
+// says and the ends are better.
 //
 // Source: M. Antoñana, E. Alberdi, J. Makazaga, A. Murua, "SIMD-vectorized implicit symplectic
 // integrators can outperform explicit symplectic ones", arXiv:2211.03655 (2022).
@@ -14,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "attitude/model/dynamics.h"
+#include "attitude/propagation/stage_system.h"
 #include "core/numerics/collocation_points.h"
 
 namespace photorque {
@@ -33,6 +34,12 @@ class CollocationStep {
     double error = 0.0;  // of the polynomial, relative to the scales; an upper estimate
   };
   Outcome attempt(double h_s, const ZeroOrderHold& held, double settled);
+  // The same by Newton's method: some 50 times the work, but it settles however stiff the equations
+  // are. stiffness() then says whether fixed-point iteration would do as well.
+  Outcome attempt_stiff(double h_s, const ZeroOrderHold& held, double settled);
+  // How the last attempt was made, and step length · stiffness_1_s() of its last iteration.
+  bool is_stiff() const { return is_stiff_; }
+  double stiffness() const { return stiffness_; }
   // Moves the start to the end of the attempted step, in compensated summation, and to the time
   // `end_s`, which is start + length but for rounding.
   void accept(double end_s);
@@ -54,12 +61,19 @@ class CollocationStep {
 
  private:
   double estimate_error() const;
+  double estimate_error_of_ends(const ZeroOrderHold& held) const;
   void predict(double h_s, const ZeroOrderHold& held);
+  double begin_attempt(double h_s, const ZeroOrderHold& held);
+  void place_stages();
 
   const Dynamics& dynamics_;
   std::vector<double> inverse_scales_;
   double time_s_;
   double h_s_ = 0.0;
+  bool is_abrupt_ = false;  // some law is
+  bool is_stiff_ = false;
+  double stiffness_ = 0.0;
+  std::vector<Dynamics::Block> state_blocks_;
   bool has_polynomial_ = false;             // increments_ describe the accepted step before
   std::vector<double> y_, carry_;           // the start and what rounding has taken from it
   std::vector<Lanes> increments_;           // h b_j f_j of the attempt

@@ -148,7 +148,8 @@ void Propagator::take_step() {
       throw NumericalError("the step length of the propagator fell to " + shown(h_s) +
                            " s at t = " + shown(start_s) + " s");
     }
-    const CollocationStep::Outcome outcome = step_.attempt(h_s, held_, settled);
+    const CollocationStep::Outcome outcome =
+        is_stiff_ ? step_.attempt_stiff(h_s, held_, settled) : step_.attempt(h_s, held_, settled);
     statistics_.iterations += outcome.iterations;
     if (!outcome.converged) {
       h_s_ = 0.5 * h_s;
@@ -160,14 +161,38 @@ void Propagator::take_step() {
       h_s_ = 0.5 * h_s;
       ceiling_s_ = 0.7 * h_s;
     } else {
-      ceiling_s_ *= 1.01;
+      const bool was_at_ceiling = h_s >= 0.9 * ceiling_s_;
+      ceiling_s_ *= is_stiff_ ? 2.0 : 1.01;
       h_s_ = std::min(propose_length(outcome, h_s, cut), ceiling_s_);
+      choose_method(outcome, was_at_ceiling);
+      if (step_.is_stiff()) ++statistics_.stiff;
       step_end_s_ = cut ? stop_s : start_s + h_s;
       return;
     }
     --statistics_.steps;
     ++statistics_.rejected;
   }
+}
+
+// Newton's method takes over where for some steps the convergence of the fixed-point iteration
+// alone kept the steps short: they are several times shorter than accuracy asks for. It stays as
+// long as that iteration would contract by less than three in ten.
+void Propagator::choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling) {
+  constexpr int patience = 8, many = 20;
+  constexpr double far_below = 1e-5;  // of the tolerance: four times the length would do
+  constexpr double contracts = 3.0;
+  if (is_stiff_) {
+    if (step_.stiffness() > contracts) return;
+    is_stiff_ = false;
+    held_back_ = 0;
+    return;
+  }
+  const bool held_back = outcome.error < far_below * options_.tolerance &&
+                         (was_at_ceiling || outcome.iterations > many);
+  held_back_ = held_back ? held_back_ + 1 : 0;
+  if (held_back_ < patience) return;
+  is_stiff_ = true;
+  ceiling_s_ = std::numeric_limits<double>::infinity();
 }
 
 // The length for the next attempt. Small changes are not worth a new continuation matrix, and a

@@ -83,6 +83,7 @@ class Propagator {
     int64_t steps = 0;
     int64_t rejected = 0;
     int64_t iterations = 0;
+    int64_t stiff = 0;  // steps by Newton's method
   };
   const Statistics& statistics() const { return statistics_; }
 
@@ -95,6 +96,7 @@ class Propagator {
   void check_pace() const;
   void take_step();
   double propose_length(const CollocationStep::Outcome& outcome, double h_s, bool cut) const;
+  void choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling);
   void cross_jumps();
   void find_events();
   double locate(const EventFunction& event, double low_s, double high_s) const;
@@ -115,6 +117,8 @@ class Propagator {
   double h_s_ = 0.0;  // length to try next
   // Just below the last length that failed; rises slowly, so that it is tried again some day.
   double ceiling_s_ = std::numeric_limits<double>::infinity();
+  bool is_stiff_ = false;  // steps by Newton's method
+  int held_back_ = 0;      // steps in a row that convergence alone kept short
   double step_end_s_ = 0.0;
   bool has_step_ = false;
   bool ended_by_event_ = false;

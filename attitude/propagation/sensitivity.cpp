@@ -70,13 +70,7 @@ void Sensitivity::seed_bound_states(size_t v, int axis) {
 }
 
 void Sensitivity::make_blocks() {
-  for (int first = 0; first < dynamics_.size(); first += DualLanes::block) {
-    Dynamics::Block block = empty_block();
-    for (int k = 0; k < DualLanes::block && first + k < dynamics_.size(); ++k) {
-      block.state[static_cast<size_t>(k)] = first + k;
-    }
-    state_blocks_.push_back(block);
-  }
+  state_blocks_ = state_blocks(dynamics_);
   // Parameters of early stages make every disturbance depend on them; keep them together.
   const auto early = [&](const Variable& v) {
     return dynamics_.model().disturbances[v.disturbance].stage < Stage::torque;
@@ -101,19 +95,9 @@ void Sensitivity::make_blocks() {
 
 void Sensitivity::differentiate_rates(const CollocationStep& step, const ZeroOrderHold& held) {
   const size_t n = static_cast<size_t>(dynamics_.size()), count = variables_.size();
+  jacobian_ =
+      rate_derivatives(dynamics_, state_blocks_, step.stage_times_s(), held, step.stages().data());
   std::vector<Lanes> partials(n * DualLanes::block);
-  jacobian_.clear();
-  for (const Dynamics::Block& block : state_blocks_) {
-    dynamics_.derivatives(step.stage_times_s(), held, step.stages().data(), block, partials.data());
-    for (size_t c = 0; c < n; ++c) {
-      for (size_t k = 0; k < DualLanes::block; ++k) {
-        const Lanes& value = partials[c * DualLanes::block + k];
-        if (block.state[k] >= 0 && !is_zero(value)) {
-          jacobian_.push_back({c, static_cast<size_t>(block.state[k]), value});
-        }
-      }
-    }
-  }
   for (const ParameterBlock& block : parameter_blocks_) {
     dynamics_.derivatives(step.stage_times_s(), held, step.stages().data(), block.block,
                           partials.data());
@@ -131,6 +115,10 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
   const size_t count = variables_.size();
   differentiate_rates(step, held);
   h_s_ = step.length_s();
+  if (step.is_stiff()) {
+    solve_at_once(step);
+    return true;
+  }
   if (has_polynomial_) {
     const auto continuation = gauss::continuation_columns(h_s_ / accepted_h_s_);
     for (size_t i = 0; i < increments_.size(); ++i) {
@@ -151,7 +139,7 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
       stages[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);
     }
     rates = source_;
-    for (const Entry& entry : jacobian_) {
+    for (const RateDerivative& entry : jacobian_) {
       const Lanes* from = stages.data() + entry.column * count;
       Lanes* to = rates.data() + entry.row * count;
       for (size_t v = 0; v < count; ++v) to[v] += entry.value * from[v];
@@ -174,6 +162,20 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
     if (verdict == Settling::Verdict::failed) break;
   }
   return false;
+}
+
+// z = h b (s + J (start + μ z)), in one solution instead of an iteration that would not settle.
+void Sensitivity::solve_at_once(const CollocationStep& step) {
+  const size_t count = variables_.size();
+  increments_ = source_;
+  for (const RateDerivative& entry : jacobian_) {
+    const double* from = start_.data() + entry.column * count;
+    Lanes* to = increments_.data() + entry.row * count;
+    for (size_t v = 0; v < count; ++v) to[v] += entry.value * from[v];
+  }
+  const Lanes weighted_h_s = h_s_ * Lanes(gauss::weights);
+  for (Lanes& x : increments_) x = weighted_h_s * x;
+  StageSystem(step.start().size(), h_s_, jacobian_).solve(increments_, count);
 }
 
 void Sensitivity::accept() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "attitude/propagation/collocation.h"
+#include "attitude/propagation/stage_system.h"
 
 namespace photorque {
 
@@ -72,13 +73,9 @@ class Sensitivity {
   std::vector<Lanes> increments_, accepted_increments_;  // as in CollocationStep
   double h_s_ = 0.0, accepted_h_s_ = 0.0;
   bool has_polynomial_ = false;
-  // ∂(dy_c/dt)/∂y_d, those that are not all zero, and ∂(dy_c/dt)/∂(variable).
-  struct Entry {
-    size_t row, column;
-    Lanes value;
-  };
-  std::vector<Entry> jacobian_;
-  std::vector<Lanes> source_;
+  void solve_at_once(const CollocationStep& step);
+  std::vector<RateDerivative> jacobian_;
+  std::vector<Lanes> source_;  // ∂(dy_c/dt)/∂(variable)
 };
 
 }  // namespace photorque

@@ -26,9 +26,11 @@ class DryFriction final : public TorqueLaw<DryFriction> {
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<DryFriction>(
+  Disturbance d = make_disturbance<DryFriction>(
       {scalar_parameter(settings, friction, Range::not_negative())}, Stage::torque, {},
       settings.number_or("creep_rate_rad_s", 1e-6, Range::positive()));
+  d.is_abrupt = true;
+  return d;
 }
 
 // The law again, for `prove`.

@@ -1,13 +1,36 @@
 // A cable or hose that pulls back to zero attitude: T = −k × the rotation vector from it.
 //
-// stiffness_N_m_per_rad: k ≥ 0, the same about every axis, no hysteresis. Smooth below half a turn,
-// where the shortest way back changes side.
+// stiffness_N_m_per_rad: k ≥ 0, the same about every axis, no hysteresis. A cable that is wound up
+// remembers it: after half a turn, where the shortest way back changes side, whole turns about body
+// z count besides, T = −k (r + 2π n z). About z the torque so goes on growing; what a tilt adds to
+// r changes side there. The run begins with less than half a turn.
+#include <array>
+#include <cmath>
+
 #include "attitude/disturbances/kind.h"
+#include "core/constants.h"
 
 namespace photorque {
 namespace {
 
 constexpr ScalarKey stiffness{"stiffness_N_m_per_rad"};
+// The angle about body z since the start; tells whole turns, so its accuracy hardly matters.
+constexpr StateKey twist{"tether_twist_rad"};
+
+// Of the angle t about body z in attitude = swing · twist, tan(t/2) = q_z/q_w.
+template <class T>
+T twist_rate(const QuatOf<T>& q, const Vec3Of<T>& rate) {
+  // Upside down there is no such angle.
+  const T cosine = q.w() * q.w() + q.z() * q.z() + 1e-9;
+  return rate[2] +
+         ((q.x() * q.z() - q.w() * q.y()) * rate[0] + (q.w() * q.x() + q.y() * q.z()) * rate[1]) /
+             cosine;
+}
+
+template <class T>
+T nearest_whole(const T& x) {
+  return from_values(x, [](double value) { return std::array{std::round(value), 0.0}; });
+}
 
 struct Tether final : TorqueLaw<Tether> {
   template <class T>
@@ -17,12 +40,20 @@ struct Tether final : TorqueLaw<Tether> {
     const T side = where_at_least(q.w(), 0.0, T(1.0), T(-1.0));
     const Vec3Of<T> v = side * q.vec();
     const T sine = length(v);
-    return -own[stiffness] * (2.0 * atan2(sine, side * q.w()) / sine) * v;
+    own.rate_of(twist) = twist_rate(q, now.rate_body_rad_s);
+    const T from_attitude = 2.0 * atan2(T(side * q.z()), T(side * q.w()));
+    Vec3Of<T> wound = (2.0 * atan2(sine, side * q.w()) / sine) * v;
+    wound[2] += 2.0 * pi * nearest_whole(T((own.state(twist) - from_attitude) / (2.0 * pi)));
+    return -own[stiffness] * wound;
   }
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  return make_disturbance<Tether>({scalar_parameter(settings, stiffness, Range::not_negative())});
+  Disturbance d =
+      make_disturbance<Tether>({scalar_parameter(settings, stiffness, Range::not_negative())},
+                               Stage::torque, {{twist.name}});
+  d.is_abrupt = true;
+  return d;
 }
 
 // The law again, for `prove`.

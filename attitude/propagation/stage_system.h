@@ -1,0 +1,53 @@
+// The collocation equations of one step, differentiated: a linear system for changes of the stages.
+//
+// Two uses. Newton's method finds the stages where fixed-point iteration cannot (a platform that
+// sticks: its rate follows the torque within milliseconds, for minutes), and the derivatives of
+// such a step solve the same system.
+//
+//   z_ci − h b_i Σ_k ∂f_c/∂y_k(Y_i) Σ_j μ_ij z_kj = r_ci,     c, k components; i, j stages
+//
+// Source: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", 2nd ed., IV.8.
+#pragma once
+
+#include <Eigen/LU>
+#include <span>
+#include <vector>
+
+#include "attitude/model/dynamics.h"
+
+namespace photorque {
+
+// ∂(dy_row/dt)/∂y_column at the eight stages.
+struct RateDerivative {
+  size_t row, column;
+  Lanes value;
+};
+
+// The components of the state in blocks for Dynamics::derivatives.
+std::vector<Dynamics::Block> state_blocks(const Dynamics& dynamics);
+
+// Those derivatives that are not zero at every stage.
+std::vector<RateDerivative> rate_derivatives(const Dynamics& dynamics,
+                                             std::span<const Dynamics::Block> blocks,
+                                             const Lanes& times_s, const ZeroOrderHold& held,
+                                             const Lanes* stages);
+
+// How fast small deviations change, at most [1/s]: the largest row sum of |∂f/∂y| with each
+// component in units of its scale. Fixed-point iteration with eight stages contracts by about a
+// tenth of (step length · this).
+double stiffness_1_s(std::span<const RateDerivative> jacobian, std::span<const double> scales);
+
+class StageSystem {
+ public:
+  // `components`: of the state. `h_s`: length of the step.
+  StageSystem(size_t components, double h_s, std::span<const RateDerivative> jacobian);
+
+  // Solves for `count` right-hand sides in place; component c of number v at x[c · count + v].
+  void solve(std::span<Lanes> x, size_t count) const;
+
+ private:
+  size_t components_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+};
+
+}  // namespace photorque
