@@ -53,6 +53,11 @@ class Rounds {
       const bool gained =
           best.log_evidence > before.log_evidence + limits_.search.min_log_evidence_gain;
       at = gained ? best : before;
+      // Pieces are to say which sets are worth a fit to the whole.
+      if (set_.pieces > 1 && explains(at)) {
+        at = without_each(std::move(at));
+        if (!has_empirical(at)) break;
+      }
       // What needs a scan is looked for where nothing predicted gains any more.
       if (!gained && (scan || !is_worth_a_scan(at))) break;
       if (scan && set_.pieces > 1) break;
@@ -66,6 +71,39 @@ class Rounds {
     if (at.candidates.empty() || has_diverged(trials_.front(), limits_)) return false;
     return at.candidates.size() > 1 ||
            domain_.excess_sigma(at, set_.runs) > limits_.search.explained_sigma;
+  }
+
+  // Neither structure is left nor readings far off: in a short piece all that is left may be called
+  // noise.
+  bool explains(const Trial& at) const {
+    return at.fit.chi2_per_sample() < limits_.held_out.max_noise &&
+           domain_.excess_sigma(at, set_.runs) < limits_.search.explained_sigma;
+  }
+
+  bool has_empirical(const Trial& at) const {
+    return std::any_of(at.candidates.begin(), at.candidates.end(),
+                       [&](size_t c) { return domain_.candidates()[c].is_empirical; });
+  }
+
+  // The best that is left when one candidate after the other is left out; keeps all that it tries.
+  Trial without_each(Trial at) {
+    const Runs averages = slow_runs(domain_, at, set_);
+    while (at.candidates.size() > 1) {
+      const Terms<D> terms = domain_.terms_of(at);
+      std::vector<Members<typename D::Start>> fewer(terms.size());
+      for (size_t left_out = 0; left_out < terms.size(); ++left_out) {
+        for (size_t i = 0; i < terms.size(); ++i) {
+          if (i != left_out) fewer[left_out].push_back({terms[i]});
+        }
+      }
+      std::vector<Trial> found = fitted(at, fewer, averages);
+      const Trial& best = found.front();
+      const bool is_better = best.log_evidence > at.log_evidence && best.objection.empty();
+      if (is_better) at = best;
+      for (Trial& t : found) keep(std::move(t));
+      if (!is_better) break;
+    }
+    return at;
   }
 
   // In pieces of the runs a faint line or jump cannot be told; the whole is searched later.

@@ -161,23 +161,32 @@ class Weighing {
   }
 
   // What is left of the best where one of its names is taken away: each has to be missed.
+  // Until nothing that is left out makes a better leader.
   void add_without_each() {
-    const Leader from = best();
-    const auto terms = domain_.terms_of(from.joint);
-    for (size_t i = 0; i < terms.size() && terms.size() > 1; ++i) {
-      auto fewer = terms;
-      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
-      std::vector<size_t> candidates;
-      for (const auto& term : fewer) candidates.push_back(term.candidate);
-      if (leads(candidates)) continue;
-      Members<typename D::Start> members;
-      for (const auto& term : fewer) members.push_back({term});
-      // Without it the rest may have to go far: nominal values that it stood in for, to begin with.
-      const Effort growing{limits_.fitting.diverged_windows, limits_.fitting.patient_iterations};
-      Trial joint = domain_.assemble(from.joint, members, all_runs_, growing);
-      Trial train = assembled(joint, domain_.terms_of(joint));
-      add_leader(std::move(train), std::move(joint));
+    for (Leader from = best();;) {
+      const auto terms = domain_.terms_of(from.joint);
+      for (size_t i = 0; i < terms.size() && terms.size() > 1; ++i) add_without(from, terms, i);
+      Leader now = best();
+      if (same_candidates(trials_[now.at].candidates, trials_[from.at].candidates)) return;
+      from = std::move(now);
     }
+  }
+
+  void add_without(const Leader& from, const std::vector<Term<typename D::Start>>& terms,
+                   size_t left_out) {
+    Members<typename D::Start> members;
+    std::vector<size_t> candidates;
+    for (size_t i = 0; i < terms.size(); ++i) {
+      if (i == left_out) continue;
+      members.push_back({terms[i]});
+      candidates.push_back(terms[i].candidate);
+    }
+    if (leads(candidates)) return;
+    // Without it the rest may have to go far: nominal values that it stood in for, to begin with.
+    const Effort growing{limits_.fitting.diverged_windows, limits_.fitting.patient_iterations};
+    Trial joint = domain_.assemble(from.joint, members, all_runs_, growing);
+    Trial train = assembled(joint, domain_.terms_of(joint));
+    add_leader(std::move(train), std::move(joint));
   }
 
   // Fitted to the train runs from where a fit to all ended.

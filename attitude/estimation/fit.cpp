@@ -12,7 +12,7 @@ Fit fit(const Hypothesis& start, const std::vector<Observation>& runs,
   return result;
 }
 
-inference::NormalSums sums_at(const Hypothesis& at, const std::vector<Observation>& runs,
+inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observation>& runs,
                               const std::vector<Free>& extra, double tolerance) {
   const AttitudeForwardModel model(at, runs, extra, tolerance);
   return inference::evaluate(model, model.point_of(at), {}).sums;

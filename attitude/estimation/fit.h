@@ -23,7 +23,7 @@ Fit fit(const Hypothesis& start, const std::vector<Observation>& runs,
 
 // The sums of all runs at the present values, without fitting: parameters as in Fit::hessian, and
 // then `extra`, parameters of the model that are not free. With the priors of what is free.
-inference::NormalSums sums_at(const Hypothesis& at, const std::vector<Observation>& runs,
+inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observation>& runs,
                               const std::vector<Free>& extra, double tolerance = 1e-7);
 
 // All whitened residuals of a fit, by run. NumericalError where it cannot be propagated.

@@ -9,7 +9,7 @@ namespace photorque::inference {
 
 double log_evidence(const Fit& fit) {
   if (!std::isfinite(fit.chi2)) return -1e300;
-  double result = -0.5 * fit.chi2 - 0.5 * log_determinant(fit.hessian);
+  double result = -0.5 * fit.chi2 - 0.5 * fit.hessian.log_determinant();
   for (Eigen::Index i = 0; i < fit.parameters.size(); ++i) {
     const Parameter& p = fit.parameters[i];
     result += p.has_prior() ? -std::log(p.sigma) : 0.5 * std::log(2.0 * std::numbers::pi);

@@ -1,6 +1,5 @@
 #include "inference/estimator/fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -10,14 +9,19 @@ namespace photorque::inference {
 namespace {
 
 // The step of (H + λ D) δ = g, solved in the scale of each parameter; `damped`: D over the diagonal
-// of H.
-Eigen::VectorXd damped_step(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& gradient,
-                            const Eigen::VectorXd& damped, double damping) {
-  const Eigen::VectorXd scale =
-      matrix.diagonal().cwiseSqrt().unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
-  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-  scaled.diagonal() += damping * damped;
-  return scale.cwiseProduct(scaled.ldlt().solve(Eigen::VectorXd(scale.cwiseProduct(gradient))));
+// of H. Those that are held do not move.
+Eigen::VectorXd damped_step(const SumsOfRuns& sums, const Eigen::VectorXd& damped, double damping,
+                            const std::vector<Eigen::Index>& held) {
+  const Eigen::VectorXd scale = sums.matrix.diagonal().cwiseSqrt().unaryExpr(
+      [](double s) { return s > 0.0 ? 1.0 / s : 1.0; });
+  ArrowMatrix scaled = sums.matrix.scaled(scale);
+  for (Eigen::Index i = 0; i < scale.size(); ++i) scaled.add_to_diagonal(i, damping * damped[i]);
+  Eigen::VectorXd right = scale.cwiseProduct(sums.gradient);
+  for (const Eigen::Index i : held) {
+    scaled.hold(i);
+    right[i] = 0.0;
+  }
+  return scale.cwiseProduct(scaled.solve(right));
 }
 
 // What the damping of each parameter is measured by.
@@ -44,22 +48,20 @@ bool leaves_bounds(const Parameter& p, double step) {
 
 // The damped step of the parameters that do not stand on a bound and push against it. Each held one
 // may set another one pushing, so the rest is solved until none does.
-Eigen::VectorXd step_within_bounds(const NormalSums& sums, const Parameters& parameters,
+Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& parameters,
                                    const Eigen::VectorXd& damped, double damping) {
-  const Eigen::Index size = parameters.size();
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index i = 0; i < size; ++i) free.push_back(i);
-  Eigen::VectorXd step = damped_step(sums.matrix, sums.gradient, damped, damping);
+  std::vector<Eigen::Index> held;
+  std::vector<bool> is_held(static_cast<size_t>(parameters.size()), false);
+  Eigen::VectorXd step = damped_step(sums, damped, damping, held);
   while (step.allFinite()) {
-    const size_t before = free.size();
-    std::erase_if(free, [&](Eigen::Index i) { return leaves_bounds(parameters[i], step[i]); });
-    if (free.size() == before) break;
-    step.setZero();
-    if (free.empty()) break;
-    const Eigen::MatrixXd matrix = sums.matrix(free, free);
-    const Eigen::VectorXd gradient = sums.gradient(free);
-    const Eigen::VectorXd damped_free = damped(free);
-    step(free) = damped_step(matrix, gradient, damped_free, damping);
+    const size_t before = held.size();
+    for (Eigen::Index i = 0; i < parameters.size(); ++i) {
+      if (is_held[static_cast<size_t>(i)] || !leaves_bounds(parameters[i], step[i])) continue;
+      is_held[static_cast<size_t>(i)] = true;
+      held.push_back(i);
+    }
+    if (held.size() == before) break;
+    step = damped_step(sums, damped, damping, held);
   }
   return step;
 }
@@ -205,7 +207,7 @@ Eigen::VectorXd Fit::scatter_errors() const {
 
 Covariance Fit::shared() const {
   const Covariance all = covariance();
-  const Eigen::Index n = hessian.rows() - first_shared;
+  const Eigen::Index n = hessian.size() - first_shared;
   Covariance result{all.matrix.bottomRightCorner(n, n), {}};
   for (const Eigen::Index i : all.undetermined) {
     if (i >= first_shared) result.undetermined.push_back(i - first_shared);
@@ -214,8 +216,7 @@ Covariance Fit::shared() const {
 }
 
 Eigen::MatrixXd Fit::shared_posterior() const {
-  const Eigen::Index n = hessian.rows() - first_shared;
-  return posterior_of(hessian).bottomRightCorner(n, n);
+  return posterior_of(hessian.shared_information());
 }
 
 Fit fit(const ForwardModel& model, const Eigen::VectorXd& start, const Options& options) {

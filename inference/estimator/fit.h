@@ -71,7 +71,7 @@ struct Fit {
   int64_t samples = 0;
   std::vector<double> run_chi2;  // of each run, without the priors
   std::vector<int64_t> run_samples;
-  Eigen::MatrixXd hessian;  // H at the point, of all parameters in their order
+  ArrowMatrix hessian;  // H at the point, of all parameters in their order
   Eigen::Index first_shared = 0;
   bool converged = false;
   Termination termination = Termination::not_evaluable;  // of the last window
@@ -84,7 +84,7 @@ struct Fit {
   // Standard errors of all parameters by the scatter of the data, √(variance · covariance),
   // whatever noise was stated; infinite where undetermined.
   Eigen::VectorXd scatter_errors() const;
-  Covariance covariance() const { return covariance_of(hessian); }
+  Covariance covariance() const { return covariance_of(hessian.dense()); }
   // Of the shared parameters alone, whatever the runs' own may be.
   Covariance shared() const;
   Eigen::MatrixXd shared_covariance() const { return shared().matrix; }

@@ -9,38 +9,39 @@ namespace {
 
 // Adds the sums of one run to those of all.
 void scatter(const NormalSums& from, const Parameters& parameters, Eigen::Index run,
-             NormalSums& to) {
-  const Eigen::Index per_run = parameters.per_run(), first_shared = parameters.first_shared();
-  const auto place = [&](Eigen::Index v) {
-    return v < per_run ? run * per_run + v : first_shared + v - per_run;
-  };
-  const Eigen::Index count = from.gradient.size();
-  for (Eigen::Index a = 0; a < count; ++a) {
-    to.gradient[place(a)] += from.gradient[a];
-    for (Eigen::Index b = 0; b < count; ++b) to.matrix(place(a), place(b)) += from.matrix(a, b);
-  }
+             SumsOfRuns& to) {
+  const Eigen::Index per_run = parameters.per_run();
+  const Eigen::Index shared = from.gradient.size() - per_run;
+  to.matrix.add(run, from.matrix);
+  to.gradient.segment(run * per_run, per_run) += from.gradient.head(per_run);
+  to.gradient.tail(shared) += from.gradient.tail(shared);
   to.chi2 += from.chi2;
   to.samples += from.samples;
 }
 
-void add_priors(const Parameters& parameters, NormalSums& sums) {
+void add_priors(const Parameters& parameters, SumsOfRuns& sums) {
   for (Eigen::Index i = 0; i < parameters.size(); ++i) {
     const Parameter& p = parameters[i];
     if (!p.has_prior()) continue;
     const double off = (p.mean - p.value) / p.sigma;
-    sums.matrix(i, i) += 1.0 / (p.sigma * p.sigma);
+    sums.matrix.add_to_diagonal(i, 1.0 / (p.sigma * p.sigma));
     sums.gradient[i] += off / p.sigma;
     sums.chi2 += off * off;
   }
+}
+
+SumsOfRuns no_sums(const Parameters& parameters, double chi2) {
+  const Eigen::Index shared = parameters.size() - parameters.first_shared();
+  return {ArrowMatrix(parameters.runs(), parameters.per_run(), shared),
+          Eigen::VectorXd::Zero(parameters.size()), chi2, 0};
 }
 
 }  // namespace
 
 Evaluation evaluate(const ForwardModel& model, const Eigen::VectorXd& at, const Request& request) {
   const Parameters parameters = model.parameters(at);
-  const Eigen::Index size = parameters.size();
   Evaluation result;
-  result.sums = {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), 0.0, 0};
+  result.sums = no_sums(parameters, 0.0);
   try {
     for (Eigen::Index run = 0; run < parameters.runs(); ++run) {
       const NormalSums sums = model.sums(at, run, request);
@@ -55,7 +56,7 @@ Evaluation evaluate(const ForwardModel& model, const Eigen::VectorXd& at, const 
       }
     }
   } catch (const NumericalError&) {
-    result.sums = {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), infinity, 0};
+    result.sums = no_sums(parameters, infinity);
     result.run_chi2.clear();
     result.run_samples.clear();
     return result;

@@ -8,7 +8,7 @@
 // point is a step, in the order of Parameters, through stepped().
 #pragma once
 
-#include "inference/estimator/normal_sums.h"
+#include "inference/estimator/arrow_matrix.h"
 #include "inference/estimator/parameter.h"
 
 namespace photorque::inference {
@@ -42,7 +42,7 @@ class ForwardModel {
 
 // The sums of all runs and of the priors at a point.
 struct Evaluation {
-  NormalSums sums;                   // χ² is infinite where the model cannot be evaluated
+  SumsOfRuns sums;                   // χ² is infinite where the model cannot be evaluated
   double data_chi2 = infinity;       // without the priors
   std::vector<double> run_chi2;      // of each run
   std::vector<int64_t> run_samples;  // of each run

@@ -49,6 +49,12 @@ Projected project_out(const NormalSums& sums, Eigen::Index fitted) {
   return result;
 }
 
+Projected project_out(const SumsOfRuns& sums, Eigen::Index fitted) {
+  Projected result = project_out(sums.of_shared(), fitted - sums.matrix.first_shared());
+  result.before = sums.matrix.shared().diagonal().tail(result.before.size());
+  return result;
+}
+
 Eigen::MatrixXd pair_gains(const Projected& all, const std::vector<Eigen::Index>& begin) {
   const auto count = static_cast<Eigen::Index>(begin.size()) - 1;
   const auto append = [&](Eigen::Index group, std::vector<Eigen::Index>& to) {

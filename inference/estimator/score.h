@@ -12,7 +12,7 @@
 
 #include <vector>
 
-#include "inference/estimator/normal_sums.h"
+#include "inference/estimator/arrow_matrix.h"
 
 namespace photorque::inference {
 
@@ -40,6 +40,8 @@ struct Projected {
   Score score(Eigen::Index first, Eigen::Index count) const;
 };
 Projected project_out(const NormalSums& sums, Eigen::Index fitted);
+// The same for several runs: the first `fitted`, all that are the runs' own among them.
+Projected project_out(const SumsOfRuns& sums, Eigen::Index fitted);
 
 // The gains of every two groups of parameters together, on the diagonal of each alone. Group k is
 // [begin[k], begin[k + 1]); the last of `begin` is the end.

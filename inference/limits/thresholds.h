@@ -99,7 +99,7 @@ struct Thresholds {
     double min_log_evidence_gain = 3.0;
     // Pieces into which diverged recordings are cut, in turn; and complete readings that a piece
     // needs to have a start of its own.
-    std::array<size_t, 2> pieces = {6, 20};
+    std::array<size_t, 4> pieces = {6, 20, 60, 180};
     size_t min_readings_of_piece = 10;
     // Fits to averages or pieces that are repeated on all readings.
     size_t max_refits_of_averages = 4, max_refits_of_pieces = 6;

@@ -109,9 +109,9 @@ inference::ResidualFunction reduced(std::shared_ptr<const inference::ForwardMode
                                     const VectorXd& start) {
   return [model, start](const VectorXd& step, Index, VectorXd& residuals, MatrixXd* slopes) {
     const Index n = step.size();
-    const inference::NormalSums sums =
+    const inference::SumsOfRuns sums =
         inference::evaluate(*model, model->stepped(start, step), {}).sums;
-    const MatrixXd R = sums.matrix.llt().matrixU();
+    const MatrixXd R = sums.matrix.dense().llt().matrixU();
     residuals.resize(n + 1);
     residuals.head(n) = R.triangularView<Eigen::Upper>().transpose().solve(sums.gradient);
     residuals[n] = std::sqrt(std::max(0.0, sums.chi2 - residuals.head(n).squaredNorm()));

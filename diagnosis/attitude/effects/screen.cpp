@@ -40,9 +40,9 @@ GroupsAtFit project(const Fit& at, const std::vector<Observation>& runs,
   }
   const auto count = static_cast<Eigen::Index>(extra.size());
   result.begin.push_back(count);
-  const inference::NormalSums sums = sums_at(h, runs, extra);
+  const inference::SumsOfRuns sums = sums_at(h, runs, extra);
   if (!std::isfinite(sums.chi2)) return result;
-  result.all = inference::project_out(sums, sums.matrix.rows() - count);
+  result.all = inference::project_out(sums, sums.matrix.size() - count);
   result.known = true;
   return result;
 }
@@ -133,12 +133,8 @@ inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
   std::vector<Free> extra;
   std::vector<inference::StrengthGroup> groups;
   std::vector<Eigen::Index> columns;
-  // The sums' columns: the runs' own, the shared ones in the order of h.free, the extra ones. A new
-  // disturbance with states of its own would move them: those are fast, and make no group.
-  const RunStart& run = h.runs.front();
-  const auto first_shared =
-      static_cast<Eigen::Index>(h.runs.size() * (6 + run.initial.extra.size() + run.own.size()));
-  Eigen::Index next = first_shared;
+  // The columns of the shared sums: those of h.free in their order, then the extra ones.
+  Eigen::Index next = 0;
   for (const Free& f : h.free) next += f.per_run ? 0 : 1;
   for (size_t t = 0; t < terms.size(); ++t) {
     const Candidate& c = all[terms[t].candidate];
@@ -147,7 +143,6 @@ inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
     std::vector<Eigen::Index> where;
     if (acts) {
       where = shared_indices(at, t);
-      for (Eigen::Index& i : where) i += first_shared;
     } else {
       const size_t index = add_disturbance(h, without_strength(c, terms[t].start.disturbance));
       for (size_t p = 0; p < c.scale.size(); ++p) {
@@ -158,9 +153,9 @@ inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
     }
     groups.push_back(group_of(terms[t], t, all, acts, where, columns));
   }
-  inference::NormalSums sums = sums_at(h, runs, extra);
+  const inference::SumsOfRuns sums = sums_at(h, runs, extra);
   if (!std::isfinite(sums.chi2)) return {};
-  inference::LinearProblem problem = projected_on(sums, columns);
+  inference::LinearProblem problem = projected_on(sums.of_shared(), columns);
   problem.groups = std::move(groups);
   return problem;
 }

@@ -18,7 +18,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
   const Fit& fit = trial.fit;
   const Thresholds::Evidence& limits = all.limits.evidence;
   if (!std::isfinite(fit.chi2)) return -1e300;
-  Eigen::MatrixXd hessian = fit.hessian;
+  inference::ArrowMatrix hessian = fit.hessian;
   double result = -0.5 * fit.chi2;
   // The parameters that are not searched, in units of what is expected of them.
   inference::Strengths strengths;
@@ -40,8 +40,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
         continue;
       }
       const double sigma = c.scale[p], wide = sigma * limits.fit_prior_widths;
-      hessian(fit.first_shared + at, fit.first_shared + at) +=
-          1.0 / (sigma * sigma) - 1.0 / (wide * wide);
+      hessian.add_to_diagonal(fit.first_shared + at, 1.0 / (sigma * sigma) - 1.0 / (wide * wide));
       result -= std::log(sigma);
     }
     for (size_t s = 0; s < c.start.states.size(); ++s) {
@@ -49,7 +48,7 @@ double log_evidence(const Trial& trial, const Candidates& all) {
                 std::log(limits.own_state_sigma);  // prior of its start
     }
   }
-  result -= 0.5 * inference::log_determinant(hessian);
+  result -= 0.5 * hessian.log_determinant();
   return result + inference::log_strength_evidence(strengths, fit.shared_posterior(),
                                                    trial.candidates.size(), limits);
 }

@@ -1,0 +1,87 @@
+// The symmetric matrix of least squares over several runs.
+//
+// What belongs to one run alone (where it began, its instrument's bias) meets the shared parameters
+// but no other run's:
+//
+//   ⎡ A₁          B₁ᵀ ⎤
+//   ⎢     A₂      B₂ᵀ ⎥      A: own by own, B: shared by own, C: shared by shared
+//   ⎣ B₁  B₂  …   C   ⎦
+//
+// The runs' own are eliminated one by one, so everything costs as much as the number of runs, not
+// its third power: hundreds of short pieces of a recording are fitted together.
+//
+// Source: B. Triggs et al., "Bundle Adjustment — A Modern Synthesis" (2000), section 6.3.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "inference/estimator/normal_sums.h"
+
+namespace photorque::inference {
+
+class ArrowMatrix {
+ public:
+  using Index = Eigen::Index;
+
+  ArrowMatrix() = default;
+  // Zeros.
+  ArrowMatrix(Index runs, Index per_run, Index shared);
+
+  Index size() const { return first_shared() + shared_.rows(); }
+  Index first_shared() const { return static_cast<Index>(own_.size()) * per_run_; }
+  bool all_finite() const;
+
+  // Adds one run's Jᵀ J: by its own parameters, then the shared ones.
+  void add(Index run, const Eigen::MatrixXd& square);
+  void add_to_diagonal(Index i, double by);
+
+  Eigen::VectorXd diagonal() const;
+  Eigen::MatrixXd dense() const;
+  // By what all runs share.
+  const Eigen::MatrixXd& shared() const { return shared_; }
+  Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
+  // diag(s) M diag(s).
+  ArrowMatrix scaled(const Eigen::VectorXd& s) const;
+  // Row and column i become those of the unit matrix: parameter i is held.
+  void hold(Index i);
+
+  // The rest below is for matrices that are positive definite, as priors and damping make them.
+  Eigen::VectorXd solve(const Eigen::VectorXd& x) const;
+  // Its natural logarithm; pivots below 1e-12 of the diagonal count as that.
+  double log_determinant() const;
+  // C − Σ B A⁻¹ Bᵀ: what is known of the shared parameters whatever the runs' own may be. Its
+  // inverse is the shared block of the inverse.
+  Eigen::MatrixXd shared_information() const;
+  // The same, and the gradient likewise.
+  NormalSums shared_sums(const Eigen::VectorXd& gradient, double chi2, int64_t samples) const;
+
+ private:
+  Eigen::LDLT<Eigen::MatrixXd> factors_of(size_t run) const {
+    return Eigen::LDLT<Eigen::MatrixXd>(own_[run]);
+  }
+  auto part(Eigen::VectorXd& x, size_t run) const {
+    return x.segment(static_cast<Index>(run) * per_run_, per_run_);
+  }
+  auto part(const Eigen::VectorXd& x, size_t run) const {
+    return x.segment(static_cast<Index>(run) * per_run_, per_run_);
+  }
+
+  Index per_run_ = 0;
+  std::vector<Eigen::MatrixXd> own_, cross_;  // A and B of each run
+  Eigen::MatrixXd shared_;                    // C
+};
+
+// The sums of all runs.
+struct SumsOfRuns {
+  ArrowMatrix matrix;        // Jᵀ J
+  Eigen::VectorXd gradient;  // Jᵀ r
+  double chi2 = 0.0;
+  int64_t samples = 0;
+
+  // By the shared parameters alone, the runs' own projected out; χ² is that of all as it is.
+  NormalSums of_shared() const { return matrix.shared_sums(gradient, chi2, samples); }
+};
+
+}  // namespace photorque::inference

@@ -1,0 +1,130 @@
+// Friction that stops a platform and holds it, and a cable that it winds up: laws with layers far
+// thinner than a step, against the closed forms of one degree of freedom (textbook mechanics, e.g.
+// J. P. den Hartog, "Mechanical Vibrations", for friction and spring).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/constants.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+constexpr double I_kg_m2 = 0.19;  // of the bench platform about z
+
+// Turned about z, between −π and π.
+double heading_rad(const Quat& q) {
+  const double angle = 2.0 * std::atan2(q.z(), q.w());
+  return std::remainder(angle, 2.0 * pi);
+}
+
+// A constant torque that is weaker than the friction: the platform slows down evenly, stops, and
+// creeps so fast that the law's friction balances the torque.
+struct Held {
+  double torque_N_m = 4e-6, friction_N_m = 1e-5, start_rad_s = 0.02, creep_rad_s = 1e-6;
+
+  double stops_s() const { return start_rad_s * I_kg_m2 / (friction_N_m - torque_N_m); }
+  double creeps_rad_s() const {
+    return creep_rad_s * torque_N_m /
+           std::sqrt(friction_N_m * friction_N_m - torque_N_m * torque_N_m);
+  }
+  double angle_rad(double time_s) const {
+    return 0.5 * start_rad_s * stops_s() + creeps_rad_s() * (time_s - stops_s());
+  }
+  AttitudeModel model() const {
+    return with(with(bench_model(), "turbine_torque", {{"torque_N_m", node(torque_N_m)}}),
+                "dry_friction",
+                {{"torque_N_m", node(friction_N_m)}, {"creep_rate_rad_s", node(creep_rad_s)}});
+  }
+};
+
+TEST(Sticking, IsCrossedInFewSteps) {
+  const Held held;
+  const AttitudeModel model = held.model();
+  const Dynamics dynamics(model);
+  const double times_s[] = {1e5};
+  const Trajectory t =
+      propagate(dynamics, state_of(model, Quat::Identity(), {0, 0, held.start_rad_s}), times_s);
+  // The law's smooth layer moves the stop by about creep/rate of the stopping time, some 1e-4 rad.
+  EXPECT_NEAR(std::remainder(heading_rad(t.states[0].lab_from_body) - held.angle_rad(1e5), 2 * pi),
+              0.0, 1e-5);
+  EXPECT_NEAR(t.states[0].rate_body_rad_s.z(), held.creeps_rad_s(), 1e-12);
+  // Steps as short as fixed-point iteration needs while it sticks, I · creep/friction = 0.02 s
+  // times a few, would be a million.
+  EXPECT_LT(t.statistics.steps, 500);
+  EXPECT_GT(t.statistics.stiff, 0);
+}
+
+// ∂angle/∂friction against the closed form and, exactly, against differences of the trajectory.
+TEST(Sticking, HasExactDerivatives) {
+  const Held held;
+  const AttitudeModel model = held.model();
+  const double times_s[] = {2000.0};
+  PropagationOptions options;
+  options.tolerance = 1e-11;
+  const auto angle = [&](double by_N_m) {
+    AttitudeModel changed = model;
+    changed.disturbances.back().parameters[0].value += by_N_m;
+    const Dynamics dynamics(changed);
+    return heading_rad(propagate(dynamics,
+                                 state_of(changed, Quat::Identity(), {0, 0, held.start_rad_s}),
+                                 times_s, options)
+                           .states[0]
+                           .lab_from_body);
+  };
+  const Dynamics dynamics(model);
+  const Trajectory t =
+      propagate(dynamics, state_of(model, Quat::Identity(), {0, 0, held.start_rad_s}), times_s,
+                options, {Variable::of(1, 0)});
+  const double step_N_m = 1e-9;
+  const double difference = (angle(step_N_m) - angle(-step_N_m)) / (2.0 * step_N_m);
+  EXPECT_NEAR(t.derivatives[2] / difference, 1.0, 1e-5);
+  // θ = ½ I ω²/(τ − T) + …: the creep's part is a hundredth of a per cent.
+  const double closed_form =
+      -0.5 * held.start_rad_s * held.stops_s() / (held.friction_N_m - held.torque_N_m);
+  EXPECT_NEAR(t.derivatives[2] / closed_form, 1.0, 2e-3);
+}
+
+// Between spring and friction every half swing ends 2 τ/k nearer, whatever the amplitude. The sign
+// of the friction changes within nanoseconds, anywhere within a step: 40 swings, at the tolerance
+// that a user has by default.
+TEST(Sticking, EveryReversalIsSeen) {
+  constexpr double k = 2e-4, friction_N_m = 1e-6;
+  const AttitudeModel model =
+      with(with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(k)}}), "dry_friction",
+           {{"torque_N_m", node(friction_N_m)}, {"creep_rate_rad_s", node(1e-10)}});
+  const Dynamics dynamics(model);
+  const double half_period_s = pi * std::sqrt(I_kg_m2 / k);
+  for (int start = 0; start < 10; ++start) {
+    const double amplitude_rad = 0.6 + 0.037 * start;
+    std::vector<double> times_s;
+    for (int half = 1; half <= 40; ++half) times_s.push_back(half * half_period_s);
+    const Trajectory t =
+        propagate(dynamics, state_of(model, turned(amplitude_rad, {0, 0, 1})), times_s);
+    for (int half = 1; half <= 40; ++half) {
+      const double left_rad = amplitude_rad - 2 * half * friction_N_m / k;
+      const double at_rad = heading_rad(t.states[static_cast<size_t>(half - 1)].lab_from_body);
+      EXPECT_NEAR(at_rad, half % 2 == 1 ? -left_rad : left_rad, 3e-7) << start << " " << half;
+    }
+  }
+}
+
+// A cable that is wound up pulls with every turn: an oscillator of three turns' amplitude.
+TEST(Tether, CountsItsTurns) {
+  constexpr double k = 2e-4, amplitude_rad = 6 * pi;
+  const double omega_1_s = std::sqrt(k / I_kg_m2);
+  const AttitudeModel model = with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(k)}});
+  const PlatformState start = state_of(model, Quat::Identity(), {0, 0, amplitude_rad * omega_1_s});
+  for (const double time_s : {10.0, 40.0, 100.0, 300.0}) {
+    const PlatformState end = propagated(model, start, time_s);
+    EXPECT_NEAR(end.rate_body_rad_s.z(), amplitude_rad * omega_1_s * std::cos(omega_1_s * time_s),
+                1e-9);
+    const double off_rad =
+        heading_rad(end.lab_from_body) - amplitude_rad * std::sin(omega_1_s * time_s);
+    EXPECT_NEAR(std::remainder(off_rad, 2 * pi), 0.0, 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace photorque
