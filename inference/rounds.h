@@ -38,7 +38,9 @@ class Rounds {
       if (scan && may_be_stand_ins(at)) {
         for (Trial& t : scanned(trials_.front())) found.push_back(std::move(t));
       }
-      if (!scan) {
+      if (scan) {
+        for (Trial& t : relocated(at)) found.push_back(std::move(t));
+      } else {
         for (Trial& t : switched_on(at)) found.push_back(std::move(t));
       }
       std::vector<Trial> parents = {at};
@@ -253,6 +255,38 @@ class Rounds {
       tasks.push_back({c, domain_.start_of(c)});
     }
     return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
+  }
+
+  // An instant or a place was looked for when less was known, and a fit does not go far from it:
+  // what has one is taken out, with what may have made up for it, and looked for again.
+  std::vector<Trial> relocated(const Trial& at) const {
+    std::vector<Trial> found;
+    if (at.candidates.size() < 2 || (explains(at) && !has_empirical(at))) return found;
+    const std::vector<CandidateTraits>& all = domain_.candidates();
+    const Runs averages = slow_runs(domain_, at, set_);
+    const Terms<D> terms = domain_.terms_of(at);
+    for (const Term<typename D::Start>& term : terms) {
+      const CandidateTraits& traits = all[term.candidate];
+      if (traits.is_linear || traits.is_fast || traits.is_empirical) continue;
+      Members<typename D::Start> rest;
+      for (const Term<typename D::Start>& other : terms) {
+        const bool stays = other.candidate != term.candidate && !all[other.candidate].is_empirical;
+        if (stays) rest.push_back({other});
+      }
+      const Effort effort{.max_iterations = limits_.fitting.trial_iterations};
+      const Trial parent = domain_.assemble(at, rest, set_.runs, effort);
+      std::vector<Task<D>> tasks;
+      const auto starts = domain_.starts(parent, {term.candidate}, set_.runs, averages, threads_);
+      for (const auto& start : starts.front()) {
+        tasks.push_back({term.candidate, start});
+      }
+      for (Trial& t : extend_by_tasks(domain_, parent, tasks, set_.runs, threads_)) {
+        if (!same_candidates(t.candidates, at.candidates) || t.log_evidence > at.log_evidence) {
+          found.push_back(std::move(t));
+        }
+      }
+    }
+    return found;
   }
 
   // What acts faster than averages show.

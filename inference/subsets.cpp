@@ -20,7 +20,10 @@ class Forecast {
     unit_ = problem.information.diagonal().unaryExpr(
         [](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
     matrix_ = unit_.asDiagonal() * problem.information * unit_.asDiagonal();
-    matrix_.diagonal().array() += rounding;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double raw = problem.before.size() == n ? problem.before[i] * unit_[i] * unit_[i] : 1.0;
+      matrix_(i, i) += rounding * std::max(1.0, raw);
+    }
     gradient_ = unit_.cwiseProduct(problem.gradient);
     value_ = Eigen::VectorXd::Zero(n);
     for (const StrengthGroup& group : problem.groups) {
@@ -106,7 +109,9 @@ class Forecast {
   }
 
  private:
-  // Of information on a unit diagonal: combinations that no reading determines stay where they are.
+  // Of information on a unit diagonal, before anything was projected out: combinations that no
+  // reading determines stay where they are. Derivatives are exact to some 1e-7, their squares to
+  // the square of that.
   static constexpr double rounding = 1e-10;
 
   std::vector<Eigen::Index> places(const std::vector<size_t>& groups) const {

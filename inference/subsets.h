@@ -36,6 +36,9 @@ struct StrengthGroup {
 struct LinearProblem {
   Eigen::MatrixXd information;  // H
   Eigen::VectorXd gradient;     // g
+  // The diagonal of H before the nuisances were projected out of it. What is left of it at the size
+  // of rounding is no information: with it anything could be explained. Empty: as H says.
+  Eigen::VectorXd before = {};
   std::vector<StrengthGroup> groups;
 };
 

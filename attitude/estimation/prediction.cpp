@@ -13,6 +13,17 @@ Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
   return {v[0][lane], v[1][lane], v[2][lane]};
 }
 
+// By how much the attitude that a camera reports is the past's. Body axes; the rate changes evenly
+// meanwhile: for delays far below the periods of the motion, as the square of their ratio.
+struct Delay {
+  double time_s = 0.0;
+  Vec3 rate_rad_s = Vec3::Zero(), acceleration_rad_s2 = Vec3::Zero();  // now
+
+  Vec3 rate_then_rad_s() const { return rate_rad_s - time_s * acceleration_rad_s2; }
+  // From the attitude then to that now.
+  Vec3 turn_rad() const { return time_s * (rate_rad_s - 0.5 * time_s * acceleration_rad_s2); }
+};
+
 // The slopes of the six readings in one lane, a row each.
 class Slopes {
  public:
@@ -25,16 +36,19 @@ class Slopes {
   }
 
   // The camera sees the attitude, its own misalignment, and all of it late.
-  void fill(int lane, const PlatformState& state, Eigen::Matrix<double, 6, Eigen::Dynamic>& slope) {
+  void fill(int lane, const PlatformState& state, const Delay& delay,
+            Eigen::Matrix<double, 6, Eigen::Dynamic>& slope) {
     const Quat& q = state.lab_from_body;
     const Mat3 lab_from_body = q.toRotationMatrix();
     for (size_t v = 0; v < count_; ++v) {
       const auto by = [&](size_t c) { return samples_.derivatives[c * count_ + v][lane]; };
       const auto reading = [&](size_t r) { return readings_[r * count_ + v][lane]; };
       const Quat change(by(0), by(1), by(2), by(3));
-      const Vec3 rotation_body = 2.0 * (q.conjugate() * change).vec() +
-                                 Vec3(reading(3), reading(4), reading(5)) -
-                                 reading(6) * state.rate_body_rad_s;
+      const Vec3 rotation_body =
+          2.0 * (q.conjugate() * change).vec() + Vec3(reading(3), reading(4), reading(5)) -
+          reading(6) * delay.rate_then_rad_s() -
+          delay.time_s *
+              Vec3(by(component::rate), by(component::rate + 1), by(component::rate + 2));
       const auto column = static_cast<Eigen::Index>(v);
       slope.col(column).head<3>() = lab_from_body * rotation_body;
       for (int k = 0; k < 3; ++k) slope(3 + k, column) = reading(static_cast<size_t>(k));
@@ -94,9 +108,12 @@ class Comparison {
       if (!(state.rate_body_rad_s.norm() < max_rate_rad_s_)) {
         throw NumericalError("the motion runs away");
       }
-      if (slopes) slopes->fill(lane, state, slope_);
-      const Vec3 camera_offset_body =
-          in_lane(now.camera_error_rad, lane) - now.camera_delay_s[lane] * state.rate_body_rad_s;
+      const Delay delay{now.camera_delay_s[lane],
+                        state.rate_body_rad_s,
+                        {now.rates[component::rate][lane], now.rates[component::rate + 1][lane],
+                         now.rates[component::rate + 2][lane]}};
+      if (slopes) slopes->fill(lane, state, delay, slope_);
+      const Vec3 camera_offset_body = in_lane(now.camera_error_rad, lane) - delay.turn_rad();
       add_block(samples.first + static_cast<size_t>(lane), state, camera_offset_body,
                 in_lane(now.gyro_rad_s, lane));
     }

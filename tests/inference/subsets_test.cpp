@@ -48,7 +48,7 @@ struct Bench {
       const Eigen::MatrixXd some = J(Eigen::all, at);
       value(at) = some.colPivHouseholderQr().solve(y);
     }
-    LinearProblem problem{J.transpose() * J, J.transpose() * (y - J * value), {}};
+    LinearProblem problem{J.transpose() * J, J.transpose() * (y - J * value), {}, {}};
     for (size_t g = 0; g < groups; ++g) {
       StrengthGroup group{g, "term " + std::to_string(g), false, first_of[g], {}, {}, {}, {}};
       for (Eigen::Index k = first_of[g]; k < first_of[g + 1]; ++k) {

@@ -108,8 +108,9 @@ Disturbance without_strength(const Candidate& c, Disturbance d) {
 }
 
 // Sums by some columns, all others projected out.
-inference::LinearProblem projected_on(const inference::NormalSums& sums,
+inference::LinearProblem projected_on(const inference::SumsOfRuns& of_runs,
                                       const std::vector<Eigen::Index>& columns) {
+  const inference::NormalSums sums = of_runs.of_shared();
   std::vector<bool> is_wanted(static_cast<size_t>(sums.gradient.size()), false);
   for (const Eigen::Index c : columns) is_wanted[static_cast<size_t>(c)] = true;
   std::vector<Eigen::Index> order;
@@ -121,7 +122,10 @@ inference::LinearProblem projected_on(const inference::NormalSums& sums,
   const inference::NormalSums sorted{sums.matrix(order, order), sums.gradient(order), sums.chi2,
                                      sums.samples};
   inference::Projected all = inference::project_out(sorted, fitted);
-  return {std::move(all.information), std::move(all.gradient), {}};
+  return {std::move(all.information),
+          std::move(all.gradient),
+          of_runs.matrix.shared().diagonal()(columns),
+          {}};
 }
 
 }  // namespace
@@ -155,7 +159,7 @@ inference::LinearProblem linear_problem(const Trial& at, const Candidates& all,
   }
   const inference::SumsOfRuns sums = sums_at(h, runs, extra);
   if (!std::isfinite(sums.chi2)) return {};
-  inference::LinearProblem problem = projected_on(sums.of_shared(), columns);
+  inference::LinearProblem problem = projected_on(sums, columns);
   problem.groups = std::move(groups);
   return problem;
 }
