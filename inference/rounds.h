@@ -1,6 +1,8 @@
 // Rounds of forecast and fit about the best explanation so far.
 #pragma once
 
+#include <cmath>
+
 #include "inference/extend.h"
 #include "inference/subsets.h"
 
@@ -148,14 +150,19 @@ class Rounds {
     if (subsets.empty()) return {};
     std::vector<Members<typename D::Start>> chosen;
     size_t sets = 0;
-    const double least = least_worth_fitting(subsets, problem, own);
+    const double of_trial = forecast_of_trial(subsets, problem, own);
+    const double least = std::max(subsets.front().log_evidence - limits_.search.forecast_within,
+                                  of_trial - limits_.decision.min_log_odds);
     for (const Subset& s : subsets) {
       const bool is_single =
           first && s.groups.size() == 1 && s.gain > least_gain(s, problem, subsets);
       const bool is_leader = s.log_evidence > least && sets < limits_.search.max_fits_of_round;
       if (!is_leader && !is_single) continue;
       Members<typename D::Start> members = members_of(s, problem, terms, is_kept);
-      if (members.empty() || was_tried(members)) continue;
+      if (members.empty()) continue;
+      // More names than the trial has must promise something.
+      if (s.log_evidence < of_trial && is_enlarged(candidates_of(members), at)) continue;
+      if (was_tried(members, at.log_evidence + s.log_evidence - of_trial)) continue;
       if (is_leader) ++sets;
       chosen.push_back(std::move(members));
     }
@@ -171,19 +178,27 @@ class Rounds {
     return kept;
   }
 
-  // A little below the best forecast, and not far below the trial itself.
-  double least_worth_fitting(const std::vector<Subset>& subsets, const LinearProblem& problem,
-                             size_t own) const {
-    double least = subsets.front().log_evidence - limits_.search.forecast_within;
+  // The log evidence that is predicted for the trial itself, to compare others with; −∞ where it is
+  // not among those predicted.
+  static double forecast_of_trial(const std::vector<Subset>& subsets, const LinearProblem& problem,
+                                  size_t own) {
+    const auto is_own = [&](size_t g) { return problem.groups[g].term < own; };
+    size_t all = 0;
+    for (size_t g = 0; g < problem.groups.size(); ++g) all += is_own(g) ? 1 : 0;
     for (const Subset& s : subsets) {
-      size_t of_trial = 0, groups_of_trial = 0;
-      for (const size_t g : s.groups) of_trial += problem.groups[g].term < own ? 1 : 0;
-      for (const StrengthGroup& g : problem.groups) groups_of_trial += g.term < own ? 1 : 0;
-      if (of_trial == s.groups.size() && of_trial == groups_of_trial) {
-        least = std::max(least, s.log_evidence - limits_.decision.min_log_odds);
-      }
+      const bool is_trial =
+          s.groups.size() == all && std::all_of(s.groups.begin(), s.groups.end(), is_own);
+      if (is_trial) return s.log_evidence;
     }
-    return least;
+    return -std::numeric_limits<double>::infinity();
+  }
+
+  // All candidates of the trial and others besides.
+  static bool is_enlarged(const std::vector<size_t>& candidates, const Trial& at) {
+    return candidates.size() > at.candidates.size() &&
+           std::all_of(at.candidates.begin(), at.candidates.end(), [&](size_t c) {
+             return std::find(candidates.begin(), candidates.end(), c) != candidates.end();
+           });
   }
 
   // Of a single candidate, to be fitted for comparison.
@@ -219,10 +234,15 @@ class Rounds {
     return candidates;
   }
 
-  bool was_tried(const Members<typename D::Start>& members) const {
+  // And came out as well as is `expected` now (log evidence). A fit that started too far off is
+  // worth another.
+  bool was_tried(const Members<typename D::Start>& members, double expected) const {
     const std::vector<size_t> candidates = candidates_of(members);
-    return std::any_of(trials_.begin(), trials_.end(),
-                       [&](const Trial& t) { return same_candidates(t.candidates, candidates); });
+    return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) {
+      return same_candidates(t.candidates, candidates) &&
+             !(expected > t.log_evidence + limits_.search.min_log_evidence_gain &&
+               std::isfinite(expected));
+    });
   }
 
   // Fits to averages, and of the best to all readings.
@@ -300,9 +320,22 @@ class Rounds {
       if (!acts_already(at.candidates, c, all)) others.push_back(c);
     }
     const auto starts = domain_.starts(at, others, set_.runs, averages, threads_);
+    double best = 0.0;
+    for (const auto& some : starts) {
+      for (const auto& start : some) {
+        if (std::isfinite(start.gain)) best = std::max(best, start.gain);
+      }
+    }
     std::vector<Task<D>> tasks;
     for (size_t i = 0; i < others.size(); ++i) {
-      for (const auto& start : starts[i]) tasks.push_back({others[i], start});
+      double most = 0.0;
+      for (const auto& start : starts[i]) most = std::max(most, start.gain);
+      for (const auto& start : starts[i]) {
+        const bool is_best = !(start.gain < most);
+        if (is_best || start.gain >= limits_.scoring.min_start_fraction * best) {
+          tasks.push_back({others[i], start});
+        }
+      }
     }
     return extend_by_tasks(domain_, at, tasks, set_.runs, threads_);
   }

@@ -78,8 +78,9 @@ class Fitter {
         options_.max_start_chi2 < infinity && result.termination == Termination::not_evaluable;
     Evaluation last = evaluate(model_, now_, {!is_hopeless, 1.0, is_hopeless ? 0.0 : infinity});
     result.parameters = model_.parameters(now_);
-    result.chi2 = last.sums.chi2;
-    result.data_chi2 = last.data_chi2;
+    // Short runs are not given up half-way: their χ² may be known all the same.
+    result.chi2 = is_hopeless ? infinity : last.sums.chi2;
+    result.data_chi2 = is_hopeless ? infinity : last.data_chi2;
     result.samples = last.sums.samples;
     result.hessian = std::move(last.sums.matrix);
     result.first_shared = result.parameters.first_shared();

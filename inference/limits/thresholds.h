@@ -89,6 +89,8 @@ struct Thresholds {
     double min_line_power = 30.0;
     // Of the best frequency's gain, for another to be worth a start.
     double min_line_fraction = 0.1;
+    // Of the best start of all candidates, for more than a candidate's best one to be fitted.
+    double min_start_fraction = 0.3;
   } scoring;
 
   // How far the search goes.

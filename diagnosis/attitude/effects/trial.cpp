@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "attitude/estimation/nominal_model.h"
 #include "attitude/propagation/run.h"
@@ -266,6 +267,28 @@ inference::Members<Start> without_forecast(inference::Members<Start> members) {
   return members;
 }
 
+// Everything that the trial has is among the members.
+bool adds_to(const Trial& trial, const inference::Members<Start>& members) {
+  return std::all_of(trial.candidates.begin(), trial.candidates.end(), [&](size_t c) {
+    return std::any_of(members.begin(), members.end(),
+                       [&](const auto& member) { return member.term.candidate == c; });
+  });
+}
+
+// Windows in which there is something to fit.
+std::vector<double> growing_windows(const Thresholds& limits,
+                                    const std::vector<Observation>& runs) {
+  size_t shortest = std::numeric_limits<size_t>::max();
+  for (const Observation& seen : runs) shortest = std::min(shortest, seen.blocks());
+  std::vector<double> windows = limits.fitting.diverged_windows;
+  std::erase_if(windows, [&](double w) {
+    const bool too_few = w * static_cast<double>(shortest) <
+                         static_cast<double>(limits.search.min_readings_of_piece);
+    return w < 1.0 && too_few;
+  });
+  return windows;
+}
+
 Trial assembled(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
                 const std::vector<Observation>& runs, const FitSettings& settings) {
   Hypothesis h = nominal_part(from);
@@ -289,15 +312,17 @@ Trial assembled(const Trial& from, const Candidates& all, const inference::Membe
 
 Trial assemble(const Trial& from, const Candidates& all, const inference::Members<Start>& members,
                const std::vector<Observation>& runs, const FitSettings& settings) {
-  // The forecast is a start where it comes near the readings; elsewhere the trial's own strengths
-  // are, and none of what it lacks.
   FitSettings near = settings;
   near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * from.fit.chi2,
                                  all.limits.diverged_chi2_per_sample * from.fit.samples);
-  Trial trial = assembled(from, all, members, runs, near);
+  // With nothing taken out, the first step of a fit from the trial itself is the forecast, and
+  // moves what each run began with too; with something taken out, the forecast is the nearest
+  // start.
+  Trial trial = assembled(from, all, adds_to(from, members) ? without_forecast(members) : members,
+                          runs, near);
   if (!std::isfinite(trial.fit.chi2)) {
     FitSettings growing = settings;
-    growing.windows = all.limits.fitting.diverged_windows;
+    growing.windows = growing_windows(all.limits, runs);
     trial = assembled(from, all, without_forecast(members), runs, growing);
   }
   judge(trial, all);
