@@ -193,9 +193,10 @@ class Rounds {
     return -std::numeric_limits<double>::infinity();
   }
 
-  // All candidates of the trial and others besides.
+  // All candidates of the trial and others besides. (Where it has none, some are fitted for
+  // comparison.)
   static bool is_enlarged(const std::vector<size_t>& candidates, const Trial& at) {
-    return candidates.size() > at.candidates.size() &&
+    return !at.candidates.empty() && candidates.size() > at.candidates.size() &&
            std::all_of(at.candidates.begin(), at.candidates.end(), [&](size_t c) {
              return std::find(candidates.begin(), candidates.end(), c) != candidates.end();
            });
