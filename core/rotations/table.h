@@ -1,0 +1,114 @@
+// A function of attitude by its values at chosen attitudes, refined until it interpolates well
+// enough.
+//
+// In the coordinates of chart.h: over p a quadtree whose leaves hold a polynomial of degree 4 in
+// each coordinate through 5 × 5 values; over the twist ψ a trigonometric polynomial through
+// equidistant values in one period. How often the function repeats itself in a turn is found by
+// trying, as is whether it depends on ψ at all. Between leaves of different size the interpolant
+// jumps by less than its error.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/rotations/chart.h"
+
+namespace photorque {
+
+// Values of all channels at one attitude, and their standard errors (as many, zero where exact).
+struct RotationSample {
+  std::vector<double> value, error;
+};
+
+// The function, for several attitudes at a time.
+using RotationFunction = std::function<std::vector<RotationSample>(std::span<const Quat>)>;
+
+struct RotationTableOptions {
+  // Turns the lab so that the direction about which the function changes least is its z axis.
+  Quat axis_from_lab = Quat::Identity();
+  // Largest angle between that direction and body z that will be asked for, in (0, π].
+  double max_angle_rad = 0.0;
+  // Allowed error of each channel, relative to the largest size of any channel of its group.
+  double tolerance = 1e-3;
+  std::vector<int> group_of_channel;  // from 0
+  size_t max_samples = 20000;
+  uint64_t seed = 1;         // of the attitudes at which the result is checked
+  size_t check_points = 24;  // fresh ones, at least
+};
+
+// How well a table interpolates, at attitudes that it was not made from.
+struct RotationTableError {
+  std::vector<double> scale;  // per group: the largest size of any of its channels
+  std::vector<double> rms;    // per group, of the deviations, in the unit of the channels
+  std::vector<double> max;
+  std::vector<double> noise;  // per group: root mean square of the standard errors of the samples
+  size_t points = 0;
+};
+
+class RotationTable {
+ public:
+  static constexpr int degree = 4, side = degree + 1, nodes = side * side;
+
+  RotationTable() = default;
+
+  // All channels from `first` on, as many as `values` holds. NumericalError for an attitude more
+  // than a twentieth beyond max_angle_rad.
+  void at(const Quat& lab_from_body, size_t first, std::span<double> values) const;
+  // The same with the derivatives by w, x, y, z of the quaternion: slopes[4 · channel + component].
+  void at(const Quat& lab_from_body, size_t first, std::span<double> values,
+          std::span<double> slopes) const;
+
+  // A table of some channels alone, which is quicker to look up. The error is that of the whole.
+  RotationTable only(size_t first, size_t count) const;
+
+  size_t channels() const { return channels_; }
+  size_t samples() const { return channels_ == 0 ? 0 : values_.size() / (channels_ * twists_); }
+  // Values over one period of ψ; 1: the function does not depend on it within the tolerance.
+  size_t twists() const { return twists_; }
+  // In how many equal parts of a turn it repeats itself.
+  int fold() const { return fold_; }
+  size_t leaves() const { return leaves_; }
+  const RotationTableError& error() const { return error_; }
+
+  // As bytes and back. `read` returns false for bytes that are no table.
+  std::string bytes() const;
+  bool read(const std::string& bytes);
+
+ private:
+  friend class RotationTableBuilder;
+  // Without padding, so that equal tables are equal bytes.
+  struct Box {
+    double x = 0.0, y = 0.0, width = 0.0;  // lower corner
+    // Of the polynomial that holds here: its own corner and width, and its values.
+    double node_x = 0.0, node_y = 0.0, node_width = 0.0;
+    std::array<uint32_t, nodes> sample{};
+    int32_t children = -1;  // the first of four, −1 for a leaf
+  };
+  struct Place {
+    const Box* box;
+    double x, y;  // in units of the nodes' spacing, 0 … degree
+    double twist_rad;
+  };
+  Place place(const Quat& lab_from_body, RotationSlopes* slopes) const;
+
+  Quat axis_from_lab_ = Quat::Identity();
+  double half_width_ = 0.0;  // of the squares of p
+  size_t channels_ = 0, twists_ = 1, leaves_ = 0;
+  int fold_ = 1;
+  std::array<int32_t, 2> roots_{-1, -1};
+  std::vector<Box> boxes_;
+  std::vector<double> values_;  // [sample][harmonic of ψ][channel]
+  RotationTableError error_;
+};
+
+// Samples `function` and refines. `progress` is told the samples so far and what is done.
+// NumericalError when `max_samples` do not suffice.
+RotationTable make_rotation_table(
+    const RotationFunction& function, const RotationTableOptions& options,
+    const std::function<void(size_t, const std::string&)>& progress = {});
+
+}  // namespace photorque
