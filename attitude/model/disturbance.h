@@ -90,13 +90,14 @@ struct EvaluationContext {
   Mat3Of<T> inertia_kg_m2;  // about the centre of rotation
   Vec3Of<T> gravity_lab_m_s2;
   Vec3Of<T> magnetic_field_lab_T;
-  Vec3Of<T> up_lab;            // unit, away from the Earth's centre
-  T gravity_gradient_1_s2;     // g/R on the ground, μ/r³ in orbit
-  T illumination;              // fraction of the light that arrives: 1 lit, 0 in shadow
-  Vec3Of<T> command_body_N_m;  // torque commanded; acts on the body by itself
-  T battery_current_A;         // drawn from the battery (positive discharges)
-  bool current_is_measured;    // Schedule::current_is_measured
-  T array_power_W;             // that the solar array delivers
+  Vec3Of<T> up_lab;                 // unit, away from the Earth's centre
+  T gravity_gradient_1_s2;          // g/R on the ground, μ/r³ in orbit
+  T illumination;                   // fraction of the light that arrives: 1 lit, 0 in shadow
+  Vec3Of<T> command_body_N_m;       // torque commanded; acts on the body by itself
+  T battery_current_A;              // drawn from the battery (positive discharges)
+  bool current_is_measured;         // Schedule::current_is_measured
+  T array_power_W;                  // that the solar array delivers
+  Vec3Of<T> traced_light_body_N_m;  // ZeroOrderHold::light_body, now
 
   // The conditions in body axes: valid after Stage::conditions.
   Vec3Of<T> gravity_body_m_s2;

@@ -65,7 +65,7 @@ bool Dynamics::changes_inertia() const {
   const std::vector<double> start = to_vector(initial_state());
   const std::vector<Lanes> y(start.begin(), start.end());
   std::vector<Lanes> rates(y.size(), Lanes(0.0));
-  EvaluationContext<Lanes> now = begin(Lanes(0.0), broadcast({}), y.data());
+  EvaluationContext<Lanes> now = begin(Lanes(0.0), broadcast({}, 0.0), y.data());
   run_stages(order_, now, [&](size_t d) {
     const Layout& own = layout_[d];
     model_.disturbances[d].law->act({parameters_.data() + own.first_parameter,
@@ -86,15 +86,27 @@ PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
   return state;
 }
 
-Dynamics::Command Dynamics::broadcast(const ZeroOrderHold& held) {
-  return {held.command_body_N_m.cast<Lanes>(), held.battery_current_A};
+Dynamics::Command Dynamics::broadcast(const ZeroOrderHold& held, const Lanes& time_s) {
+  const ContinuedTorque& light = held.light_body;
+  const Lanes t = time_s - light.from_s;
+  Command command{held.command_body_N_m.cast<Lanes>(), held.battery_current_A, {}};
+  for (int k = 0; k < 3; ++k) {
+    command.light_body_N_m[k] =
+        light.value_N_m[k] + t * (light.rate_N_m_s[k] + t * light.curvature_N_m_s2[k]);
+  }
+  return command;
 }
 
-Dynamics::Command Dynamics::gather(const std::array<ZeroOrderHold, Lanes::count>& held) {
+Dynamics::Command Dynamics::gather(const std::array<ZeroOrderHold, Lanes::count>& held,
+                                   const Lanes& time_s) {
   Command command;
   for (int i = 0; i < Lanes::count; ++i) {
     const ZeroOrderHold& lane = held[static_cast<size_t>(i)];
-    for (int k = 0; k < 3; ++k) command.torque_body_N_m[k].set(i, lane.command_body_N_m[k]);
+    const Vec3 light_N_m = lane.light_body.at(time_s[i]);
+    for (int k = 0; k < 3; ++k) {
+      command.torque_body_N_m[k].set(i, lane.command_body_N_m[k]);
+      command.light_body_N_m[k].set(i, light_N_m[k]);
+    }
     command.battery_current_A.set(i, lane.battery_current_A);
   }
   return command;
@@ -125,6 +137,7 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
           .battery_current_A = command.battery_current_A,
           .current_is_measured = model_.schedule.current_is_measured,
           .array_power_W = 0.0,
+          .traced_light_body_N_m = command.light_body_N_m.template cast<T>(),
           .gravity_body_m_s2 = zero,
           .magnetic_field_body_T = zero,
           .up_body = zero,
@@ -186,8 +199,8 @@ void Dynamics::free_body_rates(const Command& command, const Lanes* y, Lanes* ra
 
 void Dynamics::rates(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
                      Lanes* rates) const {
-  if (order_.empty()) return free_body_rates(broadcast(held), y, rates);
-  EvaluationContext<Lanes> now = begin(time_s, broadcast(held), y);
+  if (order_.empty()) return free_body_rates(broadcast(held, time_s), y, rates);
+  EvaluationContext<Lanes> now = begin(time_s, broadcast(held, time_s), y);
   run_stages(order_, now, [&](size_t d) {
     const Layout& own = layout_[d];
     model_.disturbances[d].law->act(
@@ -203,7 +216,7 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
   Instants result;
   result.torque_body_N_m.assign(model_.disturbances.size(), Vec3Of<Lanes>::Constant(Lanes(0.0)));
   result.rates.assign(static_cast<size_t>(size_), Lanes(0.0));
-  EvaluationContext<Lanes> now = begin(time_s, gather(held), y);
+  EvaluationContext<Lanes> now = begin(time_s, gather(held, time_s), y);
   const auto act = [&](size_t d) {
     const Layout& own = layout_[d];
     const Vec3Of<Lanes> before = now.torque_body_N_m;
@@ -298,7 +311,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
 void Dynamics::derivatives(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
                            const Block& block, Lanes* derivatives) const {
   std::vector<DualLanes> rates;
-  differentiate(time_s, broadcast(held), y, block, false, rates);
+  differentiate(time_s, broadcast(held, time_s), y, block, false, rates);
   for (const DualLanes& rate : rates) {
     derivatives = std::copy(rate.partial.begin(), rate.partial.end(), derivatives);
   }
@@ -309,7 +322,7 @@ void Dynamics::reading_derivatives(const Lanes& time_s,
                                    const Lanes* y, const Block& block, Lanes* derivatives) const {
   std::vector<DualLanes> rates;
   const EvaluationContext<DualLanes> now =
-      differentiate(time_s, gather(held), y, block, true, rates);
+      differentiate(time_s, gather(held, time_s), y, block, true, rates);
   const auto put = [&](const DualLanes& x) {
     derivatives = std::copy(x.partial.begin(), x.partial.end(), derivatives);
   };

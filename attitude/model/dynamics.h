@@ -100,9 +100,10 @@ class Dynamics {
   struct Command {
     Vec3Of<Lanes> torque_body_N_m;
     Lanes battery_current_A;
+    Vec3Of<Lanes> light_body_N_m;
   };
-  static Command broadcast(const ZeroOrderHold& held);
-  static Command gather(const std::array<ZeroOrderHold, Lanes::count>& held);
+  static Command broadcast(const ZeroOrderHold& held, const Lanes& time_s);
+  static Command gather(const std::array<ZeroOrderHold, Lanes::count>& held, const Lanes& time_s);
 
   template <class T>
   EvaluationContext<T> begin(const T& time_s, const Command& command, const T* y) const;

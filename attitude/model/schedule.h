@@ -1,4 +1,5 @@
-// What is commanded when: values that hold from their time to the next (zero-order hold).
+// What comes from outside the equations of motion: commands that hold from their time to the next
+// (zero-order hold), and what a simulation beside them says (the light, the battery).
 #pragma once
 
 #include <vector>
@@ -7,9 +8,25 @@
 
 namespace photorque {
 
+// A torque that is known at some instants and continued between and after them: the polynomial
+// value + rate (t − from) + curvature (t − from)².
+struct ContinuedTorque {
+  double from_s = 0.0;
+  Vec3 value_N_m = Vec3::Zero();
+  Vec3 rate_N_m_s = Vec3::Zero();
+  Vec3 curvature_N_m_s2 = Vec3::Zero();
+
+  Vec3 at(double time_s) const {
+    const double t = time_s - from_s;
+    return value_N_m + t * (rate_N_m_s + t * curvature_N_m_s2);
+  }
+  bool operator==(const ContinuedTorque&) const = default;
+};
+
 struct ZeroOrderHold {
   Vec3 command_body_N_m = Vec3::Zero();
   double battery_current_A = 0.0;  // positive discharges
+  ContinuedTorque light_body = {};      // of light that is traced beside the motion
 
   bool operator==(const ZeroOrderHold&) const = default;
 };

@@ -212,6 +212,11 @@ void CollocationStep::accept(double end_s) {
   has_polynomial_ = true;
 }
 
+void CollocationStep::set_component(int index, double value) {
+  y_[static_cast<size_t>(index)] = value;
+  carry_[static_cast<size_t>(index)] = 0.0;
+}
+
 void CollocationStep::dense(const Lanes& fraction, Lanes* y) const {
   const gauss::DenseWeights polynomial = gauss::dense_weights(fraction);
   for (size_t c = 0; c < y_.size(); ++c) {

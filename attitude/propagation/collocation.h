@@ -47,6 +47,9 @@ class CollocationStep {
   // constant rates.
   void restart() { has_polynomial_ = false; }
 
+  // Replaces one component of the start.
+  void set_component(int index, double value);
+
   double start_s() const { return time_s_; }
   const std::vector<double>& start() const { return y_; }
   double length_s() const { return h_s_; }

@@ -107,16 +107,33 @@ void Propagator::collect_jumps(double from_s) {
 }
 
 bool Propagator::advance() {
-  if (ended_by_event_ || step_end_s_ >= end_s_) return false;
+  if (ended()) return false;
   if (has_step_) {
     step_.accept(step_end_s_);
     if (sensitivity_) sensitivity_->accept();
     cross_jumps();
   }
+  take_over();
   take_step();
   has_step_ = true;
   find_events();
   return true;
+}
+
+void Propagator::drive(double battery_current_A, const ContinuedTorque& light_body,
+                       double charge_drawn_C) {
+  drive_ = {battery_current_A, light_body, charge_drawn_C};
+  drive_is_new_ = true;
+}
+
+// What was driven last holds over the schedule's own. The polynomial goes on: a current moves the
+// charge alone, and the light is continuous but for the error of its continuation.
+void Propagator::take_over() {
+  if (!drive_) return;
+  held_.battery_current_A = drive_->battery_current_A;
+  held_.light_body = drive_->light_body;
+  if (drive_is_new_) step_.set_component(component::charge, drive_->charge_drawn_C);
+  drive_is_new_ = false;
 }
 
 // Gives up early on motions that would need more steps than allowed.
@@ -134,7 +151,8 @@ void Propagator::check_pace() const {
 void Propagator::take_step() {
   check_pace();
   const double start_s = step_.start_s();
-  const double stop_s = next_jump_ < jumps_.size() ? jumps_[next_jump_].time_s : end_s_;
+  double stop_s = next_jump_ < jumps_.size() ? jumps_[next_jump_].time_s : end_s_;
+  if (stop_s_ > start_s) stop_s = std::min(stop_s, stop_s_);
   // A free body's phase shows every bit of its iterations after a day; torques hide them.
   const bool is_free = dynamics_.model().disturbances.empty();
   const double settled = (is_free ? 1e-10 : 1e-6) * options_.tolerance;
@@ -304,7 +322,8 @@ double Propagator::locate(const EventFunction& event, double low_s, double high_
 }
 
 size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
-              const std::function<void(const Samples&)>& sink) {
+              const std::function<void(const Samples&)>& sink,
+              const std::function<void()>& after_step) {
   const size_t n = static_cast<size_t>(propagator.dynamics().size());
   const bool with_derivatives = propagator.sensitivity().has_value();
   std::vector<Lanes> y(n);
@@ -357,7 +376,10 @@ size_t sample(Propagator& propagator, size_t count, const std::function<double(s
   };
 
   size_t next = 0;
-  while (propagator.advance()) next = take(next, propagator.step_end_s(), false);
+  while (propagator.advance()) {
+    if (after_step) after_step();
+    next = take(next, propagator.step_end_s(), false);
+  }
   next = take(next, propagator.step_end_s(), true);
   flush();
   return next;

@@ -61,6 +61,12 @@ class Propagator {
              const PropagationOptions& options = {}, std::vector<Variable> variables = {},
              std::vector<EventFunction> events = {});
 
+  // A simulation beside the motion (the power system) exchanges with it at instants of its choice:
+  // a step ends exactly there, if that is later than step_end_s(), and drive() says what holds from
+  // the end of the last step on, the charge drawn until then included.
+  void stop_at(double time_s) { stop_s_ = time_s; }
+  void drive(double battery_current_A, const ContinuedTorque& light_body, double charge_drawn_C);
+
   // Computes the next step; false when the run has ended. NumericalError when the step length falls
   // below what the time can resolve, or below what reaches the end in `max_steps`.
   bool advance();
@@ -68,6 +74,8 @@ class Propagator {
   // The last step; its end is the event's time when one ended the run. ZeroOrderHold values are
   // those of its whole length. Before the first step: the initial time.
   double step_end_s() const { return step_end_s_; }
+  // Whether that is the end of the run.
+  bool ended() const { return ended_by_event_ || step_end_s_ >= end_s_; }
   const ZeroOrderHold& held() const { return held_; }
   // State at eight times within the last step.
   void dense(const Lanes& time_s, Lanes* y) const;
@@ -98,6 +106,7 @@ class Propagator {
   double propose_length(const CollocationStep::Outcome& outcome, double h_s, bool cut) const;
   void choose_method(const CollocationStep::Outcome& outcome, bool was_at_ceiling);
   void cross_jumps();
+  void take_over();
   void find_events();
   double locate(const EventFunction& event, double low_s, double high_s) const;
   Lanes fraction(const Lanes& time_s) const;
@@ -114,6 +123,14 @@ class Propagator {
   std::vector<Jump> jumps_;           // by time
   size_t next_jump_ = 0;
   ZeroOrderHold held_;
+  double stop_s_ = std::numeric_limits<double>::infinity();  // where a step ends besides
+  struct Drive {
+    double battery_current_A = 0.0;
+    ContinuedTorque light_body;
+    double charge_drawn_C = 0.0;
+  };
+  std::optional<Drive> drive_;
+  bool drive_is_new_ = false;
   double h_s_ = 0.0;  // length to try next
   // Just below the last length that failed; rises slowly, so that it is tried again some day.
   double ceiling_s_ = std::numeric_limits<double>::infinity();
@@ -154,8 +171,10 @@ struct Samples {
 };
 // Calls `sink` with the states at time_s(0), time_s(1), …, time_s(count − 1), which must not fall,
 // as the propagator passes them. Uses the same memory however many there are. At a jump the values
-// after it are given. Returns the number of times reached before the run ended.
+// after it are given. `after_step` is called after every step, before its states are handed out.
+// Returns the number of times reached before the run ended.
 size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
-              const std::function<void(const Samples&)>& sink);
+              const std::function<void(const Samples&)>& sink,
+              const std::function<void()>& after_step = {});
 
 }  // namespace photorque

@@ -73,11 +73,11 @@ Quat read_initial_attitude(const Settings& settings) {
   return attitude.normalized();
 }
 
-std::vector<EventFunction> events_of(const Dynamics& dynamics) {
+std::vector<EventFunction> events_of(const Dynamics& dynamics, bool has_companion) {
   const Platform& platform = dynamics.model().platform;
   std::vector<EventFunction> events;
   if (platform.tilt_limit_rad) events.push_back(tilt_event(*platform.tilt_limit_rad));
-  if (platform.battery_capacity_C) {
+  if (platform.battery_capacity_C && !has_companion) {
     events.push_back(battery_empty_event(*platform.battery_capacity_C));
     // The platform turns on without power.
     events.back().ends_run = false;
@@ -136,6 +136,32 @@ Quat attitude_before(const PlatformState& state, double before_s) {
   const double angle_rad = turn_rad.norm();
   if (!(angle_rad > 0.0)) return state.lab_from_body;
   return state.lab_from_body * Quat(Eigen::AngleAxisd(-angle_rad, turn_rad / angle_rad));
+}
+
+// sample() with a companion: states are handed on when it knows what it did until then.
+void sample_beside(Propagator& propagator, size_t count,
+                   const std::function<double(size_t)>& time_s, const Companion& companion,
+                   const std::function<void(const Samples&)>& sink) {
+  std::deque<Samples> waiting;
+  const auto hand_on = [&] {
+    for (; !waiting.empty(); waiting.pop_front()) {
+      const Samples& first = waiting.front();
+      if (first.time_s[first.count - 1] > companion.known_until_s()) return;
+      sink(first);
+    }
+  };
+  companion.follow(propagator);
+  sample(
+      propagator, count, time_s,
+      [&](const Samples& samples) {
+        waiting.push_back(samples);
+        hand_on();
+      },
+      [&] {
+        companion.follow(propagator);
+        hand_on();
+      });
+  for (const Samples& samples : waiting) sink(samples);
 }
 
 Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
@@ -210,8 +236,8 @@ PropagationRun read_propagation(const Settings& root) {
   return run;
 }
 
-PropagationResult propagate(const PropagationRun& run,
-                            const std::function<void(double)>& progress) {
+PropagationResult propagate(const PropagationRun& run, const std::function<void(double)>& progress,
+                            const Companion* companion) {
   const Dynamics dynamics(run.model);
   const size_t rows = Seen{run}.rows();
   const double end_s = run.initial.time_s + run.duration_s;
@@ -221,15 +247,22 @@ PropagationResult propagate(const PropagationRun& run,
   PropagationResult result;
   Recorder recorder(run.sensors, run.seed);
   TimeHistory history(dynamics);
-  Propagator propagator(dynamics, run.initial, end_s, run.options, {}, events_of(dynamics));
+  Propagator propagator(dynamics, run.initial, end_s, run.options, {},
+                        events_of(dynamics, companion != nullptr));
   std::vector<double> y(static_cast<size_t>(dynamics.size()));
   std::deque<Quat> on_the_way;  // seen by the camera, not yet reported
   const size_t thinning = (rows + run.history_rows - 1) / run.history_rows;
   const auto sink = [&](const Samples& samples) {
-    const Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
+    Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
+    for (int i = 0; companion != nullptr && i < samples.count; ++i) {
+      const CompanionPower power = companion->at(samples.time_s[i]);
+      now.battery_current_A.set(i, power.battery_current_A);
+      now.array_power_W.set(i, power.array_power_W);
+    }
     for (int i = 0; i < samples.count; ++i) {
       for (size_t c = 0; c < y.size(); ++c) y[c] = samples.y[c][i];
-      const PlatformState state = to_state(samples.time_s[i], y);
+      PlatformState state = to_state(samples.time_s[i], y);
+      if (companion != nullptr) state.charge_drawn_C = companion->at(state.time_s).charge_drawn_C;
       const Look& look = times[samples.first + static_cast<size_t>(i)];
       if (!look.is_row) {
         on_the_way.push_back(attitude_before(state, look.before_s));
@@ -255,8 +288,12 @@ PropagationResult propagate(const PropagationRun& run,
       progress(static_cast<double>(result.states.size()) / static_cast<double>(rows));
     }
   };
-  sample(
-      propagator, times.size(), [&](size_t i) { return times[i].time_s; }, sink);
+  const auto time_at = [&](size_t i) { return times[i].time_s; };
+  if (companion == nullptr) {
+    sample(propagator, times.size(), time_at, sink);
+  } else {
+    sample_beside(propagator, times.size(), time_at, *companion, sink);
+  }
   result.recording = recorder.finish();
   result.events = propagator.events();
   result.statistics = propagator.statistics();

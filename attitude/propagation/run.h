@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "attitude/propagation/companion.h"
 #include "attitude/propagation/propagator.h"
 #include "attitude/recordings/recording.h"
 #include "attitude/recordings/sensors.h"
@@ -61,8 +62,10 @@ struct PropagationResult {
 };
 
 // Propagates the run. It ends early at the bearing's stop (Platform::tilt_limit_rad). `progress` is
-// called now and then with the fraction of the duration that is done.
+// called now and then with the fraction of the duration that is done. With a companion, battery
+// current and array power are the companion's, which also says when the battery is empty.
 PropagationResult propagate(const PropagationRun& run,
-                            const std::function<void(double)>& progress = {});
+                            const std::function<void(double)>& progress = {},
+                            const Companion* companion = nullptr);
 
 }  // namespace photorque
