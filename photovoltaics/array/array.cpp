@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -86,8 +87,9 @@ CellCover cover_of(const ArrayDesign& design, const ArrayLight& light) {
           cell_rectangles(light, design.columns, design.rows, design.gap_m, design.margin_m)};
 }
 
-PreparedArray prepare(const ArrayDesign& design, const ArrayLight& light,
-                      std::span<const double> responsivity_A_W, const LightBins& bins) {
+// Without the cells' tables.
+PreparedArray prepare_light(const ArrayDesign& design, const ArrayLight& light,
+                            std::span<const double> responsivity_A_W) {
   if (responsivity_A_W.size() < static_cast<size_t>(light.bands)) {
     throw InputError({}, "array", std::to_string(responsivity_A_W.size()) + " responsivities",
                      "one per band");
@@ -104,6 +106,12 @@ PreparedArray prepare(const ArrayDesign& design, const ArrayLight& light,
   for (const double r : responsivity_A_W.first(static_cast<size_t>(light.bands))) {
     array.factor_A_W.push_back(r * warmth);
   }
+  return array;
+}
+
+PreparedArray prepare(const ArrayDesign& design, const ArrayLight& light,
+                      std::span<const double> responsivity_A_W, const LightBins& bins) {
+  PreparedArray array = prepare_light(design, light, responsivity_A_W);
   const std::vector<double> current_A = array.light(bins).current_A;
   for (size_t i = 0; i < current_A.size(); ++i) {
     if (!std::isfinite(current_A[i])) {
@@ -209,6 +217,41 @@ CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_a
     tables.push_back(same->second);
   }
   return tables;
+}
+
+CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
+                           std::span<const double> responsivity_A_W) {
+  const PreparedArray array = prepare_light(design, light, responsivity_A_W);
+  const LightBins mean = mean_light(light);
+  const CellLight cells = array.light(mean);
+  CellCurrents result{cells.current_A,
+                      std::vector<double>(cells.current_A.size(), 0.0),
+                      {sum_of(cells.incident_W), 0.0},
+                      array.area_m2};
+  const int replicates = light.power_W.replicates;
+  if (replicates < 2) return result;
+  std::vector<CellLight> without;
+  for (int r = 0; r < replicates; ++r) {
+    LightBins others{mean_without(r, light.power_W, mean.power_W), {}};
+    if (light.entry.bins > 0) others.entry_W = mean_without(r, light.entry, mean.entry_W);
+    without.push_back(array.light(others));
+  }
+  // Tukey's error, with what all replicates have in common.
+  const double count = replicates;
+  const auto error = [&](const std::function<double(const CellLight&)>& of, double value) {
+    double average = 0.0, squares = 0.0;
+    for (const CellLight& one : without) average += of(one) / count;
+    for (const CellLight& one : without) squares += std::pow(of(one) - average, 2);
+    const Estimate estimate{value, std::sqrt((count - 1.0) / count * squares)};
+    return with_common_error(estimate, light.power_W.common_error).standard_error;
+  };
+  for (size_t i = 0; i < result.photocurrent_A.size(); ++i) {
+    result.photocurrent_error_A[i] =
+        error([i](const CellLight& one) { return one.current_A[i]; }, result.photocurrent_A[i]);
+  }
+  result.power_on_cells_W.standard_error = error(
+      [](const CellLight& one) { return sum_of(one.incident_W); }, result.power_on_cells_W.value);
+  return result;
 }
 
 ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,

@@ -44,6 +44,16 @@ struct ArrayResult {
 ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
                            std::span<const double> responsivity_A_W);
 
+// The light and currents of the cells alone, without the network: the mean over the replicates and,
+// where there are several, its standard errors. Same errors as above.
+struct CellCurrents {
+  std::vector<double> photocurrent_A, photocurrent_error_A;
+  Estimate power_on_cells_W;
+  std::vector<double> area_m2;
+};
+CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
+                           std::span<const double> responsivity_A_W);
+
 // Quantities; tables "iv" (voltage_V, current_A, power_W), "maxima" and "cells"; plots "iv" and
 // "pv"; maps of irradiance, photocurrent, operating voltage and operating power per cell.
 Product array_product(const ArrayResult& result);

@@ -6,116 +6,13 @@
 #include <string>
 
 #include "core/errors.h"
+#include "photovoltaics/array/tracker_control.h"
 
 namespace photorque {
 namespace {
 
 constexpr const char* names[] = {"perturb_and_observe", "incremental_conductance", "global_scan",
                                  "periodic_sweep"};
-
-struct Sample {
-  double voltage_V = 0.0, current_A = 0.0;
-  double power_W() const { return voltage_V * current_A; }
-};
-
-// The state of one tracker between decisions.
-class Controller {
- public:
-  Controller(const Tracker& tracker, double range_V)
-      : tracker_(tracker),
-        range_V_(range_V),
-        step_V_(tracker.step_fraction * range_V),
-        voltage_V_(tracker.start_fraction * range_V) {
-    const bool scans =
-        tracker.kind == Tracker::Kind::global_scan || tracker.kind == Tracker::Kind::periodic_sweep;
-    if (scans) begin_sweep();
-  }
-
-  double voltage_V() const { return voltage_V_; }
-
-  // What was measured at voltage_V(); decides the next one.
-  void observe(const Sample& now) {
-    since_sweep_s_ += tracker_.period_s;
-    if (sweep_point_ > 0) {
-      sweep(now);
-    } else if (tracker_.kind == Tracker::Kind::periodic_sweep) {
-      if (since_sweep_s_ >= tracker_.sweep_every_s) begin_sweep();
-    } else if (tracker_.kind == Tracker::Kind::incremental_conductance) {
-      incremental_conductance(now);
-    } else {
-      perturb(now);
-    }
-    last_ = now;
-  }
-
- private:
-  void begin_sweep() {
-    sweep_point_ = 1;
-    best_ = {};
-    voltage_V_ = range_V_ / (tracker_.sweep_points + 1);
-  }
-
-  void sweep(const Sample& now) {
-    if (now.power_W() > best_.power_W()) best_ = now;
-    if (++sweep_point_ > tracker_.sweep_points) {
-      sweep_point_ = 0;
-      since_sweep_s_ = 0.0;
-      settled_ = 0;
-      recent_W_ = {};
-      voltage_V_ = best_.voltage_V > 0 ? best_.voltage_V : voltage_V_;
-      return;
-    }
-    voltage_V_ = range_V_ * sweep_point_ / (tracker_.sweep_points + 1);
-  }
-
-  void perturb(const Sample& now) {
-    const double change_W = now.power_W() - last_.power_W();
-    if (tracker_.kind == Tracker::Kind::global_scan && light_changed(now.power_W())) {
-      begin_sweep();
-      return;
-    }
-    if (change_W < 0.0) direction_ = -direction_;
-    move(direction_);
-  }
-
-  // The largest of three powers in a row is that at the maximum, wherever the steps around it fall.
-  // It is compared with what it was just after the last sweep.
-  bool light_changed(double power_W) {
-    recent_W_[settled_ % 3] = power_W;
-    const double max_W = *std::ranges::max_element(recent_W_);
-    if (++settled_ <= 3) {
-      reference_W_ = max_W;
-      return false;
-    }
-    return std::abs(max_W - reference_W_) > tracker_.rescan_fraction * reference_W_;
-  }
-
-  void incremental_conductance(const Sample& now) {
-    const double dv = now.voltage_V - last_.voltage_V, di = now.current_A - last_.current_A;
-    if (dv == 0.0) {
-      if (di != 0.0) move(di > 0.0 ? 1.0 : -1.0);
-      return;
-    }
-    const double slope = now.current_A + now.voltage_V * di / dv;  // dP/dV
-    // Within half a step of the maximum dP/dV is below about I · step/V.
-    if (std::abs(slope) < 0.5 * now.current_A * step_V_ / now.voltage_V) return;
-    move(slope > 0.0 ? 1.0 : -1.0);
-  }
-
-  void move(double direction) {
-    voltage_V_ = std::clamp(voltage_V_ + direction * step_V_, step_V_, range_V_);
-  }
-
-  Tracker tracker_;
-  double range_V_, step_V_, voltage_V_;
-  double direction_ = -1.0;
-  Sample last_, best_;
-  int sweep_point_ = 0;  // 0: not sweeping
-  size_t settled_ = 0;   // decisions since the last sweep
-  std::array<double, 3> recent_W_{};
-  double reference_W_ = 0.0;
-  double since_sweep_s_ = 0.0;
-};
 
 // Which of the maxima lies uphill.
 const ArrayPoint* uphill(const ArrayCurve& curve, const std::vector<ArrayPoint>& maxima,
@@ -188,7 +85,7 @@ std::vector<TrackerRun> run_trackers(const std::vector<Tracker>& trackers,
                                      const ArrayWiring& wiring, const CellTables& tables,
                                      const LightHistory& light) {
   std::vector<TrackerRun> runs;
-  std::vector<Controller> controllers;
+  std::vector<TrackerControl> controllers;
   const double range = range_V(wiring, tables, light);
   for (const Tracker& tracker : trackers) {
     if (tracker.period_s != trackers.front().period_s) {

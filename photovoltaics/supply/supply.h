@@ -1,0 +1,125 @@
+// The power system of a platform in light that changes: array, tracker, converter, battery, load
+// and the temperature of the cells, step by step, with every joule accounted for.
+//
+//   light on the cells = reflected + electric + carried off by the air + stored in the cells
+//   electric           = lost in the converter + load + into the battery − out of the battery
+//   into · η − out / η' = change of what the battery holds
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "photovoltaics/array/array.h"
+#include "photovoltaics/array/day.h"
+#include "photovoltaics/array/tracker_control.h"
+
+namespace photorque {
+
+// What the power system is made of.
+struct SupplyDesign {
+  ArrayDesign array;
+  std::vector<double> cell_area_m2;   // per cell of the wiring
+  double max_photocurrent_A = 0.0;    // of any cell that will be asked for, at array.temperature_K
+  std::optional<CellHeat> heat = {};  // none: the cells stay at array.temperature_K
+  std::optional<Battery> battery = {};  // none: whatever the array can give is taken
+  double converter_efficiency = 1.0;    // between the array and battery and load, in (0, 1]
+  double load_W = 0.0;                  // at the battery's terminals
+  std::optional<Tracker> tracker = {};  // none: the best point at every step
+};
+
+// A sum of many small terms without their rounding.
+// Source: A. Neumaier, ZAMM 54 (1974) 39.
+class EnergySum {
+ public:
+  void add(double term) {
+    const double sum = sum_ + term;
+    lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - sum) + term : (term - sum) + sum_;
+    sum_ = sum;
+  }
+  double value() const { return sum_ + lost_; }
+
+ private:
+  double sum_ = 0.0, lost_ = 0.0;
+};
+
+// Energies since the start [J], each added up by itself.
+struct SupplyEnergies {
+  EnergySum on_cells;   // light
+  EnergySum reflected;  // of it, by CellHeat::absorptance; 0 where the cells' heat is not followed
+  EnergySum convected;  // heat given to the air
+  EnergySum array;      // electric, from the array
+  EnergySum best;       // what the array could have given at its best point
+  EnergySum converter;  // lost there
+  EnergySum load;       // served
+  EnergySum unserved;   // asked for by the load in vain
+  EnergySum into_battery, out_of_battery;  // at its terminals
+  EnergySum battery_loss;
+};
+
+// The relative closure of each balance: what does not add up over what went through.
+struct SupplyClosure {
+  double cells = 0.0;  // 0 where the cells' heat is not followed
+  double bus = 0.0;
+  double battery = 0.0;
+  double largest() const { return std::max({cells, bus, battery}); }
+};
+
+struct SupplyEvent {
+  std::string name;  // "battery_full", "battery_not_full", "battery_empty", "battery_not_empty"
+  double time_s = 0.0;
+};
+
+class PowerSupply {
+ public:
+  // With `stored_J` in the battery (if there is one), the cells at the air's temperature.
+  PowerSupply(SupplyDesign design, double stored_J);
+
+  // The light that holds during a step: photocurrents of the cells at array.temperature_K, and all
+  // light on them.
+  struct Light {
+    std::vector<double> photocurrent_A;
+    double on_cells_W = 0.0;
+  };
+  // One step. `judge` compares with the best point of the array, which takes longer; in between,
+  // the last ratio holds.
+  void step(double time_s, double step_s, const Light& light, bool judge = true);
+
+  // Of the last step, means over it where they change.
+  struct State {
+    double array_W = 0.0;    // delivered
+    double best_W = 0.0;     // at the best point of the array
+    double voltage_V = 0.0;  // of the array, as the tracker has it
+    double load_W = 0.0;     // served
+    double battery_W = 0.0;  // d/dt of what the battery holds
+    double light_W = 0.0;    // on the cells
+  };
+  const State& state() const { return state_; }
+  double temperature_K() const { return temperature_K_; }  // now
+  double stored_J() const { return stored_J_; }            // now
+  const SupplyEnergies& energies() const { return energies_; }
+  const std::vector<SupplyEvent>& events() const { return events_; }
+  SupplyClosure closure() const;
+  const SupplyDesign& design() const { return design_; }
+
+ private:
+  struct Curves;
+  const CellTables& tables_at(int index);
+  void take(double time_s, double step_s, double potential_W);
+  void warm(double step_s);
+
+  SupplyDesign design_;
+  double area_m2_ = 0.0;
+  double start_J_, stored_J_;
+  double start_K_, temperature_K_;
+  std::map<int, CellTables> tables_;  // by temperature, see tables_at()
+  std::optional<TrackerControl> control_;
+  bool full_, empty_;
+  double tracking_ = 1.0;  // power over that at the best point, when last judged
+  State state_;
+  SupplyEnergies energies_;
+  std::vector<SupplyEvent> events_;
+};
+
+}  // namespace photorque
