@@ -243,7 +243,7 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
     for (const CellLight& one : without) average += of(one) / count;
     for (const CellLight& one : without) squares += std::pow(of(one) - average, 2);
     const Estimate estimate{value, std::sqrt((count - 1.0) / count * squares)};
-    return with_common_error(estimate, light.power_W.common_error).standard_error;
+    return with_common_error(estimate, light.power_W.common_error()).standard_error;
   };
   for (size_t i = 0; i < result.photocurrent_A.size(); ++i) {
     result.photocurrent_error_A[i] =

@@ -19,6 +19,8 @@ std::optional<double> efficiency(const Settings& chain, const char* key) {
 ArrayReport::Motion read_motion(const Settings& s) {
   ArrayReport::Motion motion;
   motion.trackers = read_trackers(s);
+  // Without instants it is for `propagate`, where the platform moves by itself.
+  if (!s.has("time_s") && !s.has("tilt_deg")) return motion;
   motion.time_s = s.numbers("time_s");
   motion.tilt_rad = s.numbers("tilt_deg", {-pi, pi});
   motion.heading_rad = s.has("heading_deg") ? s.numbers("heading_deg", {-2 * pi, 2 * pi})
@@ -233,7 +235,7 @@ Product report_array(const Console& console, const OpticalRun& run, const ArrayP
   const ArrayReport& report = array.report;
   std::vector<std::vector<double>> lights = {result.cell_photocurrent_A};
   LossInputs in = loss_inputs(array, run, traced);
-  if (report.motion) {
+  if (report.motion && !report.motion->time_s.empty()) {
     lights.clear();
     for (size_t k = 0; k < report.motion->time_s.size(); ++k) {
       const TraceResult at =

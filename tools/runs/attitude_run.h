@@ -18,6 +18,7 @@ class AttitudeExperiment {
   explicit AttitudeExperiment(const CommandLine& line);
 
   const Settings& settings() const { return file_.settings; }
+  const ExperimentFile& file() const { return file_; }
   // Names and hashes of the experiment, the overrides and every file that the experiment names.
   Provenance provenance(uint64_t seed) const;
   // Another input, of the command line.

@@ -58,6 +58,15 @@ std::function<void(double)> Console::progress(const std::string& what) {
   };
 }
 
+void Console::note_progress(const std::string& text) {
+  if (silent_ || bar_) return;
+  const std::scoped_lock lock(mutex_);
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < std::chrono::seconds(10)) return;
+  last_ = now;
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
 void Console::done() {
   if (bar_) std::fprintf(stderr, "\r\033[K");
 }

@@ -22,6 +22,9 @@ class Console {
   // A progress bar on standard error for TraceOptions::progress; nothing when that is not a
   // terminal, or when silent.
   std::function<void(double)> progress(const std::string& what);
+  // The same as a line of its own on standard error where there is no terminal for a bar, at most
+  // every ten seconds.
+  void note_progress(const std::string& text);
   // Removes the bar.
   void done();
 

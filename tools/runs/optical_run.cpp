@@ -80,6 +80,10 @@ size_t OpticalRun::add_receiver(NamedReceiver receiver) {
   return experiment_.receivers.size() - 1;
 }
 
+void OpticalRun::keep_beams(const std::function<bool(const Beam&)>& wanted) {
+  std::erase_if(experiment_.beams, [&](const Beam& beam) { return !wanted(beam); });
+}
+
 OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
                               const std::function<void(double)>& progress,
                               std::optional<uint64_t> rays) const {

@@ -44,6 +44,9 @@ class OpticalRun {
   // Adds one that is not in the experiment file, for all later runs; returns its place.
   size_t add_receiver(NamedReceiver receiver);
 
+  // Leaves out, for all later runs, the lamps that are not wanted.
+  void keep_beams(const std::function<bool(const Beam&)>& wanted);
+
   // Traces at an attitude, with the options of the experiment but, if given, another number of
   // rays; goes on with twice the rays until the experiment's target error or time is reached.
   OpticalResult run(const RigidTransform& lab_from_body,

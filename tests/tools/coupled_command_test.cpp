@@ -1,0 +1,297 @@
+// `propagate` with light: against closed forms of a plate in sunlight, and tables against tracing.
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/constants.h"
+#include "core/vector.h"
+#include "tests/tools/command_test.h"
+
+namespace photorque {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr double height_m = 0.1, edge_m = 0.4;  // of the plate over the centre of rotation
+
+std::string base64(const std::string& bytes) {
+  static const char* const letters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t word = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      word = word << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0u);
+    }
+    for (int k = 3; k >= 0; --k) {
+      const bool filled = i + static_cast<size_t>(3 - k) <= bytes.size();
+      text += filled ? letters[word >> (6 * k) & 63u] : '=';
+    }
+  }
+  return text;
+}
+
+// A square, level, black plate, body z up (glTF y).
+std::string plate_gltf() {
+  std::string bytes;
+  const float h = edge_m / 2, y = height_m;
+  for (const auto& [x, z] : {std::pair{-h, h}, {h, h}, {h, -h}, {-h, -h}}) {
+    for (const float c : {x, y, z}) bytes.append(reinterpret_cast<const char*>(&c), 4);
+  }
+  for (const uint16_t i : {0, 1, 2, 0, 2, 3}) bytes.append(reinterpret_cast<const char*>(&i), 2);
+  std::ostringstream out;
+  out << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+      << R"("nodes":[{"mesh":0,"name":"plate"}],)"
+      << R"("materials":[{"name":"black","extras":{"photorque":{"absorptance":1.0,"specular":0.0,"diffuse":0.0,"transmittance":0.0}}}],)"
+      << R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
+      << R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",)"
+      << "\"min\":[" << -h << "," << y << "," << -h << "],\"max\":[" << h << "," << y << "," << h
+      << "]},"
+      << R"({"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],)"
+      << R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],)"
+      << R"("buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,)"
+      << base64(bytes) << "\"}]}";
+  return out.str();
+}
+
+constexpr const char* sun = R"([[source]]
+kind = "sun"
+irradiance_W_m2 = 1000
+angular_radius_deg = 0.27
+direction = [0.6, 0, -0.8]
+)";
+// A lamp to one side.
+constexpr const char* lamp = R"([[source]]
+kind = "led"
+name = "side"
+power_W = 50
+aperture_diameter_m = 0.05
+profile = "gaussian"
+fwhm_deg = 20
+wavelength_nm = 730
+position_m = [0.6, 0, 0.8]
+aim_m = [0, 0, 0.1]
+)";
+constexpr const char* rest = R"([[receiver]]
+node = "plate"
+bins = [8, 8]
+[array]
+cells = [2, 2]
+[platform]
+topology = "tabletop"
+mass_kg = 5
+inertia_kg_m2 = [[0.08, 0, 0], [0, 0.08, 0], [0, 0, 0.15]]
+tilt_limit_deg = 25
+battery_capacity_Ah = 0.02
+battery_voltage_V = 10
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = [0, 0, -1e-4]
+[propagate]
+duration_s = 40
+output_rate_Hz = 2
+initial_tilt_deg = 4
+initial_heading_deg = 25
+initial_rate_rad_s = [0.02, -0.01, 0.15]
+tolerance = 1e-9
+[light]
+cache = ""
+rays = 131072
+)";
+
+class CoupledCommand : public CommandTest {
+ protected:
+  std::string experiment(const std::string& source, const std::string& more = "") {
+    write("plate.gltf", plate_gltf());
+    return write("e.toml", "[scene]\nfile = \"plate.gltf\"\n" + source + rest + more);
+  }
+
+  json summary(const std::string& folder) const {
+    return json::parse(file_text(at(folder + "/summary.json")));
+  }
+
+  std::map<std::string, std::vector<double>> table(const std::string& path) const {
+    std::istringstream text(file_text(at(path)));
+    std::vector<std::string> names;
+    std::map<std::string, std::vector<double>> columns;
+    for (std::string line; std::getline(text, line);) {
+      if (line.empty() || line[0] == '#') continue;
+      std::istringstream cells(line);
+      size_t i = 0;
+      const bool header = names.empty();
+      for (std::string cell; std::getline(cells, cell, ','); ++i) {
+        if (header) {
+          names.push_back(cell);
+        } else {
+          columns[names[i]].push_back(std::strtod(cell.c_str(), nullptr));
+        }
+      }
+    }
+    return columns;
+  }
+
+  std::map<std::string, double> events(const std::string& folder) const {
+    std::istringstream text(file_text(at(folder + "/events.csv")));
+    std::map<std::string, double> all;
+    for (std::string line; std::getline(text, line);) {
+      const size_t comma = line.find(',');
+      if (comma != std::string::npos)
+        all.emplace(line.substr(0, comma), std::atof(line.c_str() + comma + 1));
+    }
+    return all;
+  }
+};
+
+Vec3 row_of(std::map<std::string, std::vector<double>>& columns, const std::string& stem, size_t i,
+            const std::string& unit) {
+  return {columns.at(stem + "_x" + unit)[i], columns.at(stem + "_y" + unit)[i],
+          columns.at(stem + "_z" + unit)[i]};
+}
+
+// A black plate takes up E A cos/c along the light, at its middle: r × F, at every attitude and
+// yaw.
+TEST_F(CoupledCommand, TorqueOfAPlateInSlantingSunlight) {
+  const Outcome got = run("propagate " + experiment(sun) + " --out " + at("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  auto history = table("o/time_history.csv");
+  const Vec3 along(0.6, 0, -0.8);
+  double largest = 0.0, worst = 0.0;
+  for (size_t i = 0; i < history.at("t_s").size(); ++i) {
+    const Quat q(history.at("q_w")[i], history.at("q_x")[i], history.at("q_y")[i],
+                 history.at("q_z")[i]);
+    const Vec3 light = q.conjugate() * along;
+    const Vec3 force = 1000.0 * edge_m * edge_m * std::abs(light.z()) / speed_of_light_m_s * light;
+    const Vec3 torque = Vec3(0, 0, height_m).cross(force);
+    largest = std::max(largest, torque.norm());
+    worst =
+        std::max(worst, (row_of(history, "torque_radiation_pressure", i, "_N_m") - torque).norm());
+  }
+  EXPECT_GT(largest, 2e-8);
+  EXPECT_LE(worst, 0.01 * largest);
+  // The light on the cells is E A cos.
+  auto power = table("o/power.csv");
+  auto attitude = table("o/time_history.csv");
+  EXPECT_GT(power.at("light_on_cells_W").size(), 30u);
+  EXPECT_LE(summary("o").at("energy_closure").at("value").get<double>(), 1e-9);
+}
+
+// A table that forgot the yaw would give the same body torque after a quarter turn.
+TEST_F(CoupledCommand, TableAndTraceAgreeUnderALampToOneSide) {
+  const std::string file = experiment(lamp);
+  const Outcome tabled = run("propagate " + file + " --out " + at("table"));
+  ASSERT_EQ(tabled.status, 0) << tabled.err;
+  EXPECT_THAT(tabled.out, HasSubstr("depends on the yaw"));
+  const Outcome traced =
+      run("propagate " + file + " --set 'light.mode=\"trace\"' --out " + at("trace"));
+  ASSERT_EQ(traced.status, 0) << traced.err;
+  auto a = table("table/time_history.csv"), b = table("trace/time_history.csv");
+  ASSERT_EQ(a.at("t_s").size(), b.at("t_s").size());
+  double largest = 0.0, apart = 0.0, turned = 0.0, heading_range = 0.0;
+  for (size_t i = 0; i < a.at("t_s").size(); ++i) {
+    const Vec3 one = row_of(a, "torque_radiation_pressure", i, "_N_m");
+    const Vec3 other = row_of(b, "torque_radiation_pressure", i, "_N_m");
+    largest = std::max(largest, one.norm());
+    // The continuation has two traces behind it after two seconds.
+    if (a.at("t_s")[i] >= 3.0) apart = std::max(apart, (one - other).norm());
+    turned = std::max(turned, std::abs(a.at("q_z")[i] - b.at("q_z")[i]));
+    heading_range = std::max(heading_range, std::abs(a.at("q_z")[i] - a.at("q_z")[0]));
+  }
+  EXPECT_GT(heading_range, 0.9);  // through half a turn and more
+  EXPECT_LE(apart, 0.03 * largest);
+  EXPECT_LE(turned, 1e-6);
+  const double one_W = summary("table").at("mean_array_power_W").at("value").get<double>();
+  const double other_W = summary("trace").at("mean_array_power_W").at("value").get<double>();
+  EXPECT_GT(one_W, 0.5);
+  EXPECT_NEAR(one_W / other_W, 1.0, 2e-3);
+}
+
+// A level platform at rest under an even Sun: constant power, so that every event has its instant.
+TEST_F(CoupledCommand, EventsComeAtTheirInstants) {
+  const std::string even = R"([[source]]
+kind = "sun"
+name = "lab_sun"
+irradiance_W_m2 = 1000
+angular_radius_deg = 0.27
+direction = [0, 0, -1]
+)";
+  const std::string day = R"([array.day]
+load_W = 6
+heat = false
+converter_efficiency = 0.9
+charge_efficiency = 0.8
+discharge_efficiency = 0.9
+battery_charge = 0.5
+[[light.switch]]
+time_s = 100.25
+on = false
+[[light.switch]]
+time_s = 300.5
+on = true
+)";
+  const Outcome got =
+      run("propagate " + experiment(even, day) +
+          " --set propagate.initial_tilt_deg=0 --set propagate.initial_rate_rad_s=[0,0,0]"
+          " --set propagate.duration_s=400 --out " +
+          at("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  auto power = table("o/power.csv");
+  const double array_W = power.at("best_power_W")[0];
+  const double surplus_W = 0.9 * array_W - 6.0, capacity_J = 0.02 * 3600 * 10;
+  ASSERT_GT(surplus_W, 10.0);
+  const auto all = events("o");
+  EXPECT_NEAR(all.at("battery_full"), 0.5 * capacity_J / (0.8 * surplus_W), 1e-3);
+  EXPECT_NEAR(all.at("sun_off"), 100.25, 1e-9);
+  EXPECT_NEAR(all.at("light_lost"), 100.25, 1e-9);
+  EXPECT_NEAR(all.at("battery_not_full"), 100.25, 1e-9);
+  EXPECT_NEAR(all.at("battery_empty"), 100.25 + capacity_J * 0.9 / 6.0, 1e-6);
+  EXPECT_NEAR(all.at("light_returns"), 300.5, 1e-9);
+  EXPECT_NEAR(all.at("battery_not_empty"), 300.5, 1e-9);
+  const json found = summary("o");
+  EXPECT_LE(found.at("energy_closure").at("value").get<double>(), 1e-9);
+  EXPECT_NEAR(found.at("load_unserved_J").at("value").get<double>(),
+              6.0 * (300.5 - 100.25 - capacity_J * 0.9 / 6.0), 1e-6);
+}
+
+TEST_F(CoupledCommand, ATableIsKeptByTheContentOfItsInputs) {
+  const std::string file = experiment(sun);
+  const std::string cached = " --set light.cache=kept --set propagate.duration_s=2 --out ";
+  const Outcome first = run("propagate " + file + cached + at("a"));
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("attitudes traced in"));
+  // Neither the platform nor the load changes the light; the same numbers come back.
+  const Outcome again = run("propagate " + file + cached + at("b"));
+  EXPECT_THAT(again.out, HasSubstr("kept from an earlier run"));
+  EXPECT_EQ(files("a").at("time_history.csv"), files("b").at("time_history.csv"));
+  const Outcome heavier = run("propagate " + file + cached + at("c") + " --set platform.mass_kg=6");
+  EXPECT_THAT(heavier.out, HasSubstr("kept from an earlier run"));
+  const Outcome brighter =
+      run("propagate " + file + cached + at("d") + " --set source[0].irradiance_W_m2=900");
+  EXPECT_THAT(brighter.out, HasSubstr("attitudes traced in"));
+  // Another scene under the same name.
+  std::string text = plate_gltf();
+  write("plate.gltf", text.replace(text.find("\"black\""), 7, "\"matte\""));
+  EXPECT_THAT(run("propagate " + file + cached + at("e")).out, HasSubstr("attitudes traced in"));
+}
+
+TEST_F(CoupledCommand, WrongInputIsOneLine) {
+  const std::string file = experiment(sun);
+  const std::pair<std::string, std::string> cases[] = {
+      {"'light.mode=\"tables\"'", "light.mode"},
+      {"light.tolerance=2", "light.tolerance: found 2"},
+      {"light.speed=2", "light.speed"},
+      {"'light.switch=[{time_s=3,on=false,source=\"moon\"}]'",
+       "light.switch.source: found \"moon\""},
+      {"'disturbance=[{kind=\"power_balance\",load_W=3}]'", "disturbance[0].kind"},
+  };
+  for (const auto& [set, expected] : cases) {
+    const Outcome got = run("propagate " + file + " --set " + set + " --out " + at("o"));
+    EXPECT_EQ(got.status, 2) << set;
+    EXPECT_THAT(got.err, HasSubstr(expected)) << set;
+    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+  }
+}
+
+}  // namespace
+}  // namespace photorque

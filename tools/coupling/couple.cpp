@@ -1,0 +1,242 @@
+#include "tools/coupling/couple.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "attitude/propagation/error_bound.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "tools/coupling/report.h"
+
+namespace photorque {
+namespace {
+
+// What the experiment says of light and power by other means.
+void refuse_duplicates(const ExperimentFile& file) {
+  const bool has_array = !file.others("array").empty();
+  for (const Settings& disturbance : file.others("disturbance")) {
+    const std::string kind = disturbance.text_or("kind", "");
+    if (kind == "radiation_pressure") {
+      throw disturbance.error("kind", "\"radiation_pressure\" beside a scene with sources",
+                              "one of them: light presses as it is traced ([light] mode = \"off\" "
+                              "leaves the scene out)");
+    }
+    if (kind == "power_balance" && has_array) {
+      throw disturbance.error("kind", "\"power_balance\" beside [array]",
+                              "one of them: load and battery of the array stand in [array.day] "
+                              "([light] mode = \"off\" leaves the array out)");
+    }
+  }
+}
+
+Battery battery_of(const ExperimentFile& file, const DaySettings& day, const Platform& platform) {
+  Battery battery = day.battery;
+  if (!platform.battery_capacity_C) return battery;
+  const double own_J = *platform.battery_capacity_C * platform.battery_voltage_V;
+  const Settings array = file.others("array")[0];
+  const Settings table = array.table("day");
+  if (table.has("battery_J") && std::abs(battery.capacity_J - own_J) > 0.01 * own_J) {
+    throw table.error(
+        "battery_Wh", std::to_string(battery.capacity_J / 3600.0) + " Wh",
+        std::to_string(own_J / 3600.0) +
+            " Wh as [platform] says (battery_capacity_Ah times battery_voltage_V), or none");
+  }
+  battery.capacity_J = own_J;
+  return battery;
+}
+
+// The largest photocurrent of any cell that the run may ask for, with something in hand.
+double max_photocurrent_A(const LightModel& light, const RotationTable* table,
+                          const PropagationRun& run) {
+  double most = 0.0;
+  const auto look = [&](const std::vector<double>& channels) {
+    for (size_t cell = 0; cell < light.cells(); ++cell) {
+      double sum = 0.0;
+      for (const LightModel::Group& group : light.groups()) {
+        sum += channels[group.first + 6 + cell];
+      }
+      most = std::max(most, sum);
+    }
+  };
+  if (table != nullptr)
+    return 1.2 * static_cast<double>(light.groups().size()) * table->error().scale[2];
+  for (const double tilt : {0.0, 0.1, 0.2, 0.3}) {
+    look(light.trace(lab_from_body_at(tilt, 0.0).rotation).value);
+  }
+  look(light.trace(run.initial.lab_from_body).value);
+  return 2.0 * most;
+}
+
+std::optional<PowerSupply> supply_of(const ExperimentFile& file, const LightModel& light,
+                                     const RotationTable* table, PropagationRun& run) {
+  if (!light.array()) return {};
+  SupplyDesign design{.array = *light.array(), .cell_area_m2 = light.cell_area_m2()};
+  design.max_photocurrent_A = max_photocurrent_A(light, table, run);
+  design.tracker = light.tracker();
+  double stored_J = 0.0;
+  if (light.day()) {
+    const DaySettings& day = *light.day();
+    design.heat = day.heat;
+    design.battery = battery_of(file, day, run.model.platform);
+    design.converter_efficiency = day.converter_efficiency;
+    design.load_W = day.load_W;
+    const double volts = run.model.platform.battery_voltage_V;
+    const double capacity_J = design.battery->capacity_J;
+    stored_J = capacity_J * day.battery.charge;
+    if (run.initial.charge_drawn_C != 0.0) {
+      stored_J = std::clamp(capacity_J - run.initial.charge_drawn_C * volts, 0.0, capacity_J);
+    }
+    run.initial.charge_drawn_C = (capacity_J - stored_J) / volts;
+  }
+  return PowerSupply(std::move(design), stored_J);
+}
+
+}  // namespace
+
+std::vector<std::string> orbit_overrides(const ExperimentFile& file) {
+  if (!has_light(file)) return {};
+  std::optional<Vec3> to_sun;
+  for (const Settings& source : file.sources) {
+    if (source.text_or("kind", "") == "sun" && source.has("direction")) {
+      to_sun = -source.vector3("direction").normalized();
+    }
+  }
+  if (!to_sun) return {};
+  const std::vector<Settings> disturbances = file.others("disturbance");
+  std::vector<std::string> overrides;
+  for (size_t i = 0; i < disturbances.size(); ++i) {
+    const Settings& orbit = disturbances[i];
+    if (orbit.text_or("kind", "") != "orbit") continue;
+    if (orbit.has("sun_direction")) {
+      const Vec3 named = orbit.vector3("sun_direction").normalized();
+      constexpr double alike_rad = 0.1 * degree_rad;
+      if (std::atan2(named.cross(*to_sun).norm(), named.dot(*to_sun)) > alike_rad) {
+        throw orbit.error("sun_direction", "a direction away from that of [[source]] \"sun\"",
+                          "the opposite of its `direction`, or nothing");
+      }
+      continue;
+    }
+    char text[160];
+    std::snprintf(text, sizeof text, "disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]", i,
+                  to_sun->x(), to_sun->y(), to_sun->z());
+    overrides.emplace_back(text);
+  }
+  return overrides;
+}
+
+namespace {
+
+std::vector<LampGroup> lamp_groups(const std::vector<GroupOutput>& outputs) {
+  std::vector<LampGroup> groups;
+  for (const GroupOutput& one : outputs) {
+    const auto output = one.output;
+    groups.push_back({.first_channel = one.group.first,
+                      .output = [output](double time_s) { return output->at(time_s); },
+                      .switches_s = output->switches_s(),
+                      .in_orbit = one.group.is_sun});
+  }
+  return groups;
+}
+
+// What lamps, light and battery did, among the events of the motion.
+void add_events(PropagationResult& result, const CoupledRun& beside) {
+  std::vector<Event>& events = result.events;
+  const double end_s = result.states.back().time_s;
+  const auto add = [&](const Event& event) {
+    if (event.time_s <= end_s) events.push_back(event);
+  };
+  for (const Event& event : beside.events()) add(event);
+  if (beside.supply()) {
+    for (const SupplyEvent& event : beside.supply()->events()) {
+      add({event.name, event.time_s, true});
+    }
+  }
+  std::ranges::stable_sort(events, {}, &Event::time_s);
+  Table table = Table::of("events", "What happened", {"event", "t_s"});
+  for (const Event& event : events) {
+    table.row().set("event", event.name).set("t_s", event.time_s);
+  }
+  std::erase_if(result.product.tables, [](const Table& one) { return one.name == "events"; });
+  if (!events.empty()) result.product.tables.push_back(std::move(table));
+}
+
+bool hits_tilt_limit(const PropagationResult& result) {
+  return std::ranges::any_of(result.events,
+                             [](const Event& event) { return event.name == "tilt_stop"; });
+}
+
+// The largest error of any component, of each group of lamps, in the worst direction all the time.
+std::optional<double> attitude_error_rad(const PropagationRun& run, const RotationTable& table,
+                                         size_t groups) {
+  constexpr double longest_s = 3600.0;  // beyond, the derivatives take longer than the run
+  if (run.duration_s > longest_s) return {};
+  const double torque_N_m = std::sqrt(3.0) * static_cast<double>(groups) * table.error().max[0];
+  const double bound_rad = attitude_error_bound_rad(
+      Dynamics(run.model), run.initial, run.initial.time_s + run.duration_s, torque_N_m);
+  if (!std::isfinite(bound_rad)) return {};
+  return bound_rad;
+}
+
+// One run in light that is known up to a tilt; at it the run stops.
+void attempt(CoupledResult& result, Console& console, const ExperimentFile& file,
+             const LightSettings& settings, PropagationRun run, double table_tilt_rad) {
+  const std::vector<GroupOutput> outputs =
+      group_outputs(*result.light, settings, run.initial.time_s);
+  if (settings.mode == LightSettings::Mode::table) {
+    result.table = result.light->make_table(console, table_tilt_rad);
+    print_light_table(console, *result.table);
+    run.model.disturbances.push_back(light_from_table(result.table, lamp_groups(outputs)));
+    if (!result.light->sun_direction_lab() && table_tilt_rad < pi) {
+      run.model.platform.tilt_limit_rad = table_tilt_rad;
+    }
+  } else {
+    run.model.disturbances.push_back(light_from_tracer(lamp_groups(outputs)));
+  }
+  std::optional<PowerSupply> supply = supply_of(file, *result.light, result.table.get(), run);
+  result.beside.reset();
+  if (supply || !result.table) {
+    result.beside =
+        std::make_unique<CoupledRun>(*result.light, result.table, outputs, std::move(supply),
+                                     settings, run, run.model.platform.battery_voltage_V);
+  }
+  const Companion companion = result.beside ? result.beside->companion() : Companion{};
+  result.motion =
+      propagate(run, console.progress("propagating"), result.beside ? &companion : nullptr);
+  if (result.table && !hits_tilt_limit(result.motion)) {
+    result.attitude_error_rad = attitude_error_rad(run, *result.table, outputs.size());
+  }
+  console.done();
+}
+
+}  // namespace
+
+CoupledResult propagate_in_light(const CommandLine& line, Console& console,
+                                 const ExperimentFile& file, const PropagationRun& run) {
+  CoupledResult result;
+  const LightSettings settings = has_light(file) ? read_light(file) : LightSettings{};
+  if (!has_light(file) || settings.mode == LightSettings::Mode::off) {
+    result.motion = propagate(run, console.progress("propagating"));
+    console.done();
+    return result;
+  }
+  refuse_duplicates(file);
+  result.light = std::make_unique<LightModel>(line, console, settings, run.model.platform);
+  constexpr double least_rad = 5.0 * degree_rad;
+  const double limit_rad = result.light->max_angle_rad();
+  double tilt_now_rad = limit_rad;
+  if (!result.light->sun_direction_lab()) {
+    tilt_now_rad = std::min(limit_rad, std::max(least_rad, 2.0 * tilt_rad(run.initial)));
+  }
+  for (;; tilt_now_rad = std::min(limit_rad, 2.0 * tilt_now_rad)) {
+    attempt(result, console, file, settings, run, tilt_now_rad);
+    const bool wider = result.table && tilt_now_rad < limit_rad && hits_tilt_limit(result.motion);
+    if (!wider) break;
+    console.line("the tilt passed " + show(tilt_now_rad / degree_rad) + " deg at " +
+                 show(result.motion.events.back().time_s) + " s: again with a wider table");
+  }
+  if (result.beside) add_events(result.motion, *result.beside);
+  return result;
+}
+
+}  // namespace photorque

@@ -1,0 +1,35 @@
+// From an experiment with light and a platform to a run in which they act on each other.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/coupling/coupled_run.h"
+#include "tools/runs/console.h"
+
+namespace photorque {
+
+// A run and what ran beside it.
+struct CoupledResult {
+  PropagationResult motion;  // with the events of lamps, light and battery among its own
+  // Null where the file has no light or [light] mode is "off".
+  std::unique_ptr<LightModel> light;
+  std::shared_ptr<const RotationTable> table;  // null where light was traced in the run
+  std::unique_ptr<CoupledRun> beside;          // null where light is a torque alone
+  // How far the table's error can have turned the body at the end, of runs up to an hour.
+  std::optional<double> attitude_error_rad;
+};
+
+// Overrides that an experiment in light needs before its platform is read: an orbit learns where
+// the Sun of [[source]] stands. InputError where both name a direction and differ.
+std::vector<std::string> orbit_overrides(const ExperimentFile& file);
+
+// Propagates in the light of the experiment. A table of light first holds twice the initial tilt
+// (at least 5 deg); a run that goes beyond begins again with one twice as wide, up to the
+// platform's stop. InputError for a disturbance that would count light or power twice.
+CoupledResult propagate_in_light(const CommandLine& line, Console& console,
+                                 const ExperimentFile& file, const PropagationRun& run);
+
+}  // namespace photorque

@@ -1,0 +1,117 @@
+// Light, power and attitude in one run: what happens beside the motion.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "attitude/propagation/run.h"
+#include "photovoltaics/supply/lamp_output.h"
+#include "tools/coupling/light_model.h"
+
+namespace photorque {
+
+// The lamps of one group over time, and which channels are theirs.
+struct GroupOutput {
+  LightModel::Group group;
+  std::shared_ptr<const LampOutput> output;
+};
+std::vector<GroupOutput> group_outputs(const LightModel& light, const LightSettings& settings,
+                                       double start_s);
+
+// Means over one exchange interval, which ends at time_s; charge and temperature at its end.
+struct PowerRow {
+  double time_s = 0.0;
+  double light_W = 0.0;  // on the cells
+  double best_W = 0.0, array_W = 0.0, load_W = 0.0;
+  double voltage_V = 0.0;
+  double battery_current_A = 0.0;
+  double stored_J = 0.0;
+  double temperature_K = 0.0;
+  double output = 0.0;  // of all lamps, over that at full power
+};
+
+// How well the continued torque of traced light met the next trace.
+struct ContinuationError {
+  double max_N_m = 0.0, sum_squares = 0.0;
+  size_t count = 0;
+};
+
+// Exchanges with the motion every LightSettings::step_s and at every switch of lamps. Between two
+// exchanges the motion goes ahead with the last current of the battery; then light and power follow
+// over the same interval, at steps of their own, along the attitudes that were passed; then the
+// charge of the motion becomes theirs. What an interval's current is wrong by moves the centre of
+// mass for one interval by less than 1e-12 m, so nothing is repeated.
+class CoupledRun {
+ public:
+  // `table` null: light is traced at every exchange. `supply` none: light alone. All must outlive
+  // the run.
+  CoupledRun(const LightModel& light, std::shared_ptr<const RotationTable> table,
+             std::vector<GroupOutput> outputs, std::optional<PowerSupply> supply,
+             const LightSettings& settings, const PropagationRun& run, double battery_voltage_V);
+
+  // To run it beside the motion; refers to this object.
+  Companion companion();
+
+  const std::vector<PowerRow>& rows() const { return rows_; }
+  const std::optional<PowerSupply>& supply() const { return supply_; }
+  // Of light and lamps; those of the battery are the supply's.
+  const std::vector<Event>& events() const { return events_; }
+  const ContinuationError& continuation() const { return continuation_; }
+  double emitted_J() const { return emitted_.value(); }
+  size_t traces() const { return traced_.size(); }
+  // By how much, at most, an exchange corrected the charge that the motion had gone ahead with.
+  double max_correction_C() const { return max_correction_C_; }
+
+ private:
+  // All channels with the lamps at full output, where and when.
+  struct Traced {
+    double time_s = 0.0;
+    std::vector<double> channels;
+  };
+  // The middle of a step of the power system.
+  struct Instant {
+    double from_s = 0.0, length_s = 0.0;
+    std::vector<double> channels;
+    double illumination = 1.0;
+    double middle_s() const { return from_s + 0.5 * length_s; }
+  };
+  void follow(Propagator& motion);
+  CompanionPower at(double time_s) const;
+  void begin(Propagator& motion);
+  void plan(double from_s);
+  void collect(Propagator& motion);
+  void exchange(Propagator& motion);
+  void run_supply();
+  void look_for_light(double time_s, double light_W);
+  ContinuedTorque continued(double illumination) const;
+  std::vector<double> channels_at(const Quat& lab_from_body) const;
+  PowerSupply::Light light_of(const Instant& instant) const;
+  double output(const GroupOutput& group, double time_s, double illumination) const;
+  double charge_C(const PowerSupply& supply) const;
+  static Quat attitude_of(const std::vector<Lanes>& y, int lane);
+
+  const LightModel& light_;
+  std::shared_ptr<const RotationTable> table_;
+  std::vector<GroupOutput> outputs_;
+  std::optional<PowerSupply> supply_;
+  double step_s_, start_s_, end_s_, battery_voltage_V_;
+  double start_charge_C_ = 0.0, max_correction_C_ = 0.0;
+  bool begun_ = false, has_sun_ = false;
+  double segment_from_s_ = 0.0, segment_end_s_ = 0.0, known_until_s_ = 0.0;
+  double max_light_W_ = 0.0, last_light_W_ = 0.0, last_light_s_ = 0.0;
+  bool is_lit_ = true;
+  std::vector<double> switches_s_;
+  std::vector<Instant> instants_;  // of the segment
+  size_t collected_ = 0;
+  std::vector<Traced> traced_;
+  ContinuedTorque held_;
+  std::vector<double> power_time_s_;  // the ends of the power system's steps
+  std::vector<CompanionPower> power_;
+  std::vector<PowerRow> rows_;
+  std::vector<Event> events_;
+  ContinuationError continuation_;
+  EnergySum emitted_;
+};
+
+}  // namespace photorque

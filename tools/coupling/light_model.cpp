@@ -1,0 +1,236 @@
+#include "tools/coupling/light_model.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/parallel.h"
+#include "tools/coupling/table_cache.h"
+
+namespace photorque {
+namespace {
+
+// A source's lamps are called NAME or NAME[0], NAME[1], …
+bool is_of(const Beam& beam, const std::string& source) {
+  return beam.name == source || beam.name.starts_with(source + "[");
+}
+
+bool is_sun(const Beam& beam) {
+  return beam.aperture && std::isinf(beam.aperture->radius_m);
+}
+
+Vec3 towards(const Beam& beam) {
+  return -beam.lab_from_emitter.direction(Vec3::UnitZ());
+}
+
+std::set<std::string> switched_sources(const LightSettings& settings) {
+  std::set<std::string> names;
+  for (const LightSettings::Switch& one : settings.switches) {
+    if (!one.source.empty()) names.insert(one.source);
+  }
+  return names;
+}
+
+InputError unknown_source(const ExperimentFile& file, const std::string& name,
+                          const std::vector<Beam>& beams) {
+  std::set<std::string> known;
+  for (const Beam& beam : beams) known.insert(beam.name.substr(0, beam.name.find('[')));
+  std::string list;
+  for (const std::string& one : known) list += (list.empty() ? "\"" : ", \"") + one + "\"";
+  return InputError({file.path.string()}, "light.switch.source", "\"" + name + "\"",
+                    "the name of a source: " + list);
+}
+
+std::optional<Vec3> direction_of_suns(const std::vector<Beam>& beams) {
+  if (beams.empty()) return {};
+  for (const Beam& beam : beams) {
+    if (!is_sun(beam) || towards(beam).dot(towards(beams.front())) < 1.0 - 1e-12) return {};
+  }
+  return towards(beams.front());
+}
+
+}  // namespace
+
+LightModel::~LightModel() = default;
+
+LightModel::LightModel(const CommandLine& line, const Console& console,
+                       const LightSettings& settings, const Platform& platform)
+    : settings_(settings), threads_(line.threads) {
+  CommandLine own = line;
+  own.seed.reset();  // that of the instruments
+  // Of a table many attitudes are traced at a time, which keeps all processors busier than one
+  // does.
+  if (settings.mode == LightSettings::Mode::table) own.threads = 1;
+  auto whole = std::make_unique<OpticalRun>(own, console);
+  const std::vector<Beam> beams = whole->experiment().beams;
+  const ExperimentFile& file = whole->experiment().file;
+  inputs_ = whole->experiment().inputs;
+  sun_direction_lab_ = direction_of_suns(beams);
+  const double tilt_rad = settings.max_tilt_rad.value_or(platform.tilt_limit_rad.value_or(pi));
+  max_angle_rad_ = tilt_rad;
+  if (sun_direction_lab_) {
+    max_angle_rad_ =
+        std::min(pi, tilt_rad + std::acos(std::clamp(sun_direction_lab_->z(), -1.0, 1.0)));
+  }
+  const std::set<std::string> switched = switched_sources(settings);
+  for (const std::string& name : switched) {
+    if (std::ranges::none_of(beams, [&](const Beam& beam) { return is_of(beam, name); })) {
+      throw unknown_source(file, name, beams);
+    }
+  }
+  // Suns, which the planet's shadow takes away, apart from lamps.
+  const auto group_of = [&](const Beam& beam) -> std::string {
+    for (const std::string& name : switched) {
+      if (is_of(beam, name)) return name;
+    }
+    return is_sun(beam) ? "sun" : "light";
+  };
+  std::vector<std::string> names;
+  for (const Beam& beam : beams) {
+    if (std::ranges::find(names, group_of(beam)) == names.end()) names.push_back(group_of(beam));
+  }
+  CommandLine silent = own;
+  silent.quiet = true;
+  const bool has_array = !file.others("array").empty();
+  key_ = content_key(file);
+  for (const std::string& name : names) {
+    auto run = names.size() == 1 ? std::move(whole)
+                                 : std::make_unique<OpticalRun>(silent, Console(silent));
+    run->keep_beams([&](const Beam& beam) { return group_of(beam) == name; });
+    Group group{.name = name};
+    for (const Beam& beam : run->experiment().beams) {
+      group.is_sun = is_sun(beam);
+      if (!group.is_sun) group.emitted_W += beam.emitter->power_W();
+    }
+    groups_.push_back(group);
+    arrays_.emplace_back();
+    if (has_array) arrays_.back() = read_array_power(*run);
+    runs_.push_back(std::move(run));
+  }
+  if (has_array) {
+    const ArrayPower& array = *arrays_.front();
+    for (const std::string& notice : array.notices) console.line("note: " + notice);
+    array_ = array.design;
+    day_ = array.report.day;
+    if (array.report.motion) tracker_ = array.report.motion->trackers.front();
+    const FluxMapReceiver& map = runs_.front()->flux_map(array.flux_map);
+    BinSums dark{map.bins(), 1, std::vector<double>(map.bins(), 0.0)};
+    cell_area_m2_ =
+        cell_currents(array.design, array_light(map, dark), array.responsivity_A_W).area_m2;
+  }
+  for (size_t g = 0; g < groups_.size(); ++g) groups_[g].first = g * channels_per_group();
+}
+
+RotationSample LightModel::trace(const Quat& lab_from_body) const {
+  RotationSample sample;
+  const auto put = [&](double value, double error) {
+    sample.value.push_back(value);
+    sample.error.push_back(error);
+  };
+  for (size_t g = 0; g < groups_.size(); ++g) {
+    const OpticalRun& run = *runs_[g];
+    const OpticalResult result = run.run({lab_from_body, Vec3::Zero()}, {}, settings_.rays);
+    const WrenchEstimate wrench =
+        wrench_about(run.wrench().total(result.sums[run.wrench_index()]), Vec3::Zero());
+    const Vec3 torque_error = wrench.torque_error_N_m(), force_error = wrench.force_error_N();
+    for (int k = 0; k < 3; ++k) put(wrench.mean.torque_N_m[k], torque_error[k]);
+    for (int k = 0; k < 3; ++k) put(wrench.mean.force_N[k], force_error[k]);
+    if (!arrays_[g]) continue;
+    const ArrayPower& array = *arrays_[g];
+    const CellCurrents cells =
+        cell_currents(array.design,
+                      array_light(run.flux_map(array.flux_map), result.sums[array.flux_map],
+                                  array.incidence ? result.sums[*array.incidence] : BinSums{}),
+                      array.responsivity_A_W);
+    for (size_t i = 0; i < cells.photocurrent_A.size(); ++i) {
+      put(cells.photocurrent_A[i], cells.photocurrent_error_A[i]);
+    }
+    put(cells.power_on_cells_W.value, cells.power_on_cells_W.standard_error);
+  }
+  return sample;
+}
+
+std::string LightModel::content_key(const ExperimentFile& file) const {
+  std::string text = table_cache_version();
+  for (const char* table : {"scene", "material", "source", "receiver", "trace"}) {
+    if (file.settings.has(table))
+      text += std::string(table) + written_out(file.settings.raw(table));
+  }
+  if (file.settings.has("array")) {
+    // What happens behind the cells does not change the light.
+    text += "array" + written_out(file.settings.raw("array"),
+                                  {"day", "tracker", "target", "layout", "chain"});
+  }
+  for (const auto& [name, hash] : inputs_) {
+    if (name != file.path.filename().string() && !name.starts_with("--set ")) text += hash;
+  }
+  for (const std::string& name : switched_sources(settings_)) text += "group " + name;
+  char numbers[160];
+  std::snprintf(numbers, sizeof numbers, "%.17g %llu %zu", settings_.tolerance,
+                static_cast<unsigned long long>(settings_.rays), settings_.max_traces);
+  return text + numbers;
+}
+
+std::shared_ptr<const RotationTable> LightModel::make_table(Console& console,
+                                                            double max_angle_rad) const {
+  auto table = std::make_shared<RotationTable>();
+  char limit[40];
+  std::snprintf(limit, sizeof limit, " angle %.17g", max_angle_rad);
+  const std::string key = content_hash(key_ + limit);
+  const std::string what =
+      "light over attitude" + (max_angle_rad < pi
+                                   ? ", up to " + show(max_angle_rad / degree_rad) + " deg of tilt"
+                                   : std::string());
+  if (settings_.cache && read_cached_table(*settings_.cache, key, *table)) {
+    console.line(what + ": " + std::to_string(table->samples() * table->twists()) +
+                 " attitudes, kept from an earlier run");
+    return table;
+  }
+  RotationTableOptions options;
+  if (sun_direction_lab_) {
+    options.axis_from_lab = Quat::FromTwoVectors(*sun_direction_lab_, Vec3::UnitZ());
+  }
+  options.max_angle_rad = max_angle_rad;
+  options.tolerance = settings_.tolerance;
+  options.max_samples = settings_.max_traces;
+  for (size_t g = 0; g < groups_.size(); ++g) {
+    for (size_t c = 0; c < channels_per_group(); ++c) {
+      const int kind = c < 3 ? 0 : c < 6 ? 1 : c + 1 < channels_per_group() ? 2 : 3;
+      options.group_of_channel.push_back(kind);
+    }
+  }
+  const auto start = std::chrono::steady_clock::now();
+  std::atomic<size_t> traced = 0;
+  std::string stage;
+  const auto trace_all = [&](std::span<const Quat> attitudes) {
+    std::vector<RotationSample> samples(attitudes.size());
+    const auto bar = console.progress("light over attitude, " + stage);
+    const size_t before = traced;
+    parallel_for(attitudes.size(), threads_, [&](size_t i) {
+      samples[i] = trace(attitudes[i]);
+      const size_t done = ++traced - before;
+      if (bar) bar(static_cast<double>(done) / static_cast<double>(attitudes.size()));
+      console.note_progress("light over attitude, " + stage + ": " + std::to_string(before + done) +
+                            " attitudes traced, " + std::to_string(attitudes.size() - done) +
+                            " to go");
+    });
+    return samples;
+  };
+  *table = make_rotation_table(trace_all, options,
+                               [&](size_t, const std::string& what) { stage = what; });
+  console.done();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  console.line(what + ": " + std::to_string(traced) + " attitudes traced in " +
+               show(std::round(10 * wall.count()) / 10) + " s");
+  if (settings_.cache && !write_cached_table(*settings_.cache, key, *table)) {
+    console.line("note: the table could not be kept in " + settings_.cache->string());
+  }
+  return table;
+}
+
+}  // namespace photorque

@@ -1,0 +1,78 @@
+// What light does to the platform and its array at any attitude: traced, or from a table of traces.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "attitude/disturbances/fields/light_pressure.h"
+#include "attitude/model/platform.h"
+#include "core/rotations/table.h"
+#include "photovoltaics/supply/supply.h"
+#include "tools/coupling/settings.h"
+#include "tools/runs/array_power.h"
+
+namespace photorque {
+
+// The experiment's light as a function of attitude. Channels of a group of lamps, from `first`:
+// torque about the body origin and force (x, y, z, body axes), then, where there is an array, the
+// photocurrent of each cell at the array's temperature and all light on the cells [W].
+class LightModel {
+ public:
+  // Reads scene, sources and array. Lamps that [[light.switch]] names singly form groups.
+  LightModel(const CommandLine& line, const Console& console, const LightSettings& settings,
+             const Platform& platform);
+  ~LightModel();
+
+  struct Group {
+    std::string name;  // of its source; "light" where all shine alike
+    size_t first = 0;  // channel
+    bool is_sun = false;
+    double emitted_W = 0.0;  // 0 for the Sun
+  };
+  const std::vector<Group>& groups() const { return groups_; }
+  size_t cells() const { return cell_area_m2_.size(); }
+  size_t channels_per_group() const { return cells() > 0 ? 7 + cells() : 6; }
+
+  const std::optional<ArrayDesign>& array() const { return array_; }
+  const std::optional<DaySettings>& day() const { return day_; }
+  const std::optional<Tracker>& tracker() const { return tracker_; }
+  const std::vector<double>& cell_area_m2() const { return cell_area_m2_; }
+  // Direction towards the Sun in the lab, where it is the only light.
+  const std::optional<Vec3>& sun_direction_lab() const { return sun_direction_lab_; }
+  const std::vector<std::pair<std::string, std::string>>& inputs() const { return inputs_; }
+
+  // All channels at one attitude. `progress` as of the console.
+  RotationSample trace(const Quat& lab_from_body) const;
+
+  // The largest angle that a table has to hold, of body z from the vertical or, where the Sun is
+  // the only light, from the Sun: that of the platform's stop or of [light] max_tilt_deg.
+  double max_angle_rad() const { return max_angle_rad_; }
+  // The table up to an angle, from the cache or traced now; says which on the console.
+  std::shared_ptr<const RotationTable> make_table(Console& console, double max_angle_rad) const;
+
+  // Names of the channels' groups as RotationTableError counts them, with their units.
+  static constexpr const char* quantities[] = {"torque", "force", "photocurrent", "light on cells"};
+  static constexpr const char* units[] = {"N m", "N", "A", "W"};
+
+ private:
+  std::string content_key(const ExperimentFile& file) const;
+
+  LightSettings settings_;
+  int threads_ = 0;
+  std::vector<Group> groups_;
+  std::vector<std::unique_ptr<OpticalRun>> runs_;  // one per group
+  std::vector<std::optional<ArrayPower>> arrays_;  // likewise
+  std::optional<ArrayDesign> array_;
+  std::optional<DaySettings> day_;
+  std::optional<Tracker> tracker_;
+  std::vector<double> cell_area_m2_;
+  std::optional<Vec3> sun_direction_lab_;
+  std::vector<std::pair<std::string, std::string>> inputs_;
+  double max_angle_rad_ = 0.0;
+  std::string key_;
+};
+
+}  // namespace photorque

@@ -1,0 +1,87 @@
+#include "tools/coupling/table_cache.h"
+
+#include <cstdio>
+
+#include "core/files.h"
+#include "core/provenance.h"
+#include "tools/runs/child_process.h"
+
+namespace photorque {
+namespace {
+
+constexpr const char* format = "photorque light table 2\n";
+constexpr size_t hash_digits = 32;
+
+std::filesystem::path file_of(const std::filesystem::path& folder, const std::string& key) {
+  return folder / ("light_" + key + ".table");
+}
+
+}  // namespace
+
+std::string table_cache_version() {
+  // The program itself, which a version does not tell apart while it is being worked on.
+  return format + build_provenance().version + " " + content_hash(read_file(own_program())) + "\n";
+}
+
+std::string written_out(const SettingsNode& node, const std::set<std::string>& without) {
+  const auto number = [](double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return std::string(text);
+  };
+  struct Writer {
+    const decltype(number)& number_of;
+    const std::set<std::string>& without;
+    std::string operator()(bool value) const { return value ? "true" : "false"; }
+    std::string operator()(int64_t value) const { return number_of(static_cast<double>(value)); }
+    std::string operator()(double value) const { return number_of(value); }
+    // With its length, so that no text can look like another value.
+    std::string operator()(const std::string& value) const {
+      return std::to_string(value.size()) + ":" + value;
+    }
+    std::string operator()(const SettingsNode::Array& items) const {
+      std::string text = "[";
+      for (const SettingsNode& item : items) text += written_out(item) + ",";
+      return text + "]";
+    }
+    std::string operator()(const SettingsNode::Table& table) const {
+      std::string text = "{";
+      for (const auto& [key, value] : table) {
+        if (!without.contains(key)) text += key + "=" + written_out(value) + ";";
+      }
+      return text + "}";
+    }
+  };
+  return std::visit(Writer{number, without}, node.value);
+}
+
+bool read_cached_table(const std::filesystem::path& folder, const std::string& key,
+                       RotationTable& table) {
+  const std::filesystem::path path = file_of(folder, key);
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(path, unreadable)) return false;
+  try {
+    const std::string all = read_file(path);
+    const std::string head = format;
+    if (!all.starts_with(head) || all.size() < head.size() + hash_digits) return false;
+    const std::string bytes = all.substr(head.size() + hash_digits);
+    return all.compare(head.size(), hash_digits, content_hash(bytes)) == 0 && table.read(bytes);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+bool write_cached_table(const std::filesystem::path& folder, const std::string& key,
+                        const RotationTable& table) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  const std::string bytes = table.bytes();
+  try {
+    write_file_whole(file_of(folder, key), format + content_hash(bytes) + bytes);
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace photorque
