@@ -12,16 +12,18 @@
 
 namespace photorque {
 
-class FluxMapReceiver;  // receivers/maps/flux_map.h
-class WrenchReceiver;   // receivers/wrench/wrench.h
+class FluxMapReceiver;    // receivers/maps/flux_map.h
+class TorqueMapReceiver;  // receivers/maps/torque_map.h
+class WrenchReceiver;     // receivers/wrench/wrench.h
 
 // A receiver as its kind made it, with handles of its own type to those that other parts of the
-// program ask for more than a Receiver tells: gathering and photovoltaics for flux maps, tables of
-// wrenches for wrenches. Null for other kinds.
+// program ask for more than a Receiver tells: gathering and photovoltaics for flux maps, gathering
+// for torque maps, tables of wrenches for wrenches. Null for other kinds.
 struct MadeReceiver {
   std::shared_ptr<const Receiver> receiver;
   std::shared_ptr<const FluxMapReceiver> flux_map = nullptr;
   std::shared_ptr<const WrenchReceiver> wrench = nullptr;
+  std::shared_ptr<const TorqueMapReceiver> torque_map = nullptr;
 };
 
 // One kind of receiver: `kind = "flux_map"`.

@@ -1,5 +1,7 @@
 #include "images/drawing/map_grid.h"
 
+#include "images/drawing/ticks.h"
+
 namespace photorque {
 namespace {
 
@@ -31,18 +33,123 @@ double mean_of(const Map& map, const Cells& columns, const Cells& rows) {
   return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
+uint32_t opaque(const Rgb& colour) {
+  const auto [red, green, blue] = rgb_bytes(colour);
+  return 0xFF000000u | uint32_t{red} << 16 | uint32_t{green} << 8 | uint32_t{blue};
+}
+
+// The value of a bin, the nearest one for places outside; NaN where there is none.
+double value_at(const Map& map, double x, double y) {
+  const int column = std::clamp(static_cast<int>(x), 0, map.width - 1);
+  const int row = std::clamp(static_cast<int>(y), 0, map.height - 1);
+  return map.value[static_cast<size_t>(row) * map.width + column];
+}
+
+// The weights of nodes first − 1 … first + 2 of `count` in the cubic of Catmull and Rom at t in
+// [0, 1] from `first` on; beyond the ends the field goes on straight.
+std::array<double, 4> cubic_weights(double first, int count, double t) {
+  std::array<double, 4> weight = {0.5 * t * (t * (2.0 - t) - 1.0),
+                                  0.5 * (t * t * (3.0 * t - 5.0) + 2.0),
+                                  0.5 * t * (t * (4.0 - 3.0 * t) + 1.0), 0.5 * t * t * (t - 1.0)};
+  if (first < 1.0) weight = {0.0, weight[1] + 2.0 * weight[0], weight[2] - weight[0], weight[3]};
+  if (first + 2.0 >= count) {
+    weight = {weight[0], weight[1] - weight[3], weight[2] + 2.0 * weight[3], 0.0};
+  }
+  return weight;
+}
+
+// The field of a smooth map at x and y in nodes from its first: the cubic through four nodes a
+// side, and a value nearby for a node that has none. NaN where the four nodes
+// around, weighed by how near they are, are missing by more than half.
+double smooth_value(const Map& map, double x, double y) {
+  const double left = std::floor(x), below = std::floor(y), s = x - left, t = y - below;
+  double there = 0.0, some = std::numeric_limits<double>::quiet_NaN();
+  for (const int i : {0, 1}) {
+    for (const int j : {0, 1}) {
+      const double value = value_at(map, left + i, below + j);
+      if (!std::isfinite(value)) continue;
+      there += (i == 1 ? s : 1.0 - s) * (j == 1 ? t : 1.0 - t);
+      some = value;
+    }
+  }
+  if (!(there >= 0.5)) return std::numeric_limits<double>::quiet_NaN();
+  const auto across = cubic_weights(left, map.width, s);
+  const auto up = cubic_weights(below, map.height, t);
+  double sum = 0.0;
+  for (size_t j = 0; j < 4; ++j) {
+    for (size_t i = 0; i < 4; ++i) {
+      const double value =
+          value_at(map, left + static_cast<double>(i) - 1.0, below + static_cast<double>(j) - 1.0);
+      sum += across[i] * up[j] * (std::isfinite(value) ? value : some);
+    }
+  }
+  return sum;
+}
+
+// A smooth field with a thin line, as dark as it is near, wherever it passes one of even levels.
+class SmoothField {
+ public:
+  SmoothField(const Map& map, const ColourScale& scale, int columns, int rows)
+      : scale_(scale), columns_(columns), rows_(rows) {
+    constexpr int most_levels = 17;
+    const Ticks ticks = linear_ticks(scale.low, scale.high, most_levels);
+    if (ticks.values.size() > 1) step_ = ticks.values[1] - ticks.values[0];
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        value_.push_back(smooth_value(map, (column + 0.5) * (map.width - 1) / columns,
+                                      (rows - row - 0.5) * (map.height - 1) / rows));
+      }
+    }
+  }
+
+  uint32_t pixel(int column, int row) const {
+    const double value = at(column, row);
+    if (!std::isfinite(value)) return 0u;
+    constexpr double half_width = 0.9, darkest = 0.55;  // pixels
+    const double right = at(std::min(column + 1, columns_ - 1), row);
+    const double below = at(column, std::min(row + 1, rows_ - 1));
+    const double slope = std::hypot(right - value, below - value);
+    Rgb colour = scale_(value);
+    if (step_ > 0.0 && std::isfinite(slope) && slope > 1e-3 * step_ * 1e-2) {
+      const double away = std::abs(value - step_ * std::round(value / step_)) / slope;
+      const double ink = darkest * std::clamp(half_width + 0.5 - away, 0.0, 1.0);
+      for (double* channel : {&colour.red, &colour.green, &colour.blue}) *channel *= 1.0 - ink;
+    }
+    return opaque(colour);
+  }
+
+ private:
+  double at(int column, int row) const {
+    return value_[static_cast<size_t>(row) * columns_ + column];
+  }
+
+  const ColourScale& scale_;
+  int columns_, rows_;
+  double step_ = 0.0;  // between contour lines
+  std::vector<double> value_;
+};
+
+std::vector<uint32_t> smooth_pixels(const Map& map, const ColourScale& scale, int columns,
+                                    int rows) {
+  const SmoothField field(map, scale, columns, rows);
+  std::vector<uint32_t> pixels;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) pixels.push_back(field.pixel(column, row));
+  }
+  return pixels;
+}
+
 }  // namespace
 
 std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int columns, int rows) {
+  if (map.smooth) return smooth_pixels(map, scale, columns, rows);
   std::vector<uint32_t> pixels(static_cast<size_t>(columns) * rows, 0u);
   for (int row = 0; row < rows; ++row) {
     const Cells map_rows = cells_under(rows - 1 - row, rows, map.height);
     for (int column = 0; column < columns; ++column) {
       const double value = mean_of(map, cells_under(column, columns, map.width), map_rows);
-      if (std::isnan(value)) continue;
-      const auto [red, green, blue] = rgb_bytes(scale(value));
-      pixels[static_cast<size_t>(row) * columns + column] =
-          0xFF000000u | uint32_t{red} << 16 | uint32_t{green} << 8 | uint32_t{blue};
+      if (!std::isnan(value))
+        pixels[static_cast<size_t>(row) * columns + column] = opaque(scale(value));
     }
   }
   return pixels;

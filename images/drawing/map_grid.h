@@ -11,7 +11,9 @@ namespace photorque {
 
 // 0xAARRGGBB for `columns` × `rows` pixels that cover the map, row 0 at the largest y. A pixel
 // shows the cell that it lies in; where the map has more cells than pixels, the mean of those that
-// the pixel covers. Transparent where there is no finite value.
+// the pixel covers. A smooth map is interpolated between its
+// outermost nodes, with contour lines. Transparent where there is no
+// finite value.
 std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int columns, int rows);
 
 }  // namespace photorque

@@ -39,8 +39,13 @@ PageBox grid_size(const Map& map) {
 MapLayout map_layout(const Map& map, const Provenance& provenance) {
   MapLayout layout;
   layout.grid = grid_size(map);
-  layout.x = horizontal_axis({map.x_low, map.x_high}, false, map.x_label, layout.grid.width);
-  layout.y = vertical_axis({map.y_low, map.y_high}, false, map.y_label, layout.grid.height);
+  // A smooth map is drawn between its nodes, which are in the middles of bins.
+  const double half_x = map.smooth ? 0.5 * (map.x_high - map.x_low) / map.width : 0.0;
+  const double half_y = map.smooth ? 0.5 * (map.y_high - map.y_low) / map.height : 0.0;
+  layout.x = horizontal_axis({map.x_low + half_x, map.x_high - half_x}, false, map.x_label,
+                             layout.grid.width);
+  layout.y = vertical_axis({map.y_low + half_y, map.y_high - half_y}, false, map.y_label,
+                           layout.grid.height);
   layout.bar_height = std::max(layout.grid.height, shortest_colour_bar);
   layout.bar = colour_bar(colour_scale(map), map.unit, layout.bar_height);
   layout.grid.x = std::ceil(page_margin + vertical_axis_width(layout.y));
@@ -92,7 +97,7 @@ MapPicture map_picture(const Map& map, const Provenance& provenance) {
                     pixels(layout.grid.y),
                     pixels(layout.grid.width),
                     pixels(layout.grid.height)};
-  draw_hatching(canvas, layout.grid);
+  if (!map.smooth) draw_hatching(canvas, layout.grid);
   canvas.image(layout.grid, result.grid_width, result.grid_height,
                map_pixels(map, layout.bar.scale, result.grid_width, result.grid_height));
   // Around the cells, not over them.
@@ -119,7 +124,9 @@ std::string map_caption(const Map& map) {
     sum += value;
     ++count;
   }
-  const std::string bins = std::to_string(map.width) + " × " + std::to_string(map.height) + " bins";
+  const std::string bins =
+      map.smooth ? "interpolated, contour lines at even steps"
+                 : std::to_string(map.width) + " × " + std::to_string(map.height) + " bins";
   if (count == 0) return "no values · " + bins;
   std::string caption = "min " + readable_number(smallest) + " · mean " +
                         readable_number(sum / static_cast<double>(count)) + " · max " +
@@ -129,6 +136,7 @@ std::string map_caption(const Map& map) {
     caption +=
         " · standard error " + readable_number(root_mean_square(map.standard_error), 2) + " (rms)";
   }
+  if (map.smooth) return caption;
   return count == map.value.size() ? caption : caption + " · hatched: no value";
 }
 

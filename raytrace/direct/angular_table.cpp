@@ -109,7 +109,9 @@ void AngularTable::find_angles(const std::vector<double>& edges_rad) {
       const double low = segment.value[i], high = segment.value[i + 1];
       const double ring = pi * step * (low + high);
       const double rise = segment.low + step * static_cast<double>(i);
-      mean_cosine_ += ring * (1.0 - rise - 0.5 * step);
+      const double cosine = 1.0 - rise - 0.5 * step;
+      mean_cosine_ += ring * cosine;
+      mean_square_cosine_ += ring * cosine * cosine;
       if (outside < negligible) reach_rad_ = angle_of(rise + step);
       if (outside < 0.5 && outside + ring >= 0.5) {
         half_flux_rad_ = angle_of(rise + step * (outside + ring - 0.5) / ring);
@@ -122,6 +124,7 @@ void AngularTable::find_angles(const std::vector<double>& edges_rad) {
     }
   }
   mean_cosine_ /= outside;
+  mean_square_cosine_ /= outside;
   steepest_rad_ = std::min(half_flux_rad_, brightest / steepest);
   // The edge of all light is taken where hardly any is left.
   for (const double edge_rad : edges_rad) {

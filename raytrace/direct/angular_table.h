@@ -39,8 +39,9 @@ class AngularTable {
   // Angle over which the intensity falls by its maximum where it falls steepest, jumps aside; at
   // most half_flux_rad().
   double steepest_rad() const { return steepest_rad_; }
-  // Mean cosine of all directions.
+  // Mean cosine of all directions and the mean of its square.
   double mean_cosine() const { return mean_cosine_; }
+  double mean_square_cosine() const { return mean_square_cosine_; }
 
  private:
   // Intensity and flux on [low, high] of the rise, at even steps.
@@ -88,7 +89,8 @@ class AngularTable {
   std::vector<Segment> segments_;
   std::vector<double> edge_slopes_;
   bool fades_out_ = false;
-  double reach_rad_ = 0.0, half_flux_rad_ = 0.0, steepest_rad_ = 0.0, mean_cosine_ = 0.0;
+  double reach_rad_ = 0.0, half_flux_rad_ = 0.0, steepest_rad_ = 0.0;
+  double mean_cosine_ = 0.0, mean_square_cosine_ = 0.0;
 };
 
 // 1 − cos θ where tan² θ = `slope_squared`; keeps its precision near the axis.

@@ -68,31 +68,39 @@ double DiscLight::irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const
   return -normal.z() * factors[0] - away * factors[1];
 }
 
-Eigen::Array2d DiscLight::factors_W_m2(double distance_m, double height_m) const {
+// What of the circle about a point's foot that is seen under one angle lies on the aperture.
+struct DiscLight::Arc {
+  double cosine, sine;         // of the angle from the axis
+  double half_rad, half_sine;  // half of the arc's angle α about the foot, sin α
+};
+
+// Σ over the aperture of `density` per solid angle and flux, times the exitance.
+template <typename Density>
+auto DiscLight::over_aperture(double distance_m, double height_m, const Density& density) const {
+  using Value = std::decay_t<decltype(density(Arc{}))>;
   const double h = height_m, d = distance_m, radius = aperture_.radius_m;
-  // Per du, over the exitance.
-  const auto density = [&](double u, double half_arc, double sine_arc) -> Eigen::Array2d {
+  const auto ring = [&](double u, double half_rad, double half_sine) -> Value {
     const double distance2 = h * h + u * u, distance = std::sqrt(distance2);
     const double rise = u * u / (distance * (distance + h));
-    const double ring = 2.0 * angles_->intensity_per_flux(rise) * u / (distance2 * distance);
-    return {ring * h * half_arc, ring * u * sine_arc};
+    const double weight = angles_->intensity_per_flux(rise) * u / distance2;
+    return weight * density(Arc{h / distance, u / distance, half_rad, half_sine});
   };
-  const auto whole_circle = [&](double u) { return density(u, pi, 0.0); };
+  const auto whole_circle = [&](double u) { return ring(u, pi, 0.0); };
   const double middle = std::max(radius, d), width = std::min(radius, d);
-  const auto arc = [&](double psi) -> Eigen::Array2d {
+  const auto arc = [&](double psi) -> Value {
     const double half_sine = std::sin(0.5 * psi);
     const double half_cosine = std::sqrt(std::max(0.0, 1.0 - half_sine * half_sine));
     const double sine = 2.0 * half_sine * half_cosine;
     const double u = middle - width + 2.0 * width * half_sine * half_sine;
-    if (!(u > 0.0)) return Eigen::Array2d::Zero();
+    if (!(u > 0.0)) return Value::Zero();
     // Half of α by its sine or cosine, neither of which cancels.
     const double part =
         std::min(1.0, d > radius ? radius * sine / std::sqrt(4.0 * u * d)
                                  : half_sine * std::sqrt((u + d + radius) / (2.0 * u)));
     const double half = std::asin(part);
     return width * sine *
-           density(u, d > radius ? 2.0 * half : pi - 2.0 * half,
-                   2.0 * part * std::sqrt(1.0 - part * part));
+           ring(u, d > radius ? 2.0 * half : pi - 2.0 * half,
+                2.0 * part * std::sqrt(1.0 - part * part));
   };
   const auto turn = [&](double u) {
     return std::acos(std::clamp((middle - u) / width, -1.0, 1.0));
@@ -100,7 +108,7 @@ Eigen::Array2d DiscLight::factors_W_m2(double distance_m, double height_m) const
 
   constexpr double relative = 2e-8;
   const double tolerance = relative * typical_W_m2(h) / aperture_.exitance_W_m2;
-  Eigen::Array2d sum = Eigen::Array2d::Zero();
+  Value sum = Value::Zero();
   double low = 0.0;
   for (const double slope : angles_->edge_slopes()) {
     const double from = low, to = std::min(h * slope, radius + d);
@@ -113,7 +121,49 @@ Eigen::Array2d DiscLight::factors_W_m2(double distance_m, double height_m) const
     sum += all ? integrate_half_turn(arc, tolerance).value
                : integrate_adaptively(arc, turn(inner), turn(to), tolerance).value;
   }
-  return aperture_.exitance_W_m2 * sum;
+  return Value(aperture_.exitance_W_m2 * sum);
+}
+
+Eigen::Array2d DiscLight::factors_W_m2(double distance_m, double height_m) const {
+  return over_aperture(distance_m, height_m, [](const Arc& arc) -> Eigen::Array2d {
+    return {2.0 * arc.cosine * arc.half_rad, 2.0 * arc.sine * arc.half_sine};
+  });
+}
+
+ArrivingLight DiscLight::arriving(const Vec3& point_m, const Vec3& normal) const {
+  // The flow of momentum is a tensor: its components along the axis and away from it, and the one
+  // around it.
+  using Components = Eigen::Array<double, 6, 1>;
+  Components flow;
+  double d = 0.0;
+  if (parallel()) {
+    const double square = angles_ ? angles_->mean_square_cosine() : 1.0;
+    const double across = 0.5 * (1.0 - square);
+    flow << parallel_irradiance_W_m2_, 0.0,
+        Eigen::Array4d(square, 0.0, across, across) * aperture_.exitance_W_m2;
+  } else {
+    if (!(point_m.z() > 0.0)) return {};
+    d = std::hypot(point_m.x(), point_m.y());
+    flow = over_aperture(d, point_m.z(), [](const Arc& arc) -> Components {
+      const double half_cosine_part =
+          arc.half_sine *
+          std::copysign(std::sqrt(std::max(0.0, 1.0 - arc.half_sine * arc.half_sine)),
+                        0.5 * pi - arc.half_rad);
+      Components all;
+      all << 2.0 * arc.cosine * arc.half_rad, 2.0 * arc.sine * arc.half_sine,
+          2.0 * arc.cosine * arc.cosine * arc.half_rad, 2.0 * arc.cosine * arc.sine * arc.half_sine,
+          arc.sine * arc.sine * (arc.half_rad + half_cosine_part),
+          arc.sine * arc.sine * (arc.half_rad - half_cosine_part);
+      return all;
+    });
+  }
+  const Vec3 axis = Vec3::UnitZ();
+  const Vec3 away = d > 0.0 ? Vec3(point_m.x() / d, point_m.y() / d, 0.0) : Vec3(Vec3::UnitX());
+  const Vec3 around = axis.cross(away);
+  const double n_axis = -normal.z(), n_away = -normal.dot(away), n_around = -normal.dot(around);
+  return {n_axis * flow[0] + n_away * flow[1], (n_axis * flow[2] + n_away * flow[3]) * axis +
+                                                   (n_axis * flow[3] + n_away * flow[4]) * away +
+                                                   n_around * flow[5] * around};
 }
 
 Integral<double> DiscLight::mean_within_W_m2(double distance_m, double height_m,
@@ -150,29 +200,81 @@ Integral<double> DiscLight::mean_within_W_m2(double distance_m, double height_m,
   return {per_integral * sum.value, per_integral * sum.error};
 }
 
-// Fractions of the way between two points at which the circle about the axis touches the rim of
-// the light of an edge: d = |R ± h tan θ|; rising, in (0, 1).
-std::vector<double> DiscLight::kinks_along(const Vec3& from_m, const Vec3& to_m) const {
+std::vector<double> DiscLight::hard_slopes() const {
+  if (angles_->fades_out()) return {};
+  std::vector<double> slopes = angles_->edge_slopes();
+  std::erase_if(slopes, [](double slope) { return std::isinf(slope); });
+  return slopes;
+}
+
+std::vector<double> DiscLight::all_slopes() const {
+  std::vector<double> slopes = hard_slopes();
+  const double half = std::tan(std::min(half_flux_rad(), 1.4));
+  const double reach = std::tan(std::min(reach_rad(), 1.4));
+  for (const double slope : {0.5 * half, half, std::sqrt(half * reach), reach}) {
+    slopes.push_back(slope);
+  }
+  return slopes;
+}
+
+namespace {
+
+// a s² + 2 b s + c along a line: d² − (R ± h tan θ)² with its sign.
+struct Quadratic {
+  double a, b, c;
+
+  Quadratic(const Vec3& from_m, const Vec3& way_m, double radius_m, double slope) {
+    const double start = radius_m + slope * from_m.z(), change = slope * way_m.z();
+    a = way_m.head<2>().squaredNorm() - change * change;
+    b = from_m.head<2>().dot(way_m.head<2>()) - start * change;
+    c = from_m.head<2>().squaredNorm() - start * start;
+  }
+  Quadratic(double a_, double b_, double c_) : a(a_), b(b_), c(c_) {}
+  double discriminant() const { return b * b - a * c; }
+  // Adds the roots in (0, 1).
+  void add_roots(std::vector<double>& roots) const {
+    if (!(discriminant() > 0.0)) return;
+    const double q = -(b + std::copysign(std::sqrt(discriminant()), b));
+    for (const double root : {q / a, c / q}) {
+      if (root > 0.0 && root < 1.0) roots.push_back(root);
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<double> DiscLight::kinks_at(std::span<const double> slopes, const Vec3& from_m,
+                                        const Vec3& to_m) const {
   std::vector<double> kinks;
-  if (angles_->fades_out()) return kinks;
-  const Vec3 way = to_m - from_m;
-  for (const double slope : angles_->edge_slopes()) {
-    if (!std::isfinite(slope)) continue;
+  for (const double slope : slopes) {
     for (const double side : {-slope, slope}) {
-      const double start = radius_m() + side * from_m.z(), change = side * way.z();
-      const double a = way.head<2>().squaredNorm() - change * change;
-      const double b = from_m.head<2>().dot(way.head<2>()) - start * change;
-      const double c = from_m.head<2>().squaredNorm() - start * start;
-      const double discriminant = b * b - a * c;
-      if (!(discriminant > 0.0)) continue;
-      const double q = -(b + std::copysign(std::sqrt(discriminant), b));
-      for (const double root : {q / a, c / q}) {
-        if (root > 0.0 && root < 1.0) kinks.push_back(root);
-      }
+      Quadratic(from_m, to_m - from_m, radius_m(), side).add_roots(kinks);
     }
   }
   std::sort(kinks.begin(), kinks.end());
   return kinks;
+}
+
+std::vector<double> DiscLight::kinks_along(const Vec3& from_m, const Vec3& to_m) const {
+  return kinks_at(all_slopes(), from_m, to_m);
+}
+
+std::vector<double> DiscLight::tangent_lines(const Vec3& corner_m, const Vec3& along_m,
+                                             const Vec3& across_m) const {
+  std::vector<double> lines;
+  for (const double slope : all_slopes()) {
+    for (const double side : {-slope, slope}) {
+      // Where two kinks of a line meet, its discriminant passes zero: it is quadratic in t.
+      const auto discriminant = [&](double t) {
+        return Quadratic(corner_m + t * across_m, along_m, radius_m(), side).discriminant();
+      };
+      const double first = discriminant(0.0), middle = discriminant(0.5), last = discriminant(1.0);
+      const double square = 2.0 * (first - 2.0 * middle + last);
+      Quadratic(square, 0.5 * (last - first - square), first).add_roots(lines);
+    }
+  }
+  std::sort(lines.begin(), lines.end());
+  return lines;
 }
 
 // ½ ∫ M (x dy − y dx) along a straight line.
@@ -189,7 +291,7 @@ Integral<double> DiscLight::along_edge_W(const Vec3& from_m, const Vec3& to_m,
     worst_W_m2 = std::max(worst_W_m2, mean.error);
     return mean.value;
   };
-  std::vector<double> ends = kinks_along(from_m, to_m);
+  std::vector<double> ends = kinks_at(hard_slopes(), from_m, to_m);
   ends.push_back(1.0);
   double low = 0.0;
   for (const double high : ends) {

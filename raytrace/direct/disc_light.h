@@ -35,6 +35,14 @@
 
 namespace photorque {
 
+// What arrives at a point of a surface.
+struct ArrivingLight {
+  double irradiance_W_m2 = 0.0;
+  // Its directions (unit vectors of travel), weighed by the irradiance that each brings. Over the
+  // speed of light: the momentum that arrives per area and time.
+  Vec3 momentum_W_m2 = Vec3::Zero();
+};
+
 // An emitter with its aperture, made ready. Immutable; must not outlive the emitter.
 class DiscLight {
  public:
@@ -59,6 +67,9 @@ class DiscLight {
   // error below 1e-7.
   double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const;
 
+  // The same with the momentum that comes with it, in the emitter's frame.
+  ArrivingLight arriving(const Vec3& point_m, const Vec3& normal) const;
+
   // The irradiances A on a surface normal to the axis and B on one that looks at the axis, at a
   // height and a distance from it, such that E = −n_z A − n·p̂ B. Not for parallel light.
   Eigen::Array2d factors_W_m2(double distance_m, double height_m) const;
@@ -71,6 +82,15 @@ class DiscLight {
   // What a side from one corner to the next adds to such a power, both in front of the aperture;
   // counted against the clock as seen from where the light goes.
   Integral<double> along_edge_W(const Vec3& from_m, const Vec3& to_m, double tolerance_W) const;
+
+  // Fractions of the way between two points at which the irradiance has a kink, where the circle
+  // about the axis touches the rim of an edge's light; rising, in (0, 1). With them places that lie
+  // likewise to angles at which the beam has fallen a little, by half, and almost altogether.
+  std::vector<double> kinks_along(const Vec3& from_m, const Vec3& to_m) const;
+  // Of the lines corner + t · across + [0, 1] · along: the t in (0, 1) at which two kinks meet;
+  // rising.
+  std::vector<double> tangent_lines(const Vec3& corner_m, const Vec3& along_m,
+                                    const Vec3& across_m) const;
 
   // Mean irradiance normal to the axis within the circle of radius d = `distance_m` about it. With
   // an error aimed to be below `tolerance_W_m2` (> 0). Not for parallel light.
@@ -85,7 +105,13 @@ class DiscLight {
   bool lights_front(const Vec3& normal) const;
 
  private:
-  std::vector<double> kinks_along(const Vec3& from_m, const Vec3& to_m) const;
+  std::vector<double> hard_slopes() const;  // tangents of its edges
+  std::vector<double> all_slopes() const;   // and of other angles, see kinks_along()
+  std::vector<double> kinks_at(std::span<const double> slopes, const Vec3& from_m,
+                               const Vec3& to_m) const;
+  struct Arc;
+  template <typename Density>
+  auto over_aperture(double distance_m, double height_m, const Density& density) const;
 
   const Emitter& emitter_;
   UniformAperture aperture_;

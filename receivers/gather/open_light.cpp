@@ -2,26 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <set>
-
-#include "core/numerics/chebyshev.h"
+#include <cmath>
 
 namespace photorque {
 namespace {
-
-// How much the terms after the last of a Chebyshev series add, from its four highest coefficients
-// (rows) for any number of series (columns): they go on falling as they do.
-double remainder_of(const Eigen::MatrixXd& highest) {
-  double worst = 0.0;
-  for (Eigen::Index k = 0; k < highest.cols(); ++k) {
-    const double before = highest.col(k).head<2>().cwiseAbs().maxCoeff();
-    const double last = highest.col(k).tail<2>().cwiseAbs().maxCoeff();
-    const double ratio = before > 0.0 ? std::min(last / before, 0.9) : 0.9;
-    worst = std::max(worst, 2.0 * last * ratio / (1.0 - ratio));
-  }
-  return worst;
-}
 
 // The mean of a function of the coordinates (a, b) over a triangle a, b ≥ 0, a + b ≤ 1, by the rule
 // of degree 5 with seven points; its error by a rule of degree 2.
@@ -42,27 +26,19 @@ Integral<double> triangle_mean(const Function& f) {
 
 }  // namespace
 
-OpenLight::OpenLight(const GatherPlane& plane, int tile_side) : plane_(plane) {
-  // All sizes of tiles that halving leads to.
-  std::set<int> sizes;
-  const std::function<void(int)> halve = [&](int side) {
-    if (!sizes.insert(side).second || side < 2) return;
-    halve(side / 2);
-    halve(side - side / 2);
-  };
-  const SurfaceGrid& grid = plane.map().grid();
-  for (const int bins : {grid.width, grid.height}) {
-    halve(std::min(bins, tile_side));
-    if (bins > tile_side && bins % tile_side > 0) halve(bins % tile_side);
-  }
-  for (const int side : sizes) {
-    for (size_t nodes = min_nodes; nodes <= max_nodes; ++nodes) {
-      const auto cells = static_cast<size_t>(side);
-      interpolations_[{nodes, cells}] = {chebyshev_cell_means(nodes, cells),
-                                         chebyshev_coefficients(nodes).bottomRows(4)};
-    }
+void FluxEntries::add(double power_W, const GatherLamp& lamp, size_t bin, uint32_t instance,
+                      std::span<double> entries) const {
+  const OpticalSurface& surface = plane_.surface(instance);
+  for (size_t band = 0; band < static_cast<size_t>(map_.bands().count()); ++band) {
+    const size_t at = map_.entry(bin, band);
+    const double in_band_W = power_W * lamp.fraction()[band];
+    entries[at] += in_band_W;
+    entries[at + 1] += in_band_W * surface.absorbed[band];
   }
 }
+
+OpenLight::OpenLight(const GatherPlane& plane, const FluxEntries& flux, int tile_side)
+    : plane_(plane), flux_(flux), tiles_(plane.grid(), tile_side) {}
 
 size_t OpenLight::add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp,
                       const OpenEntries& entries) const {
@@ -72,23 +48,19 @@ size_t OpenLight::add(const BinTile& tile, const Ball& ball, const GatherLamp& l
 
 size_t OpenLight::add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp, Sides& sides,
                       const OpenEntries& entries) const {
-  const auto count = static_cast<size_t>(tile.count());
   const double tolerance_W_m2 = tolerance * lamp.typical_W_m2(ball);
   const double turns = 2.0 * ball.radius_m / lamp.scale_m(ball);
-  // More points than this are no gain over halving the tile, or over the outline of a bin.
-  const size_t most =
-      std::min(max_nodes,
-               count == 1 ? 8 : static_cast<size_t>(std::sqrt(16.0 * static_cast<double>(count))));
-  const auto fewest = min_nodes + static_cast<size_t>(std::min(3.0 * turns, 100.0));
-  if (fewest <= most && lamp.smooth_over(ball)) {
-    for (size_t nodes = fewest; nodes <= std::min(most, fewest + 4); nodes += 2) {
-      const TileMeans means = interpolate(tile, nodes, lamp);
-      if (means.error_W_m2 - lamp.table_error_W_m2() <= tolerance_W_m2) {
-        return add_smooth(tile, means, lamp, tolerance_W_m2, entries);
-      }
+  if (lamp.smooth_over(ball)) {
+    for (const size_t nodes : tiles_.attempts(tile, turns)) {
+      const TileMeans means =
+          tiles_.interpolate<double>(tile, nodes, [&](double column, double row) {
+            return lamp.irradiance_W_m2(plane_.point_m(column, row));
+          });
+      if (means.error > tolerance_W_m2) continue;
+      return add_smooth(tile, means, lamp, tolerance_W_m2, entries);
     }
   }
-  if (count == 1) {
+  if (tile.count() == 1) {
     const size_t bin = plane_.bin_at(tile.column, tile.row);
     const auto patches = plane_.patches().of(bin);
     for (const SurfacePatch& patch : patches) {
@@ -108,27 +80,6 @@ size_t OpenLight::add(const BinTile& tile, const Ball& ball, const GatherLamp& l
   return open;
 }
 
-// Mean irradiance of the whole bins of a tile from its values at nodes × nodes Chebyshev points.
-OpenLight::TileMeans OpenLight::interpolate(const BinTile& tile, size_t nodes,
-                                            const GatherLamp& lamp) const {
-  const Interpolation& across = interpolations_.at({nodes, static_cast<size_t>(tile.columns)});
-  const Interpolation& along = interpolations_.at({nodes, static_cast<size_t>(tile.rows)});
-  std::vector<double> fraction;
-  for (size_t i = 0; i < nodes; ++i) fraction.push_back(chebyshev_fraction(nodes, i));
-  Eigen::MatrixXd values(nodes, nodes);
-  for (size_t j = 0; j < nodes; ++j) {
-    for (size_t i = 0; i < nodes; ++i) {
-      const Vec3 at = plane_.point_m(tile.column + tile.columns * fraction[i],
-                                     tile.row + tile.rows * fraction[j]);
-      values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = lamp.irradiance_W_m2(at);
-    }
-  }
-  const double remainder = remainder_of(across.high_coefficients * values) +
-                           remainder_of(along.high_coefficients * values.transpose());
-  return {across.cell_means * values * along.cell_means.transpose(),
-          remainder + lamp.table_error_W_m2()};
-}
-
 size_t OpenLight::add_smooth(const BinTile& tile, const TileMeans& means, const GatherLamp& lamp,
                              double tolerance_W_m2, const OpenEntries& entries) const {
   size_t open = 0;
@@ -139,8 +90,8 @@ size_t OpenLight::add_smooth(const BinTile& tile, const TileMeans& means, const 
       for (const SurfacePatch& patch : patches) {
         const bool whole = patches.size() == 1 && !patch.triangle;
         const Integral<double> power =
-            whole ? Integral<double>{patch.area_m2 * means.mean_W_m2(column, row),
-                                     patch.area_m2 * means.error_W_m2}
+            whole ? Integral<double>{patch.area_m2 * means.of(column, row),
+                                     patch.area_m2 * (means.error + lamp.table_error_W_m2())}
                   : power_on_smooth_W(patch, lamp, tolerance_W_m2);
         add_patch(power, patch, bin, lamp, entries);
       }
@@ -211,8 +162,8 @@ Integral<double> OpenLight::power_W(int column, int row, const GatherLamp& lamp,
 void OpenLight::add_patch(const Integral<double>& power_W, const SurfacePatch& patch, size_t bin,
                           const GatherLamp& lamp, const OpenEntries& entries) const {
   const double positive_W = std::max(power_W.value, 0.0);  // dark but for rounding
-  plane_.add_power(positive_W, lamp.fraction(), bin, patch.instance, entries.power_W);
-  plane_.add_power(power_W.error, lamp.fraction(), bin, patch.instance, entries.bound_W);
+  flux_.add(positive_W, lamp, bin, patch.instance, entries.power_W);
+  flux_.add(power_W.error, lamp, bin, patch.instance, entries.bound_W);
 }
 
 }  // namespace photorque

@@ -7,18 +7,28 @@
 // edges cut at known points.
 #pragma once
 
-#include <Eigen/Core>
-#include <map>
 #include <span>
 #include <unordered_map>
-#include <utility>
-#include <vector>
-
-#include "receivers/gather/plane.h"
+#include "receivers/gather/chebyshev_tiles.h"
+#include "receivers/maps/flux_map.h"
 
 namespace photorque {
 
-// Power and the bounds of its error, each in the direct entries of the flux map.
+// The direct entries of a flux map: where power on a bin goes.
+class FluxEntries {
+ public:
+  FluxEntries(const GatherPlane& plane, const FluxMapReceiver& map) : plane_(plane), map_(map) {}
+
+  // Adds a power of a lamp, band by band, and what an instance's surface absorbs of it.
+  void add(double power_W, const GatherLamp& lamp, size_t bin, uint32_t instance,
+           std::span<double> entries) const;
+
+ private:
+  const GatherPlane& plane_;
+  const FluxMapReceiver& map_;
+};
+
+// Power and the bounds of its error.
 struct OpenEntries {
   std::span<double> power_W, bound_W;
 };
@@ -30,34 +40,23 @@ class OpenLight {
   // the lamp's light).
   static constexpr double tolerance = 3e-7;
 
-  // For tiles of at most `tile_side` bins a side, halved as often as may be. `plane` must outlive
-  // this.
-  OpenLight(const GatherPlane& plane, int tile_side);
+  // For tiles of at most `tile_side` bins a side. Both must outlive this.
+  OpenLight(const GatherPlane& plane, const FluxEntries& flux, int tile_side);
 
-  // Adds the light of a lamp on all bins of a tile to `entries`, see GatherPlane::add_power().
+  // Adds the light of a lamp on all bins of a tile to `entries`, see FluxEntries.
   // `ball` holds the tile. Returns the number of bins with a surface.
   size_t add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp,
              const OpenEntries& entries) const;
 
  private:
-  static constexpr size_t min_nodes = 4, max_nodes = 20;  // Chebyshev points a side
-
   // What the sides of bins add to their power, each for the two bins that share it; see
   // DiscLight::along_edge_W(). Of one lamp.
   using Sides = std::unordered_map<uint64_t, Integral<double>>;
 
-  // Turns values at n Chebyshev points, rising, into means over cells and into the four highest
-  // coefficients.
-  struct Interpolation {
-    Eigen::MatrixXd cell_means, high_coefficients;
-  };
-  struct TileMeans {
-    Eigen::MatrixXd mean_W_m2;  // column by row of the tile
-    double error_W_m2;
-  };
+  using TileMeans = ChebyshevTiles::Means<double>;
+
   size_t add(const BinTile& tile, const Ball& ball, const GatherLamp& lamp, Sides& sides,
              const OpenEntries& entries) const;
-  TileMeans interpolate(const BinTile& tile, size_t nodes, const GatherLamp& lamp) const;
   size_t add_smooth(const BinTile& tile, const TileMeans& means, const GatherLamp& lamp,
                     double tolerance_W_m2, const OpenEntries& entries) const;
   Integral<double> power_on_smooth_W(const SurfacePatch& patch, const GatherLamp& lamp,
@@ -70,7 +69,8 @@ class OpenLight {
                  const GatherLamp& lamp, const OpenEntries& entries) const;
 
   const GatherPlane& plane_;
-  std::map<std::pair<size_t, size_t>, Interpolation> interpolations_;  // by nodes and cells
+  const FluxEntries& flux_;
+  ChebyshevTiles tiles_;
 };
 
 }  // namespace photorque

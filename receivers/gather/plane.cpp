@@ -22,10 +22,14 @@ std::pair<BinTile, BinTile> BinTile::halves() const {
   return {low, high};
 }
 
-GatherPlane::GatherPlane(const TraceableScene& scene, const FluxMapReceiver& map)
-    : scene_(scene), map_(map), patches_(bin_patches(scene.scene(), map.grid())) {
-  const SurfaceGrid& grid = map.grid();
-  if (grid.side == Side::back) patches_.normal = -patches_.normal;
+GatherPlane::GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, const Bands& bands,
+                         Side side)
+    : scene_(scene),
+      grid_(grid),
+      bands_(bands),
+      side_(side),
+      patches_(bin_patches(scene.scene(), grid)) {
+  if (side == Side::back) patches_.normal = -patches_.normal;
   const double lean = patches_.normal.dot(grid.normal_body);
   const auto on_plane = [&](double u, double v) {
     const Vec3 flat = u * grid.u_axis_body + v * grid.v_axis_body;
@@ -42,26 +46,13 @@ Ball GatherPlane::ball_of(const BinTile& tile) const {
   return {point_m(tile.column + 0.5 * tile.columns, tile.row + 0.5 * tile.rows), radius};
 }
 
-void GatherPlane::add_power(double power_W, const BandValues& fraction, size_t bin,
-                            uint32_t instance, std::span<double> entries) const {
-  const Instance& of = scene_.scene().instances[instance];
-  const bool back = map_.grid().side == Side::back;
-  const OpticalSurface& surface =
-      scene_.scene().surfaces[back ? of.back_surface : of.front_surface];
-  for (size_t band = 0; band < static_cast<size_t>(map_.bands().count()); ++band) {
-    const size_t at = map_.entry(bin, band);
-    entries[at] += power_W * fraction[band];
-    entries[at + 1] += power_W * fraction[band] * surface.absorbed[band];
-  }
-}
-
 GatherLamp::GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
                        const RigidTransform& body_from_lab, const GatherPlane& plane)
     : light_(std::move(light)),
       body_from_emitter_(body_from_lab * beam.lab_from_emitter),
       emitter_from_body_(body_from_emitter_.inverse()),
       normal_emitter_(emitter_from_body_.direction(plane.normal())),
-      fraction_(band_fractions(beam.spectrum, plane.map().bands())),
+      fraction_(band_fractions(beam.spectrum, plane.bands())),
       scene_diameter_m_(scene_diameter_m(plane.scene())),
       lean_rad_(std::acos(std::clamp(-normal_emitter_.z(), -1.0, 1.0))),
       reach_slope_(std::tan(std::min(light_->reach_rad(), 1.5))),
@@ -76,7 +67,7 @@ GatherLamp::GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
 }
 
 std::pair<double, double> GatherLamp::heights_m(const GatherPlane& plane) const {
-  const SurfaceGrid& grid = plane.map().grid();
+  const SurfaceGrid& grid = plane.grid();
   std::pair<double, double> heights = {INFINITY, -INFINITY};
   for (const int column : {0, grid.width}) {
     for (const int row : {0, grid.height}) {
@@ -85,6 +76,37 @@ std::pair<double, double> GatherLamp::heights_m(const GatherPlane& plane) const 
     }
   }
   return heights;
+}
+
+ArrivingLight GatherLamp::arriving(const Vec3& at_body_m) const {
+  ArrivingLight light = light_->arriving(emitter_from_body_.point(at_body_m), normal_emitter_);
+  light.momentum_W_m2 = body_from_emitter_.direction(light.momentum_W_m2);
+  return light;
+}
+
+std::vector<double> GatherLamp::kinks_along(const Vec3& from_m, const Vec3& to_m) const {
+  std::vector<double> ends;
+  if (!light_->parallel()) {
+    ends = light_->kinks_along(emitter_from_body_.point(from_m), emitter_from_body_.point(to_m));
+  }
+  ends.push_back(1.0);
+  return ends;
+}
+
+std::vector<double> GatherLamp::kinks_across(const SurfacePatch& patch) const {
+  if (light_->parallel()) return {1.0};
+  const Vec3 corner = emitter_from_body_.point(patch.origin_m);
+  const Vec3 along = emitter_from_body_.direction(patch.edge1_m);
+  const Vec3 across = emitter_from_body_.direction(patch.edge2_m);
+  // Lines end on two sides of the patch, where a kink comes in or goes out.
+  const Vec3 far = corner + along, far_end = patch.triangle ? corner + across : far + across;
+  std::vector<double> cuts = light_->tangent_lines(corner, along, across);
+  for (const auto& side : {light_->kinks_along(corner, corner + across),
+                           light_->kinks_along(far, far_end), std::vector{1.0}}) {
+    cuts.insert(cuts.end(), side.begin(), side.end());
+  }
+  std::sort(cuts.begin(), cuts.end());
+  return cuts;
 }
 
 bool GatherLamp::misses(const Ball& ball) const {

@@ -10,7 +10,7 @@
 #include "raytrace/direct/irradiance_table.h"
 #include "raytrace/tracing/shadow.h"
 #include "receivers/gather/bin_patches.h"
-#include "receivers/maps/flux_map.h"
+#include "receivers/surface_grid.h"
 
 namespace photorque {
 
@@ -23,13 +23,20 @@ struct BinTile {
   std::pair<BinTile, BinTile> halves() const;
 };
 
-// The lit side of a flat flux map. Body frame.
+// One side of the flat surface under a grid. Body frame.
 class GatherPlane {
  public:
-  GatherPlane(const TraceableScene& scene, const FluxMapReceiver& map);
+  // `side` is front or back.
+  GatherPlane(const TraceableScene& scene, const SurfaceGrid& grid, const Bands& bands, Side side);
 
   const TraceableScene& scene() const { return scene_; }
-  const FluxMapReceiver& map() const { return map_; }
+  const SurfaceGrid& grid() const { return grid_; }
+  const Bands& bands() const { return bands_; }
+  // What an instance's surface does with light on this side.
+  const OpticalSurface& surface(uint32_t instance) const {
+    const Instance& of = scene_.scene().instances[instance];
+    return scene_.scene().surfaces[side_ == Side::back ? of.back_surface : of.front_surface];
+  }
   const BinPatches& patches() const { return patches_; }
   const Vec3& normal() const { return patches_.normal; }  // of the lit side
 
@@ -39,7 +46,7 @@ class GatherPlane {
   }
   // The number of a bin.
   size_t bin_at(int column, int row) const {
-    return static_cast<size_t>(row) * static_cast<size_t>(map_.grid().width) +
+    return static_cast<size_t>(row) * static_cast<size_t>(grid_.width) +
            static_cast<size_t>(column);
   }
   // Holds all bins of a tile.
@@ -50,14 +57,11 @@ class GatherPlane {
     return patches.size() == 1 && !patches[0].triangle;
   }
 
-  // Adds a power with its fractions per band, and what an instance's surface absorbs of it, to the
-  // direct entries of a bin.
-  void add_power(double power_W, const BandValues& fraction, size_t bin, uint32_t instance,
-                 std::span<double> entries) const;
-
  private:
   const TraceableScene& scene_;
-  const FluxMapReceiver& map_;
+  const SurfaceGrid& grid_;
+  const Bands& bands_;
+  Side side_;
   BinPatches patches_;
   Vec3 corner_m_, column_m_, row_m_;
 };
@@ -80,7 +84,9 @@ class GatherLamp {
     return table_ ? table_->irradiance_W_m2(at, normal_emitter_)
                   : light_->irradiance_W_m2(at, normal_emitter_);
   }
-  // Its error, as far as it is the table's.
+  // Irradiance and flow of momentum without shadow at a point of the plane, body frame.
+  ArrivingLight arriving(const Vec3& at_body_m) const;
+  // Error of irradiance_W_m2(), as far as it is the table's.
   double table_error_W_m2() const { return table_ ? table_->error_W_m2() : 0.0; }
   // Power on a piece of the plane with these corners (body frame), see
   // DiscLight::power_through_W().
@@ -89,6 +95,12 @@ class GatherLamp {
   void use(std::shared_ptr<const IrradianceTable> table) { table_ = std::move(table); }
   // The least and the largest height of the whole grid above the aperture.
   std::pair<double, double> heights_m(const GatherPlane& plane) const;
+  // Where along a straight line of the plane to cut integrals of its light: see
+  // DiscLight::kinks_along(); the last is 1.
+  std::vector<double> kinks_along(const Vec3& from_m, const Vec3& to_m) const;
+  // At which fractions of its second edge to cut an integral over lines along the first edge of a
+  // patch; the last is 1.
+  std::vector<double> kinks_across(const SurfacePatch& patch) const;
   // Every ray of the beam that meets the plane does so from the lit side (all but 1e-9 of them).
   bool lights_front() const { return lights_front_; }
 
@@ -121,11 +133,5 @@ class GatherLamp {
 struct ShadedPair {
   uint32_t bin, lamp;
 };
-
-// Adds the light of the lamp on the bins of `pairs` to `entries`, by `points` shadow rays each (a
-// power of two), from the given stream of points. Returns the number of rays.
-uint64_t sample_shaded(const GatherPlane& plane, const GatherLamp& lamp,
-                       std::span<const ShadedPair> pairs, int points, const SobolStream& stream,
-                       std::span<double> entries);
 
 }  // namespace photorque

@@ -21,18 +21,19 @@ TorqueMapReceiver::TorqueMapReceiver(std::string name, const Scene& scene, Surfa
       binner_(scene, grid_) {}
 
 size_t TorqueMapReceiver::bins() const {
-  return grid_.bins() * axes;
+  return 2 * grid_.bins() * axes;
 }
 
 void TorqueMapReceiver::score(const Hits& hits, std::span<double> sums) const {
   BinnedHits binned;
   binner_.bin(hits, binned);
   const Vec3 about_m = about_body_m_;
+  const size_t offset = hits.depth[0] == 0 ? 0 : direct_entries();
   for_each_binned(binned, [&](size_t hit, size_t index) {
     const Vec3 f(hits.force_N[0][hit], hits.force_N[1][hit], hits.force_N[2][hit]);
     const Vec3 r(hits.position_m[0][hit], hits.position_m[1][hit], hits.position_m[2][hit]);
     const Vec3 torque = (r - about_m).cross(f);
-    double* bin = sums.data() + index * axes;
+    double* bin = sums.data() + offset + index * axes;
     bin[0] += torque.x();
     bin[1] += torque.y();
     bin[2] += torque.z();
@@ -41,17 +42,25 @@ void TorqueMapReceiver::score(const Hits& hits, std::span<double> sums) const {
 
 TorqueMap TorqueMapReceiver::torque_map(const BinSums& sums) const {
   TorqueMap map{grid_, about_body_m_, {}, {}};
+  std::vector<double> values(static_cast<size_t>(sums.replicates));
   for (size_t axis = 0; axis < axes; ++axis) {
+    std::vector<double> totals(values.size(), 0.0);
+    double bounds = 0.0;
     for (size_t bin = 0; bin < grid_.bins(); ++bin) {
       constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-      map.per_bin_N_m[axis].push_back(grid_.area_m2[bin] > 0.0 ? sums.estimate(bin * axes + axis)
-                                                               : Estimate{nan, nan});
+      const size_t direct = bin * axes + axis, bounced = direct_entries() + direct;
+      for (size_t r = 0; r < values.size(); ++r) {
+        const auto all = sums.of(static_cast<int>(r));
+        values[r] = all[direct] + all[bounced];
+        totals[r] += values[r];
+      }
+      bounds += sums.bound_of(direct);
+      map.per_bin_N_m[axis].push_back(
+          grid_.area_m2[bin] > 0.0
+              ? with_bound(estimate_from_replicates(values), sums.bound_of(direct))
+              : Estimate{nan, nan});
     }
-    map.total_N_m[axis] = sums.estimate([axis](std::span<const double> bins) {
-      double sum = 0.0;
-      for (size_t bin = axis; bin < bins.size(); bin += axes) sum += bins[bin];
-      return sum;
-    });
+    map.total_N_m[axis] = with_bound(estimate_from_replicates(totals), bounds);
   }
   return map;
 }
@@ -76,9 +85,10 @@ ReceiverKind torque_map_kind() {
           [](const Settings& settings, const Scene& scene) -> MadeReceiver {
             const ReceiverTarget target = read_target(settings, scene);
             // Light pushes on either side, so that the total is the torque on the node.
-            return {std::make_shared<const TorqueMapReceiver>(
+            const auto map = std::make_shared<const TorqueMapReceiver>(
                 target.name, scene, read_surface_grid(settings, scene, target, Side::both),
-                settings.vector3_or("about_m", Vec3::Zero()))};
+                settings.vector3_or("about_m", Vec3::Zero()));
+            return {.receiver = map, .torque_map = map};
           }};
 }
 

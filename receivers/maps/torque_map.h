@@ -20,7 +20,9 @@ struct TorqueMap {
 };
 
 // `kind = "torque_map"`. Bins: for every bin of the grid, the torque about `about_body_m`, x, y, z
-// in the body frame [N m] (per bin, not per area: the sum over bins is the torque).
+// in the body frame [N m] (per bin, not per area: the sum over bins is the torque); first of the
+// light straight from the emitters, then, in the same order, of the light that has met a surface
+// before.
 class TorqueMapReceiver final : public Receiver {
  public:
   // `grid` must have been laid over `scene`.
@@ -28,7 +30,10 @@ class TorqueMapReceiver final : public Receiver {
                     const Vec3& about_body_m = Vec3::Zero());
 
   size_t bins() const override;
+  // Hits that are scored together must be of one depth.
   void score(const Hits& hits, std::span<double> sums) const override;
+  // Entries of direct light, at the front of bins().
+  size_t direct_entries() const { return bins() / 2; }
   // Maps "torque_x_NAME", "torque_y_NAME", "torque_z_NAME" [N m], signed, and the totals
   // "torque_x_NAME_body_N_m" ….
   Product product(const BinSums& sums) const override;
@@ -37,6 +42,7 @@ class TorqueMapReceiver final : public Receiver {
 
   const std::string& name() const { return name_; }
   const SurfaceGrid& grid() const { return grid_; }
+  const Vec3& about_body_m() const { return about_body_m_; }
 
  private:
   std::string name_;

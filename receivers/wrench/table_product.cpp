@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "receivers/wrench/polar_maps.h"
 
 namespace photorque {
 
@@ -88,20 +89,28 @@ Map component_map(const WrenchTable& table, const VectorColumn& column, int axis
   map.title = (std::string(column.name) == "force" ? "Force along " : "Torque about ") +
               ("body " + letter(axis)) + " on " + name;
   map.unit = column.unit;
-  map.width = static_cast<int>(table.around_rad.size());
+  // Where the table goes all the way round, its first nodes once more close the picture.
+  const size_t around_nodes = table.around_rad.size();
+  const double missing_rad =
+      2.0 * pi - (table.around_rad.back() - table.around_rad.front()) - 2.0 * half_around_rad;
+  const size_t columns = around_nodes + (std::abs(missing_rad) < 1e-6 ? 1 : 0);
+  const double last_rad =
+      table.around_rad.front() + 2.0 * half_around_rad * static_cast<double>(columns - 1);
+  map.width = static_cast<int>(columns);
   map.height = static_cast<int>(table.polar_rad.size());
   map.x_low = (table.around_rad.front() - half_around_rad) / degree_rad;
-  map.x_high = (table.around_rad.back() + half_around_rad) / degree_rad;
+  map.x_high = (last_rad + half_around_rad) / degree_rad;
   map.y_low = (table.polar_rad.front() - half_polar_rad) / degree_rad;
   map.y_high = (table.polar_rad.back() + half_polar_rad) / degree_rad;
   map.x_label = names.around + " [deg]";
   map.y_label = names.polar + " [deg]";
   map.equal_scale = false;
-  map.signed_values = true;
+  map.signed_values = map.smooth = true;
   for (size_t polar = 0; polar < table.polar_rad.size(); ++polar) {
-    for (size_t around = 0; around < table.around_rad.size(); ++around) {
-      map.value.push_back((*column.value)[table.node(around, polar)][axis]);
-      map.standard_error.push_back((*column.error)[table.node(around, polar)][axis]);
+    for (size_t i = 0; i < columns; ++i) {
+      const size_t node = table.node(i % around_nodes, polar);
+      map.value.push_back((*column.value)[node][axis]);
+      map.standard_error.push_back((*column.error)[node][axis]);
     }
   }
   return map;
@@ -154,6 +163,7 @@ Product wrench_table_product(const WrenchTable& table, const std::string& name) 
       product.maps.push_back(component_map(table, column, axis, name));
     }
   }
+  for (Map& map : polar_maps(table, name)) product.maps.push_back(std::move(map));
   return product;
 }
 

@@ -15,6 +15,8 @@ double stated_deg(double angle_rad);
 // errors in the body frame), and
 // - the longest force and torque, "largest_force_NAME_N" and "largest_torque_NAME_N_m",
 // - for two regular axes: maps "force_x_NAME" … "torque_z_NAME" with nodes at the middles of bins,
+//   drawn smooth,
+// - the pictures of polar_maps.h,
 // - for a single heading or azimuth: the plots "force_NAME" and "torque_NAME" over the tilt or
 //   elevation.
 Product wrench_table_product(const WrenchTable& table, const std::string& name);

@@ -163,6 +163,31 @@ TEST(MapPicture, BinsHaveTheColourOfTheirValue) {
   }
 }
 
+// A smooth map of x from node to node: colours change steadily, with lines at even steps.
+TEST(MapPicture, SmoothMapsAreDrawnBetweenTheirNodes) {
+  Map map;
+  map.name = map.title = "smooth";
+  map.width = map.height = 5;
+  for (int i = 0; i < 25; ++i) map.value.push_back(i % 5);
+  map.smooth = true;
+  const MapPicture drawn = map_picture(map, sample_provenance());
+  const ColourMap colours = viridis();
+  int exact = 0, dark = 0;
+  for (int column = 0; column < drawn.grid_width; ++column) {
+    const double fraction = (column + 0.5) / drawn.grid_width;
+    const auto pixel =
+        drawn.picture.pixel(drawn.grid_left + column, drawn.grid_top + drawn.grid_height / 2);
+    const auto expected = rgb_bytes(colours(fraction));
+    exact += std::abs(pixel[0] - expected[0]) + std::abs(pixel[1] - expected[1]) +
+                 std::abs(pixel[2] - expected[2]) <
+             8;
+    dark += pixel[1] + 20 < expected[1];
+  }
+  EXPECT_GT(exact, 0.7 * drawn.grid_width);
+  EXPECT_GT(dark, 6);
+  EXPECT_LT(dark, 0.1 * drawn.grid_width);
+}
+
 TEST(MapPicture, SignedZeroIsTheNeutralMiddle) {
   Map map = sample_map();
   map.signed_values = true;

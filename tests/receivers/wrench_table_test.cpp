@@ -23,21 +23,38 @@ WrenchTable numbered(std::vector<double> tilts_deg, std::vector<double> headings
 
 TEST(WrenchTableProduct, RegularGridBecomesMapsCentredOnItsNodes) {
   const Product product = wrench_table_product(numbered({0, 15, 30}, {0, 90, 180, 270}), "stasis");
-  EXPECT_EQ(product.maps.size(), 6u);
+  EXPECT_EQ(product.maps.size(), 9u);  // three of them discs
   EXPECT_TRUE(product.plots.empty());
   const Map& map = map_named(product, "torque_y_stasis");
-  EXPECT_EQ(map.width, 4);
+  EXPECT_EQ(map.width, 5);  // the first heading closes the round
   EXPECT_EQ(map.height, 3);
   EXPECT_NEAR(map.x_low, -45, 1e-12);
-  EXPECT_NEAR(map.x_high, 315, 1e-12);
+  EXPECT_NEAR(map.x_high, 405, 1e-12);
   EXPECT_NEAR(map.y_low, -7.5, 1e-12);
   EXPECT_NEAR(map.y_high, 37.5, 1e-12);
   // Heading 180 deg is column 2, tilt 15 deg row 1: node 2·3 + 1.
-  EXPECT_EQ(map.value[1 * 4 + 2], -70.0);
-  EXPECT_EQ(map.standard_error[1 * 4 + 2], 0.25);
+  EXPECT_EQ(map.value[1 * 5 + 2], -70.0);
+  EXPECT_EQ(map.standard_error[1 * 5 + 2], 0.25);
+  EXPECT_EQ(map.value[1 * 5 + 4], map.value[1 * 5]);
   EXPECT_TRUE(map.signed_values);
   EXPECT_FALSE(map.equal_scale);
   EXPECT_EQ(map.x_label, "heading [deg]");
+}
+
+TEST(WrenchTableProduct, DiscsOfTiltAndHeadingPassThroughTheNodes) {
+  const Product product = wrench_table_product(numbered({0, 15, 30}, {0, 90, 180, 270}), "stasis");
+  const Map& disc = map_named(product, "torque_y_stasis_polar");
+  EXPECT_TRUE(disc.smooth);
+  const auto at = [&](double x_deg, double y_deg) {
+    const double step_deg = (disc.x_high - disc.x_low) / disc.width;
+    const auto column = static_cast<size_t>((x_deg - disc.x_low) / step_deg);
+    const auto row = static_cast<size_t>((y_deg - disc.y_low) / step_deg);
+    return disc.value[row * static_cast<size_t>(disc.width) + column];
+  };
+  EXPECT_NEAR(at(0, 30), -50.0, 1e-9);    // heading 90 deg, tilt 30 deg: node 1·3 + 2
+  EXPECT_NEAR(at(-15, 0), -70.0, 1e-9);   // heading 180 deg, tilt 15 deg
+  EXPECT_NEAR(at(0, -30), -110.0, 1e-9);  // heading 270 deg
+  EXPECT_TRUE(std::isnan(at(25, 25)));    // 35 deg
 }
 
 TEST(WrenchTableProduct, NamesTheLongestForceAndTorque) {

@@ -56,24 +56,60 @@ DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const 
   return light;
 }
 
-void replace_direct(const FluxMapReceiver& map, const Gathered& gathered, BinSums& sums) {
+// The direct entries are the first of a receiver's.
+void replace_direct(const Gathered& gathered, BinSums& sums) {
   for (int r = 0; r < sums.replicates; ++r) {
     const auto direct = gathered.direct.of(r);
     std::copy(direct.begin(), direct.end(),
-              sums.sums.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(r) * map.bins()));
+              sums.sums.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(r) * sums.bins));
   }
   sums.bound = gathered.direct.bound;
-  sums.bound.resize(map.bins(), 0.0);  // what bounces comes by rays
+  sums.bound.resize(sums.bins, 0.0);  // what bounces comes by rays
 }
 
-std::string cost_notice(const FluxMapReceiver& map, size_t pairs, uint64_t rays) {
+std::array<Estimate, 3> total_N_m(const TorqueMapReceiver& map, const BinSums& sums) {
+  std::array<Estimate, 3> total;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> values(static_cast<size_t>(sums.replicates), 0.0);
+    double bounds = 0.0;
+    for (size_t entry = axis; entry < map.direct_entries(); entry += 3) {
+      for (size_t r = 0; r < values.size(); ++r) {
+        values[r] += sums.of(static_cast<int>(r))[entry];
+      }
+      bounds += sums.bound_of(entry);
+    }
+    total[axis] = with_bound(estimate_from_replicates(values), bounds);
+  }
+  return total;
+}
+
+DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, const BinSums& rays) {
+  DirectTorque torque{map.name(), total_N_m(map, gathered.direct), total_N_m(map, rays)};
+  double largest_N_m = 0.0;
+  for (const Estimate& axis : torque.gathered_N_m) {
+    largest_N_m = std::max(largest_N_m, std::abs(axis.value));
+  }
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const Estimate &own = torque.gathered_N_m[axis], &by_rays = torque.rays_N_m[axis];
+    // Rays are single precision: a torque that is zero by symmetry is not so to all digits.
+    const double sigma =
+        std::hypot(own.standard_error, by_rays.standard_error) + 1e-6 * largest_N_m;
+    if (sigma > 0.0) {
+      torque.worst_sigma =
+          std::max(torque.worst_sigma, std::abs(own.value - by_rays.value) / sigma);
+    }
+  }
+  return torque;
+}
+
+std::string cost_notice(const std::string& what, size_t pairs, uint64_t rays) {
   char text[256];
   std::snprintf(text, sizeof text,
                 " by rays alone: to gather it over %.2g pairs of a bin and a lamp would take about "
                 "%.2g s of one thread, the rays take %.2g s; trace.direct = \"gather\" does so all "
                 "the same",
                 static_cast<double>(pairs), gathering_cost_s(pairs), tracing_cost_s(rays));
-  return "direct light on " + map.name() + text;
+  return what + text;
 }
 
 }  // namespace
@@ -86,22 +122,38 @@ DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scen
       effort.direct == TraceEffort::Direct::automatic && !effort.target_error.has_value();
   DirectRoute route;
   if (effort.direct == TraceEffort::Direct::rays) return route;
+  const GatherOptions gather_options = {.replicates = options.replicates,
+                                        .seed = options.seed,
+                                        .threads = options.threads,
+                                        .target_error = effort.target_error.value_or(0.0)};
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
+    const TorqueMapReceiver* torques = experiment.receivers[i].torque_map.get();
+    if (torques != nullptr &&
+        can_gather_torque(experiment.scene, torques->grid(), experiment.beams)) {
+      constexpr size_t dearer = 8;  // than irradiance, for which there are tables
+      const size_t weight = dearer * torques->grid().bins() * experiment.beams.size();
+      if (weigh_cost && !gathering_pays(weight, result.rays)) {
+        route.notices.push_back(
+            cost_notice("torque of direct light on " + torques->name(), weight, result.rays));
+        continue;
+      }
+      const Gathered gathered =
+          gather_torque(scene, lab_from_body, experiment.beams, *torques, gather_options);
+      route.torques.push_back(compare(*torques, gathered, result.sums[i]));
+      replace_direct(gathered, result.sums[i]);
+    }
     const FluxMapReceiver* map = experiment.receivers[i].flux_map.get();
     if (map == nullptr || !can_gather(experiment.scene, map->grid(), experiment.beams)) continue;
     const size_t pairs = map->grid().bins() * experiment.beams.size();
     if (weigh_cost && !gathering_pays(pairs, result.rays)) {
-      route.notices.push_back(cost_notice(*map, pairs, result.rays));
+      route.notices.push_back(cost_notice("direct light on " + map->name(), pairs, result.rays));
       continue;
     }
-    const Gathered gathered = gather_direct(scene, lab_from_body, experiment.beams, *map,
-                                            {.replicates = options.replicates,
-                                             .seed = options.seed,
-                                             .threads = options.threads,
-                                             .target_error = effort.target_error.value_or(0.0)});
+    const Gathered gathered =
+        gather_direct(scene, lab_from_body, experiment.beams, *map, gather_options);
     route.gathered.push_back(compare(*map, gathered, result.sums[i]));
     route.gathered.back().receiver = i;
-    replace_direct(*map, gathered, result.sums[i]);
+    replace_direct(gathered, result.sums[i]);
   }
   return route;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "receivers/gather/gather.h"
+#include "receivers/gather/torque.h"
 #include "scenes/experiment/experiment.h"
 
 namespace photorque {
@@ -22,14 +22,23 @@ struct DirectLight {
   uint64_t shadow_rays = 0;
 };
 
+// How the two routes to the torque of direct light on a torque map agree, x, y, z.
+struct DirectTorque {
+  std::string name;
+  std::array<Estimate, 3> gathered_N_m, rays_N_m;  // totals
+  double worst_sigma = 0.0;                        // largest difference in standard errors of both
+};
+
 // Which way the direct light went.
 struct DirectRoute {
   std::vector<DirectLight> gathered;  // by flux map; empty where rays alone had to do
+  std::vector<DirectTorque> torques;  // by torque map, likewise
   std::vector<std::string> notices;  // one line for each map that was left to the rays for its cost
 };
 
-// Replaces the direct light of every flat flux map in `result` by what gather_direct() finds, where
-// the experiment wants it and the sources allow it, and says how it agrees with the rays' own. An
+// Replaces the direct light of every flat flux map in `result`, and its torque on every flat torque
+// map, by what gather_direct() and gather_torque() find, where the experiment wants it and sources
+// and surfaces allow it, and says how it agrees with the rays' own. An
 // experiment with a target error always gathers, unless it says "rays".
 DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
                         const RigidTransform& lab_from_body, const TraceOptions& options,

@@ -133,6 +133,12 @@ std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const
                     show(direct.gathered_W, "W") + " and by rays " + show(direct.rays_W, "W") +
                     " differ by " + show(difference) + " standard errors");
   }
+  for (const DirectTorque& direct : result.direct.torques) {
+    if (direct.worst_sigma <= loud_sigma) continue;
+    lines.push_back("torque of direct light on " + direct.name +
+                    ": gathered and by rays differ by " + show(direct.worst_sigma) +
+                    " standard errors");
+  }
   return lines;
 }
 
@@ -271,6 +277,11 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
     console.line("  direct light on " + direct.name + ": gathered and by rays differ by " +
                  show(std::abs(direct.difference_sigma)) + " standard errors in all, " +
                  show(std::sqrt(direct.mean_square)) + " (rms) in a bin");
+  }
+  for (const DirectTorque& direct : result.direct.torques) {
+    console.line("  torque of direct light on " + direct.name +
+                 ": gathered and by rays differ by at most " + show(direct.worst_sigma) +
+                 " standard errors");
   }
   console.line("  largest standard error of a bin above a tenth of the peak: " +
                show(100.0 * result.worst_bin_error) + " %");

@@ -1,12 +1,26 @@
-// Shadow rays between bins and apertures.
+// Shadow rays between bins and apertures. For the files of this folder only.
+#pragma once
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
+#include <vector>
 
-#include "receivers/gather/plane.h"
+#include "core/numerics/random.h"
+#include "core/parallel.h"
+#include "receivers/gather/gather.h"
+#include "receivers/gather/gathering.h"
 
 namespace photorque {
-namespace {
+
+// A ray that may reach a bin: `power_W` of its light if nothing is in the way. Emitter's frame.
+struct CandidateRay {
+  double power_W;
+  Vec3 at_m, from_m;
+  uint32_t instance;
+};
 
 // A patch in the emitter's frame.
 struct PlacedPatch {
@@ -15,12 +29,19 @@ struct PlacedPatch {
   double fraction;  // of the bin's area
 };
 
+// Samples the light of one lamp on bins. A Quantity says what is wanted of it:
+//   using Value = …;  // a sum of rays' contributions
+//   Value of(const CandidateRay&, const GatherLamp&) const;
+//   void add(const Value&, const GatherLamp&, size_t bin, uint32_t instance,
+//            std::span<double> entries) const;
+template <typename Quantity>
 class ShadedSampler {
  public:
-  ShadedSampler(const GatherPlane& plane, const GatherLamp& lamp, size_t points,
-                std::span<double> entries)
+  ShadedSampler(const GatherPlane& plane, const GatherLamp& lamp, const Quantity& quantity,
+                size_t points, std::span<double> entries)
       : plane_(plane),
         lamp_(lamp),
+        quantity_(quantity),
         points_(points),
         entries_(entries),
         ray_offset_m_(shadow_ray_offset_m(plane.scene())),
@@ -58,7 +79,7 @@ class ShadedSampler {
 
   void place(size_t bin) {
     placed_.clear();
-    const double area_m2 = plane_.map().grid().area_m2[bin];
+    const double area_m2 = plane_.grid().area_m2[bin];
     const Mat3 rotation = lamp_.emitter_from_body().rotation.toRotationMatrix();
     for (const SurfacePatch& patch : plane_.patches().of(bin)) {
       placed_.push_back(
@@ -81,7 +102,7 @@ class ShadedSampler {
   // Lines of one bin, from `count` points of the block.
   void add_lines(size_t bin, size_t first, size_t count) {
     place(bin);
-    const double area_m2 = plane_.map().grid().area_m2[bin] / static_cast<double>(points_);
+    const double area_m2 = plane_.grid().area_m2[bin] / static_cast<double>(points_);
     const bool directed = by_direction(placed_[0].origin_m.z());
     const size_t dimension = directed ? 0 : 2;
     for (size_t i = first; i < first + count; ++i) {
@@ -99,7 +120,8 @@ class ShadedSampler {
       if (!(density > 0.0)) continue;
       bin_[count_] = static_cast<uint32_t>(bin);
       instance_[count_] = placed.patch->instance;
-      power_W_[count_] = density * area_m2;
+      contribution_[count_] =
+          quantity_.of({density * area_m2, at, from, placed.patch->instance}, lamp_);
       add_ray(at, from);
     }
   }
@@ -148,23 +170,25 @@ class ShadedSampler {
     ray.length_m = static_cast<float>(length - ray_offset_m_);
   }
 
-  // Traces the lines; the power of neighbours on the same bin is added at once.
+  // Traces the lines; what neighbours bring to the same bin is added at once.
   void finish() {
     find_shadows(plane_.scene(), std::span(shadow_).first(count_), lit_);
     for (size_t i = 0; i < count_;) {
-      double power_W = 0.0;
+      typename Quantity::Value sum = contribution_[i] * 0.0;
       const size_t begin = i;
+      bool any = false;
       for (; i < count_ && bin_[i] == bin_[begin] && instance_[i] == instance_[begin]; ++i) {
-        power_W += lit_[i] ? power_W_[i] : 0.0;
+        if (!lit_[i]) continue;
+        sum += contribution_[i];
+        any = true;
       }
-      if (power_W > 0.0) {
-        plane_.add_power(power_W, lamp_.fraction(), bin_[begin], instance_[begin], entries_);
-      }
+      if (any) quantity_.add(sum, lamp_, bin_[begin], instance_[begin], entries_);
     }
   }
 
   const GatherPlane& plane_;
   const GatherLamp& lamp_;
+  const Quantity& quantity_;
   size_t points_;
   std::span<double> entries_;
   double ray_offset_m_, far_m_;
@@ -174,17 +198,39 @@ class ShadedSampler {
   RayBlock emitted_;
   size_t count_ = 0;
   std::array<ShadowRay, ray_block> shadow_;
-  std::array<double, ray_block> power_W_;
+  std::array<typename Quantity::Value, ray_block> contribution_;
   std::array<uint32_t, ray_block> bin_, instance_;
   std::array<uint8_t, ray_block> lit_;
 };
 
-}  // namespace
-
-uint64_t sample_shaded(const GatherPlane& plane, const GatherLamp& lamp,
-                       std::span<const ShadedPair> pairs, int points, const SobolStream& stream,
-                       std::span<double> entries) {
-  return ShadedSampler(plane, lamp, static_cast<size_t>(points), entries).run(pairs, stream);
+// `open` and, replicate by replicate, what shadow rays find on the bins that may be shaded, with
+// `points` rays each (a power of two). Adds the number of rays to `rays`.
+template <typename Quantity>
+std::vector<double> sample_shaded(const Gathering& gathering, const Quantity& quantity,
+                                  std::span<const double> open, const GatherOptions& options,
+                                  int points, uint64_t& rays) {
+  std::vector<double> sums;
+  for (int r = 0; r < options.replicates; ++r) sums.insert(sums.end(), open.begin(), open.end());
+  const std::vector<TileSight>& sights = gathering.sights();
+  std::vector<uint64_t> counted(sights.size(), 0);
+  parallel_for(sights.size(), options.threads, [&](size_t tile) {
+    const std::vector<ShadedPair>& pairs = sights[tile].shaded;
+    for (size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
+      const uint32_t lamp = pairs[begin].lamp;
+      while (end < pairs.size() && pairs[end].lamp == lamp) ++end;
+      for (int r = 0; r < options.replicates; ++r) {
+        const uint64_t which = hash_words(hash_words(lamp, tile), static_cast<uint64_t>(r));
+        const auto entries =
+            std::span(sums).subspan(static_cast<size_t>(r) * open.size(), open.size());
+        ShadedSampler<Quantity> sampler(gathering.plane(), gathering.lamp(lamp), quantity,
+                                        static_cast<size_t>(points), entries);
+        counted[tile] +=
+            sampler.run(std::span(pairs).subspan(begin, end - begin), {options.seed, which, 0});
+      }
+    }
+  });
+  rays += std::accumulate(counted.begin(), counted.end(), uint64_t{0});
+  return sums;
 }
 
 }  // namespace photorque
