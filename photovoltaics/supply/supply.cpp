@@ -111,8 +111,8 @@ void PowerSupply::step(double time_s, double step_s, const Light& light, bool ju
       const double current_A = curves.current_A(state_.voltage_V);
       potential_W = state_.voltage_V * current_A;
       control_->observe({state_.voltage_V, current_A});
-      if (judge && state_.best_W > 0.0) tracking_ = potential_W / state_.best_W;
-      if (!judge) state_.best_W = std::max(potential_W, potential_W / std::max(tracking_, 1e-3));
+      if (judge && light.on_cells_W > 0.0) best_per_light_ = state_.best_W / light.on_cells_W;
+      if (!judge) state_.best_W = std::max(potential_W, best_per_light_ * light.on_cells_W);
     } else {
       potential_W = state_.best_W;
     }

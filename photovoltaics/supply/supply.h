@@ -83,7 +83,7 @@ class PowerSupply {
     double on_cells_W = 0.0;
   };
   // One step. `judge` compares with the best point of the array, which takes longer; in between,
-  // the last ratio holds.
+  // the last ratio to the light holds.
   void step(double time_s, double step_s, const Light& light, bool judge = true);
 
   // Of the last step, means over it where they change.
@@ -116,7 +116,7 @@ class PowerSupply {
   std::map<int, CellTables> tables_;  // by temperature, see tables_at()
   std::optional<TrackerControl> control_;
   bool full_, empty_;
-  double tracking_ = 1.0;  // power over that at the best point, when last judged
+  double best_per_light_ = 0.0;  // best power over light on the cells, when last judged
   State state_;
   SupplyEnergies energies_;
   std::vector<SupplyEvent> events_;
