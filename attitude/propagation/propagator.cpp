@@ -172,14 +172,17 @@ void Propagator::take_step() {
     if (!outcome.converged) {
       h_s_ = 0.5 * h_s;
       ceiling_s_ = 0.7 * h_s;
+      is_ceiling_of_state_ = true;
     } else if (outcome.error > 2.0 * options_.tolerance) {
       h_s_ = propose_length(outcome, h_s, false);
       ceiling_s_ = 0.9 * h_s;
+      is_ceiling_of_state_ = false;
     } else if (sensitivity_ && !sensitivity_->solve(step_, held_, options_.derivative_tolerance)) {
       h_s_ = 0.5 * h_s;
       ceiling_s_ = 0.7 * h_s;
+      is_ceiling_of_state_ = false;
     } else {
-      const bool was_at_ceiling = h_s >= 0.9 * ceiling_s_;
+      const bool was_at_ceiling = is_ceiling_of_state_ && h_s >= 0.9 * ceiling_s_;
       ceiling_s_ *= is_stiff_ ? 2.0 : 1.01;
       h_s_ = std::min(propose_length(outcome, h_s, cut), ceiling_s_);
       choose_method(outcome, was_at_ceiling);

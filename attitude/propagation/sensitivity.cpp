@@ -1,6 +1,7 @@
 #include "attitude/propagation/sensitivity.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "attitude/propagation/settling.h"
 
@@ -117,7 +118,7 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
   h_s_ = step.length_s();
   if (step.is_stiff()) {
     solve_at_once(step);
-    return true;
+    return is_resolved(step);
   }
   if (has_polynomial_) {
     const auto continuation = gauss::continuation_columns(h_s_ / accepted_h_s_);
@@ -176,6 +177,27 @@ void Sensitivity::solve_at_once(const CollocationStep& step) {
   const Lanes weighted_h_s = h_s_ * Lanes(gauss::weights);
   for (Lanes& x : increments_) x = weighted_h_s * x;
   StageSystem(step.start().size(), h_s_, jacobian_).solve(increments_, count);
+}
+
+// No iteration has seen how fast the derivatives change: the last Legendre term of their
+// polynomials tells, relative to each derivative's largest size in units of the scales.
+bool Sensitivity::is_resolved(const CollocationStep& step) const {
+  constexpr double tolerance = 1e-5;
+  const size_t count = variables_.size(), n = step.start().size();
+  for (size_t v = 0; v < count; ++v) {
+    double size = 0.0, last = 0.0;
+    for (size_t c = 0; c < n; ++c) {
+      const double per_scale = 1.0 / dynamics_.scales()[c];
+      const size_t i = c * count + v;
+      const double change = sum(increments_[i]);
+      size =
+          std::max(size, per_scale * std::max(std::abs(start_[i]), std::abs(start_[i] + change)));
+      last =
+          std::max(last, per_scale * std::abs(sum(Lanes(gauss::projection[7]) * increments_[i])));
+    }
+    if (last > 15.0 * tolerance * size) return false;  // ∫P₇ is at most 1/15
+  }
+  return true;
 }
 
 void Sensitivity::accept() {

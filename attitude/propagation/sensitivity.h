@@ -74,6 +74,7 @@ class Sensitivity {
   double h_s_ = 0.0, accepted_h_s_ = 0.0;
   bool has_polynomial_ = false;
   void solve_at_once(const CollocationStep& step);
+  bool is_resolved(const CollocationStep& step) const;
   std::vector<RateDerivative> jacobian_;
   std::vector<Lanes> source_;  // ∂(dy_c/dt)/∂(variable)
 };

@@ -76,6 +76,16 @@ TEST(Linear, PosteriorOfTwoRunsWithPriorsAndNuisances) {
   EXPECT_GT(found.chi2, found.data_chi2);
 }
 
+TEST(Linear, AHopelessStartIsNoFit) {
+  const TwoRuns two(2);
+  const ResidualModel model = linear_model(two.parameters, two.runs);
+  Options options;
+  options.max_start_chi2 = 1e-3;  // far below that of the start
+  const Fit found = fit(model, model.start(), options);
+  EXPECT_TRUE(std::isinf(found.chi2));
+  EXPECT_EQ(found.termination, Termination::not_evaluable);
+}
+
 TEST(Linear, AWindowSeesTheFirstPartOfEveryRunAlone) {
   const TwoRuns two(2);
   const ResidualModel model = linear_model(two.parameters, two.runs);

@@ -80,6 +80,32 @@ TEST(Subsets, PutTheTruthFirst) {
   EXPECT_EQ(best_subsets(Bench(7).about({1}), 4, {}).front().groups, (std::vector<size_t>{0, 3}));
 }
 
+// A term that looks like everything found, but of whose slopes the nuisances have left a millionth:
+// their squares are rounding, and to explain anything with them is none.
+TEST(Subsets, KnowWhatRoundingIs) {
+  Bench bench(7);
+  LinearProblem problem = bench.about({0, 3});
+  const double lost = 1e-7;
+  const Eigen::VectorXd twin = lost * (3.0 * bench.J.col(0) - 2.0 * bench.J.col(5));
+  Eigen::MatrixXd J(rows, columns + 1);
+  J << bench.J, twin;
+  problem.information = J.transpose() * J;
+  problem.gradient.conservativeResize(columns + 1);
+  problem.gradient[columns] = 0.0;
+  problem.groups.push_back({groups, "twin", false, columns, {0.0}, {1.0}, {-1e300}, {1e300}});
+  const auto gain_of_twin = [&] {
+    for (const Subset& s : best_subsets(problem, 4, {})) {
+      if (s.groups == std::vector<size_t>{groups}) return s.gain;
+    }
+    return -1e300;
+  };
+  const double all = bench.chi2({0, 3}) - bench.chi2({});
+  EXPECT_NEAR(gain_of_twin(), 0.0, -0.1 * all);  // as if nothing had been lost
+  problem.before = problem.information.diagonal();
+  problem.before[columns] /= lost * lost;
+  EXPECT_NEAR(gain_of_twin(), all, -0.1 * all);
+}
+
 TEST(Subsets, LeaveOutWhatPhysicsForbids) {
   LinearProblem problem = Bench(7).about({});
   ASSERT_EQ(best_subsets(problem, 4, {}).front().groups, (std::vector<size_t>{0, 3}));
