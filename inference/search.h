@@ -47,9 +47,7 @@ class Search {
     std::vector<Trial> found = rounds(pieces, near).run(near);
     found.erase(found.begin());
     sort_by_evidence(found);
-    const size_t most = std::min(limits_.search.max_refits_of_pieces, found.size());
-    size_t refits = 0;
-    while (refits < most && is_near(found[refits], found.front(), limits_)) ++refits;
+    const size_t refits = put_refits_first(found);
     const Effort growing{.windows = limits_.fitting.diverged_windows};
     parallel_for(found.size(), threads_, [&](size_t i) {
       Trial& t = found[i];
@@ -63,6 +61,33 @@ class Search {
     });
     keep_below(found, refits);
     return found;
+  }
+
+  // Those near the best, half of the places for what has no smooth law without physics in it: in
+  // pieces such a law makes up for what it would not in the whole. `found` is by evidence.
+  size_t put_refits_first(std::vector<Trial>& found) const {
+    const size_t most = std::min(limits_.search.max_refits_of_pieces, found.size());
+    const auto has_law = [&](const Trial& t) {
+      return std::any_of(t.candidates.begin(), t.candidates.end(),
+                         [&](size_t c) { return domain_.candidates()[c].is_empirical; });
+    };
+    const Trial best = found.front();
+    size_t with_law = 0, chosen = 0;
+    std::vector<bool> is_chosen(found.size(), false);
+    for (size_t i = 0; i < found.size() && chosen < most; ++i) {
+      if (!is_near(found[i], best, limits_) || !found[i].objection.empty()) continue;
+      if (has_law(found[i]) && ++with_law > most / 2) continue;
+      is_chosen[i] = true;
+      ++chosen;
+    }
+    std::vector<Trial> ordered;
+    for (const bool first : {true, false}) {
+      for (size_t i = 0; i < found.size(); ++i) {
+        if (is_chosen[i] == first) ordered.push_back(std::move(found[i]));
+      }
+    }
+    found = std::move(ordered);
+    return chosen;
   }
 
   size_t best_allowed() const {

@@ -182,7 +182,7 @@ void Sensitivity::solve_at_once(const CollocationStep& step) {
 // No iteration has seen how fast the derivatives change: the last Legendre term of their
 // polynomials tells, relative to each derivative's largest size in units of the scales.
 bool Sensitivity::is_resolved(const CollocationStep& step) const {
-  constexpr double tolerance = 1e-5;
+  constexpr double tolerance = 1e-3;
   const size_t count = variables_.size(), n = step.start().size();
   for (size_t v = 0; v < count; ++v) {
     double size = 0.0, last = 0.0;

@@ -26,6 +26,11 @@ inline SettingsNode node(const char* text) {
   n.value = std::string(text);
   return n;
 }
+inline SettingsNode flag(bool on) {
+  SettingsNode n;
+  n.value = on;
+  return n;
+}
 inline SettingsNode list(std::vector<SettingsNode> items) {
   SettingsNode n;
   n.value = SettingsNode::Array(std::move(items));

@@ -114,7 +114,8 @@ TEST(Sticking, EveryReversalIsSeen) {
 TEST(Tether, CountsItsTurns) {
   constexpr double k = 2e-4, amplitude_rad = 6 * pi;
   const double omega_1_s = std::sqrt(k / I_kg_m2);
-  const AttitudeModel model = with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(k)}});
+  const AttitudeModel model =
+      with(bench_model(), "tether", {{"stiffness_N_m_per_rad", node(k)}, {"winds_up", flag(true)}});
   const PlatformState start = state_of(model, Quat::Identity(), {0, 0, amplitude_rad * omega_1_s});
   for (const double time_s : {10.0, 40.0, 100.0, 300.0}) {
     const PlatformState end = propagated(model, start, time_s);

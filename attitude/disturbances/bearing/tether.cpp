@@ -1,9 +1,11 @@
 // A cable or hose that pulls back to zero attitude: T = −k × the rotation vector from it.
 //
-// stiffness_N_m_per_rad: k ≥ 0, the same about every axis, no hysteresis. A cable that is wound up
-// remembers it: after half a turn, where the shortest way back changes side, whole turns about body
-// z count besides, T = −k (r + 2π n z). About z the torque so goes on growing; what a tilt adds to
-// r changes side there. The run begins with less than half a turn.
+// stiffness_N_m_per_rad: k ≥ 0, the same about every axis, no hysteresis.
+// winds_up (default false): the vector is that of the shortest way back, which changes side after
+// half a turn, as the catalogue has it. A cable that is wound up remembers it: with true, whole
+// turns about body z count besides, T = −k (r + 2π n z), so that the torque about z goes on
+// growing; what a tilt adds to r changes side there still. The run begins with less than half a
+// turn.
 #include <array>
 #include <cmath>
 
@@ -32,7 +34,10 @@ T nearest_whole(const T& x) {
   return from_values(x, [](double value) { return std::array{std::round(value), 0.0}; });
 }
 
-struct Tether final : TorqueLaw<Tether> {
+class Tether final : public TorqueLaw<Tether> {
+ public:
+  explicit Tether(bool winds_up) : winds_up_(winds_up) {}
+
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
     const QuatOf<T>& q = now.attitude;
@@ -40,18 +45,24 @@ struct Tether final : TorqueLaw<Tether> {
     const T side = where_at_least(q.w(), 0.0, T(1.0), T(-1.0));
     const Vec3Of<T> v = side * q.vec();
     const T sine = length(v);
-    own.rate_of(twist) = twist_rate(q, now.rate_body_rad_s);
-    const T from_attitude = 2.0 * atan2(T(side * q.z()), T(side * q.w()));
     Vec3Of<T> wound = (2.0 * atan2(sine, side * q.w()) / sine) * v;
-    wound[2] += 2.0 * pi * nearest_whole(T((own.state(twist) - from_attitude) / (2.0 * pi)));
+    if (winds_up_) {
+      own.rate_of(twist) = twist_rate(q, now.rate_body_rad_s);
+      const T from_attitude = 2.0 * atan2(T(side * q.z()), T(side * q.w()));
+      wound[2] += 2.0 * pi * nearest_whole(T((own.state(twist) - from_attitude) / (2.0 * pi)));
+    }
     return -own[stiffness] * wound;
   }
+
+ private:
+  bool winds_up_;
 };
 
 Disturbance read(const Settings& settings, const DisturbanceContext&) {
-  Disturbance d =
-      make_disturbance<Tether>({scalar_parameter(settings, stiffness, Range::not_negative())},
-                               Stage::torque, {{twist.name}});
+  const bool winds_up = settings.flag_or("winds_up", false);
+  Disturbance d = make_disturbance<Tether>(
+      {scalar_parameter(settings, stiffness, Range::not_negative())}, Stage::torque,
+      winds_up ? std::vector<ExtraState>{{twist.name}} : std::vector<ExtraState>{}, winds_up);
   d.is_abrupt = true;
   return d;
 }
