@@ -37,6 +37,8 @@ struct FoundEffect {
   std::vector<FittedParameter> parameters;
   std::vector<std::string> indistinguishable_from;  // kinds that explain these data as well
   std::string explanation;                          // one sentence of physics
+  // What is no number: the node of a wall, the axes of a box.
+  std::vector<std::pair<std::string, std::string>> texts = {};
 };
 
 // Part of the torque that no known law explains, fitted without a law as a function of one
@@ -165,6 +167,8 @@ struct Diagnosis {
   std::string because = {};  // of "unexplained": which evidence decided it
   Where where;
   std::vector<FoundEffect> effects;
+  // Under which table an experiment has such effects: [[disturbance]] of motion, [[effect]] of light.
+  std::string effect_table = "disturbance";
   std::vector<EmpiricalTorque> empirical;
   // Effects that the model reported contains beside these without being named: it predicts what it
   // does only with them.

@@ -47,15 +47,25 @@ std::string comment(const std::string& text) {
   return line + "\n";
 }
 
-std::string effect_text(const FoundEffect& effect) {
+// Exact numbers, with their errors as a comment: of what acts on light there is no prior.
+std::string plain_text(const FittedParameter& p) {
+  std::string text = p.key + " = " + array_text(p.value, "%.9g");
+  if (has_sigma(p)) text += "  # ± " + array_text(p.sigma, "%.3g");
+  return text + "\n";
+}
+
+std::string effect_text(const FoundEffect& effect, const std::string& table) {
   std::string text = "\n";
   if (!effect.explanation.empty()) text += comment(effect.explanation);
   text += comment("Probability " + print("%.3f", effect.probability) + ".");
   for (const std::string& other : effect.indistinguishable_from) {
     text += comment("The recordings cannot tell it from " + other + ".");
   }
-  text += "[[disturbance]]\nkind = \"" + effect.kind + "\"\n";
-  for (const FittedParameter& p : effect.parameters) text += p.key + " = " + value_text(p) + "\n";
+  text += "[[" + table + "]]\nkind = \"" + effect.kind + "\"\n";
+  for (const auto& [key, value] : effect.texts) text += key + " = \"" + value + "\"\n";
+  for (const FittedParameter& p : effect.parameters) {
+    text += table == "effect" ? plain_text(p) : p.key + " = " + value_text(p) + "\n";
+  }
   return text;
 }
 
@@ -184,7 +194,9 @@ std::string improved_experiment(const std::string& text, const Diagnosis& diagno
   std::string improved = with_refined(text, diagnosis.priors_refined, others);
   if (!improved.empty() && improved.back() != '\n') improved += '\n';
   improved += "\n" + comment("---- Added by the diagnosis: " + diagnosis.sentence);
-  for (const FoundEffect& effect : diagnosis.effects) improved += effect_text(effect);
+  for (const FoundEffect& effect : diagnosis.effects) {
+    improved += effect_text(effect, diagnosis.effect_table);
+  }
   for (const FoundEffect& effect : diagnosis.unnamed) improved += unnamed_text(effect);
   for (const EmpiricalTorque& torque : diagnosis.empirical) improved += empirical_text(torque);
   if (!others.empty()) {

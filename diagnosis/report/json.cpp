@@ -35,7 +35,8 @@ Json object(const std::map<std::string, Value>& values) {
 Json parameters_json(const std::vector<FittedParameter>& parameters) {
   Json table = Json::object();
   for (const FittedParameter& p : parameters) {
-    table[p.key] = {{"value", numbers(p.value)}, {"sigma", numbers(p.sigma)}};
+    table[p.key] = {{"value", numbers(p.value)}};
+    if (!p.sigma.empty()) table[p.key]["sigma"] = numbers(p.sigma);
   }
   return table;
 }
@@ -58,9 +59,11 @@ Json where_json(const Where& where) {
 }
 
 Json effect_json(const FoundEffect& effect) {
+  Json parameters = parameters_json(effect.parameters);
+  for (const auto& [key, text] : effect.texts) parameters[key] = {{"value", text}};
   return {{"kind", effect.kind},
           {"probability", number(effect.probability)},
-          {"parameters", parameters_json(effect.parameters)},
+          {"parameters", parameters},
           {"indistinguishable_from", effect.indistinguishable_from},
           {"explanation", effect.explanation}};
 }

@@ -69,8 +69,11 @@ std::vector<Vec3> hexagonal(int64_t count, double pitch_m) {
   for (int q = -rings; q <= rings; ++q) {
     for (int r = std::max(-rings, -q - rings); r <= std::min(rings, rings - q); ++r) {
       const Vec3 at_m(pitch_m * (q + 0.5 * r), pitch_m * (0.5 * std::sqrt(3.0)) * r, 0.0);
+      // From +x on, as rings are counted; what is +x but for rounding comes first.
+      constexpr double rounding = 1e-9;
+      const double azimuth = std::atan2(at_m.y(), at_m.x());
       sites.push_back({std::max({std::abs(q), std::abs(r), std::abs(q + r)}), q * q + q * r + r * r,
-                       std::atan2(at_m.y(), at_m.x()), at_m});
+                       azimuth < -rounding ? azimuth + 2.0 * pi : azimuth, at_m});
     }
   }
   std::sort(sites.begin(), sites.end(), [](const Site& a, const Site& b) {
@@ -145,8 +148,11 @@ Placement read_placement(const Settings& settings) {
                                                               : read_direction(settings, centre_m);
   if (layout != Layout::positions) {
     const RigidTransform lab_from_array = frame_looking_along(normal, centre_m);
+    // Every layout is its own mirror image, so LEDs are counted as the lab sees them: rows by
+    // rising y, rings counter-clockwise, also where the array looks down.
+    const double up = lab_from_array.direction(Vec3::UnitY()).y() < 0.0 ? -1.0 : 1.0;
     for (const Vec3& at_m : read_layout(settings, layout)) {
-      placement.positions_m.push_back(lab_from_array.point(at_m));
+      placement.positions_m.push_back(lab_from_array.point({at_m.x(), up * at_m.y(), at_m.z()}));
     }
   }
   for (const Vec3& at_m : placement.positions_m) {

@@ -8,6 +8,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "diagnosis/light/apply.h"
 #include "images/writers/product.h"
 #include "images/writers/read_picture.h"
 #include "sources/profiles/beam_shape.h"
@@ -21,6 +22,9 @@ Experiment read(const CommandLine& line) {
         LinearPicture picture = read_picture(bytes);
         return BaseColours{picture.width, picture.height, std::move(picture.rgb)};
       });
+  for (std::string& notice : apply_written_effects(experiment)) {
+    experiment.notices.push_back(std::move(notice));
+  }
   return experiment;
 }
 

@@ -1,0 +1,352 @@
+#include "diagnosis/light/account.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/settings/settings.h"
+
+namespace photorque {
+namespace {
+
+// Names of a trial's effects; an LED that gives nothing has failed.
+bool is_dark(const LightTrial& trial, const LightCandidates& all, size_t which) {
+  const LightCandidate& c = all[trial.candidates[which]];
+  if (c.kind.name != "led_derated") return false;
+  const Eigen::Index column = columns_of(trial, all, which).front();
+  const double sigma = std::sqrt(std::max(0.0, trial.fit.shared_posterior()(column, column)));
+  constexpr double known_to = 0.1, within = 3.0;
+  return sigma < known_to && 1.0 + trial.x[which][0] < std::max(within * sigma, 1e-3);
+}
+
+std::vector<std::string> light_kinds(const LightTrial& trial, const LightCandidates& all) {
+  std::vector<std::string> kinds;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const LightCandidate& c = all[trial.candidates[i]];
+    if (c.is_empirical()) continue;
+    kinds.push_back(is_dark(trial, all, i) ? "led_failed" : c.kind.name);
+  }
+  std::sort(kinds.begin(), kinds.end());
+  return kinds;
+}
+
+std::string light_label(const LightTrial& trial, const LightCandidates& all) {
+  std::string label;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    std::string name = all[trial.candidates[i]].label;
+    if (is_dark(trial, all, i)) name.replace(0, name.find('['), "led_failed");
+    label += (label.empty() ? "" : " and ") + name;
+  }
+  return label;
+}
+
+// The part of the receiver over which a box takes a visible share of the light, at the attitudes of
+// the scans; the least share that is left.
+struct ShadedRegion {
+  double u_low = 1e300, u_high = -1e300, v_low = 1e300, v_high = -1e300, darkest = 1.0;
+};
+
+ShadedRegion shaded_region(const LightTrial& trial, const LightCandidates& all, size_t which,
+                           const FittedRun& run) {
+  // A grid over the receiver at the recording's first attitude.
+  constexpr int steps = 60;
+  const SurfaceGrid& g = all.lab->grid();
+  LightRecording grid;
+  for (int j = 0; j < steps; ++j) {
+    for (int i = 0; i < steps; ++i) {
+      grid.u_m.push_back(g.u_low + (g.u_high - g.u_low) * (i + 0.5) / steps);
+      grid.v_m.push_back(g.v_low + (g.v_high - g.v_low) * (j + 0.5) / steps);
+      grid.irradiance_W_m2.push_back(1.0);
+      grid.temperature_K.push_back(298.15);
+      grid.lab_from_body.push_back(run.run->recording().lab_from_body.front());
+    }
+  }
+  const LightRun places(*all.lab, std::move(grid));
+  LightTrial without = trial;
+  without.x[which][0] = 0.0;
+  const auto light = [&](const LightTrial& t) {
+    const LightState state = state_of(t, all);
+    return places.signals(state, places.fields(state, nullptr));
+  };
+  const std::vector<double> shaded = light(trial), open = light(without);
+  constexpr double visible = 0.5;  // of the deepest shadow
+  ShadedRegion region;
+  for (size_t i = 0; i < shaded.size(); ++i) {
+    if (open[i] > 0.0) region.darkest = std::min(region.darkest, shaded[i] / open[i]);
+  }
+  const double half_u = 0.5 * (g.u_high - g.u_low) / steps,
+               half_v = 0.5 * (g.v_high - g.v_low) / steps;
+  for (size_t i = 0; i < shaded.size(); ++i) {
+    if (!(open[i] > 0.0)) continue;
+    if (1.0 - shaded[i] / open[i] < visible * (1.0 - region.darkest)) continue;
+    const double u = places.recording().u_m[i], v = places.recording().v_m[i];
+    region.u_low = std::min(region.u_low, u - half_u);
+    region.u_high = std::max(region.u_high, u + half_u);
+    region.v_low = std::min(region.v_low, v - half_v);
+    region.v_high = std::max(region.v_high, v + half_v);
+  }
+  return region;
+}
+
+void add_shadow(const LightTrial& trial, const LightCandidates& all, size_t which,
+                const std::vector<FittedRun>& runs, FoundEffect& effect) {
+  const FittedRun* scan = nullptr;
+  for (const FittedRun& run : runs) {
+    if (run.run->recording().kind == LightRecording::Kind::scan && scan == nullptr) scan = &run;
+  }
+  if (scan == nullptr) return;
+  const ShadedRegion region = shaded_region(trial, all, which, *scan);
+  effect.parameters.push_back({"u_m", {region.u_low, region.u_high}, {}});
+  effect.parameters.push_back({"v_m", {region.v_low, region.v_high}, {}});
+  effect.parameters.push_back({"darkest", {region.darkest}, {}});
+  const bool on_body =
+      all[trial.candidates[which]].kind.scan == LightEffectKind::Scan::shadow_on_body;
+  effect.texts.emplace_back("axes", on_body ? "body" : "lab");
+}
+
+FoundEffect found_light_effect(const LightTrial& trial, const LightCandidates& all, size_t which,
+                               const std::vector<FittedRun>& runs) {
+  const LightCandidate& c = all[trial.candidates[which]];
+  FoundEffect effect;
+  effect.kind = c.kind.name;
+  effect.explanation = c.kind.explanation;
+  if (c.kind.index == LightEffectKind::Index::wall) {
+    effect.texts.emplace_back("node", all.lab->walls()[c.index].node);
+  } else if (c.kind.index != LightEffectKind::Index::none) {
+    effect.parameters.push_back({"index", {static_cast<double>(c.index)}, {}});
+  }
+  if (is_dark(trial, all, which)) {
+    effect.kind = "led_failed";
+    effect.explanation = "an LED gives no light";
+    effect.indistinguishable_from.push_back("led_derated");
+    return effect;
+  }
+  const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
+  const std::vector<Eigen::Index> columns = columns_of(trial, all, which);
+  size_t column = 0;
+  for (size_t k = 0; k < c.numbers.size(); ++k) {
+    const EffectParameter& p = c.kind.parameters[c.numbers[k].parameter];
+    double sigma = 0.0;
+    if (c.numbers[k].is_fitted) {
+      const Eigen::Index at = columns[column++];
+      sigma = std::sqrt(std::max(0.0, covariance(at, at)));
+    }
+    const double to_SI = unit_of_key(p.key).to_SI, x = trial.x[which][k];
+    if (effect.parameters.empty() || effect.parameters.back().key != p.key) {
+      effect.parameters.push_back({p.key, {}, {}});
+    }
+    effect.parameters.back().value.push_back(value_of(p, x) / to_SI);
+    if (c.numbers[k].is_fitted) {
+      effect.parameters.back().sigma.push_back(std::abs(slope_of(p, x)) * sigma / to_SI);
+    }
+  }
+  if (c.kind.name == "unmodelled_shadow") add_shadow(trial, all, which, runs, effect);
+  return effect;
+}
+
+// How much of what the first of `terms` changes the recordings by, at the numbers x, the strengths
+// of each other term cannot make: χ², the first entry the whole of it.
+Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
+                       const std::vector<inference::Term<LightStart>>& terms,
+                       const std::vector<FittedRun>& runs, const std::vector<double>& x) {
+  Eigen::MatrixXd H;
+  for (const FittedRun& run : runs) {
+    const LightSlopes s = slopes_of(about, all, terms, run);
+    const Eigen::MatrixXd square = s.slopes.transpose() * s.slopes;
+    H = H.size() == 0 ? square : Eigen::MatrixXd(H + square);
+  }
+  Eigen::Index fitted = static_cast<Eigen::Index>(about.priors.size());
+  for (const size_t c : about.candidates) fitted += static_cast<Eigen::Index>(all[c].fitted());
+  if (fitted > 0) {
+    const Eigen::MatrixXd inner = H.topLeftCorner(fitted, fitted),
+                          cross = H.bottomLeftCorner(H.rows() - fitted, fitted);
+    H = Eigen::MatrixXd(H.bottomRightCorner(H.rows() - fitted, H.cols() - fitted) -
+                        cross * inner.ldlt().solve(cross.transpose()));
+  }
+  std::vector<double> strengths;
+  const LightCandidate& named = all[terms.front().candidate];
+  for (size_t k = 0; k < named.numbers.size(); ++k) {
+    if (named.numbers[k].is_strength) strengths.push_back(x[k]);
+  }
+  const auto own = static_cast<Eigen::Index>(strengths.size());
+  const Eigen::Map<const Eigen::VectorXd> theta(strengths.data(), own);
+  Eigen::VectorXd left(static_cast<Eigen::Index>(terms.size()));
+  left[0] = own > 0 ? theta.dot(H.topLeftCorner(own, own) * theta) : 0.0;
+  Eigen::Index at = own;
+  for (size_t t = 1; t < terms.size(); ++t) {
+    const LightCandidate& c = all[terms[t].candidate];
+    const auto n = static_cast<Eigen::Index>(
+        std::ranges::count_if(c.numbers, [](const auto& number) { return number.is_strength; }));
+    left[static_cast<Eigen::Index>(t)] = left[0];
+    if (n > 0 && own > 0) {
+      Eigen::MatrixXd S = H.block(at, at, n, n);
+      S.diagonal() *= 1.0 + 1e-9;
+      const Eigen::VectorXd shared = H.block(at, 0, n, own) * theta;
+      const double taken = shared.dot(S.ldlt().solve(shared));
+      if (std::isfinite(taken)) left[static_cast<Eigen::Index>(t)] -= taken;
+    }
+    at += n;
+  }
+  return left;
+}
+
+// Whether a candidate in the place of another explains the recordings as well.
+std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
+                                      const std::vector<FittedRun>& runs) {
+  const LightTrial& chosen = answer.chosen();
+  const LightCandidates& all = answer.all;
+  LightTrial without = chosen;
+  without.candidates.erase(without.candidates.begin() + static_cast<std::ptrdiff_t>(which));
+  without.x.erase(without.x.begin() + static_cast<std::ptrdiff_t>(which));
+  const double within = all.limits.search.min_log_evidence_gain;
+  const LightTrial own = fit_light(all, chosen.candidates, chosen.x, chosen.priors, runs, 25);
+  const LightCandidate& named = all[chosen.candidates[which]];
+  std::vector<size_t> others;
+  std::vector<inference::Term<LightStart>> terms = {{chosen.candidates[which], {chosen.x[which]}}};
+  for (size_t i = 0; i < all.list.size(); ++i) {
+    const LightCandidate& c = all[i];
+    if (c.is_empirical() || c.kind.name == named.kind.name || !c.is_linear()) continue;
+    if (c.kind.index == named.kind.index && c.index != named.index) continue;
+    others.push_back(i);
+    terms.push_back({i, {c.start()}});
+  }
+  const Eigen::VectorXd left = unlike(without, all, terms, runs, chosen.x[which]);
+  std::set<std::string> rivals;
+  for (size_t k = 0; k < others.size(); ++k) {
+    const LightCandidate& c = all[others[k]];
+    // χ² that the other cannot take up, to first order; large effects bend.
+    constexpr double beyond = 10.0, of_all = 0.02;
+    const double gain = left[0];
+    if (left[static_cast<Eigen::Index>(k) + 1] > beyond * within + of_all * gain) continue;
+    if (rivals.contains(c.kind.name)) continue;
+    std::vector<size_t> candidates = without.candidates;
+    candidates.push_back(others[k]);
+    std::vector<std::vector<double>> x = without.x;
+    x.push_back(c.start());
+    const LightTrial rival = fit_light(all, candidates, x, chosen.priors, runs, 25);
+    if (rival.log_evidence > own.log_evidence - within) rivals.insert(c.kind.name);
+  }
+  return {rivals.begin(), rivals.end()};
+}
+
+}  // namespace
+
+std::vector<FoundEffect> found_light_effects(const LightAnswer& answer,
+                                             const std::vector<FittedRun>& runs) {
+  const LightTrial& chosen = answer.chosen();
+  std::vector<FoundEffect> effects;
+  for (size_t i = 0; i < chosen.candidates.size(); ++i) {
+    if (answer.all[chosen.candidates[i]].is_empirical()) continue;
+    FoundEffect effect = found_light_effect(chosen, answer.all, i, runs);
+    for (size_t t = 0; t < answer.trials.size(); ++t) {
+      const auto& candidates = answer.trials[t].candidates;
+      if (std::ranges::find(candidates, chosen.candidates[i]) != candidates.end()) {
+        effect.probability += answer.decision.probability[t];
+      }
+    }
+    effect.probability = std::min(1.0, effect.probability);
+    for (const std::string& rival : light_rivals(answer, i, runs)) {
+      auto& known = effect.indistinguishable_from;
+      if (rival != effect.kind && std::ranges::find(known, rival) == known.end()) {
+        known.push_back(rival);
+      }
+    }
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+std::vector<Alternative> light_alternatives(const LightAnswer& answer) {
+  constexpr size_t most = 25;
+  std::map<std::string, const LightTrial*> best;
+  for (const LightTrial& t : answer.trials) {
+    const LightTrial*& known = best[light_label(t, answer.all)];
+    if (known == nullptr || t.log_evidence > known->log_evidence) known = &t;
+  }
+  std::vector<Alternative> result;
+  for (const auto& [label, t] : best) {
+    Alternative a;
+    a.kinds = light_kinds(*t, answer.all);
+    a.label = label;
+    a.holdout_chi2_per_sample = t->holdout_chi2_per_sample;
+    a.log_evidence_relative = t->log_evidence - answer.trials.front().log_evidence;
+    a.remark = t->objection;
+    a.chosen = label == light_label(answer.chosen(), answer.all);
+    result.push_back(std::move(a));
+  }
+  std::ranges::stable_sort(result, [](const Alternative& a, const Alternative& b) {
+    return a.log_evidence_relative > b.log_evidence_relative;
+  });
+  if (result.size() > most) result.resize(most);
+  return result;
+}
+
+std::vector<Where::Dependence> light_dependences(const LightTrial& about,
+                                                 const LightCandidates& all,
+                                                 const std::vector<FittedRun>& runs) {
+  std::map<std::string, double> strength;
+  double chi2 = 0.0, samples = 0.0;
+  std::vector<Eigen::VectorXd> residuals;
+  for (const FittedRun& run : runs) {
+    residuals.push_back(residuals_of(about, all, run));
+    chi2 += residuals.back().squaredNorm();
+    samples += static_cast<double>(residuals.back().size());
+  }
+  const double beyond = std::max(1.0, chi2 - samples);
+  for (size_t i = 0; i < all.list.size(); ++i) {
+    const LightCandidate& c = all[i];
+    if (!c.is_empirical() || !c.is_linear()) continue;
+    Eigen::MatrixXd H;
+    Eigen::VectorXd g;
+    for (const FittedRun& run : runs) {
+      const LightSlopes s = slopes_of(about, all, {{i, {c.start()}}}, run);
+      const auto n = static_cast<Eigen::Index>(c.fitted());
+      const Eigen::MatrixXd J = s.slopes.rightCols(n);
+      if (H.size() == 0) {
+        H = Eigen::MatrixXd::Zero(n, n);
+        g = Eigen::VectorXd::Zero(n);
+      }
+      H += J.transpose() * J;
+      g += J.transpose() * s.residuals;
+    }
+    H.diagonal() *= 1.0 + 1e-9;
+    const double gain = g.dot(H.ldlt().solve(g)) - static_cast<double>(g.size());
+    if (std::isfinite(gain)) {
+      strength[c.variable] = std::max(strength[c.variable], std::clamp(gain / beyond, 0.0, 1.0));
+    }
+  }
+  std::vector<Where::Dependence> result;
+  for (const auto& [variable, s] : strength) {
+    if (s > all.limits.location.min_dependence) result.push_back({variable, s});
+  }
+  std::ranges::stable_sort(result,
+                           [](const auto& a, const auto& b) { return a.strength > b.strength; });
+  return result;
+}
+
+std::string light_sentence(const Diagnosis& d) {
+  if (d.verdict == Verdict::consistent) {
+    return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";
+  }
+  if (d.verdict == Verdict::missing_physics) {
+    std::string text = d.effects.size() == 1 ? "Missing: " : "Missing together: ";
+    for (size_t i = 0; i < d.effects.size(); ++i) {
+      const FoundEffect& e = d.effects[i];
+      std::string name = e.kind;
+      std::ranges::replace(name, '_', ' ');
+      for (const FittedParameter& p : e.parameters) {
+        if (p.key == "index") name += " " + std::to_string(static_cast<int>(p.value.front()));
+      }
+      text += (i > 0 ? "; " : "") + name + " (" + e.explanation + ")";
+    }
+    return text + ".";
+  }
+  std::string text = "Something acts that no effect of the catalogue explains";
+  if (!d.where.depends_on.empty()) text += "; it depends on " + d.where.depends_on.front().variable;
+  if (!d.because.empty()) text += " (" + d.because + ")";
+  return text + ".";
+}
+
+}  // namespace photorque

@@ -1,0 +1,32 @@
+// Puts what was found of light and power into words and numbers for the reader of a diagnosis.
+#pragma once
+
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/light/trials/trial.h"
+#include "inference/decide.h"
+
+namespace photorque {
+
+struct LightAnswer {
+  LightCandidates all;
+  std::vector<LightTrial> trials;
+  inference::Decision decision;
+
+  const LightTrial& chosen() const { return trials[decision.chosen]; }
+};
+
+// The named effects of the chosen trial, with what these recordings cannot tell each from.
+std::vector<FoundEffect> found_light_effects(const LightAnswer& answer,
+                                             const std::vector<FittedRun>& runs);
+
+std::vector<Alternative> light_alternatives(const LightAnswer& answer);
+
+// What the nominal residuals are a function of, the strongest first: by how much functions of each
+// variable alone lower χ² of what is beyond noise.
+std::vector<Where::Dependence> light_dependences(const LightTrial& about,
+                                                 const LightCandidates& all,
+                                                 const std::vector<FittedRun>& runs);
+
+std::string light_sentence(const Diagnosis& diagnosis);
+
+}  // namespace photorque

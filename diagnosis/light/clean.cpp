@@ -1,0 +1,96 @@
+#include "diagnosis/light/clean.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace photorque {
+namespace {
+
+constexpr size_t neighbours = 8;
+
+// The rows nearest to one of a scan, at the same attitude.
+std::vector<size_t> nearest_in_place(const LightRecording& r, size_t row) {
+  std::vector<std::pair<double, size_t>> all;
+  for (size_t j = 0; j < r.rows(); ++j) {
+    if (j == row || r.lab_from_body[j].coeffs() != r.lab_from_body[row].coeffs()) continue;
+    all.emplace_back(std::hypot(r.u_m[j] - r.u_m[row], r.v_m[j] - r.v_m[row]), j);
+  }
+  const size_t count = std::min(neighbours, all.size());
+  std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
+  std::vector<size_t> near;
+  for (size_t k = 0; k < count; ++k) near.push_back(all[k].second);
+  return near;
+}
+
+// Before and after, of the same sweep.
+std::vector<size_t> nearest_in_time(const LightRecording& r, size_t row) {
+  std::vector<size_t> near;
+  const size_t reach = neighbours / 2;
+  for (size_t j = row > reach ? row - reach : 0; j <= std::min(row + reach, r.rows() - 1); ++j) {
+    if (j == row || (!r.sweep.empty() && r.sweep[j] != r.sweep[row])) continue;
+    near.push_back(j);
+  }
+  return near;
+}
+
+// How far a value is from the plane through its neighbours, beyond what these scatter about it.
+bool leaves_plane(const std::vector<Vec2>& at, const std::vector<double>& value, double own,
+                  double allowed) {
+  if (at.size() < 5) return true;
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(at.size()), 3);
+  Eigen::VectorXd b(A.rows());
+  for (size_t k = 0; k < at.size(); ++k) {
+    A.row(static_cast<Eigen::Index>(k)) << 1.0, at[k].x(), at[k].y();
+    b[static_cast<Eigen::Index>(k)] = value[k];
+  }
+  const Eigen::VectorXd x = A.colPivHouseholderQr().solve(b);
+  const double scatter = std::sqrt((A * x - b).squaredNorm() / static_cast<double>(at.size() - 3));
+  constexpr double of_scatter = 4.0;
+  return std::abs(own - x[0]) > allowed + of_scatter * scatter;
+}
+
+}  // namespace
+
+std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::VectorXd& residuals,
+                                          const Thresholds::Noise& limits) {
+  const LightRecording& r = run.recording();
+  const bool is_scan = r.kind == LightRecording::Kind::scan;
+  std::vector<bool> wild(r.rows(), false);
+  const size_t channels = run.channels().size();
+  const auto residual = [&](size_t row, size_t channel) {
+    return residuals[static_cast<Eigen::Index>(row * channels + channel)];
+  };
+  for (size_t row = 0; row < r.rows(); ++row) {
+    // Most rows look like the one before: no neighbours need be looked for.
+    bool looks_usual = row > 0;
+    for (size_t c = 0; c < channels && looks_usual; ++c) {
+      looks_usual = std::abs(residual(row, c) - residual(row - 1, c)) < limits.outlier_sigma;
+    }
+    if (looks_usual && !wild[row - 1]) continue;
+    const std::vector<size_t> near = is_scan ? nearest_in_place(r, row) : nearest_in_time(r, row);
+    if (near.size() < 3) continue;
+    for (size_t c = 0; c < channels; ++c) {
+      double least = 1e300;
+      std::vector<Vec2> at;
+      std::vector<double> value;
+      for (const size_t j : near) {
+        value.push_back(residual(j, c));
+        least = std::min(least, std::abs(residual(row, c) - value.back()));
+        at.push_back(is_scan ? Vec2(r.u_m[j] - r.u_m[row], r.v_m[j] - r.v_m[row])
+                             : Vec2(static_cast<double>(j) - static_cast<double>(row), 0.0));
+      }
+      if (least > limits.outlier_sigma &&
+          leaves_plane(at, value, residual(row, c), limits.outlier_sigma)) {
+        wild[row] = true;
+      }
+    }
+  }
+  std::vector<size_t> good;
+  for (size_t row = 0; row < r.rows(); ++row) {
+    if (!wild[row]) good.push_back(row);
+  }
+  return good;
+}
+
+}  // namespace photorque

@@ -1,0 +1,315 @@
+#include "diagnosis/light/diagnose.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.h"
+#include "core/parallel.h"
+#include "diagnosis/light/account.h"
+#include "diagnosis/light/clean.h"
+#include "diagnosis/light/domain.h"
+#include "inference/decide.h"
+#include "inference/search.h"
+#include "inference/weigh.h"
+
+namespace photorque {
+namespace {
+
+// All recordings, those fitted and those held out.
+struct LightData {
+  std::vector<FittedRun> train, held;
+  DataQuality quality;
+};
+
+void tell(const LightDiagnoseOptions& options, const std::string& what) {
+  if (options.progress) options.progress(what);
+}
+
+Eigen::VectorXd nominal_residuals(const FittedRun& run, const LightState& nominal) {
+  return run.run->residuals(nominal, run.run->signals(nominal, *run.nominal), nullptr);
+}
+
+// Thinned where it is long, and without wild readings.
+FittedRun observed(const LightLab& lab, const LightState& nominal, LightRecording recording,
+                   int number, const LightDiagnoseOptions& options, DataQuality& quality) {
+  quality.rows += recording.rows_read;
+  for (const auto& [reason, count] : recording.rejected) quality.rejected[reason] += count;
+  const size_t rows = recording.rows();
+  LightRun whole(lab, std::move(recording));
+  whole.set_number(number);
+  const bool is_scan = whole.recording().kind == LightRecording::Kind::scan;
+  const size_t most = is_scan ? options.max_scan_rows : options.max_rows;
+  if (rows > most) {
+    const size_t every = (rows + most - 1) / most;
+    std::vector<size_t> some;
+    for (size_t i = 0; i < rows; i += every) some.push_back(i);
+    quality.rejected["left out of a long recording"] += static_cast<int64_t>(rows - some.size());
+    whole = whole.part(some);
+  }
+  FittedRun run = prepared_run(std::move(whole), nominal);
+  const std::vector<size_t> good =
+      rows_without_outliers(*run.run, nominal_residuals(run, nominal), options.limits.noise);
+  if (good.size() < run.run->rows()) {
+    quality.rejected["outlier"] += static_cast<int64_t>(run.run->rows() - good.size());
+    run = prepared_run(run.run->part(good), nominal);
+  }
+  quality.used += static_cast<int64_t>(run.run->rows());
+  return run;
+}
+
+// Without a holdout: the last part of what was recorded over time or sweep by sweep, every so many
+// rows of a scan, whose end is but a corner of it.
+std::pair<LightRun, LightRun> split(const LightRun& run, double fraction) {
+  std::vector<size_t> fitted, held;
+  const size_t rows = run.rows();
+  const bool scan = run.recording().kind == LightRecording::Kind::scan;
+  const auto every = static_cast<size_t>(std::lround(1.0 / fraction));
+  for (size_t i = 0; i < rows; ++i) {
+    const bool is_held =
+        scan ? i % every == every - 1
+             : static_cast<double>(i) >= (1.0 - fraction) * static_cast<double>(rows);
+    (is_held ? held : fitted).push_back(i);
+  }
+  return {run.part(fitted), run.part(held)};
+}
+
+LightData read_light_data(const LightLab& lab, const LightState& nominal,
+                          std::vector<LightRecording> recordings,
+                          std::vector<LightRecording> holdouts,
+                          const LightDiagnoseOptions& options) {
+  LightData data;
+  int number = 0;
+  for (LightRecording& r : recordings) {
+    data.train.push_back(observed(lab, nominal, std::move(r), number++, options, data.quality));
+  }
+  for (LightRecording& r : holdouts) {
+    data.held.push_back(observed(lab, nominal, std::move(r), number++, options, data.quality));
+  }
+  if (data.held.empty()) {
+    for (FittedRun& run : data.train) {
+      auto [fitted, held] = split(*run.run, options.holdout_fraction);
+      if (held.rows() == 0 || fitted.rows() == 0) continue;
+      run = prepared_run(std::move(fitted), nominal);
+      data.held.push_back(prepared_run(std::move(held), nominal));
+    }
+  }
+  return data;
+}
+
+Verdict light_verdict(inference::Finding finding) {
+  switch (finding) {
+    case inference::Finding::nothing_missing:
+      return Verdict::consistent;
+    case inference::Finding::named:
+      return Verdict::missing_physics;
+    case inference::Finding::unknown:
+      return Verdict::unexplained;
+  }
+  return Verdict::unexplained;
+}
+
+LightAnswer explain_light(const LightLab& lab, const LightState& nominal, const LightData& data,
+                          const LightDiagnoseOptions& options) {
+  LightAnswer answer{light_candidates(lab, nominal, data.train, options.limits), {}, {}};
+  const LightDomain domain(answer.all);
+  tell(options, "fitting every effect of the catalogue");
+  answer.trials = inference::search(domain, nominal_light_trial(answer.all, data.train), data.train,
+                                    options.threads);
+  tell(options, "comparing with what was held out");
+  inference::weigh_with_held_out(domain, data.train, data.held, options.threads, answer.trials);
+  const auto excess = [&](size_t trial) {
+    return domain.excess_sigma(answer.trials[trial], data.train);
+  };
+  answer.decision = inference::decide({answer.trials.begin(), answer.trials.end()},
+                                      domain.candidates(), excess, options.limits.decision);
+  return answer;
+}
+
+std::map<std::string, double> rms_of(const LightTrial& trial, const LightCandidates& all,
+                                     const std::vector<FittedRun>& runs) {
+  std::map<std::string, double> sum;
+  std::map<std::string, int64_t> count;
+  const LightState state = state_of(trial, all);
+  for (const FittedRun& run : runs) {
+    const LightRecording& r = run.run->recording();
+    const auto expected = run.run->expected(state);
+    const auto add = [&](const std::string& channel, double off) {
+      sum[channel] += off * off;
+      ++count[channel];
+    };
+    for (size_t i = 0; i < r.rows(); ++i) {
+      if (r.kind == LightRecording::Kind::scan) {
+        add("irradiance_W_m2", r.irradiance_W_m2[i] - expected[i].irradiance_W_m2);
+        continue;
+      }
+      const bool run_of_array = r.kind == LightRecording::Kind::run;
+      add(run_of_array ? "array_current_A" : "current_A", r.current_A[i] - expected[i].current_A);
+      if (run_of_array && run.run->channels().size() > 1) {
+        add("array_voltage_V", r.voltage_V[i] - expected[i].voltage_V);
+      }
+    }
+  }
+  std::map<std::string, double> result;
+  for (const auto& [channel, squares] : sum) {
+    result[channel] = std::sqrt(squares / static_cast<double>(count[channel]));
+  }
+  return result;
+}
+
+Holdout light_holdout(const LightAnswer& answer, const std::vector<FittedRun>& held) {
+  const LightTrial before = predict_light(answer.trials.front(), answer.all, held),
+                   after = predict_light(answer.chosen(), answer.all, held);
+  Holdout result;
+  result.samples = after.fit.samples;
+  result.chi2_per_sample_before = before.fit.chi2_per_sample();
+  result.chi2_per_sample_after = after.fit.chi2_per_sample();
+  result.rms_before = rms_of(before, answer.all, held);
+  result.rms_after = rms_of(after, answer.all, held);
+  result.predictive = answer.chosen().predictive;
+  const double beyond = result.chi2_per_sample_before - 1.0,
+               left = result.chi2_per_sample_after - 1.0;
+  const double noise =
+      5.0 * std::sqrt(2.0 / static_cast<double>(std::max<int64_t>(1, result.samples)));
+  result.explained_fraction = beyond > noise ? std::clamp((beyond - left) / beyond, 0.0, 1.0) : 1.0;
+  return result;
+}
+
+// The variable of the law that was chosen comes first, with the part of what is beyond noise that
+// it takes up.
+void lead_with_chosen_law(const LightAnswer& answer, const LightTrial& about,
+                          std::vector<Where::Dependence>& depends_on) {
+  for (const size_t c : answer.chosen().candidates) {
+    const std::string& variable = answer.all[c].variable;
+    if (variable.empty()) continue;
+    std::erase_if(depends_on, [&](const auto& d) { return d.variable == variable; });
+    const auto samples = static_cast<double>(about.fit.samples);
+    const double beyond = std::max(1.0, about.fit.data_chi2 - samples);
+    const double taken = about.fit.data_chi2 - answer.chosen().fit.data_chi2;
+    depends_on.insert(depends_on.begin(), {variable, std::clamp(taken / beyond, 0.0, 1.0)});
+  }
+}
+
+// Readings and both models over time; only of runs, which have one.
+void add_series(const LightAnswer& answer, const std::vector<FittedRun>& runs, bool held_out,
+                Diagnosis& d) {
+  const LightState before = state_of(answer.trials.front(), answer.all),
+                   after = state_of(answer.chosen(), answer.all);
+  for (const FittedRun& run : runs) {
+    const LightRecording& r = run.run->recording();
+    if (r.kind != LightRecording::Kind::run) continue;
+    const auto a = run.run->expected(before), b = run.run->expected(after);
+    ChannelSeries voltage{"array_voltage_V",
+                          "Voltage of the array",
+                          "V",
+                          r.time_s,
+                          r.voltage_V,
+                          {},
+                          {},
+                          "V",
+                          {},
+                          {},
+                          run.run->lab().noise().voltage_V};
+    ChannelSeries current{"array_current_A",
+                          "Current of the array",
+                          "A",
+                          r.time_s,
+                          r.current_A,
+                          {},
+                          {},
+                          "A",
+                          {},
+                          {},
+                          run.run->lab().noise().current_A};
+    for (size_t i = 0; i < r.rows(); ++i) {
+      voltage.before.push_back(a[i].voltage_V);
+      voltage.after.push_back(b[i].voltage_V);
+      current.before.push_back(a[i].current_A);
+      current.after.push_back(b[i].current_A);
+      voltage.residual_before.push_back(r.voltage_V[i] - a[i].voltage_V);
+      voltage.residual_after.push_back(r.voltage_V[i] - b[i].voltage_V);
+      current.residual_before.push_back(r.current_A[i] - a[i].current_A);
+      current.residual_after.push_back(r.current_A[i] - b[i].current_A);
+    }
+    RecordingSeries series{r.name, {}, {}};
+    if (run.run->channels().size() > 1) series.channels.push_back(std::move(voltage));
+    series.channels.push_back(std::move(current));
+    if (held_out) series.held_out_s = {{r.time_s.front(), r.time_s.back()}};
+    d.series.push_back(std::move(series));
+  }
+}
+
+std::vector<Where::ChannelMisfit> misfits(const LightAnswer& answer,
+                                          const std::vector<FittedRun>& runs) {
+  std::map<std::string, std::pair<double, int64_t>> sums;
+  for (const FittedRun& run : runs) {
+    const Eigen::VectorXd r = residuals_of(answer.trials.front(), answer.all, run);
+    for (Eigen::Index i = 0; i < r.size(); ++i) {
+      auto& [chi2, count] = sums[run.run->channels()[static_cast<size_t>(
+          run.run->sample_channel()[static_cast<size_t>(i)])]];
+      chi2 += r[i] * r[i];
+      ++count;
+    }
+  }
+  std::vector<Where::ChannelMisfit> result;
+  for (const auto& [name, sum] : sums) {
+    result.push_back({name, sum.first / static_cast<double>(sum.second)});
+  }
+  std::ranges::stable_sort(
+      result, [](const auto& a, const auto& b) { return a.chi2_per_sample > b.chi2_per_sample; });
+  return result;
+}
+
+}  // namespace
+
+Diagnosis diagnose_light(const LightLab& lab, const LightState& nominal,
+                         std::vector<LightRecording> recordings,
+                         std::vector<LightRecording> holdouts, const LightDiagnoseOptions& asked) {
+  if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
+  LightDiagnoseOptions options = asked;
+  // Light is nearly linear in what acts, so forecasts are good, and there is a candidate for every
+  // lamp and cell: only those near the best are fitted for comparison,
+  // with few steps.
+  options.limits.scoring.min_fraction = 0.3;
+  options.limits.held_out.max_leaders = 6;
+  options.limits.leaders.max_leaders = 4;
+  options.limits.fitting.slow_blocks = 400;
+  options.limits.fitting.trial_iterations = 6;
+  options.limits.fitting.patient_iterations = 20;
+  options.limits.search.max_effects = 3;
+  const LightData data =
+      read_light_data(lab, nominal, std::move(recordings), std::move(holdouts), options);
+  const LightAnswer answer = explain_light(lab, nominal, data, options);
+  Diagnosis d;
+  d.effect_table = "effect";
+  d.verdict = light_verdict(answer.decision.finding);
+  d.confidence = answer.decision.confidence;
+  d.because = answer.decision.because;
+  d.where.channels = misfits(answer, data.train);
+  std::vector<FittedRun> everything = data.train;
+  everything.insert(everything.end(), data.held.begin(), data.held.end());
+  if (d.verdict == Verdict::missing_physics) d.effects = found_light_effects(answer, everything);
+  if (d.verdict != Verdict::consistent) {
+    const LightTrial& about = d.verdict == Verdict::unexplained
+                                  ? answer.trials[answer.decision.best_named]
+                                  : answer.trials.front();
+    d.where.depends_on = light_dependences(about, answer.all, data.train);
+    lead_with_chosen_law(answer, about, d.where.depends_on);
+  }
+  d.alternatives = light_alternatives(answer);
+  d.chi2_per_sample_before = answer.trials.front().fit.chi2_per_sample();
+  d.chi2_per_sample_after = answer.chosen().fit.chi2_per_sample();
+  d.samples = answer.trials.front().fit.samples;
+  d.holdout = light_holdout(answer, data.held);
+  add_series(answer, data.train, false, d);
+  add_series(answer, data.held, true, d);
+  d.data = data.quality;
+  if (answer.decision.undecided) {
+    d.warnings.push_back(
+        "the recordings and what was held out show together what neither shows alone, but not "
+        "which effect it is: see the alternatives");
+  }
+  d.sentence = light_sentence(d);
+  return d;
+}
+
+}  // namespace photorque

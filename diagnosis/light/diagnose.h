@@ -1,0 +1,36 @@
+// `diagnose` for light and power: scans, sweeps and runs against the nominal model of lamps and
+// array, and what is missing in between.
+//
+// Observe (wild readings dropped) → fit the nominal model → search → weigh with what was held out →
+// decide → say it. The engine is inference/; what is special to light is the forward model (model/)
+// and the kinds of effects (effects/).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/light/model/lab.h"
+#include "diagnosis/light/recordings/recording.h"
+#include "inference/limits/thresholds.h"
+
+namespace photorque {
+
+struct LightDiagnoseOptions {
+  int threads = 0;  // 0: all
+  // Of each recording: of longer ones every so many rows are used.
+  size_t max_rows = 5000, max_scan_rows = 12000;
+  double holdout_fraction = 0.25;  // of each recording, where there is no holdout
+  Thresholds limits;
+  std::function<void(const std::string&)> progress;  // called with what begins; may be empty
+};
+
+// InputError for recordings that the experiment cannot explain at all: curves without an array.
+// The same result for any number of threads.
+Diagnosis diagnose_light(const LightLab& lab, const LightState& nominal,
+                         std::vector<LightRecording> recordings,
+                         std::vector<LightRecording> holdouts,
+                         const LightDiagnoseOptions& options = {});
+
+}  // namespace photorque

@@ -1,0 +1,130 @@
+// An array of cells as the diagnosis of light needs it: cells at any temperature, effects on single
+// cells and diodes, and exact derivatives by every photocurrent.
+//
+// A string's voltage is an explicit function of its current,
+//   V_s(I) = Σ_substrings max(Σ_cells (V_d(I_k − I) + ΔV − I R_s), −V_clamp),
+// with V_d the inverse of the cell's dark current (photovoltaics/cell/cell.h, eq. 2). Strings in
+// parallel are solved for their currents at one voltage. Derivatives by a photocurrent I_k follow
+// implicitly: ∂V_s/∂I_k = 1/D′(V_d) where the cell's substring is not clamped, else 0.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "photovoltaics/cell/model.h"
+#include "photovoltaics/cell/table.h"
+#include "photovoltaics/network/wiring.h"
+
+namespace photorque {
+
+// V_d(j) and its derivatives of one kind of cell at one temperature.
+class LitDiode {
+ public:
+  LitDiode(const CellParameters& parameters, double extra_shunt_S);
+  // From a table, where many points are asked for at one temperature.
+  LitDiode(const CellParameters& parameters, std::shared_ptr<const DiodeVoltageTable> table);
+  double series_ohm() const { return series_ohm_; }
+
+  struct Point {
+    double value_V = 0.0, slope_ohm = 0.0, curvature_V_A2 = 0.0;
+  };
+  // At a dark current of either sign.
+  Point at(double dark_A) const;
+
+ private:
+  CellCurve curve_;
+  double saturation_A_, scale_V_, shunt_S_;
+  double series_ohm_;
+  bool is_plain_;  // one diode, no breakdown
+  std::shared_ptr<const DiodeVoltageTable> table_;
+};
+
+struct NetworkSettings {
+  double series_ohm = 0.0;                        // of the whole array
+  double shunt_S = 0.0;                           // across every cell, beside its own
+  double cell_offset_V = 0.0;                     // added to every cell's voltage
+  std::vector<bool> string_open, bypass_shorted;  // may be empty
+};
+
+// The kinds of cells of an array at one temperature, without effects on them.
+struct LitCells {
+  std::vector<LitDiode> kinds;
+  std::vector<int> kind_of_cell;
+};
+// `tabulated`: worth its time where hundreds of points follow.
+LitCells lit_cells(const CellModel& cell, const std::vector<double>& area_m2, double temperature_K,
+                   double extra_shunt_S, bool tabulated);
+
+// The array under given light.
+class LitNetwork {
+ public:
+  // `photocurrents_A` per cell, ≥ 0. InputError for junction diodes and rows of tied cells, which
+  // the diagnosis does not know.
+  LitNetwork(const ArrayWiring& wiring, std::shared_ptr<const LitCells> cells,
+             const NetworkSettings& settings, const std::vector<double>& photocurrents_A);
+
+  // A point of the curve with its derivatives.
+  struct Point {
+    double voltage_V = 0.0, current_A = 0.0;
+    double slope_S = 0.0;  // −dI/dV ≥ 0 along the curve
+    // ∂I/∂I_k at fixed voltage, per cell.
+    std::vector<double> current_by_photocurrent;
+  };
+  // The point nearest to a reading, distances measured in the readings' errors (> 0).
+  Point nearest(double voltage_V, double current_A, double voltage_error_V, double current_error_A,
+                bool derivatives) const;
+
+  // A local maximum of the power and how it moves with each photocurrent.
+  struct Maximum {
+    double voltage_V = 0.0, current_A = 0.0;
+    std::vector<double> voltage_by_photocurrent, current_by_photocurrent;
+    double power_W() const { return voltage_V * current_A; }
+  };
+  // Local maxima of the power, the highest first: all, or the highest alone. Empty in the dark.
+  enum class Which { all, highest };
+  std::vector<Maximum> maxima(Which which, bool derivatives) const;
+
+  double short_circuit_A() const;
+
+ private:
+  struct Substring {
+    std::vector<int> cells;
+    double clamp_V = 0.0;  // largest voltage backwards; infinite without a diode
+    bool is_shorted = false;
+  };
+  struct String {
+    std::vector<Substring> substrings;
+    double blocking_V = 0.0;
+    bool is_blocking = false;
+    double largest_A = 0.0;  // photocurrent
+  };
+  // V(I) of a string, and which substrings are clamped.
+  struct StringPoint {
+    double current_A = 0.0, voltage_V = 0.0, slope_ohm = 0.0, curvature_V_A2 = 0.0;  // −V′, V″
+    std::vector<char> clamped;
+    std::vector<LitDiode::Point> cells;  // as wired, all substrings in turn
+  };
+  void evaluate(const String& string, double current_A, StringPoint& at) const;
+  void solve(const String& string, double voltage_V, StringPoint& at) const;
+  // All strings at one voltage of the network, before the series resistance of the array.
+  struct State {
+    double voltage_V = 0.0, current_A = 0.0, slope_S = 0.0, curvature = 0.0;  // I, −I′, I″ by V
+    std::vector<StringPoint> strings;
+  };
+  // `x`: the current of the only string, else the voltage of the network.
+  void at(double x, State& state) const;
+  double end_x() const;
+  std::vector<double> breakpoints(double end) const;
+  double clamp_current_A(const Substring& substring) const;
+  double power_slope(const State& state) const;
+  std::vector<double> current_derivatives(const State& state) const;
+  Maximum maximum_at(const State& state, bool derivatives) const;
+  bool by_current() const { return strings_.size() == 1; }
+
+  std::vector<String> strings_;
+  std::shared_ptr<const LitCells> cells_;
+  std::vector<double> photocurrents_A_;
+  NetworkSettings settings_;
+};
+
+}  // namespace photorque

@@ -1,0 +1,533 @@
+#include "diagnosis/light/model/run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+constexpr size_t no_cell = static_cast<size_t>(-1);
+
+// The middle of some readings: what noise and one wild reading cannot move far.
+double middle_of(std::vector<double> values) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+template <class T>
+std::vector<T> chosen(const std::vector<T>& all, const std::vector<size_t>& rows) {
+  std::vector<T> result;
+  if (all.empty()) return result;
+  result.reserve(rows.size());
+  for (const size_t row : rows) result.push_back(all[row]);
+  return result;
+}
+
+bool same_rotation(const Quat& a, const Quat& b) {
+  return a.coeffs() == b.coeffs();
+}
+
+}  // namespace
+
+LightRun::LightRun(const LightLab& lab, LightRecording recording)
+    : lab_(&lab), recording_(std::move(recording)) {
+  if (!is_scan() && !lab.has_array()) {
+    throw InputError({recording_.name}, "array", "no table [array] in the experiment",
+                     "one, for a recording of voltages and currents");
+  }
+  if (is_scan()) {
+    place_scan();
+  } else {
+    place_cells();
+  }
+  find_noise();
+  find_circumstances();
+  number_samples();
+}
+
+void LightRun::place_scan() {
+  const LightRecording& r = recording_;
+  for (size_t i = 0; i < r.rows(); ++i) {
+    if (i == 0 || !same_rotation(r.lab_from_body[i], sites_.lab_from_body.back())) {
+      sites_.lab_from_body.push_back(r.lab_from_body[i]);
+    }
+    sites_.points_body_m.push_back(lab_->point_body_m(r.u_m[i], r.v_m[i]));
+    sites_.weights.push_back(1.0);
+    sites_.groups.push_back({i, 1});
+    sites_.outputs.push_back({sites_.lab_from_body.size() - 1, i});
+    first_output_.push_back(i);
+    size_t cell = no_cell;
+    for (size_t c = 0; c < lab_->cells().size(); ++c) {
+      const CellRectangle& at = lab_->cells()[c].rectangle;
+      if (r.u_m[i] >= at.u_low && r.u_m[i] < at.u_high && r.v_m[i] >= at.v_low &&
+          r.v_m[i] < at.v_high) {
+        cell = c;
+      }
+    }
+    cell_of_point_.push_back(cell);
+  }
+}
+
+void LightRun::place_cells() {
+  sites_.enters_cells = true;
+  for (const LightCell& cell : lab_->cells()) {
+    sites_.groups.push_back({sites_.points_body_m.size(), cell.points_body_m.size()});
+    sites_.points_body_m.insert(sites_.points_body_m.end(), cell.points_body_m.begin(),
+                                cell.points_body_m.end());
+    sites_.weights.insert(sites_.weights.end(), cell.weights.begin(), cell.weights.end());
+  }
+  const LightRecording& r = recording_;
+  const size_t cells = lab_->cells().size();
+  if (is_run()) {
+    for (size_t i = 0; i < r.rows(); ++i) first_output_.push_back(i * cells);
+    choose_knots();
+    return;
+  }
+  for (size_t i = 0; i < r.rows(); ++i) {
+    const bool again = i > 0 && same_rotation(r.lab_from_body[i], r.lab_from_body[i - 1]) &&
+                       r.temperature_K[i] == r.temperature_K[i - 1];
+    if (!again) {
+      sites_.lab_from_body.push_back(r.lab_from_body[i]);
+      for (size_t c = 0; c < cells; ++c) {
+        sites_.outputs.push_back({sites_.lab_from_body.size() - 1, c});
+      }
+    }
+    first_output_.push_back(sites_.outputs.size() - cells);
+    auto& known = cells_at_[r.temperature_K[i]];
+    if (known) continue;
+    std::vector<double> area;
+    for (const LightCell& cell : lab_->cells()) area.push_back(cell.area_m2);
+    known = std::make_shared<const LitCells>(
+        lit_cells(lab_->design().cell, area, r.temperature_K[i], 0.0, true));
+  }
+}
+
+// A platform moves smoothly, and light on its cells smoothly with it: it is evaluated at some rows
+// and interpolated by cubics of the time in between. Cells move by millimetres from knot to knot.
+void LightRun::choose_knots() {
+  const LightRecording& r = recording_;
+  const double largest_rad = lab_->walls().empty() ? 0.03 : 0.006;
+  constexpr size_t most_rows = 64;
+  std::vector<double> intervals;
+  for (size_t i = 1; i < r.rows(); ++i) intervals.push_back(r.time_s[i] - r.time_s[i - 1]);
+  const double usual_s = intervals.empty() ? 1.0 : middle_of(intervals);
+  const auto turned = [&](size_t a, size_t b) {
+    return r.lab_from_body[a].angularDistance(r.lab_from_body[b]);
+  };
+  std::vector<size_t> knots;
+  between_.resize(r.rows());
+  for (size_t first = 0, last = 0; first < r.rows(); first = last) {
+    last = first + 1;
+    while (last < r.rows() && turned(last, last - 1) < 2.0 * largest_rad &&
+           r.time_s[last] > r.time_s[last - 1] &&
+           r.time_s[last] - r.time_s[last - 1] < 5.0 * usual_s) {
+      ++last;
+    }
+    const size_t begin = knots.size();
+    for (size_t i = first; i < last; ++i) {
+      const bool few = last - first < 8;
+      if (i == first || i + 1 == last || few || turned(i, knots.back()) > largest_rad ||
+          i - knots.back() >= std::min(most_rows, (last - first) / 5)) {
+        knots.push_back(i);
+      }
+    }
+    const size_t count = std::min<size_t>(4, knots.size() - begin);
+    size_t at = begin;
+    for (size_t i = first; i < last; ++i) {
+      while (at + 1 < knots.size() && knots[at + 1] <= i) ++at;
+      const size_t from =
+          std::clamp(at, begin + 1, std::max(begin + 1, knots.size() - count + 1)) - 1;
+      Between& b = between_[i];
+      for (size_t k = 0; k < count; ++k) {
+        double weight = 1.0;
+        for (size_t m = 0; m < count; ++m) {
+          if (m == k) continue;
+          weight *= (r.time_s[i] - r.time_s[knots[from + m]]) /
+                    (r.time_s[knots[from + k]] - r.time_s[knots[from + m]]);
+        }
+        b.knot[k] = static_cast<uint32_t>(from + k);
+        b.weight[k] = weight;
+      }
+    }
+  }
+  for (const size_t row : knots) {
+    sites_.lab_from_body.push_back(r.lab_from_body[row]);
+    for (size_t c = 0; c < lab_->cells().size(); ++c) {
+      sites_.outputs.push_back({sites_.lab_from_body.size() - 1, c});
+    }
+  }
+}
+
+LampField LightRun::expanded(LampField field) const {
+  if (between_.empty()) return field;
+  const size_t cells = lab_->cells().size();
+  LampField all(rows() * cells, 0.0);
+  for (size_t row = 0; row < rows(); ++row) {
+    for (size_t k = 0; k < 4; ++k) {
+      const double weight = between_[row].weight[k];
+      if (weight == 0.0) continue;
+      const size_t from = between_[row].knot[k] * cells;
+      for (size_t c = 0; c < cells; ++c) all[row * cells + c] += weight * field[from + c];
+    }
+  }
+  return all;
+}
+
+void LightRun::find_noise() {
+  const LightNoise& noise = lab_->noise();
+  if (!is_scan()) {
+    if (!(noise.voltage_V > 0.0) || !(noise.current_A > 0.0)) {
+      throw InputError({lab_->experiment().file.path.string()}, "sensors.array", "no noise",
+                       "voltage_noise_V and current_noise_A > 0, the errors of a reading");
+    }
+    voltage_scale_V_ = std::max(1e-9, *std::ranges::max_element(recording_.voltage_V));
+    current_scale_A_ = std::max(1e-9, *std::ranges::max_element(recording_.current_A));
+    return;
+  }
+  if (!(noise.irradiance_W_m2 > 0.0) && !(noise.relative > 0.0)) {
+    throw InputError({lab_->experiment().file.path.string()}, "sensors.irradiance", "no noise",
+                     "noise_W_m2 or relative_noise > 0, the error of a reading");
+  }
+  // Of the light itself and not of one reading of it, whose own noise would weigh low ones more.
+  const std::vector<double>& E = recording_.irradiance_W_m2;
+  const double floor_W_m2 = 1e-3 * middle_of(E);
+  for (size_t i = 0; i < E.size(); ++i) {
+    constexpr size_t reach = 3;
+    std::vector<double> near;
+    for (size_t j = i > reach ? i - reach : 0; j <= std::min(i + reach, E.size() - 1); ++j) {
+      if (j == i || recording_.v_m[j] == recording_.v_m[i]) near.push_back(E[j]);
+    }
+    const double level = middle_of(near);
+    irradiance_sigma_.push_back(
+        std::max(std::hypot(noise.irradiance_W_m2, noise.relative * level), 1e-6 * floor_W_m2));
+  }
+}
+
+void LightRun::find_circumstances() {
+  const SurfaceGrid& g = lab_->grid();
+  const auto over = [](double x, double low, double high) {
+    return high > low ? 2.0 * (x - low) / (high - low) - 1.0 : 0.0;
+  };
+  circumstances_.resize(between_.empty() ? sites_.outputs.size() : rows() * lab_->cells().size());
+  for (size_t row = 0; row < recording_.rows(); ++row) {
+    const Vec3 up = recording_.lab_from_body[row] * Vec3::UnitZ();
+    Circumstance c;
+    c.tilt_rad = std::acos(std::clamp(up.z(), -1.0, 1.0));
+    c.heading_rad = std::atan2(up.y(), up.x());
+    c.temperature_K = recording_.temperature_K[row];
+    if (is_run()) c.time_s = recording_.time_s[row];
+    if (is_scan()) {
+      c.u = over(recording_.u_m[row], g.u_low, g.u_high);
+      c.v = over(recording_.v_m[row], g.v_low, g.v_high);
+      circumstances_[row] = c;
+      continue;
+    }
+    for (size_t k = 0; k < lab_->cells().size(); ++k) {
+      const CellRectangle& at = lab_->cells()[k].rectangle;
+      c.u = over(0.5 * (at.u_low + at.u_high), g.u_low, g.u_high);
+      c.v = over(0.5 * (at.v_low + at.v_high), g.v_low, g.v_high);
+      circumstances_[first_output_[row] + k] = c;
+    }
+  }
+  const LightState nominal = lab_->nominal();
+  const std::vector<double> light = signals(nominal, fields(nominal, nullptr));
+  const double most = std::max(1e-300, *std::ranges::max_element(light));
+  for (size_t o = 0; o < light.size(); ++o) circumstances_[o].irradiance = light[o] / most;
+}
+
+void LightRun::number_samples() {
+  sample_row_.clear();
+  sample_channel_.clear();
+  channels_ = is_scan()         ? std::vector<std::string>{"irradiance_W_m2"}
+              : holds_maximum() ? std::vector<std::string>{"array_voltage_V", "array_current_A"}
+              : is_run()        ? std::vector<std::string>{"array_current_A"}
+                                : std::vector<std::string>{"current_A"};
+  for (size_t row = 0; row < recording_.rows(); ++row) {
+    for (size_t c = 0; c < channels_.size(); ++c) {
+      sample_row_.push_back(row);
+      sample_channel_.push_back(static_cast<int>(c));
+    }
+  }
+}
+
+LightRun LightRun::part(const std::vector<size_t>& rows) const {
+  LightRecording some = recording_;
+  some.u_m = chosen(recording_.u_m, rows);
+  some.v_m = chosen(recording_.v_m, rows);
+  some.irradiance_W_m2 = chosen(recording_.irradiance_W_m2, rows);
+  some.voltage_V = chosen(recording_.voltage_V, rows);
+  some.current_A = chosen(recording_.current_A, rows);
+  some.time_s = chosen(recording_.time_s, rows);
+  some.lab_from_body = chosen(recording_.lab_from_body, rows);
+  some.temperature_K = chosen(recording_.temperature_K, rows);
+  some.sweep = chosen(recording_.sweep, rows);
+  LightRun run(*lab_, std::move(some));
+  if (is_scan()) run.irradiance_sigma_ = chosen(irradiance_sigma_, rows);
+  run.voltage_scale_V_ = voltage_scale_V_;
+  run.current_scale_A_ = current_scale_A_;
+  run.noise_factor_ = noise_factor_;
+  run.number_ = number_;
+  return run;
+}
+
+void LightRun::scale_noise(double factor) {
+  noise_factor_ *= factor;
+  for (double& s : irradiance_sigma_) s *= factor;
+}
+
+LightFields LightRun::fields(const LightState& state, const LightFields* near) const {
+  LightFields result;
+  std::shared_ptr<const LampSet> lamps;
+  const auto lamp_set = [&]() -> const LampSet& {
+    if (!lamps) lamps = lab_->lamps_with(state.divergence);
+    return *lamps;
+  };
+  for (size_t l = 0; l < lab_->lamps(); ++l) {
+    LampGeometry geometry = geometry_of(state, l, sites_.enters_cells);
+    if (near != nullptr && near->lamps[l].geometry == geometry) {
+      result.lamps.push_back(near->lamps[l]);
+      continue;
+    }
+    auto field = std::make_shared<const LampField>(
+        expanded(lamp_field(*lab_, lamp_set(), sites_, geometry)));
+    result.lamps.push_back({std::move(geometry), std::move(field)});
+  }
+  for (const WallShare& share : state.walls) {
+    for (const bool specular : {false, true}) {
+      const double part = specular ? share.specular : share.diffuse;
+      const auto key = std::pair(share.wall, specular);
+      const bool known = near != nullptr && near->walls.contains(key);
+      if (part == 0.0 && !known) continue;
+      std::vector<LightFields::Part>& parts = result.walls[key];
+      for (size_t l = 0; l < lab_->lamps(); ++l) {
+        LampGeometry geometry = geometry_of(state, l, false);
+        if (known && near->walls.at(key)[l].geometry == geometry) {
+          parts.push_back(near->walls.at(key)[l]);
+          continue;
+        }
+        auto field = std::make_shared<const LampField>(
+            expanded(wall_field(*lab_, lamp_set(), sites_, geometry, share.wall, specular)));
+        parts.push_back({std::move(geometry), std::move(field)});
+      }
+    }
+  }
+  return result;
+}
+
+std::vector<double> LightRun::signals(const LightState& state, const LightFields& fields) const {
+  std::vector<double> light(circumstances_.size(), 0.0);
+  std::vector<double> power(lab_->lamps());
+  for (size_t l = 0; l < power.size(); ++l) power[l] = state.power * state.lamp_power[l];
+  const auto add = [&](const LampField& field, double factor) {
+    if (factor == 0.0) return;
+    for (size_t o = 0; o < light.size(); ++o) light[o] += factor * field[o];
+  };
+  for (size_t l = 0; l < power.size(); ++l) add(*fields.lamps[l].field, power[l]);
+  for (const WallShare& share : state.walls) {
+    for (const bool specular : {false, true}) {
+      const double part = specular ? share.specular : share.diffuse;
+      const auto found = fields.walls.find({share.wall, specular});
+      if (part == 0.0 || found == fields.walls.end()) continue;
+      for (size_t l = 0; l < power.size(); ++l) add(*found->second[l].field, part * power[l]);
+    }
+  }
+  const size_t cells = lab_->cells().size();
+  for (size_t o = 0; o < light.size(); ++o) {
+    const Circumstance& c = circumstances_[o];
+    if (is_run() && state.droop_depth != 0.0) {
+      light[o] *= 1.0 - state.droop_depth * (1.0 - std::exp(-c.time_s / state.droop_time_s));
+    }
+    light[o] += state.ambient_W_m2;
+    for (const auto& law : state.light_laws) light[o] *= std::max(0.0, law(c));
+    if (is_scan()) {
+      if (cell_of_point_[o] != no_cell) light[o] *= state.cell_light[cell_of_point_[o]];
+      light[o] *= state.detector_gain;
+      continue;
+    }
+    const size_t k = o % cells;
+    const double warm_K = c.temperature_K - lab_->design().cell.reference.temperature_K;
+    const double warmth = std::max(0.0, photocurrent_factor(lab_->design().cell, c.temperature_K) +
+                                            state.photocurrent_per_K * warm_K);
+    light[o] *= state.cell_light[k] * state.soiling * state.cell_current[k] * warmth *
+                lab_->responsivity_A_W() * lab_->cells()[k].area_m2;
+    light[o] = std::max(0.0, light[o]);
+  }
+  return light;
+}
+
+std::vector<double> LightRun::photocurrents(const std::vector<double>& signals, size_t row) const {
+  const auto first = signals.begin() + static_cast<std::ptrdiff_t>(first_output_[row]);
+  return {first, first + static_cast<std::ptrdiff_t>(lab_->cells().size())};
+}
+
+LitNetwork LightRun::network(const LightState& state, const std::vector<double>& signals,
+                             size_t row) const {
+  const ArrayDesign& design = lab_->design();
+  NetworkSettings settings;
+  const double temperature_K = recording_.temperature_K[row];
+  settings.series_ohm = state.series_ohm;
+  settings.cell_offset_V =
+      state.voltage_V_per_K * (temperature_K - design.cell.reference.temperature_K);
+  settings.string_open = state.string_open;
+  settings.bypass_shorted = state.bypass_shorted;
+  return {design.wiring, cells_at(temperature_K, state.shunt_S), settings,
+          photocurrents(signals, row)};
+}
+
+std::shared_ptr<const LitCells> LightRun::cells_at(double temperature_K, double shunt_S) const {
+  const auto known = cells_at_.find(temperature_K);
+  if (shunt_S == 0.0 && known != cells_at_.end()) return known->second;
+  std::vector<double> area;
+  for (const LightCell& cell : lab_->cells()) area.push_back(cell.area_m2);
+  return std::make_shared<const LitCells>(
+      lit_cells(lab_->design().cell, area, temperature_K, shunt_S, false));
+}
+
+bool LightRun::is_trapped(const LightState& state, size_t row) const {
+  return std::ranges::any_of(state.trapped, [&](const LightState::Interval& i) {
+    return i.recording == number_ && recording_.time_s[row] >= i.from_s &&
+           recording_.time_s[row] <= i.to_s;
+  });
+}
+
+double LightRun::current_law(const LightState& state, size_t row, double voltage_V) const {
+  if (state.current_laws.empty()) return 0.0;
+  Circumstance c = circumstances_[first_output_[row]];
+  c.voltage = voltage_V / voltage_scale_V_;
+  double sum = 0.0;
+  for (const auto& law : state.current_laws) sum += law(c);
+  return sum * current_scale_A_;
+}
+
+Eigen::VectorXd LightRun::residuals(const LightState& state, const std::vector<double>& signals,
+                                    SignalSlopes* slopes) const {
+  Eigen::VectorXd r(static_cast<Eigen::Index>(samples()));
+  if (is_scan()) {
+    if (slopes != nullptr) slopes->of_scan.resize(samples());
+    for (size_t i = 0; i < samples(); ++i) {
+      r[static_cast<Eigen::Index>(i)] =
+          (recording_.irradiance_W_m2[i] - signals[i]) / irradiance_sigma_[i];
+      if (slopes != nullptr) slopes->of_scan[i] = -1.0 / irradiance_sigma_[i];
+    }
+    return r;
+  }
+  const auto cells = static_cast<Eigen::Index>(lab_->cells().size());
+  if (slopes != nullptr) slopes->by_photocurrent.setZero(r.size(), cells);
+  const double sigma_V = noise_factor_ * lab_->noise().voltage_V,
+               sigma_A = noise_factor_ * lab_->noise().current_A;
+  std::optional<LitNetwork> network_of_row;
+  size_t known = static_cast<size_t>(-1);
+  Eigen::Index at = 0;
+  for (size_t row = 0; row < rows(); ++row) {
+    if (first_output_[row] != known) {
+      network_of_row.emplace(network(state, signals, row));
+      known = first_output_[row];
+    }
+    const double law_A = current_law(state, row, recording_.voltage_V[row]);
+    const double V = recording_.voltage_V[row], I = recording_.current_A[row] - law_A;
+    if (!holds_maximum()) {
+      const LitNetwork::Point p =
+          network_of_row->nearest(V, I, sigma_V, sigma_A, slopes != nullptr);
+      const double across = std::hypot(sigma_A, p.slope_S * sigma_V);
+      const double off_V = (V - p.voltage_V) / sigma_V, off_A = (I - p.current_A) / sigma_A;
+      const double side = (I - p.current_A) + p.slope_S * (V - p.voltage_V);
+      r[at] = std::copysign(std::hypot(off_V, off_A), side);
+      for (Eigen::Index k = 0; slopes != nullptr && k < cells; ++k) {
+        slopes->by_photocurrent(at, k) =
+            -p.current_by_photocurrent[static_cast<size_t>(k)] / across;
+      }
+      ++at;
+      continue;
+    }
+    const bool trapped = is_trapped(state, row);
+    const std::vector<LitNetwork::Maximum> maxima = network_of_row->maxima(
+        trapped ? LitNetwork::Which::all : LitNetwork::Which::highest, slopes != nullptr);
+    const size_t which = maxima.size() > 1 && trapped ? 1 : 0;
+    const bool dark = maxima.empty();
+    const LitNetwork::Maximum none;
+    const LitNetwork::Maximum& m = dark ? none : maxima[which];
+    r[at] = (V - m.voltage_V) / sigma_V;
+    r[at + 1] = (I - m.current_A) / sigma_A;
+    for (Eigen::Index k = 0; slopes != nullptr && !dark && k < cells; ++k) {
+      const auto c = static_cast<size_t>(k);
+      slopes->by_photocurrent(at, k) = -m.voltage_by_photocurrent[c] / sigma_V;
+      slopes->by_photocurrent(at + 1, k) = -m.current_by_photocurrent[c] / sigma_A;
+    }
+    at += 2;
+  }
+  return r;
+}
+
+Eigen::VectorXd LightRun::moved(const SignalSlopes& slopes,
+                                const std::vector<double>& change) const {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(samples()));
+  if (is_scan()) {
+    for (size_t i = 0; i < samples(); ++i) {
+      result[static_cast<Eigen::Index>(i)] = slopes.of_scan[i] * change[i];
+    }
+    return result;
+  }
+  const size_t cells = lab_->cells().size();
+  for (size_t i = 0; i < samples(); ++i) {
+    double sum = 0.0;
+    const size_t first = first_output_[sample_row_[i]];
+    for (size_t k = 0; k < cells; ++k) {
+      sum += slopes.by_photocurrent(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) *
+             change[first + k];
+    }
+    result[static_cast<Eigen::Index>(i)] = sum;
+  }
+  return result;
+}
+
+std::vector<double> LightRun::gain_if_trapped(const LightState& state,
+                                              const std::vector<double>& signals) const {
+  std::vector<double> gain(rows(), 0.0);
+  if (!holds_maximum()) return gain;
+  const double sigma_V = noise_factor_ * lab_->noise().voltage_V,
+               sigma_A = noise_factor_ * lab_->noise().current_A;
+  for (size_t row = 0; row < rows(); ++row) {
+    const auto maxima = network(state, signals, row).maxima(LitNetwork::Which::all, false);
+    if (maxima.size() < 2) continue;
+    const auto chi2 = [&](const LitNetwork::Maximum& m) {
+      const double v = (recording_.voltage_V[row] - m.voltage_V) / sigma_V,
+                   i = (recording_.current_A[row] - m.current_A) / sigma_A;
+      return v * v + i * i;
+    };
+    gain[row] = chi2(maxima[0]) - chi2(maxima[1]);
+  }
+  return gain;
+}
+
+std::vector<LightRun::Expected> LightRun::expected(const LightState& state) const {
+  const std::vector<double> signal = signals(state, fields(state, nullptr));
+  std::vector<Expected> result(rows());
+  for (size_t row = 0; row < rows(); ++row) {
+    Expected& e = result[row];
+    if (is_scan()) {
+      e.irradiance_W_m2 = signal[row];
+      continue;
+    }
+    const LitNetwork at = network(state, signal, row);
+    if (!holds_maximum()) {
+      // The current at the measured voltage: an error of the current far above its own.
+      constexpr double far = 1e6;
+      const auto p = at.nearest(recording_.voltage_V[row], recording_.current_A[row],
+                                lab_->noise().voltage_V, far * lab_->noise().current_A, false);
+      e.voltage_V = recording_.voltage_V[row];
+      e.current_A = p.current_A + current_law(state, row, e.voltage_V);
+      continue;
+    }
+    const auto maxima = at.maxima(LitNetwork::Which::all, false);
+    if (maxima.empty()) continue;
+    const auto& m = maxima[maxima.size() > 1 && is_trapped(state, row) ? 1 : 0];
+    e.voltage_V = m.voltage_V;
+    e.current_A = m.current_A + current_law(state, row, m.voltage_V);
+  }
+  return result;
+}
+
+}  // namespace photorque

@@ -1,0 +1,127 @@
+// A recording as the forward model sees it: what it would read if a state were true.
+//
+// From the state follow, one after the other, each lamp's light on every place (field.h), the
+// signals (readings of a scan; photocurrents of every cell at every instant), and the residuals,
+// whitened by their noise:
+//   scan    (measured − predicted)/σ
+//   sweep   the signed distance of a point from the curve, in errors of voltage and current
+//   run     voltage and current of the maximum that the tracker holds; the distance from the curve
+//           where its steps make the voltage an input
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <map>
+#include <memory>
+
+#include "diagnosis/light/model/field.h"
+#include "diagnosis/light/model/network.h"
+#include "diagnosis/light/recordings/recording.h"
+
+namespace photorque {
+
+// Fields of all lamps and walls at one state; parts are shared with others of the same geometry.
+struct LightFields {
+  struct Part {
+    LampGeometry geometry;
+    std::shared_ptr<const LampField> field;
+  };
+  std::vector<Part> lamps;
+  std::map<std::pair<size_t, bool>, std::vector<Part>> walls;  // by wall and whether specular
+};
+
+// How the residuals move with the signals.
+struct SignalSlopes {
+  // Scans: ∂r/∂signal of each residual. Others: of each residual by every cell's photocurrent.
+  std::vector<double> of_scan;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_photocurrent;
+};
+
+class LightRun {
+ public:
+  // InputError where a sweep or a run has no array, or no noise is stated or found.
+  LightRun(const LightLab& lab, LightRecording recording);
+
+  const LightRecording& recording() const { return recording_; }
+  const LightLab& lab() const { return *lab_; }
+  // Which of the recordings of a diagnosis it is, from 0; those held out come after the others.
+  int number() const { return number_; }
+  void set_number(int number) { number_ = number; }
+  size_t rows() const { return recording_.rows(); }
+  // Residuals, and which row and channel each belongs to.
+  size_t samples() const { return sample_row_.size(); }
+  const std::vector<size_t>& sample_row() const { return sample_row_; }
+  const std::vector<int>& sample_channel() const { return sample_channel_; }
+  // "irradiance_W_m2", "current_A", "array_voltage_V", …, by channel.
+  const std::vector<std::string>& channels() const { return channels_; }
+  double row_noise(size_t row) const { return irradiance_sigma_[row]; }
+
+  // The rows chosen alone.
+  LightRun part(const std::vector<size_t>& rows) const;
+  // The same with all noise multiplied.
+  void scale_noise(double factor);
+
+  LightFields fields(const LightState& state, const LightFields* near) const;
+  std::vector<double> signals(const LightState& state, const LightFields& fields) const;
+  // `slopes` may be null.
+  Eigen::VectorXd residuals(const LightState& state, const std::vector<double>& signals,
+                            SignalSlopes* slopes) const;
+  // Of the residuals, by a change of the signals.
+  Eigen::VectorXd moved(const SignalSlopes& slopes, const std::vector<double>& change) const;
+
+  // Of runs: by how much χ² of each row falls if the tracker stands at the second highest maximum.
+  std::vector<double> gain_if_trapped(const LightState& state,
+                                      const std::vector<double>& signals) const;
+
+  // What a reading is expected to be: of a scan the irradiance; of others voltage and current (of a
+  // sweep the current at the measured voltage).
+  struct Expected {
+    double irradiance_W_m2 = 0.0, voltage_V = 0.0, current_A = 0.0;
+  };
+  std::vector<Expected> expected(const LightState& state) const;
+
+  // Where each output is, and when.
+  const std::vector<Circumstance>& circumstances() const { return circumstances_; }
+  size_t output_of_row(size_t row) const { return first_output_[row]; }
+  LitNetwork network(const LightState& state, const std::vector<double>& signals, size_t row) const;
+
+ private:
+  bool is_scan() const { return recording_.kind == LightRecording::Kind::scan; }
+  bool is_run() const { return recording_.kind == LightRecording::Kind::run; }
+  bool holds_maximum() const { return is_run() && !lab_->noise().tracker_step_V; }
+  void place_scan();
+  void place_cells();
+  void find_noise();
+  void find_circumstances();
+  void number_samples();
+  bool is_trapped(const LightState& state, size_t row) const;
+  double current_law(const LightState& state, size_t row, double voltage_V) const;
+  std::vector<double> photocurrents(const std::vector<double>& signals, size_t row) const;
+
+  void choose_knots();
+  LampField expanded(LampField field) const;
+  std::shared_ptr<const LitCells> cells_at(double temperature_K, double shunt_S) const;
+
+  // A row between some attitudes at which light is evaluated: places among the knots, weights.
+  struct Between {
+    std::array<uint32_t, 4> knot{};
+    std::array<double, 4> weight{};
+  };
+  const LightLab* lab_;
+  LightRecording recording_;
+  LightSites sites_;
+  std::vector<Between> between_;  // of runs, per row; empty: light is evaluated where it counts
+  std::map<double, std::shared_ptr<const LitCells>> cells_at_;  // of sweeps, by temperature
+  std::vector<size_t> first_output_;      // of each row; rows of one curve share theirs
+  std::vector<size_t> cell_of_point_;     // scans: whose rectangle a row lies in; else none
+  std::vector<double> irradiance_sigma_;  // scans, per row
+  int number_ = 0;
+  double noise_factor_ = 1.0;
+  double voltage_scale_V_ = 1.0, current_scale_A_ = 1.0;
+  std::vector<Circumstance> circumstances_;  // per output
+  std::vector<size_t> sample_row_;
+  std::vector<int> sample_channel_;
+  std::vector<std::string> channels_;
+};
+
+}  // namespace photorque

@@ -1,0 +1,53 @@
+// Recordings of light and power: scans of irradiance, sweeps of current over voltage, runs of an
+// array under a tracker. The header of a file tells which of the three it is.
+//
+// CSV (also .csv.gz), columns in any order, comments from # on. Rows that cannot be read are left
+// out and counted; wild readings are found later, against a model (diagnosis/light/clean.h).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/vector.h"
+
+namespace photorque {
+
+struct LightRecording {
+  enum class Kind {
+    scan,   // u_m, v_m, irradiance_W_m2 [, tilt_deg, heading_deg]
+    sweep,  // voltage_V, current_A [, sweep, tilt_deg, heading_deg, cell_temperature_K]
+    run,    // t_s, q_w … q_z, array_voltage_V, array_current_A [, cell_temperature_K, …]
+  };
+  Kind kind = Kind::scan;
+  std::string name;  // path as given
+
+  // One entry per row that was kept; what the kind does not have is empty.
+  std::vector<double> u_m, v_m, irradiance_W_m2;
+  std::vector<double> voltage_V, current_A;
+  std::vector<double> time_s;
+  std::vector<Quat> lab_from_body;
+  std::vector<double> temperature_K;
+  std::vector<int> sweep;
+
+  int64_t rows_read = 0;                    // data rows in the file
+  std::map<std::string, int64_t> rejected;  // by reason: "torn row", "unreadable", …
+  size_t rows() const { return lab_from_body.size(); }
+};
+
+// What rows have that do not say it themselves.
+struct UsualCircumstances {
+  Quat lab_from_body = Quat::Identity();
+  double temperature_K = 298.15;
+};
+
+// Whether a file's header is one of these. False for files that cannot be read.
+bool is_light_recording(const std::filesystem::path& path);
+
+// InputError with file and line when there is no such header or no usable row.
+LightRecording read_light_recording(const std::filesystem::path& path,
+                                    const UsualCircumstances& usual);
+
+}  // namespace photorque

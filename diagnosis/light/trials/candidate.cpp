@@ -1,0 +1,106 @@
+#include "diagnosis/light/trials/candidate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photorque {
+namespace {
+
+void add_numbers(LightCandidate& c) {
+  for (size_t p = 0; p < c.kind.parameters.size(); ++p) {
+    const EffectParameter& e = c.kind.parameters[p];
+    for (size_t k = 0; k < e.count; ++k) {
+      const double start = e.starts.empty() ? 0.0 : e.starts.front();
+      c.numbers.push_back({p, start, e.scale, e.lowest, e.highest,
+                           e.step > 0.0 ? e.step : 0.02 * e.scale, e.is_strength && e.is_fitted,
+                           e.is_fitted});
+    }
+  }
+}
+
+size_t count_of(const LightLab& lab, LightEffectKind::Index index) {
+  switch (index) {
+    case LightEffectKind::Index::none:
+      return 1;
+    case LightEffectKind::Index::lamp:
+      return lab.lamps();
+    case LightEffectKind::Index::cell:
+      return lab.cells().size();
+    case LightEffectKind::Index::string:
+      return lab.strings();
+    case LightEffectKind::Index::bypass:
+      return lab.bypasses();
+    case LightEffectKind::Index::wall:
+      return lab.walls().size();
+  }
+  return 0;
+}
+
+bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
+  return std::ranges::any_of(runs, [&](const FittedRun& r) {
+    switch (r.run->recording().kind) {
+      case LightRecording::Kind::scan:
+        return kind.in_scans;
+      case LightRecording::Kind::sweep:
+        return kind.in_sweeps;
+      case LightRecording::Kind::run:
+        return kind.in_runs;
+    }
+    return false;
+  });
+}
+
+}  // namespace
+
+FittedRun prepared_run(LightRun run, const LightState& nominal) {
+  FittedRun result;
+  result.run = std::make_shared<const LightRun>(std::move(run));
+  result.nominal = std::make_shared<const LightFields>(result.run->fields(nominal, nullptr));
+  result.prior_slopes = std::make_shared<const Eigen::MatrixXd>(
+      static_cast<Eigen::Index>(result.run->samples()), Eigen::Index{0});
+  return result;
+}
+
+std::vector<double> LightCandidate::start() const {
+  std::vector<double> x;
+  for (const Number& n : numbers) x.push_back(n.start);
+  return x;
+}
+
+size_t LightCandidate::fitted() const {
+  return static_cast<size_t>(
+      std::ranges::count_if(numbers, [](const Number& n) { return n.is_fitted; }));
+}
+
+bool LightCandidate::has_strength() const {
+  return std::ranges::any_of(numbers, [](const Number& n) { return n.is_strength; });
+}
+
+bool LightCandidate::is_linear() const {
+  return std::ranges::all_of(numbers,
+                             [](const Number& n) { return n.is_strength || !n.is_fitted; });
+}
+
+LightCandidates light_candidates(const LightLab& lab, const LightState& nominal,
+                                 const std::vector<FittedRun>& runs, const Thresholds& limits) {
+  LightCandidates all{{}, limits, &lab, nominal, {}};
+  for (const LightEffectKind& kind : all_light_effect_kinds()) {
+    if (!can_show(kind, runs)) continue;
+    const size_t count = count_of(lab, kind.index);
+    // An interrupted only string, or a shorted only diode, leaves nothing to measure.
+    const bool is_only = count < 2 && (kind.index == LightEffectKind::Index::string);
+    for (size_t i = 0; i < count && !is_only; ++i) {
+      LightCandidate c{kind, i, kind.name, {}, {}};
+      if (kind.index != LightEffectKind::Index::none) c.label += "[" + std::to_string(i) + "]";
+      add_numbers(c);
+      all.list.push_back(std::move(c));
+    }
+  }
+  for (LightCandidate& c : empirical_light_candidates(runs)) {
+    add_numbers(c);
+    all.list.push_back(std::move(c));
+  }
+  return all;
+}
+
+}  // namespace photorque

@@ -1,0 +1,63 @@
+// Readers of scans, sweeps and runs: told apart by their headers, and what is dropped is counted.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/errors.h"
+#include "diagnosis/light/recordings/recording.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path written(const std::string& name, const std::string& text) {
+  const fs::path path = fs::path(testing::TempDir()) / name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(LightRecordings, AScanAmongCommentsAndTornRows) {
+  const auto scan = read_light_recording(
+      written("scan.csv",
+              "# operator: nobody\nsome words of an "
+              "instrument\nu_m,v_m,irradiance_W_m2,tilt_deg,heading_deg\n"
+              "0.01,0.02,300.5,12,60\n0.01,0.03\n0.02,0.02,nan,12,60\n0.03,0.02,301,12,60\n"),
+      {});
+  EXPECT_EQ(scan.kind, LightRecording::Kind::scan);
+  ASSERT_EQ(scan.rows(), 2u);
+  EXPECT_EQ(scan.rows_read, 4);
+  EXPECT_EQ(scan.irradiance_W_m2[1], 301.0);
+  // 12 deg of tilt: the body's z axis leans by its cosine.
+  EXPECT_NEAR((scan.lab_from_body[0] * Vec3::UnitZ()).z(), 0.97814760073380564, 1e-12);
+  EXPECT_EQ(scan.rejected.at("wrong number of cells"), 1);
+  EXPECT_EQ(scan.rejected.at("unreadable number"), 1);
+}
+
+TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
+  const auto sweep = read_light_recording(written("sweep.csv", "voltage_mV,current_mA\n1000,250\n"),
+                                          {Quat::Identity(), 310.0});
+  EXPECT_EQ(sweep.kind, LightRecording::Kind::sweep);
+  EXPECT_NEAR(sweep.voltage_V[0], 1.0, 1e-12);
+  EXPECT_NEAR(sweep.current_A[0], 0.25, 1e-12);
+  EXPECT_EQ(sweep.temperature_K[0], 310.0);
+  const auto run = read_light_recording(
+      written("run.csv",
+              "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,array_power_W,"
+              "cell_temperature_K,led_current_A\n0,1,0,0,0,8,0.3,2.4,297,0.7\n"
+              "1,2,0,0,0,8,0.3,2.4,297,0.7\n"),
+      {});
+  EXPECT_EQ(run.kind, LightRecording::Kind::run);
+  EXPECT_EQ(run.rows(), 1u);
+  EXPECT_EQ(run.rejected.at("unreadable attitude"), 1);
+}
+
+TEST(LightRecordings, OthersAreRefused) {
+  const fs::path motion = written("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");
+  EXPECT_FALSE(is_light_recording(motion));
+  EXPECT_THROW(read_light_recording(motion, {}), InputError);
+  EXPECT_THROW(read_light_recording(written("empty.csv", "voltage_V,current_A\n"), {}), InputError);
+}
+
+}  // namespace
+}  // namespace photorque
