@@ -266,14 +266,12 @@ Diagnosis diagnose_light(const LightLab& lab, const LightState& nominal,
                          std::vector<LightRecording> holdouts, const LightDiagnoseOptions& asked) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
   LightDiagnoseOptions options = asked;
-  // Light is nearly linear in what acts, so forecasts are good, and there is a candidate for every
-  // lamp and cell: only those near the best are fitted for comparison,
-  // with few steps.
-  options.limits.scoring.min_fraction = 0.3;
+  // There is a candidate for every lamp and cell, and light is nearly linear in what acts: few
+  // steps do. (The circuit is not: of forecasts a small one may be the right one.)
   options.limits.held_out.max_leaders = 6;
   options.limits.leaders.max_leaders = 4;
   options.limits.fitting.slow_blocks = 400;
-  options.limits.fitting.trial_iterations = 6;
+  options.limits.fitting.trial_iterations = 10;
   options.limits.fitting.patient_iterations = 20;
   options.limits.search.max_effects = 3;
   const LightData data =
