@@ -117,8 +117,23 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
   }
 }
 
+namespace {
+
+// Standard errors from so many replicates that chance exceeds as seldom as 4 of a normal variable
+// (once in 16,000), by Student's distribution: 5.5 of 16 replicates.
+// Source: M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions" (1964), 26.7.5.
+double loud_sigma_of(int replicates) {
+  constexpr double z = 4.0, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  const double n = replicates - 1;
+  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
+         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
+}
+
+}  // namespace
+
 std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const {
-  constexpr double loud_sigma = 4.0, lost = 1e-9;
+  constexpr double lost = 1e-9;
+  const double loud_sigma = loud_sigma_of(experiment_.file.trace.replicates);
   std::vector<std::string> lines;
   const PowerBalance& power_balance = result.power_balance;
   if (power_balance.closure > lost) {
