@@ -167,7 +167,8 @@ struct Diagnosis {
   std::string because = {};  // of "unexplained": which evidence decided it
   Where where;
   std::vector<FoundEffect> effects;
-  // Under which table an experiment has such effects: [[disturbance]] of motion, [[effect]] of light.
+  // Under which table an experiment has such effects: [[disturbance]] of motion, [[effect]] of
+  // light.
   std::string effect_table = "disturbance";
   std::vector<EmpiricalTorque> empirical;
   // Effects that the model reported contains beside these without being named: it predicts what it

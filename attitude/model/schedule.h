@@ -25,8 +25,8 @@ struct ContinuedTorque {
 
 struct ZeroOrderHold {
   Vec3 command_body_N_m = Vec3::Zero();
-  double battery_current_A = 0.0;  // positive discharges
-  ContinuedTorque light_body = {};      // of light that is traced beside the motion
+  double battery_current_A = 0.0;   // positive discharges
+  ContinuedTorque light_body = {};  // of light that is traced beside the motion
 
   bool operator==(const ZeroOrderHold&) const = default;
 };

@@ -10,9 +10,8 @@ namespace photorque {
 namespace {
 
 // What optical commands read of the same file.
-constexpr const char* optical_tables[] = {"scene",    "material", "source",     "receiver",
-                                          "attitude", "trace",    "torque_map", "camera",
-                                          "effect"};
+constexpr const char* optical_tables[] = {"scene", "material",   "source", "receiver", "attitude",
+                                          "trace", "torque_map", "camera", "effect"};
 
 // The files that texts of the experiment name, relative to its folder.
 void collect_files(const SettingsNode& node, const std::filesystem::path& folder,
