@@ -35,6 +35,8 @@ Disturbance read_disturbance(const Settings& settings, const DisturbanceContext&
   const DisturbanceKind& kind = kinds[settings.choice("kind", names)];
   Disturbance disturbance = kind.read(settings, context);
   disturbance.kind = kind.name;
+  disturbance.per_recording =
+      settings.flag_or("per_recording", false) || kind.screening.per_recording;
   return disturbance;
 }
 

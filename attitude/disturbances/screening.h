@@ -45,10 +45,20 @@ struct EffectKey {
 struct Parametrisation {
   std::string explanation;  // one sentence for the report
   std::vector<EffectKey> keys;
+  bool of_free_bodies = false;  // only they have it: no bearing turns them, and their shape shows
 };
 
-// What must be there for an effect to show at all: torques commanded, a current, a magnetic field.
-enum class Requirement { none, command, charge, field };
+// What must be there for an effect to show at all.
+enum class Requirement {
+  none,
+  command,      // torques commanded
+  charge,       // a current
+  field,        // a magnetic field
+  gravity,      // weight on a support
+  bearing,      // something that carries the platform
+  air_bearing,  // and lets it turn about all axes
+  wheel,        // the measured speed of one
+};
 
 // What has to be scanned before a fit can find it.
 enum class Scan {

@@ -71,16 +71,35 @@ inference::Parameter parameter_of(const Hypothesis& h, const Free& f, double val
   return {name_of(h, f), "", value, f.mean, f.sigma, f.lowest, f.highest};
 }
 
-// Where a run began.
+// Where a run began. What no reading tells keeps where it is: rotations that no camera sees by a
+// radian, motion that the bearings of one axis hold by next to nothing.
 std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
-                                                     const PlatformState& initial) {
+                                                     const PlatformState& initial,
+                                                     const Observation& seen) {
+  constexpr double unseen_rad = 1.0, held = 1e-9;
   const char* axes[] = {"x", "y", "z"};
+  const Platform& platform = model.platform;
   std::vector<inference::Parameter> result;
-  for (const char* axis : axes) {
-    result.push_back({std::string("initial rotation ") + axis, "rad", 0.0});
+  const auto is_held = [&](int k) {
+    return platform.turns_about_one_axis() && std::abs(platform.axis[k]) < 1e-12;
+  };
+  for (int k = 0; k < 3; ++k) {
+    inference::Parameter p{std::string("initial rotation ") + axes[k], "rad", 0.0};
+    if (is_held(k)) {
+      p.sigma = held;
+    } else if (!seen.sees_attitude()) {
+      p.sigma = unseen_rad;
+    }
+    result.push_back(p);
   }
   for (int k = 0; k < 3; ++k) {
-    result.push_back({std::string("initial rate ") + axes[k], "rad/s", initial.rate_body_rad_s[k]});
+    const double rate_rad_s = initial.rate_body_rad_s[k];
+    inference::Parameter p{std::string("initial rate ") + axes[k], "rad/s", rate_rad_s};
+    if (is_held(k)) {
+      p.mean = rate_rad_s;
+      p.sigma = held;
+    }
+    result.push_back(p);
   }
   if (initial.extra.empty()) return result;
   const PlatformState rest = Dynamics(model).initial_state(initial.rate_body_rad_s);
@@ -135,8 +154,9 @@ Hypothesis AttitudeForwardModel::hypothesis_at(const Eigen::VectorXd& at) const 
 inference::Parameters AttitudeForwardModel::parameters(const Eigen::VectorXd& at) const {
   const Hypothesis h = hypothesis_at(at);
   inference::Parameters result;
-  for (const RunStart& run : h.runs) {
-    std::vector<inference::Parameter> own = initial_parameters(h.model, run.initial);
+  for (size_t r = 0; r < h.runs.size(); ++r) {
+    const RunStart& run = h.runs[r];
+    std::vector<inference::Parameter> own = initial_parameters(h.model, run.initial, runs_[r]);
     size_t k = 0;
     for (const Free& f : h.free) {
       if (f.per_run) own.push_back(parameter_of(h, f, run.own[k++]));

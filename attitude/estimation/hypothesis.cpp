@@ -14,17 +14,46 @@ AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
   return result;
 }
 
-PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
-  size_t first = 0;
-  while (seen.attitude_rows[first] == 0.0) ++first;
-  size_t next = first + 1;
-  while (seen.attitude_rows[next] == 0.0) ++next;
+namespace {
+
+// The first block from `from` on in which `is_read`; the number of blocks where there is none.
+template <typename Read>
+size_t first_block(const Observation& seen, size_t from, const Read& is_read) {
+  size_t i = from;
+  while (i < seen.blocks() && !is_read(i)) ++i;
+  return i;
+}
+
+// From the first attitude to the next.
+Vec3 rate_between_attitudes_rad_s(const Observation& seen, size_t first, size_t next) {
+  if (next >= seen.blocks()) return Vec3::Zero();
   const Vec3 rate_lab = rotation_vector(seen.attitude[next] * seen.attitude[first].conjugate()) /
                         (seen.time_s[next] - seen.time_s[first]);
-  Vec3 rate = seen.attitude[first].conjugate() * rate_lab;
-  if ((seen.gyro_rows[first].array() > 0.0).all()) rate = seen.gyro_rad_s[first];
+  return seen.attitude[first].conjugate() * rate_lab;
+}
+
+}  // namespace
+
+PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
+  const auto has_attitude = [&](size_t i) { return seen.attitude_rows[i] > 0.0; };
+  const size_t first = first_block(seen, 0, has_attitude),
+               next = first_block(seen, first + 1, has_attitude);
+  Vec3 rate = rate_between_attitudes_rad_s(seen, first, next);
+  const size_t gyro_at = first < seen.blocks() ? first : 0;
+  if ((seen.gyro_rows[gyro_at].array() > 0.0).all()) {
+    rate = seen.gyro_rad_s[gyro_at];
+  } else if (!seen.sees_attitude()) {
+    for (int k = 0; k < 3; ++k) {
+      const size_t i = first_block(seen, 0, [&](size_t n) { return seen.gyro_rows[n][k] > 0.0; });
+      if (i < seen.blocks()) rate[k] = seen.gyro_rad_s[i][k];
+    }
+  }
+  const Platform& platform = model.platform;
+  if (platform.turns_about_one_axis()) rate = platform.axis.dot(rate) * platform.axis;
   PlatformState state = Dynamics(model).initial_state(rate);
   state.time_s = seen.time_s.front();
+  state.charge_drawn_C = seen.initial_charge_C;
+  if (first == seen.blocks()) return state;
   const double back_s = seen.time_s.front() - seen.time_s[first];
   const Vec3 turn = back_s * rate;
   state.lab_from_body = seen.attitude[first];
@@ -32,7 +61,6 @@ PlatformState first_state(const AttitudeModel& model, const Observation& seen) {
     state.lab_from_body =
         state.lab_from_body * Quat(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
   }
-  state.charge_drawn_C = seen.initial_charge_C;
   return state;
 }
 

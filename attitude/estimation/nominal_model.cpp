@@ -26,7 +26,7 @@ Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Obs
   for (size_t d = 0; d < h.model.disturbances.size(); ++d) {
     const Disturbance& disturbance = h.model.disturbances[d];
     const DisturbanceKind* kind = find_kind(disturbance.kind);
-    const bool per_run = kind != nullptr && kind->screening.per_recording;
+    const bool per_run = disturbance.per_recording;
     for (size_t p = 0; p < disturbance.parameters.size(); ++p) {
       const Parameter& parameter = disturbance.parameters[p];
       if (!(parameter.sigma > 0.0)) continue;

@@ -4,40 +4,13 @@
 #include <array>
 #include <cmath>
 
+#include "attitude/estimation/columns.h"
 #include "core/errors.h"
 
 namespace photorque {
 namespace {
 
-constexpr size_t fewest_attitudes = 20;
-
-struct Columns {
-  std::array<const Channel*, 4> q{};
-  std::array<const Channel*, 3> gyro{};
-  bool has_gyro = false;
-
-  Columns(const Recording& recording, const std::string& name) {
-    const char* q_names[] = {"q_w", "q_x", "q_y", "q_z"};
-    const char* gyro_names[] = {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
-    for (size_t k = 0; k < 4; ++k) {
-      q[k] = recording.find(q_names[k]);
-      if (q[k] == nullptr) {
-        throw InputError({name, 0}, "header", std::string("no channel ") + q_names[k],
-                         "the attitude q_w, q_x, q_y, q_z");
-      }
-    }
-    for (size_t k = 0; k < 3; ++k) {
-      gyro[k] = recording.find(gyro_names[k]);
-      has_gyro = has_gyro || gyro[k] != nullptr;
-    }
-  }
-  Quat attitude(size_t row) const {
-    return {q[0]->values[row], q[1]->values[row], q[2]->values[row], q[3]->values[row]};
-  }
-  double rate(size_t axis, size_t row) const {
-    return gyro[axis] == nullptr ? NAN : gyro[axis]->values[row];
-  }
-};
+constexpr size_t fewest_readings = 20;
 
 Quat turned_by(const Vec3& rotation_rad) {
   const double angle = rotation_rad.norm();
@@ -179,38 +152,57 @@ void NoiseLevels::set(int channel, const ChannelNoise& noise) {
 
 NoiseLevels noise_levels(const Sensors& sensors) {
   NoiseLevels noise;
-  if (sensors.camera && sensors.camera->noise_rad.minCoeff() > 0.0) {
-    noise.camera_rad = sensors.camera->noise_rad;
-  }
-  if (sensors.gyro && sensors.gyro->noise_rad_s > 0.0) {
-    noise.gyro_rad_s = Vec3::Constant(sensors.gyro->noise_rad_s);
-  }
+  if (states_camera_noise(sensors)) noise.camera_rad = sensors.camera->noise_rad;
+  if (states_gyro_noise(sensors)) noise.gyro_rad_s = Vec3::Constant(sensors.gyro->noise_rad_s);
   return noise;
 }
 
-Observation observe(const Recording& recording, const std::string& name, size_t max_blocks) {
-  const Columns columns(recording, name);
+bool states_camera_noise(const Sensors& sensors) {
+  return sensors.camera && sensors.camera->noise_rad.minCoeff() > 0.0;
+}
+
+bool states_gyro_noise(const Sensors& sensors) {
+  return sensors.gyro && sensors.gyro->noise_rad_s > 0.0;
+}
+
+size_t Observation::readings(size_t first, size_t last) const {
+  size_t count = 0;
+  for (size_t i = first; i < last; ++i) {
+    const bool read =
+        sees_some_attitude() ? attitude_rows[i] > 0.0 : (gyro_rows[i].array() > 0.0).any();
+    count += read ? 1 : 0;
+  }
+  return count;
+}
+
+Observation observe(const Recording& recording, const std::string& name, const Platform& platform,
+                    size_t max_blocks) {
+  const MotionColumns columns(recording, platform, name);
   Observation seen;
   seen.name = name;
   seen.schedule = recording.schedule();
-  seen.has_gyro = columns.has_gyro;
+  seen.has_gyro = columns.has_gyro();
+  seen.sees_axis = columns.sees_axis();
   seen.rows = static_cast<int64_t>(recording.rows());
   seen.row_interval_s = recording.report.median_interval_s;
   seen.time_s = recording.time_s;
-  size_t attitudes = 0;
   for (size_t row = 0; row < recording.rows(); ++row) {
-    const Quat q = columns.attitude(row).normalized();
-    const bool complete = q.coeffs().allFinite();
-    attitudes += complete ? 1 : 0;
+    const bool usable = !columns.has_event(row);
+    const Quat q = columns.attitude(row);
+    const bool complete = usable && columns.has_attitude() && q.coeffs().allFinite();
     seen.attitude.push_back(q);
     seen.attitude_rows.push_back(complete ? 1.0 : 0.0);
-    const Vec3 rate(columns.rate(0, row), columns.rate(1, row), columns.rate(2, row));
+    const Vec3 rate(columns.rate_rad_s(0, row), columns.rate_rad_s(1, row),
+                    columns.rate_rad_s(2, row));
     seen.gyro_rad_s.push_back(rate);
-    seen.gyro_rows.push_back(rate.unaryExpr([](double x) { return std::isfinite(x) ? 1.0 : 0.0; }));
+    seen.gyro_rows.push_back(
+        rate.unaryExpr([&](double x) { return usable && std::isfinite(x) ? 1.0 : 0.0; }));
   }
-  if (attitudes < fewest_attitudes) {
-    throw InputError({name, 0}, "q_w", std::to_string(attitudes) + " complete attitudes",
-                     "at least " + std::to_string(fewest_attitudes));
+  if (const size_t readings = seen.readings(0, seen.blocks()); readings < fewest_readings) {
+    throw InputError(
+        {name, 0}, columns.has_attitude() ? "q_w" : "gyro_x_rad_s",
+        std::to_string(readings) + (columns.has_attitude() ? " complete attitudes" : " rates"),
+        "at least " + std::to_string(fewest_readings));
   }
   return seen.averaged(max_blocks);
 }

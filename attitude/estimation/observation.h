@@ -2,10 +2,12 @@
 // averaged over blocks that are short against the motion.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "attitude/model/platform.h"
 #include "attitude/recordings/recording.h"
 #include "attitude/recordings/sensors.h"
 
@@ -34,12 +36,16 @@ struct NoiseLevels {
 
 // Those of the instruments; where they state none, the usual ones above.
 NoiseLevels noise_levels(const Sensors& sensors);
+bool states_camera_noise(const Sensors& sensors);
+bool states_gyro_noise(const Sensors& sensors);
 
 struct Observation {
   std::string name;
   Schedule schedule;
   double initial_charge_C = 0.0;  // drawn before the first row
   bool has_gyro = false;
+  // Lab axes about which the attitude is read; none: there is no attitude.
+  std::array<bool, 3> sees_axis = {true, true, true};
 
   // Blocks of rows, by the mean of their times. A block without a reading has count 0.
   std::vector<double> time_s;
@@ -54,8 +60,13 @@ struct Observation {
   size_t blocks() const { return time_s.size(); }
   // Of a channel as in NoiseLevels.
   double rows_of(size_t block, int channel) const {
-    return channel < 3 ? attitude_rows[block] : gyro_rows[block][channel - 3];
+    if (channel >= 3) return gyro_rows[block][channel - 3];
+    return sees_axis[static_cast<size_t>(channel)] ? attitude_rows[block] : 0.0;
   }
+  bool sees_attitude() const { return sees_axis[0] && sees_axis[1] && sees_axis[2]; }
+  bool sees_some_attitude() const { return sees_axis[0] || sees_axis[1] || sees_axis[2]; }
+  // Readings in the blocks [first, last): attitudes, or rates where there are none.
+  size_t readings(size_t first, size_t last) const;
   double duration_s() const { return time_s.back() - time_s.front(); }
   // The blocks [first, last) alone, the charge drawn before them counted.
   Observation part(size_t first, size_t last) const;
@@ -64,8 +75,9 @@ struct Observation {
 };
 
 // About `max_blocks` blocks at most; a recording with fewer rows keeps them all. InputError when
-// the recording has no attitude or fewer than 20 complete ones.
-Observation observe(const Recording& recording, const std::string& name, size_t max_blocks = 6000);
+// the recording has neither an attitude nor a rate (columns.h), or fewer than 20 readings of them.
+Observation observe(const Recording& recording, const std::string& name,
+                    const Platform& platform = {}, size_t max_blocks = 6000);
 
 // The rotation vector of a rotation, at most π long [rad].
 Vec3 rotation_vector(const Quat& rotation);

@@ -66,9 +66,13 @@ double fastest_rad_s(const Observation& seen) {
   double fastest = 0.1;
   size_t before = seen.blocks();
   for (size_t i = 0; i < seen.blocks(); ++i) {
-    if ((seen.gyro_rows[i].array() > 0.0).all()) {
-      fastest = std::max(fastest, seen.gyro_rad_s[i].norm());
-    } else if (!seen.has_gyro && seen.attitude_rows[i] > 0.0) {
+    if (seen.has_gyro) {
+      double square = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        if (seen.gyro_rows[i][k] > 0.0) square += seen.gyro_rad_s[i][k] * seen.gyro_rad_s[i][k];
+      }
+      fastest = std::max(fastest, std::sqrt(square));
+    } else if (seen.attitude_rows[i] > 0.0) {
       if (before < i) {
         const Quat turn = seen.attitude[before].conjugate() * seen.attitude[i];
         fastest = std::max(fastest,
@@ -128,7 +132,7 @@ class Comparison {
   void add_block(size_t block, const PlatformState& state, const Vec3& camera_offset_body,
                  const Vec3& gyro_rad_s) {
     WhiteRow white = WhiteRow::Constant(NAN), off = white;
-    if (seen_.attitude_rows[block] > 0.0) {
+    if (seen_.attitude_rows[block] > 0.0 && seen_.sees_some_attitude()) {
       off.head<3>() = rotation_vector(seen_.attitude[block] * state.lab_from_body.conjugate()) -
                       state.lab_from_body * camera_offset_body;
     }

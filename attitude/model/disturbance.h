@@ -98,6 +98,8 @@ struct EvaluationContext {
   bool current_is_measured;         // Schedule::current_is_measured
   T array_power_W;                  // that the solar array delivers
   Vec3Of<T> traced_light_body_N_m;  // ZeroOrderHold::light_body, now
+  Vec3Of<T> wheel_rad_s;            // of wheels about the body's axes, relative to the body
+  Vec3Of<T> wheel_rad_s2;           // their acceleration
 
   // The conditions in body axes: valid after Stage::conditions.
   Vec3Of<T> gravity_body_m_s2;
@@ -281,6 +283,9 @@ struct Disturbance {
   // The torque may change its sign within a far shorter time than the motion takes: the propagator
   // then looks closely at the ends of its steps too.
   bool is_abrupt = false;
+  // Its uncertain parameters have other values in every recording: a dry torque that differs from
+  // day to day.
+  bool per_recording = false;
 };
 
 // Parameters from settings, in SI, with their sigma. A missing key is an InputError, or

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "core/errors.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 // q' = ½ q ⊗ (0, ω).
 template <class T>
-void put_attitude_rates(const QuatOf<T>& q, const Vec3Of<T>& w, T* rates) {
+void turn(const QuatOf<T>& q, const Vec3Of<T>& w, T* rates) {
   rates[0] = -0.5 * (q.x() * w.x() + q.y() * w.y() + q.z() * w.z());
   rates[1] = 0.5 * (q.w() * w.x() + q.y() * w.z() - q.z() * w.y());
   rates[2] = 0.5 * (q.w() * w.y() + q.z() * w.x() - q.x() * w.z());
@@ -89,10 +90,13 @@ PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
 Dynamics::Command Dynamics::broadcast(const ZeroOrderHold& held, const Lanes& time_s) {
   const ContinuedTorque& light = held.light_body;
   const Lanes t = time_s - light.from_s;
-  Command command{held.command_body_N_m.cast<Lanes>(), held.battery_current_A, {}};
+  Command command{held.command_body_N_m.cast<Lanes>(), held.battery_current_A, {}, {}, {}};
   for (int k = 0; k < 3; ++k) {
     command.light_body_N_m[k] =
         light.value_N_m[k] + t * (light.rate_N_m_s[k] + t * light.curvature_N_m_s2[k]);
+    command.wheel_rad_s[k] = held.wheel.speed_rad_s[k] +
+                             (time_s - held.wheel.from_s) * held.wheel.acceleration_rad_s2[k];
+    command.wheel_rad_s2[k] = held.wheel.acceleration_rad_s2[k];
   }
   return command;
 }
@@ -102,10 +106,12 @@ Dynamics::Command Dynamics::gather(const std::array<ZeroOrderHold, Lanes::count>
   Command command;
   for (int i = 0; i < Lanes::count; ++i) {
     const ZeroOrderHold& lane = held[static_cast<size_t>(i)];
-    const Vec3 light_N_m = lane.light_body.at(time_s[i]);
+    const Vec3 light_N_m = lane.light_body.at(time_s[i]), wheel_rad_s = lane.wheel.at(time_s[i]);
     for (int k = 0; k < 3; ++k) {
       command.torque_body_N_m[k].set(i, lane.command_body_N_m[k]);
       command.light_body_N_m[k].set(i, light_N_m[k]);
+      command.wheel_rad_s[k].set(i, wheel_rad_s[k]);
+      command.wheel_rad_s2[k].set(i, lane.wheel.acceleration_rad_s2[k]);
     }
     command.battery_current_A.set(i, lane.battery_current_A);
   }
@@ -138,6 +144,8 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
           .current_is_measured = model_.schedule.current_is_measured,
           .array_power_W = 0.0,
           .traced_light_body_N_m = command.light_body_N_m.template cast<T>(),
+          .wheel_rad_s = command.wheel_rad_s.template cast<T>(),
+          .wheel_rad_s2 = command.wheel_rad_s2.template cast<T>(),
           .gravity_body_m_s2 = zero,
           .magnetic_field_body_T = zero,
           .up_body = zero,
@@ -165,11 +173,32 @@ void Dynamics::run_stages(const std::vector<size_t>& order, EvaluationContext<T>
 }
 
 template <class T>
-void Dynamics::solve(const EvaluationContext<T>& now, T* rates) const {
+void Dynamics::put_attitude_rates(const T* y, T* rates) const {
+  if (model_.holds_attitude) {
+    for (int i = 0; i < 4; ++i) rates[i] = T(0.0);
+    return;
+  }
+  turn(QuatOf<T>(y[0], y[1], y[2], y[3]), Vec3Of<T>(y[4], y[5], y[6]), rates);
+}
+
+// The acceleration where bearings hold all but one axis.
+template <class T>
+Vec3Of<T> Dynamics::about_axis(const Vec3Of<T>& torque_N_m, const Mat3Of<T>& inertia_kg_m2) const {
+  const Vec3Of<T> axis = model_.platform.axis.cast<T>();
+  const Vec3Of<T> column = inertia_kg_m2 * axis;
+  const T size = axis.dot(torque_N_m) / axis.dot(column);
+  return size * axis;
+}
+
+template <class T>
+void Dynamics::solve(const EvaluationContext<T>& now, const T* y, T* rates) const {
   const Vec3Of<T>& w = now.rate_body_rad_s;
-  put_attitude_rates(now.attitude, w, rates);
+  put_attitude_rates(y, rates);
   Vec3Of<T> acceleration;
-  if (now.inertia_changed) {
+  if (model_.platform.turns_about_one_axis()) {
+    const Mat3Of<T> inertia = now.inertia_kg_m2 - now.detached_inertia_kg_m2;
+    acceleration = about_axis<T>(now.torque_body_N_m, inertia);
+  } else if (now.inertia_changed) {
     const Mat3Of<T> inertia = now.inertia_kg_m2 - now.detached_inertia_kg_m2;
     // The inverse from cross products of the columns: Eigen's wants comparisons of scalars.
     const Vec3Of<T> a = inertia.col(0), b = inertia.col(1), c = inertia.col(2);
@@ -188,11 +217,16 @@ void Dynamics::solve(const EvaluationContext<T>& now, T* rates) const {
 // read.
 void Dynamics::free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const {
   const Vec3Of<Lanes> w(y[4], y[5], y[6]);
-  put_attitude_rates(QuatOf<Lanes>(y[0], y[1], y[2], y[3]), w, rates);
-  const Mat3& inertia = model_.platform.inertia_kg_m2;
-  const Vec3Of<Lanes> momentum = inertia.cast<Lanes>() * w;
-  const Vec3Of<Lanes> acceleration =
-      inverse_inertia_1_kg_m2_.cast<Lanes>() * (command.torque_body_N_m - w.cross(momentum));
+  put_attitude_rates(y, rates);
+  const Mat3Of<Lanes> inertia = model_.platform.inertia_kg_m2.cast<Lanes>();
+  const Vec3Of<Lanes> momentum = inertia * w;
+  Vec3Of<Lanes> acceleration;
+  if (model_.platform.turns_about_one_axis()) {
+    acceleration = about_axis<Lanes>(command.torque_body_N_m, inertia);
+  } else {
+    acceleration =
+        inverse_inertia_1_kg_m2_.cast<Lanes>() * (command.torque_body_N_m - w.cross(momentum));
+  }
   for (int i = 0; i < 3; ++i) rates[component::rate + i] = acceleration[i];
   rates[component::charge] = command.battery_current_A;
 }
@@ -207,7 +241,7 @@ void Dynamics::rates(const Lanes& time_s, const ZeroOrderHold& held, const Lanes
         {parameters_.data() + own.first_parameter, y + own.first_state, rates + own.first_state},
         now);
   });
-  solve(now, rates);
+  solve(now, y, rates);
 }
 
 Dynamics::Instants Dynamics::at(const Lanes& time_s,
@@ -231,7 +265,7 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
     result.torque_body_N_m[d] = now.torque_body_N_m - before + w.cross(carried);
   };
   run_stages(order_, now, act);
-  solve(now, result.rates.data());
+  solve(now, y, result.rates.data());
   for (const size_t d : instruments_) act(d);
   result.command_body_N_m = now.command_body_N_m;
   result.mass_offset_body_m = now.mass_offset_body_m;
@@ -301,7 +335,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
         now);
   };
   run_stages(everything ? order_ : owners, now, act);
-  solve(now, rates.data());
+  solve(now, y_dual.data(), rates.data());
   if (with_instruments) {
     for (const size_t d : instruments_) act(d);
   }
@@ -329,6 +363,39 @@ void Dynamics::reading_derivatives(const Lanes& time_s,
   for (int i = 0; i < 3; ++i) put(now.inertial_rate_body_rad_s[i] + now.gyro_error_rad_s[i]);
   for (int i = 0; i < 3; ++i) put(now.camera_error_rad[i]);
   put(now.camera_delay_s);
+}
+
+bool depends_on_attitude(const AttitudeModel& model) {
+  const Dynamics dynamics(model);
+  const bool about_axis = model.platform.turns_about_one_axis();
+  // Some attitudes that no symmetry joins, and rates to go with them.
+  std::vector<Lanes> y(static_cast<size_t>(dynamics.size()), Lanes(0.0));
+  std::vector<Lanes> turned = y;
+  for (int lane = 0; lane < Lanes::count; ++lane) {
+    const double n = lane + 1.0;
+    const Vec3 axis = about_axis ? model.platform.axis
+                                 : Vec3(std::sin(n), std::cos(1.7 * n), std::sin(2.3 * n + 0.4));
+    const std::vector<double> state = to_vector(dynamics.initial_state(0.3 * n * axis));
+    for (size_t c = component::rate; c < y.size(); ++c) y[c].set(lane, state[c]);
+    const Vec3 other = about_axis ? axis : Vec3(std::cos(n), 0.3, std::sin(3.1 * n));
+    const Quat q(Eigen::AngleAxisd(0.7 * n, axis.normalized()));
+    const Quat r = q * Quat(Eigen::AngleAxisd(1.1, other.normalized()));
+    const double from[] = {q.w(), q.x(), q.y(), q.z()}, to[] = {r.w(), r.x(), r.y(), r.z()};
+    for (size_t c = 0; c < 4; ++c) y[c].set(lane, from[c]);
+    for (size_t c = 0; c < y.size(); ++c) turned[c].set(lane, c < 4 ? to[c] : y[c][lane]);
+  }
+  std::vector<Lanes> here(y.size(), Lanes(0.0)), there = here;
+  const ZeroOrderHold held =
+      model.schedule.held.empty() ? ZeroOrderHold{} : model.schedule.held.back();
+  dynamics.rates(Lanes(0.0), held, y.data(), here.data());
+  dynamics.rates(Lanes(0.0), held, turned.data(), there.data());
+  for (size_t c = component::rate; c < y.size(); ++c) {
+    for (int lane = 0; lane < Lanes::count; ++lane) {
+      const double a = here[c][lane], b = there[c][lane];
+      if (std::abs(a - b) > 1e-9 * (std::abs(a) + std::abs(b))) return true;
+    }
+  }
+  return false;
 }
 
 std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,

@@ -4,9 +4,9 @@
 //   (I − I_d) ω' = T − ω × (I − I_d) ω
 //   Q' = battery current
 //
-// and the extra states of the disturbances; I_d is the inertia that sits on its own springs and
-// bearings (EvaluationContext::detach_inertia). The lab counts as inertial: earth_rotation is a
-// disturbance.
+// about one axis a alone where the platform has one, ω' = a (a·T) / (a·I a), and the extra states
+// of the disturbances; I_d is the inertia that sits on its own springs and bearings
+// (EvaluationContext::detach_inertia). The lab counts as inertial: earth_rotation is a disturbance.
 #pragma once
 
 #include <vector>
@@ -23,6 +23,9 @@ struct AttitudeModel {
   Environment environment;
   std::vector<Disturbance> disturbances;
   Schedule schedule;
+  // The attitude stays what it was at the start: neither is it seen nor does anything depend on it,
+  // and a run of thousands of turns needs no more steps than its rate does.
+  bool holds_attitude = false;
 };
 
 // The state as the flat vector that is integrated: w, x, y, z, ω, charge, extra states.
@@ -101,6 +104,7 @@ class Dynamics {
     Vec3Of<Lanes> torque_body_N_m;
     Lanes battery_current_A;
     Vec3Of<Lanes> light_body_N_m;
+    Vec3Of<Lanes> wheel_rad_s, wheel_rad_s2;
   };
   static Command broadcast(const ZeroOrderHold& held, const Lanes& time_s);
   static Command gather(const std::array<ZeroOrderHold, Lanes::count>& held, const Lanes& time_s);
@@ -111,7 +115,11 @@ class Dynamics {
   void run_stages(const std::vector<size_t>& order, EvaluationContext<T>& now,
                   const Act& act) const;
   template <class T>
-  void solve(const EvaluationContext<T>& now, T* rates) const;
+  void put_attitude_rates(const T* y, T* rates) const;
+  template <class T>
+  Vec3Of<T> about_axis(const Vec3Of<T>& torque_N_m, const Mat3Of<T>& inertia_kg_m2) const;
+  template <class T>
+  void solve(const EvaluationContext<T>& now, const T* y, T* rates) const;
   bool changes_inertia() const;
   void free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const;
   // Evaluates with derivatives, leaving out disturbances that cannot depend on the block.
@@ -130,6 +138,10 @@ class Dynamics {
   Mat3 inverse_inertia_1_kg_m2_;
   bool inertia_changes_ = false;
 };
+
+// Whether the motion would differ at another attitude: a lab's gravity, field or draught acts.
+// About one axis alone, by turning about it.
+bool depends_on_attitude(const AttitudeModel& model);
 
 // The torque of every disturbance at one state [N m], in the model's order, body axes.
 std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,

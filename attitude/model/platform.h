@@ -13,7 +13,8 @@ enum class Topology {
   dumbbell,  // two instrumented arms, limited tilt
   tabletop,  // one plate over the bearing
   hollow,    // equipment inside the sphere
-  free,      // a spacecraft: no bearing
+  free,      // a spacecraft, a thrown body: no bearing
+  one_axis,  // a wheel, a pendulum: turns about one axis alone
 };
 
 struct Platform {
@@ -25,12 +26,27 @@ struct Platform {
   // Charge that the battery can give [C]; none: it never runs empty.
   std::optional<double> battery_capacity_C;
   double battery_voltage_V = 14.8;  // nominal, > 0
+  // Of a one_axis platform: x, y or z, in body and lab axes alike, because it turns about nothing
+  // else.
+  Vec3 axis = Vec3::UnitZ();
+
+  bool turns_about_one_axis() const { return topology == Topology::one_axis; }
+  bool has_bearing() const { return topology != Topology::free; }
+  // It floats on air, about all three axes.
+  bool has_air_bearing() const { return has_bearing() && !turns_about_one_axis(); }
 };
 
-// Reads [platform]. InputError when the mass is not positive, the inertia not symmetric, not
-// positive definite or against the triangle inequality (the largest principal moment exceeds the
-// sum of the others: no body has such an inertia).
+// Reads [platform]. `axis` of a one_axis platform is "x", "y" or "z" (default); its
+// `inertia_kg_m2` may be one number, the moment about that axis, and both it and `mass_kg` default
+// to one: torques are then per unit of inertia. A free platform needs no mass either.
+// `inertia_kg_m2` may be { value, sigma }, see inertia_sigma_kg_m2(). InputError when the mass is
+// not positive, the inertia not symmetric, not positive definite or against the triangle inequality
+// (the largest principal moment exceeds the sum of the others: no body has such an inertia).
 Platform read_platform(const Settings& settings);
+
+// The sigmas of [platform] inertia_kg_m2 = { value, sigma }, an entry each; zero where none is
+// given.
+Mat3 inertia_sigma_kg_m2(const Settings& platform);
 
 // Throws the same complaint as read_platform() without a place in a file; `key` names the value.
 void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const std::string& key);

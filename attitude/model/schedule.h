@@ -23,10 +23,21 @@ struct ContinuedTorque {
   bool operator==(const ContinuedTorque&) const = default;
 };
 
+// The measured speeds of wheels about the body's axes, straight lines between what was measured.
+struct WheelSpeeds {
+  double from_s = 0.0;
+  Vec3 speed_rad_s = Vec3::Zero();  // relative to the body
+  Vec3 acceleration_rad_s2 = Vec3::Zero();
+
+  Vec3 at(double time_s) const { return speed_rad_s + (time_s - from_s) * acceleration_rad_s2; }
+  bool operator==(const WheelSpeeds&) const = default;
+};
+
 struct ZeroOrderHold {
   Vec3 command_body_N_m = Vec3::Zero();
   double battery_current_A = 0.0;   // positive discharges
   ContinuedTorque light_body = {};  // of light that is traced beside the motion
+  WheelSpeeds wheel = {};
 
   bool operator==(const ZeroOrderHold&) const = default;
 };

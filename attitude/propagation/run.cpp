@@ -1,5 +1,6 @@
 #include "attitude/propagation/run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <optional>
@@ -178,6 +179,25 @@ Settings own_table(const Settings& root, const std::string& key, bool required) 
   return Settings(std::make_shared<const SettingsNode>(root.raw(key)), table.name());
 }
 
+namespace {
+
+// An inertia error of zero, as uncertain as [platform] says.
+Disturbance uncertain_inertia(const Mat3& sigma_kg_m2, const DisturbanceContext& context) {
+  // The one kind that changes it.
+  const auto& kinds = disturbance_kinds();
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [](const DisturbanceKind& k) {
+    return k.screening.inertia_change_kg_m2 != nullptr;
+  });
+  Disturbance error =
+      make_disturbance_of(kind->name, {{"delta_kg_m2", {0, 0, 0, 0, 0, 0}}}, context);
+  const Mat3& s = sigma_kg_m2;
+  const double six[] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2)};
+  for (size_t i = 0; i < error.parameters.size(); ++i) error.parameters[i].sigma = six[i];
+  return error;
+}
+
+}  // namespace
+
 NominalModel read_attitude_model(const Settings& root) {
   const Settings platform = own_table(root, "platform", true);
   const Settings environment = own_table(root, "environment", false);
@@ -186,8 +206,15 @@ NominalModel read_attitude_model(const Settings& root) {
   AttitudeModel& model = nominal.model;
   model.platform = read_platform(platform);
   model.environment = read_environment(environment);
+  // What falls freely feels no weight.
+  if (!model.platform.has_bearing() && !environment.has("gravity_m_s2")) {
+    model.environment.gravity_lab_m_s2 = Vec3::Zero();
+  }
   const DisturbanceContext context{model.platform, model.environment};
   model.disturbances = read_own_disturbances(root, context);
+  if (const Mat3 sigma = inertia_sigma_kg_m2(platform); sigma.maxCoeff() > 0.0) {
+    model.disturbances.push_back(uncertain_inertia(sigma, context));
+  }
   nominal.sensors = root.has("sensors") ? read_sensors(sensors, context) : perfect_sensors();
   model.disturbances.insert(model.disturbances.end(), nominal.sensors.errors.begin(),
                             nominal.sensors.errors.end());

@@ -19,7 +19,9 @@ constexpr std::string_view known_channels[] = {
     "t_s",           "gyro_x_rad_s",      "gyro_y_rad_s",    "gyro_z_rad_s",
     "command_x_N_m", "command_y_N_m",     "command_z_N_m",   "battery_current_A",
     "array_power_W", "array_voltage_V",   "array_current_A", "cell_temperature_K",
-    "led_current_A", "battery_voltage_V", "heading_rad",
+    "led_current_A", "battery_voltage_V", "heading_rad",     "angle_rad",
+    "roll_rad",      "pitch_rad",         "yaw_rad",         "rate_rad_s",
+    "wheel_x_rad_s", "wheel_y_rad_s",     "wheel_z_rad_s",
 };
 
 // NaN for an empty cell or the word nan; nullopt for what is no number.
@@ -223,12 +225,55 @@ const Channel* Recording::find(std::string_view name) const {
   return it == channels.end() ? nullptr : &*it;
 }
 
+namespace {
+
+// The measured speeds of wheels as straight lines between means over neighbouring rows, so many
+// that what lies between is straight, and no more: each begins a step of the propagation.
+std::vector<WheelSpeeds> wheel_speeds(const Recording& recording) {
+  const Channel* wheel[3] = {recording.find("wheel_x_rad_s"), recording.find("wheel_y_rad_s"),
+                             recording.find("wheel_z_rad_s")};
+  std::vector<WheelSpeeds> knots;
+  if (wheel[0] == nullptr && wheel[1] == nullptr && wheel[2] == nullptr) return knots;
+  constexpr size_t most_knots = 400;
+  const size_t rows = recording.rows();
+  const size_t together = (rows + most_knots - 1) / most_knots;
+  for (size_t first = 0; first < rows; first += together) {
+    const size_t last = std::min(rows, first + together);
+    WheelSpeeds knot;
+    for (size_t i = first; i < last; ++i) knot.from_s += recording.time_s[i];
+    knot.from_s /= static_cast<double>(last - first);
+    for (int k = 0; k < 3; ++k) {
+      double sum = 0.0, count = 0.0;
+      for (size_t i = first; wheel[k] != nullptr && i < last; ++i) {
+        if (std::isnan(wheel[k]->values[i])) continue;
+        sum += wheel[k]->values[i];
+        count += 1.0;
+      }
+      // A block without a reading goes on as the one before it.
+      const double before = knots.empty() ? 0.0 : knots.back().speed_rad_s[k];
+      knot.speed_rad_s[k] = count > 0.0 ? sum / count : before;
+    }
+    knots.push_back(knot);
+  }
+  for (size_t i = 0; i + 1 < knots.size(); ++i) {
+    knots[i].acceleration_rad_s2 =
+        (knots[i + 1].speed_rad_s - knots[i].speed_rad_s) / (knots[i + 1].from_s - knots[i].from_s);
+  }
+  return knots;
+}
+
+}  // namespace
+
 Schedule Recording::schedule() const {
   const Channel* command[3] = {find("command_x_N_m"), find("command_y_N_m"), find("command_z_N_m")};
   const Channel* current = find("battery_current_A");
   Schedule schedule;
   schedule.current_is_measured = current != nullptr;
+  const std::vector<WheelSpeeds> knots = wheel_speeds(*this);
+  size_t next = 0;
   ZeroOrderHold held;
+  // Before its first knot a wheel is on the first line.
+  if (!knots.empty()) held.wheel = knots.front();
   // An empty cell holds what was before.
   const auto update = [](const Channel* channel, size_t row, double& value) {
     if (channel != nullptr && !std::isnan(channel->values[row])) value = channel->values[row];
@@ -236,6 +281,7 @@ Schedule Recording::schedule() const {
   for (size_t i = 0; i < rows(); ++i) {
     for (int k = 0; k < 3; ++k) update(command[k], i, held.command_body_N_m[k]);
     update(current, i, held.battery_current_A);
+    for (; next < knots.size() && knots[next].from_s <= time_s[i]; ++next) held.wheel = knots[next];
     schedule.append(time_s[i], held);
   }
   return schedule;
@@ -270,11 +316,12 @@ Schedule read_command_file(const std::filesystem::path& path) {
     throw InputError({path.string(), static_cast<int>(line)}, "t_s", "times that do not rise",
                      "commands in order of time");
   }
-  for (const char* name :
-       {"command_x_N_m", "command_y_N_m", "command_z_N_m", "battery_current_A"}) {
+  for (const char* name : {"command_x_N_m", "command_y_N_m", "command_z_N_m", "battery_current_A",
+                           "wheel_x_rad_s", "wheel_y_rad_s", "wheel_z_rad_s"}) {
     if (recording.find(name) != nullptr) return recording.schedule();
   }
-  throw InputError({path.string(), 0}, "header", "no command", "command_x_N_m or another command");
+  throw InputError({path.string(), 0}, "header", "no command",
+                   "command_x_N_m, another command, or the speed of a wheel");
 }
 
 void write_recording(const std::filesystem::path& path, const Recording& recording,

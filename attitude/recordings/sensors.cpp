@@ -61,6 +61,10 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
     camera.rate_Hz = s.number_or("rate_Hz", 0.0, not_negative);
     read_errors(s, context, "camera", sensors.errors);
   }
+  if (settings.has("angle")) {
+    const double noise_rad = settings.table("angle").number("noise_arcsec", Range::positive());
+    sensors.camera.emplace().noise_rad = Vec3::Constant(noise_rad);
+  }
   if (settings.has("gyro")) {
     const Settings s = settings.table("gyro");
     Sensors::Gyro& gyro = sensors.gyro.emplace();

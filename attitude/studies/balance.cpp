@@ -193,7 +193,7 @@ BalanceResult balance(const BalanceRun& run) {
   std::vector<Parameter>& offset = model.disturbances[unbalance].parameters;
   for (size_t k = 0; k < 3; ++k) offset[k].value = guess_m[static_cast<Eigen::Index>(k)];
 
-  Observation seen = observe(run.recording, "recording", run.recording.rows());
+  Observation seen = observe(run.recording, "recording", {}, run.recording.rows());
   seen.noise = noise_levels(run.sensors);
   BalanceResult result;
   result.fit = fit(hypothesis_of(run, model, unbalance, seen), {seen}, patient_settings());

@@ -2,64 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/noise.h"
 #include "core/errors.h"
-#include "diagnosis/attitude/account.h"
-#include "diagnosis/attitude/domain.h"
-#include "diagnosis/attitude/empirical_torque.h"
+#include "diagnosis/attitude/answer.h"
+#include "diagnosis/attitude/findings/account.h"
+#include "diagnosis/attitude/findings/empirical_torque.h"
+#include "diagnosis/attitude/findings/locate.h"
+#include "diagnosis/attitude/findings/manoeuvre.h"
 #include "diagnosis/attitude/holdout.h"
-#include "diagnosis/attitude/locate.h"
-#include "diagnosis/attitude/manoeuvre.h"
-#include "diagnosis/attitude/recorded_data.h"
-#include "diagnosis/attitude/refine.h"
 #include "diagnosis/attitude/settle.h"
-#include "inference/decide.h"
-#include "inference/search.h"
-#include "inference/weigh.h"
 
 namespace photorque {
 namespace {
-
-// All that was fitted, and what is made of it.
-struct Answer {
-  Candidates all;
-  std::vector<Trial> trials;
-  // Before the runs held out count: in one that diverges there all explanations differ by chance.
-  std::vector<Where::Dependence> depends_on;
-  inference::Decision decision;
-
-  const Trial& chosen() const { return trials[decision.chosen]; }
-};
-
-void tell(const DiagnoseOptions& options, const std::string& what) {
-  if (options.progress) options.progress(what);
-}
-
-// Score every effect, fit, compare, weigh with what was held out, decide.
-Answer explain(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
-               const DiagnoseOptions& options) {
-  Answer a;
-  a.all = all_candidates(nominal, data.train, options.limits);
-  const AttitudeDomain domain(a.all);
-  tell(options, "fitting every effect of the catalogue");
-  a.trials =
-      inference::search(domain, nominal_trial(nominal_fit, a.all), data.train, options.threads);
-  a.depends_on = dependences(a.trials, a.all);
-  tell(options, "comparing with what was held out");
-  inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
-  const auto excess = [&](size_t trial) {
-    return domain.excess_sigma(a.trials[trial], data.train);
-  };
-  a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), excess,
-                                 options.limits.decision);
-  if (a.decision.finding == inference::Finding::unknown) {
-    Trial& chosen = a.trials[a.decision.chosen];
-    chosen = refined_in_time(chosen, a.all, data.train);
-  }
-  return a;
-}
 
 Verdict verdict_of(inference::Finding finding) {
   switch (finding) {
@@ -109,6 +66,22 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
   d.because = decision.because;
 }
 
+void leave_unexplained(inference::Decision& decision) {
+  decision.finding = inference::Finding::unknown;
+  if (decision.because.empty()) {
+    decision.because = "what is left is far more than the noise of the readings";
+  }
+}
+
+// The names stand although the verdict is that something is left.
+void say_names_beside_the_rest(const Answer& answer, Diagnosis& d) {
+  d.effects = found_effects(answer.decision, answer.trials, answer.all);
+  d.empirical = {};
+  d.unnamed = {};
+  d.alternatives = alternatives(answer.decision, answer.trials, answer.all);
+  d.priors_refined = refined_priors(answer.chosen());
+}
+
 // The part of what the nominal model leaves of the held-out runs that the chosen one explains.
 double explained_fraction(const Fit& held_before, const Fit& held_after) {
   const double before = held_before.chi2_per_sample() - 1.0,
@@ -120,9 +93,10 @@ double explained_fraction(const Fit& held_before, const Fit& held_after) {
 }
 
 // Numbers and curves of the nominal and the chosen model, beside what was fitted and held out.
-void say_how_well(const Fit& before, const Trial& chosen, const RecordedData& data,
+void say_how_well(const Fit& before, const Trial& chosen, const RecordedData& data, bool is_lost,
                   const Thresholds& limits, Diagnosis& d) {
-  const Fit& after = chosen.fit;
+  // Where names stand beside the rest the fit counted that as noise; these numbers do not.
+  const Fit after = is_lost ? propagate_model(chosen.fit, data.train, limits) : chosen.fit;
   d.chi2_per_sample_before = before.chi2_per_sample();
   d.chi2_per_sample_after = after.chi2_per_sample();
   d.samples = before.samples;
@@ -152,6 +126,16 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   return warnings;
 }
 
+// Where nobody sees the attitude and nothing depends on it, it is not propagated.
+NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
+  NominalModel nominal = stated;
+  const bool is_seen =
+      std::any_of(data.train.begin(), data.train.end(),
+                  [](const Observation& seen) { return seen.sees_some_attitude(); });
+  nominal.model.holds_attitude = !is_seen && !depends_on_attitude(stated.model);
+  return nominal;
+}
+
 Replay replay_of(const Fit& fit, const Observation& seen) {
   Replay replay;
   replay.recording = seen.name;
@@ -171,21 +155,40 @@ Replay replay_of(const Fit& fit, const Observation& seen) {
 
 }  // namespace
 
-Diagnosis diagnose(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
+Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>& recordings,
                    const std::vector<NamedRecording>& holdouts, const DiagnoseOptions& options) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");
-  RecordedData data = read_data(nominal, recordings, holdouts, options);
+  RecordedData data = read_data(stated, recordings, holdouts, options);
+  const NominalModel nominal = as_seen(stated, data);
   tell(options, "fitting the nominal model");
   Fit nominal_fit = settle(nominal, options.limits, data);
-  Answer answer = explain(nominal, nominal_fit, data, options);
-  if (settle_again(answer.chosen().fit, options.limits, data)) {
+  const bool on_air = stated.model.platform.has_air_bearing();
+  // A machine of which little is known, far from its recording: a search at the noise of the
+  // readings would find nothing but ways of bending what is believed.
+  const bool is_lost =
+      !on_air && !(nominal_fit.chi2_per_sample() < options.limits.diverged_chi2_per_sample);
+  std::optional<Answer> named;
+  if (is_lost) named = named_beside_the_rest(nominal, data, options);
+  Answer answer = named     ? unexplained(nominal, nominal_fit, data, options.limits)
+                  : is_lost ? explained_in_the_rough(nominal, data, options)
+                            : explain(nominal, nominal_fit, data, options);
+  if (!is_lost && settle_again(answer.chosen().fit, options.limits, data)) {
     tell(options, "again, with the noise that was found");
     nominal_fit = fit(nominal_fit.best, data.train);
     answer = explain(nominal, nominal_fit, data, options);
   }
   Diagnosis d;
+  // What counted as noise there is far more than the noise of the readings.
+  if (is_lost) leave_unexplained(answer.decision);
   say_what_was_found(answer, nominal_fit, data, options, d);
-  say_how_well(nominal_fit, answer.chosen(), data, options.limits, d);
+  if (d.verdict == Verdict::unexplained && !on_air && !is_lost) {
+    named = named_beside_the_rest(nominal, data, options);
+  }
+  if (named) {
+    answer = std::move(*named);
+    say_names_beside_the_rest(answer, d);
+  }
+  say_how_well(nominal_fit, answer.chosen(), data, is_lost || named, options.limits, d);
   d.warnings = warnings_of(data, answer.decision);
   for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);

@@ -1,23 +1,103 @@
 #include "diagnosis/attitude/recorded_data.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
+#include "attitude/estimation/columns.h"
 #include "attitude/estimation/conventions.h"
+#include "attitude/estimation/segments.h"
+#include "attitude/noise/reading_level.h"
+#include "core/constants.h"
+#include "diagnosis/attitude/holdout.h"
 
 namespace photorque {
 namespace {
 
-std::vector<Observation> observe_all(const std::vector<NamedRecording>& recordings,
-                                     const NoiseLevels& noise, size_t max_blocks,
-                                     std::vector<std::string>& warnings) {
-  std::vector<Observation> all;
+// What was said of a file's rows as it was cut.
+void say_cuts(const std::string& name, const Segments& segments,
+              std::vector<std::string>& warnings) {
+  const auto say = [&](int64_t count, const char* what) {
+    if (count > 0) warnings.push_back(name + ": " + std::to_string(count) + what);
+  };
+  say(segments.events,
+      " rows with an event are left out, and the motion begins anew after each of them");
+  say(segments.kinks,
+      " rows where the rate changes at once, without an event noted, are left out, and the motion "
+      "begins anew after each of them");
+  say(segments.long_gaps, " long gaps: the motion begins anew after each of them");
+  say(segments.too_short, " stretches with too few readings for a start of their own are left out");
+}
+
+void say_unused(const NamedRecording& r, const Platform& platform,
+                std::vector<std::string>& warnings) {
+  std::string names;
+  for (const std::string& column : MotionColumns(r.recording, platform, r.name).unused()) {
+    names += (names.empty() ? "" : ", ") + column;
+  }
+  if (!names.empty()) warnings.push_back(r.name + ": columns that are not used: " + names);
+}
+
+// The stretches of each recording.
+std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecording>& recordings,
+                                                  const Platform& platform, size_t max_blocks,
+                                                  std::vector<std::string>& warnings) {
+  std::vector<std::vector<Observation>> all;
   for (const NamedRecording& r : recordings) {
-    all.push_back(observe(r.recording, r.name, max_blocks));
-    all.back().noise = noise;
-    const std::string convention = repair_conventions(all.back());
+    Segments segments = observe_segments(r.recording, r.name, platform, max_blocks);
+    say_cuts(r.name, segments, warnings);
+    say_unused(r, platform, warnings);
+    std::string convention;
+    for (Observation& seen : segments.all) {
+      const std::string of_stretch = repair_conventions(seen);
+      if (convention.empty()) convention = of_stretch;
+    }
     if (!convention.empty()) warnings.push_back(r.name + ": " + convention);
+    all.push_back(std::move(segments.all));
   }
   return all;
+}
+
+void append_to(std::vector<Observation>& to, std::vector<Observation> from) {
+  std::move(from.begin(), from.end(), std::back_inserter(to));
+}
+
+// The end of a recording in one piece; of one in many every fourth, so that what is held out saw
+// the same times and conditions.
+void hold_out(std::vector<Observation> stretches, double fraction, RecordedData& data) {
+  const auto every = static_cast<size_t>(std::lround(1.0 / fraction));
+  for (size_t i = 0; i < stretches.size(); ++i) {
+    Observation& seen = stretches[i];
+    if (stretches.size() >= every) {
+      (i % every == every - 1 ? data.held : data.train).push_back(std::move(seen));
+      continue;
+    }
+    const auto cut = static_cast<size_t>((1.0 - fraction) * static_cast<double>(seen.blocks()));
+    data.held.push_back(seen.part(cut, seen.blocks()));
+    data.train.push_back(seen.part(0, cut));
+  }
+}
+
+// What the experiment states of its instruments. Where it states nothing and no second instrument
+// tells what is motion, the readings themselves have to.
+NoiseLevels noise_of(const Sensors& sensors, const std::vector<Observation>& runs,
+                     std::vector<std::string>& warnings) {
+  NoiseLevels noise = noise_levels(sensors);
+  const bool can_be_found = runs.front().sees_attitude();
+  for (int channel = 0; !can_be_found && channel < 6; ++channel) {
+    if (channel < 3 ? states_camera_noise(sensors) : states_gyro_noise(sensors)) continue;
+    const std::optional<double> level = reading_level(runs, channel);
+    if (!level) continue;
+    noise.set(channel, {*level, 0.0, 0.0});
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "%s: no noise is stated; neighbouring readings scatter by %.3g %s, which was used",
+        channel_names[channel], channel < 3 ? *level / arcsecond_rad : *level,
+        channel < 3 ? "arcsec" : "rad/s");
+    warnings.emplace_back(text);
+  }
+  return noise;
 }
 
 }  // namespace
@@ -25,16 +105,21 @@ std::vector<Observation> observe_all(const std::vector<NamedRecording>& recordin
 RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts,
                        const DiagnoseOptions& options) {
-  const NoiseLevels noise = noise_levels(nominal.sensors);
+  const Platform& platform = nominal.model.platform;
   RecordedData data;
-  data.train = observe_all(recordings, noise, options.max_blocks, data.warnings);
-  data.held = observe_all(holdouts, noise, options.max_blocks, data.warnings);
-  if (!data.held.empty()) return data;
-  for (Observation& seen : data.train) {
-    const auto cut =
-        static_cast<size_t>((1.0 - options.holdout_fraction) * static_cast<double>(seen.blocks()));
-    data.held.push_back(seen.part(cut, seen.blocks()));
-    seen = seen.part(0, cut);
+  for (auto& stretches : observe_all(recordings, platform, options.max_blocks, data.warnings)) {
+    if (holdouts.empty()) {
+      hold_out(std::move(stretches), options.holdout_fraction, data);
+    } else {
+      append_to(data.train, std::move(stretches));
+    }
+  }
+  for (auto& stretches : observe_all(holdouts, platform, options.max_blocks, data.warnings)) {
+    append_to(data.held, std::move(stretches));
+  }
+  const NoiseLevels noise = noise_of(nominal.sensors, data.train, data.warnings);
+  for (auto* runs : {&data.train, &data.held}) {
+    for (Observation& seen : *runs) seen.noise = noise;
   }
   return data;
 }

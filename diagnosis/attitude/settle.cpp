@@ -68,7 +68,8 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
   const std::vector<Prediction> residuals = residuals_of(fitted, data.train);
   data.outliers = drop_outliers(residuals, limits.noise, data.train);
   bool changed = data.outliers > 0;
-  if (!nominal.sensors.noise_is_stated) {
+  // Without an attitude nothing tells noise from motion.
+  if (!nominal.sensors.noise_is_stated && data.train.front().sees_attitude()) {
     const NoiseFindings findings = find_noise(data.train, residuals, limits.noise);
     data.noise_is_open = findings.is_open;
     changed = use_noise(findings, data) || changed;

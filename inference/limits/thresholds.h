@@ -179,6 +179,9 @@ struct Thresholds {
     // Log evidence that a name may cost in predicting them: an effect that shows in the train runs
     // alone predicts nothing.
     double max_predictive_loss = 2.0;
+    // χ² of what was held out over that of the nominal model, below which names are said beside
+    // something that stays unexplained.
+    double max_held_out_fraction = 0.5;
     // Distance of a nominal value from what was stated of it [sigma], to be doubted and to be
     // contradicted.
     double doubtful_belief_sigma = 3.0, contradicted_belief_sigma = 5.0;

@@ -1,8 +1,9 @@
 // Form drag of what stands in the air: T = −k |ω| ω (eq. 22).
 //
-// coefficient_N_m_s2: k ≥ 0; or one [[disturbance.part]] per body of external_air.h, whose form
-// drag about the vertical axis is summed in the environment's air. The law is taken the same about
-// every axis.
+// coefficient_N_m_s2: k ≥ 0; or three of them, T = −|ω| diag(k) ω, of a body whose shape differs
+// about its axes; or one [[disturbance.part]] per body of external_air.h, whose form
+// drag about the vertical axis is summed in the environment's air. One number is taken the same
+// about every axis.
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/kind.h"
 
@@ -18,6 +19,16 @@ struct AirPressureDrag final : TorqueLaw<AirPressureDrag> {
   }
 };
 
+constexpr VectorKey braking_by_axis{braking.name};
+
+struct AxisDrag final : TorqueLaw<AxisDrag> {
+  template <class T>
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    const Vec3Of<T>& w = now.rate_body_rad_s;
+    return -length(w) * own[braking_by_axis].cwiseProduct(w);
+  }
+};
+
 PlacedParameters coefficient(const Settings& settings, const Environment& environment) {
   if (!settings.has("part")) return scalar_parameter(settings, braking, Range::not_negative());
   const Air air{environment.air_density_kg_m3, environment.air_viscosity_Pa_s};
@@ -26,6 +37,9 @@ PlacedParameters coefficient(const Settings& settings, const Environment& enviro
 }
 
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  if (settings.has(braking.name) && count_as_written(settings, braking.name) > 0) {
+    return make_disturbance<AxisDrag>({vector_parameter(settings, braking_by_axis)});
+  }
   return make_disturbance<AirPressureDrag>({coefficient(settings, context.environment)});
 }
 
@@ -40,18 +54,22 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 }  // namespace
 
 DisturbanceKind air_pressure_drag_kind() {
-  return {.name = "air_pressure_drag",
-          .summary = "form drag of the surrounding air, square of the rate",
-          .read = read,
-          .screening = {.parametrisations =
-                            {{"form drag of the surrounding air brakes with the square of the rate",
-                              {EffectKey::not_negative(braking.name, 1e-3)}}}},
-          .injection = {.draw = injected::fixed_size(braking.name, 5e-4),
-                        .torque = plain_torque,
-                        .strength = braking.name,
-                        .step = 1e-7,
-                        .pairs = true},
-          .budget = {.paper_figure = "cfd_drag_at_1_rpm_N_m"}};
+  return {
+      .name = "air_pressure_drag",
+      .summary = "form drag of the surrounding air, square of the rate",
+      .read = read,
+      .screening = {.parametrisations =
+                        {{"form drag of the surrounding air brakes with the square of the rate",
+                          {EffectKey::not_negative(braking.name, 1e-3)}},
+                         {"air resists each axis as its shape does, with the square of the rate",
+                          {EffectKey::vector_not_negative(braking.name, 1e-3)},
+                          true}}},
+      .injection = {.draw = injected::fixed_size(braking.name, 5e-4),
+                    .torque = plain_torque,
+                    .strength = braking.name,
+                    .step = 1e-7,
+                    .pairs = true},
+      .budget = {.paper_figure = "cfd_drag_at_1_rpm_N_m"}};
 }
 
 }  // namespace photorque

@@ -131,6 +131,7 @@ std::vector<AirPart> parts_of_topology(Topology topology, AirPart plate, AirPart
       sphere.count *= sphere_exposed_fraction;
       return {sphere};
     case Topology::free:
+    case Topology::one_axis:
       break;
   }
   return {};

@@ -36,7 +36,8 @@ DisturbanceKind room_draft_kind() {
           .read = read,
           .screening = {.parametrisations =
                             {{"a steady draught exerts a torque that is constant in the laboratory",
-                              {EffectKey::vector(torque_lab.name, 5e-6)}}}},
+                              {EffectKey::vector(torque_lab.name, 5e-6)}}},
+                        .needs = Requirement::bearing},
           .injection = {.draw = injected::random_direction(torque_lab.name, 5e-6),
                         .torque = plain_torque,
                         .strength = torque_lab.name,

@@ -105,6 +105,7 @@ DisturbanceKind bearing_drag_kind() {
       .screening = {.parametrisations = {{"the bearing's viscous drag differs from what is "
                                           "stated, beyond the uncertainty stated",
                                           {EffectKey::number(coefficient.name, 2e-5)}}},
+                    .needs = Requirement::bearing,
                     .least_sum = LeastSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
       .injection = {.draw = injected::fixed_size(coefficient.name, 1e-5),
                     .torque = plain_torque,

@@ -50,7 +50,8 @@ DisturbanceKind dry_friction_kind() {
           .read = read,
           .screening =
               {.parametrisations = {{"something rubs: a torque of constant size against the motion",
-                                     {EffectKey::not_negative(friction.name, 5e-6)}}}},
+                                     {EffectKey::not_negative(friction.name, 5e-6)}}},
+               .needs = Requirement::bearing},
           .injection = {.draw = injected::fixed_size(friction.name, 3e-6),
                         .torque = plain_torque,
                         .strength = friction.name,

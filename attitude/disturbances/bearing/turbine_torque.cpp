@@ -37,6 +37,7 @@ DisturbanceKind turbine_torque_kind() {
           .screening = {.parametrisations = {{"the bearing's exhaust drives the platform about the "
                                               "vertical with a constant torque",
                                               {EffectKey::number(torque_up.name, 5e-6)}}},
+                        .needs = Requirement::air_bearing,
                         .alike = {{"room_draft"}}},
           .injection = {.draw = injected::either_sign(torque_up.name, 3e-6),
                         .torque = plain_torque,

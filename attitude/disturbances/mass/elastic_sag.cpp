@@ -92,7 +92,8 @@ DisturbanceKind elastic_sag_kind() {
           .read = read,
           .screening = {.parametrisations =
                             {{"the structure bends under its weight, differently at every tilt",
-                              {EffectKey::vector_not_negative(diagonal.name, 5e-7)}}}},
+                              {EffectKey::vector_not_negative(diagonal.name, 5e-7)}}},
+                        .needs = Requirement::gravity},
           .injection = {.draw = draw_example,
                         .torque = plain_torque,
                         .strength = diagonal.name,

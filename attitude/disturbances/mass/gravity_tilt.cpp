@@ -50,7 +50,8 @@ DisturbanceKind gravity_tilt_kind() {
           .screening =
               {.parametrisations =
                    {{"gravity does not point along the camera's vertical: the camera is not level",
-                     {{about_x.name, {0.0, 0.0}, 5e-3}}}}},
+                     {{about_x.name, {0.0, 0.0}, 5e-3}}}},
+               .needs = Requirement::gravity},
           .injection = {
               .draw = draw_example, .alter = plain_change, .strength = about_x.name, .step = 1e-6}};
 }

@@ -36,8 +36,11 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const std::string key = delta.name;
   const PlacedParameters six = array_parameter(settings, key, 6);
   const Mat3 delta_kg_m2 = as_matrix(six.parameters);
-  check_inertia(context.platform.inertia_kg_m2 + delta_kg_m2, settings.raw(key).where,
-                settings.name() + "." + key + " with the platform's inertia");
+  // [platform] was checked by itself.
+  if (!delta_kg_m2.isZero()) {
+    check_inertia(context.platform.inertia_kg_m2 + delta_kg_m2, settings.raw(key).where,
+                  settings.name() + "." + key + " with the platform's inertia");
+  }
   return make_disturbance<InertiaError>({six}, Stage::conditions);
 }
 

@@ -63,6 +63,7 @@ DisturbanceKind mass_shift_kind() {
                {{"a part of the platform moved at one instant and took the centre of mass with it",
                  {EffectKey::shape(start.name, 0.0, 100.0, 0.0),
                   EffectKey::vector(offset.name, 3e-6)}}},
+           .needs = Requirement::gravity,
            .scan = Scan::instant},
       .injection = {.draw = draw_example,
                     .torque = plain_torque,

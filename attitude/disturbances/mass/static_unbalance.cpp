@@ -37,7 +37,8 @@ DisturbanceKind static_unbalance_kind() {
           .screening =
               {.parametrisations =
                    {{"the centre of mass lies elsewhere than stated, beyond the uncertainty stated",
-                     {EffectKey::vector(offset.name, 5e-6)}}}},
+                     {EffectKey::vector(offset.name, 5e-6)}}},
+               .needs = Requirement::gravity},
           .injection = {.draw = injected::random_direction(offset.name, 1e-6),
                         .torque = plain_torque,
                         .strength = offset.name,

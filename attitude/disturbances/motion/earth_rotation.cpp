@@ -43,7 +43,8 @@ DisturbanceKind earth_rotation_kind() {
       .read = read,
       .screening = {.parametrisations =
                         {{"the laboratory turns with the Earth: the platform and the gyro feel it",
-                          {}}}},
+                          {}}},
+                    .needs = Requirement::air_bearing},
       .injection = {.draw = injected::nothing_to_draw(), .alter = plain_change}};
 }
 

@@ -151,6 +151,7 @@ DisturbanceKind floor_vibration_kind() {
                           {EffectKey::vector(shaking.name, 0.1),
                            EffectKey::shape(frequency.name, 1.0, 5.0, 0.0, 100.0),
                            EffectKey::shape(phase.name, 0.0, phase_scale, -EffectKey::unbounded)}}},
+                    .needs = Requirement::gravity,
                     .scan = Scan::frequency,
                     .fast = true},
       .injection = {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "attitude/propagation/run.h"
+#include "diagnosis/attitude/effects/machine_scale.h"
 #include "diagnosis/attitude/effects/trial.h"
 
 namespace photorque {
@@ -53,17 +54,30 @@ CoveredMotion covered_by(const std::vector<Observation>& runs) {
     covered.charge_C = std::max(covered.charge_C, std::abs(last.initial_charge_C));
     for (const ZeroOrderHold& held : seen.schedule.held) {
       covered.has_commands = covered.has_commands || held.command_body_N_m.norm() > 0.0;
+      covered.has_wheel = covered.has_wheel || held.wheel != WheelSpeeds{};
     }
     for (size_t i = 0; i < seen.blocks(); ++i) {
-      if ((seen.gyro_rows[i].array() > 0.0).all()) {
-        covered.rate_rad_s = std::max(covered.rate_rad_s, seen.gyro_rad_s[i].norm());
+      Vec3 rate_rad_s = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) {
+        if (seen.gyro_rows[i][k] > 0.0) rate_rad_s[k] = seen.gyro_rad_s[i][k];
       }
+      covered.rate_rad_s = std::max(covered.rate_rad_s, rate_rad_s.norm());
       if (!(seen.attitude_rows[i] > 0.0)) continue;
       const double up = (seen.attitude[i] * Vec3::UnitZ()).z();
       covered.tilt_rad = std::max(covered.tilt_rad, std::acos(std::clamp(up, -1.0, 1.0)));
     }
   }
   return covered;
+}
+
+// Whether a candidate of the size to be expected makes the motion depend on the attitude.
+bool needs_attitude(const Candidate& c, AttitudeModel model) {
+  Disturbance acting = c.start;
+  for (size_t p = 0; p < acting.parameters.size(); ++p) {
+    if (c.is_strength(p)) acting.parameters[p].value += c.scale[p];
+  }
+  model.disturbances.push_back(std::move(acting));
+  return depends_on_attitude(model);
 }
 
 }  // namespace
@@ -80,6 +94,14 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         return covered.charge_C != 0.0;
       case Requirement::field:
         return nominal.model.environment.magnetic_field_lab_T.norm() > 0.0;
+      case Requirement::gravity:
+        return context.platform.has_bearing() && context.environment.gravity_lab_m_s2.norm() > 0.0;
+      case Requirement::bearing:
+        return context.platform.has_bearing();
+      case Requirement::air_bearing:
+        return context.platform.has_air_bearing();
+      case Requirement::wheel:
+        return covered.has_wheel;
       case Requirement::none:
         break;
     }
@@ -96,11 +118,21 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     const bool acts = std::any_of(acting.begin(), acting.end(),
                                   [&](const Disturbance& d) { return d.kind == effect.kind; });
     if (effect.keys.empty() && acts) continue;
+    // About one axis, where no torque is known, all torques are per unit of inertia.
+    if (effect.how.inertia_change_kg_m2 != nullptr && context.platform.turns_about_one_axis() &&
+        !covered.has_commands) {
+      continue;
+    }
     all.list.push_back(candidate_of(effect, context));
   }
   const double torque_N_m = 5e-6;
   for (const EmpiricalLaw& law : empirical_laws(covered, torque_N_m)) {
     all.list.push_back(candidate_of(law));
+  }
+  scale_to_machine(nominal, runs, all.list);
+  // Nobody knows the attitude.
+  if (nominal.model.holds_attitude) {
+    std::erase_if(all.list, [&](const Candidate& c) { return needs_attitude(c, nominal.model); });
   }
   return all;
 }

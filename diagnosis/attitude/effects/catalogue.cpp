@@ -17,7 +17,8 @@ std::vector<Effect> catalogue(const Platform& platform) {
   std::vector<Effect> all;
   for (const DisturbanceKind& kind : disturbance_kinds()) {
     for (const Parametrisation& p : kind.screening.parametrisations) {
-      Effect effect{kind.name, {}, p.explanation, kind.screening};
+      if (p.of_free_bodies && platform.has_bearing()) continue;
+      Effect effect{kind.name, {}, p.explanation, kind.screening, p.of_free_bodies};
       for (const EffectKey& key : p.keys) effect.keys.push_back(scaled(key, inertia_kg_m2));
       all.push_back(std::move(effect));
     }

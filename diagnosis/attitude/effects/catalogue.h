@@ -15,6 +15,7 @@ struct Effect {
   std::vector<EffectKey> keys;  // scaled to the platform
   std::string explanation;      // one sentence for the report
   Screening how = {};           // what else the kind's file says about looking for it
+  bool of_free_bodies = false;  // as in its parametrisation
 };
 
 // All effects that can be missing from this platform's model, scaled to its mass and inertia.

@@ -29,6 +29,7 @@ struct CoveredMotion {
   double rate_rad_s = 0.0;  // the largest; 0: no rates were recorded
   double charge_C = 0.0;    // 0: no current was recorded
   bool has_commands = false;
+  bool has_wheel = false;  // the speed of one was recorded
 };
 
 // The laws that compete on such recordings. `torque_N_m` is a typical torque.

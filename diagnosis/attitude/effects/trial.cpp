@@ -54,6 +54,27 @@ double log_evidence(const Trial& trial, const Candidates& all) {
                                                    trial.candidates.size(), limits);
 }
 
+bool changes_inertia(const Disturbance& d) {
+  const DisturbanceKind* kind = find_kind(d.kind);
+  return kind != nullptr && kind->screening.inertia_change_kg_m2 != nullptr;
+}
+
+// What is stated as uncertain by more may change by more: three of its standard deviations, over
+// the moment.
+double stated_inertia_change(const Trial& trial) {
+  constexpr double sigmas = 3.0;
+  const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
+  double largest = 0.0;
+  for (const Free& f : trial.fit.best.free) {
+    const auto& found = trial.disturbances;
+    const bool is_found = std::find(found.begin(), found.end(), f.disturbance) != found.end();
+    const Disturbance& stated = trial.fit.best.model.disturbances[f.disturbance];
+    if (is_found || !changes_inertia(stated) || f.parameter > 2) continue;
+    largest = std::max(largest, sigmas * f.sigma / nominal_kg_m2(f.parameter, f.parameter));
+  }
+  return largest;
+}
+
 // The largest change of a principal moment by a fitted error of the inertia, as a fraction of the
 // nominal one. The torque equation is homogeneous: hardly any inertia at all explains nearly
 // everything, but nobody weighs a platform that badly.
@@ -116,7 +137,8 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
       return "its period is as long as the recording: any slow torque looks like that";
     }
   }
-  if (const double change = inertia_change(trial); change > limits.max_inertia_change) {
+  const double allowed = std::max(limits.max_inertia_change, stated_inertia_change(trial));
+  if (const double change = inertia_change(trial); change > allowed) {
     return "a principal moment of inertia would change by " +
            std::to_string(static_cast<int>(std::lround(100.0 * change))) + " %";
   }
@@ -174,6 +196,35 @@ void start_again(Hypothesis& h, const Trial& parent, const std::vector<Observati
   h.runs = seen_starts(h, runs);
 }
 
+// Whether an inertia that is only believed has left its belief by more than its sigma.
+bool inertia_is_bent(const Hypothesis& h, size_t nominal_disturbances) {
+  return std::any_of(h.free.begin(), h.free.end(), [&](const Free& f) {
+    if (f.per_run || f.disturbance >= nominal_disturbances) return false;
+    return changes_inertia(h.model.disturbances[f.disturbance]) &&
+           std::abs(h.parameter(f).value - f.mean) > f.sigma;
+  });
+}
+
+// The fit from `h`. The torque equation is homogeneous, so that a model that lacks something bends
+// its inertia first, and what is added to it then only finds the minimum beside that: there it is
+// fitted from what was stated as well.
+Fit fit_unbent(const Hypothesis& h, size_t nominal_disturbances,
+               const std::vector<Observation>& runs, const FitSettings& settings,
+               const Thresholds& limits) {
+  Fit bent = fit(h, runs, settings);
+  if (!inertia_is_bent(h, nominal_disturbances)) return bent;
+  Hypothesis stated = h;
+  for (const Free& f : h.free) {
+    if (!f.per_run && f.disturbance < nominal_disturbances) stated.value(f) = f.mean;
+  }
+  stated.runs = seen_starts(stated, runs);
+  FitSettings growing = settings;
+  growing.windows = limits.fitting.first_windows;
+  growing.max_start_chi2 = inference::infinity;
+  const Fit straight = fit(stated, runs, growing);
+  return straight.chi2 < bent.chi2 ? straight : bent;
+}
+
 // All that is fitted of a candidate that stands at `index` in the model.
 void free_parameters(Hypothesis& h, const Candidate& c, size_t index, const Thresholds& limits) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
@@ -181,7 +232,8 @@ void free_parameters(Hypothesis& h, const Candidate& c, size_t index, const Thre
     Free f{index, static_cast<int>(p)};
     f.mean = c.searched[p] ? h.parameter(f).value : 0.0;
     f.sigma = limits.evidence.fit_prior_widths * c.scale[p];
-    if (c.searched[p]) {
+    // One axis of several may have none of what the others have.
+    if (c.searched[p] || c.effect.of_free_bodies) {
       f.lowest = c.lowest[p];
       f.highest = c.highest[p];
     }
@@ -246,7 +298,8 @@ Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const
   }
   trial.candidates.push_back(candidate);
   trial.disturbances.push_back(add_free(h, all[candidate], start, all.limits));
-  trial.fit = fit(h, runs, how);
+  trial.fit =
+      fit_unbent(h, h.model.disturbances.size() - trial.candidates.size(), runs, how, all.limits);
   judge(trial, all);
   return trial;
 }
@@ -304,7 +357,8 @@ Trial assembled(const Trial& from, const Candidates& all, const inference::Membe
     trial.candidates.push_back(member.term.candidate);
     trial.disturbances.push_back(add_free(h, c, start, all.limits));
   }
-  trial.fit = fit(h, runs, settings);
+  trial.fit = fit_unbent(h, h.model.disturbances.size() - trial.candidates.size(), runs, settings,
+                         all.limits);
   return trial;
 }
 

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/account.h"
+#include "diagnosis/attitude/findings/account.h"
 
 #include <algorithm>
 #include <cmath>
@@ -194,6 +194,36 @@ std::vector<std::string> contradicted_beliefs(const Trial& chosen,
   return sentences;
 }
 
+namespace {
+
+// "a, b (explanation)" of all that was named.
+std::string names_of(const Diagnosis& d) {
+  std::string text;
+  for (const FoundEffect& effect : d.effects) {
+    text += (text.empty() ? "" : "; ") + in_words(effect.kind) + " (" + effect.explanation + ")";
+  }
+  return text;
+}
+
+// Names beside which something stays unexplained.
+std::string mostly_explained(const Diagnosis& d) {
+  std::string text = "Mostly explained by " + names_of(d);
+  if (d.holdout && d.holdout->chi2_per_sample_after > 0.0) {
+    const double before = d.holdout->chi2_per_sample_before,
+                 after = d.holdout->chi2_per_sample_after;
+    char numbers[200];
+    std::snprintf(
+        numbers, sizeof numbers,
+        ". Held out, it leaves %.3g of the nominal model's residual (rms), %.3g times the "
+        "noise: something more acts that has no name",
+        std::sqrt(after / before), std::sqrt(after));
+    text += numbers;
+  }
+  return text + ".";
+}
+
+}  // namespace
+
 std::string sentence_of(const Diagnosis& d) {
   // Of χ² held out: a factor, and an excess per number.
   constexpr double worth_saying = 1.5, leaves_something = 0.2;
@@ -201,13 +231,9 @@ std::string sentence_of(const Diagnosis& d) {
     return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";
   }
   if (d.verdict == Verdict::missing_physics) {
-    std::string text = d.effects.size() == 1 ? "Missing: " : "Missing together: ";
-    for (size_t i = 0; i < d.effects.size(); ++i) {
-      if (i > 0) text += "; ";
-      text += in_words(d.effects[i].kind) + " (" + d.effects[i].explanation + ")";
-    }
-    return text + ".";
+    return (d.effects.size() == 1 ? "Missing: " : "Missing together: ") + names_of(d) + ".";
   }
+  if (!d.effects.empty()) return mostly_explained(d);
   std::string text = "Something acts that no effect of the catalogue explains";
   if (!d.where.depends_on.empty()) {
     text += "; it depends on " + d.where.depends_on.front().variable;

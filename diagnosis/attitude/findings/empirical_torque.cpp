@@ -1,12 +1,12 @@
-#include "diagnosis/attitude/empirical_torque.h"
+#include "diagnosis/attitude/findings/empirical_torque.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/constants.h"
-#include "diagnosis/attitude/account.h"
-#include "diagnosis/attitude/formula.h"
+#include "diagnosis/attitude/findings/account.h"
+#include "diagnosis/attitude/findings/formula.h"
 
 namespace photorque {
 namespace {

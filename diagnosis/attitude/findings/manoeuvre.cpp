@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/manoeuvre.h"
+#include "diagnosis/attitude/findings/manoeuvre.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/locate.h"
+#include "diagnosis/attitude/findings/locate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/formula.h"
+#include "diagnosis/attitude/findings/formula.h"
 
 #include <algorithm>
 #include <cmath>

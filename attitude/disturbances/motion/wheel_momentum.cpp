@@ -1,0 +1,56 @@
+// Wheels whose speed was measured: T = −J (Ω' + ω × Ω), ω the inertial rate.
+//
+// inertia_kg_m2: J ≥ 0 of a wheel about its own axis, relative to which the body's inertia counts
+// it at rest; one number for all wheels, or three for those about body x, y and z. Their speeds Ω
+// relative to the body are the recording's columns wheel_x_rad_s, wheel_y_rad_s, wheel_z_rad_s.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+constexpr ScalarKey common_inertia{"inertia_kg_m2"};
+constexpr VectorKey axis_inertia{common_inertia.name};
+
+struct AlikeWheels final : TorqueLaw<AlikeWheels> {
+  template <class T>
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    const Vec3Of<T> by_inertia =
+        now.wheel_rad_s2 + now.inertial_rate_body_rad_s.cross(now.wheel_rad_s);
+    return -own[common_inertia] * by_inertia;
+  }
+};
+
+struct OwnWheels final : TorqueLaw<OwnWheels> {
+  template <class T>
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    const Vec3Of<T> momentum = own[axis_inertia].cwiseProduct(now.wheel_rad_s),
+                    change = own[axis_inertia].cwiseProduct(now.wheel_rad_s2);
+    return momentum.cross(now.inertial_rate_body_rad_s) - change;
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  if (count_as_written(settings, common_inertia.name) > 0) {
+    return make_disturbance<OwnWheels>({vector_parameter(settings, axis_inertia)});
+  }
+  return make_disturbance<AlikeWheels>(
+      {scalar_parameter(settings, common_inertia, Range::not_negative())});
+}
+
+}  // namespace
+
+DisturbanceKind wheel_momentum_kind() {
+  return {.name = "wheel_momentum",
+          .summary = "wheels whose speed was measured exchange momentum with the body",
+          .read = read,
+          .screening = {
+              .parametrisations = {{"a wheel on board takes up and gives back angular momentum",
+                                    {{.key = common_inertia.name,
+                                      .start = {0.0},
+                                      .scale = 1e-3,
+                                      .lowest = 0.0,
+                                      .times_inertia = true}}}},
+              .needs = Requirement::wheel}};
+}
+
+}  // namespace photorque

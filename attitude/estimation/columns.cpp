@@ -1,0 +1,115 @@
+#include "attitude/estimation/columns.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+constexpr const char* quaternion_names[] = {"q_w", "q_x", "q_y", "q_z"};
+constexpr const char* gyro_names[] = {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
+constexpr const char* euler_names[] = {"roll_rad", "pitch_rad", "yaw_rad"};
+constexpr const char* angle_names[] = {"angle_rad", "roll_rad", "pitch_rad", "yaw_rad",
+                                       "heading_rad"};
+constexpr const char* event_names[] = {"thruster", "impulse", "event"};
+// What Recording::schedule() makes use of.
+constexpr const char* schedule_names[] = {"command_x_N_m",    "command_y_N_m", "command_z_N_m",
+                                          "wheel_x_rad_s",    "wheel_y_rad_s", "wheel_z_rad_s",
+                                          "battery_current_A"};
+
+// 0, 1 or 2: x, y or z.
+size_t index_of(const Vec3& axis) {
+  Eigen::Index k = 0;
+  axis.cwiseAbs().maxCoeff(&k);
+  return static_cast<size_t>(k);
+}
+
+double cell(const Channel* channel, size_t row) {
+  return channel == nullptr ? empty_cell : channel->values[row];
+}
+
+}  // namespace
+
+const Channel* MotionColumns::take(const std::string& name) {
+  const Channel* channel = recording_.find(name);
+  if (channel != nullptr) used_.push_back(channel);
+  return channel;
+}
+
+MotionColumns::MotionColumns(const Recording& recording, const Platform& platform,
+                             const std::string& name)
+    : recording_(recording), platform_(platform) {
+  for (const char* known : schedule_names) take(known);
+  for (const char* known : event_names) {
+    if (event_ == nullptr) event_ = take(known);
+  }
+  for (size_t k = 0; k < 3; ++k) gyro_[k] = take(gyro_names[k]);
+  const bool any_q = std::any_of(std::begin(quaternion_names), std::end(quaternion_names),
+                                 [&](const char* q) { return recording.find(q) != nullptr; });
+  const bool all_euler = std::all_of(std::begin(euler_names), std::end(euler_names),
+                                     [&](const char* e) { return recording.find(e) != nullptr; });
+  if (any_q) {
+    for (size_t k = 0; k < 4; ++k) {
+      q_[k] = take(quaternion_names[k]);
+      if (q_[k] == nullptr) {
+        throw InputError({name, 0}, "header", std::string("no channel ") + quaternion_names[k],
+                         "the attitude q_w, q_x, q_y, q_z");
+      }
+    }
+    sees_axis_ = {true, true, true};
+  } else if (platform.turns_about_one_axis()) {
+    const size_t axis = index_of(platform.axis);
+    if (gyro_[axis] == nullptr) gyro_[axis] = take("rate_rad_s");
+    for (const char* known : angle_names) {
+      if (angle_ == nullptr) angle_ = take(known);
+    }
+    if (angle_ != nullptr) sees_axis_[axis] = true;
+  } else if (all_euler) {
+    for (size_t k = 0; k < 3; ++k) euler_[k] = take(euler_names[k]);
+    sees_axis_ = {true, true, true};
+  }
+  if (has_attitude() || has_gyro()) return;
+  throw InputError({name, 0}, "header",
+                   platform.turns_about_one_axis() ? "no channel of an angle or a rate"
+                                                   : "no channel q_w and no gyro",
+                   platform.turns_about_one_axis()
+                       ? "angle_rad, rate_rad_s, a gyro axis, or [recording.columns] that says "
+                         "which column is one"
+                       : "the attitude q_w, q_x, q_y, q_z, or gyro_x_rad_s, gyro_y_rad_s, "
+                         "gyro_z_rad_s");
+}
+
+Quat MotionColumns::attitude(size_t row) const {
+  if (angle_ != nullptr) {
+    return Quat(Eigen::AngleAxisd(cell(angle_, row), platform_.axis));
+  }
+  if (euler_[0] != nullptr) {
+    return Quat(Eigen::AngleAxisd(cell(euler_[2], row), Vec3::UnitZ()) *
+                Eigen::AngleAxisd(cell(euler_[1], row), Vec3::UnitY()) *
+                Eigen::AngleAxisd(cell(euler_[0], row), Vec3::UnitX()));
+  }
+  return Quat(cell(q_[0], row), cell(q_[1], row), cell(q_[2], row), cell(q_[3], row)).normalized();
+}
+
+double MotionColumns::rate_rad_s(size_t axis, size_t row) const {
+  return cell(gyro_[axis], row);
+}
+
+bool MotionColumns::has_event(size_t row) const {
+  const double value = cell(event_, row);
+  return std::isfinite(value) && value != 0.0;
+}
+
+std::vector<std::string> MotionColumns::unused() const {
+  std::vector<std::string> names;
+  for (const Channel& channel : recording_.channels) {
+    if (std::find(used_.begin(), used_.end(), &channel) == used_.end()) {
+      names.push_back(channel.name);
+    }
+  }
+  return names;
+}
+
+}  // namespace photorque

@@ -1,0 +1,54 @@
+// Which columns of a recording say what of the motion, for the machine at hand.
+//
+//   attitude: q_w, q_x, q_y, q_z; or roll_rad, pitch_rad, yaw_rad (about body x, then y, then z
+//     turned back: q = Rz(yaw) Ry(pitch) Rx(roll)); of a platform that turns about one axis one of
+//     angle_rad, roll_rad, pitch_rad, yaw_rad, heading_rad, which may pass whole turns;
+//   rates: gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s, any of them; about one axis also rate_rad_s;
+//   what was done: commands, currents, wheel speeds (Recording::schedule());
+//   events: thruster, impulse or event, not zero where something hit the platform: what was read in
+//     that row is left out, and the motion begins anew after it.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "attitude/model/platform.h"
+#include "attitude/recordings/recording.h"
+
+namespace photorque {
+
+class MotionColumns {
+ public:
+  // Both must outlive this. InputError, naming `name`, when there is neither an attitude nor a
+  // rate.
+  MotionColumns(const Recording& recording, const Platform& platform, const std::string& name);
+
+  // Lab axes about which the attitude is read; none: there is no attitude.
+  const std::array<bool, 3>& sees_axis() const { return sees_axis_; }
+  bool has_attitude() const { return sees_axis_[0] || sees_axis_[1] || sees_axis_[2]; }
+  bool has_gyro() const { return gyro_[0] || gyro_[1] || gyro_[2]; }
+
+  // Of a row; not finite where it has none.
+  Quat attitude(size_t row) const;
+  double rate_rad_s(size_t axis, size_t row) const;  // body axes
+  bool has_event(size_t row) const;
+
+  // Columns that nothing is made of.
+  std::vector<std::string> unused() const;
+
+ private:
+  const Channel* take(const std::string& name);
+
+  const Recording& recording_;
+  const Platform& platform_;
+  std::array<const Channel*, 4> q_{};
+  std::array<const Channel*, 3> euler_{};  // roll, pitch, yaw
+  const Channel* angle_ = nullptr;         // about the platform's axis
+  std::array<const Channel*, 3> gyro_{};
+  const Channel* event_ = nullptr;
+  std::array<bool, 3> sees_axis_{};
+  std::vector<const Channel*> used_;
+};
+
+}  // namespace photorque

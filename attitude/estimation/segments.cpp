@@ -1,0 +1,109 @@
+#include "attitude/estimation/segments.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "attitude/estimation/columns.h"
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+// Start and rate of an axis are two numbers, its torque one more: fewer readings say nothing of it.
+constexpr size_t least_of_stretch = 6;
+
+// Gaps over which nothing can be propagated with profit: longer than a quarter of all the time that
+// was read, and than a hundred intervals. A clock that jumps makes such a gap.
+double long_gap_s(const Recording& recording) {
+  const RecordingReport& report = recording.report;
+  double read_s = recording.time_s.back() - recording.time_s.front();
+  std::vector<double> gaps_s;
+  for (const RecordingReport::Gap& gap : report.gaps) gaps_s.push_back(gap.to_s - gap.from_s);
+  std::sort(gaps_s.begin(), gaps_s.end());
+  // The longest first: whether it is long is asked of what was read without it.
+  double longest_s = std::numeric_limits<double>::infinity();
+  while (!gaps_s.empty()) {
+    const double gap_s = gaps_s.back();
+    if (gap_s < 0.25 * (read_s - gap_s) || gap_s < 100.0 * report.median_interval_s) break;
+    longest_s = gap_s;
+    read_s -= gap_s;
+    gaps_s.pop_back();
+  }
+  return longest_s;
+}
+
+// Rows at which the angle about the one axis has a kink that its own readings do not know: a firing
+// that nobody noted. Noise and torques make all of them alike.
+std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
+  std::vector<char> kinks(rows.blocks(), 0);
+  if (!platform.turns_about_one_axis() || !rows.sees_some_attitude()) return kinks;
+  struct Change {
+    size_t row;
+    double rate_rad_s;
+  };
+  std::vector<Change> changes;
+  const auto turn_rad = [&](size_t from, size_t to) {
+    return platform.axis.dot(rotation_vector(rows.attitude[to] * rows.attitude[from].conjugate()));
+  };
+  for (size_t i = 1; i + 1 < rows.blocks(); ++i) {
+    if (!(rows.attitude_rows[i - 1] * rows.attitude_rows[i] * rows.attitude_rows[i + 1] > 0.0)) {
+      continue;
+    }
+    const double before = turn_rad(i - 1, i) / (rows.time_s[i] - rows.time_s[i - 1]),
+                 after = turn_rad(i, i + 1) / (rows.time_s[i + 1] - rows.time_s[i]);
+    changes.push_back({i, std::abs(after - before)});
+  }
+  if (changes.empty()) return kinks;
+  std::vector<double> sizes;
+  for (const Change& change : changes) sizes.push_back(change.rate_rad_s);
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  // Of a Gaussian, 12 of these medians are 8 standard deviations.
+  constexpr double medians = 12.0;
+  for (const Change& change : changes) {
+    kinks[change.row] = change.rate_rad_s > medians * *middle ? 1 : 0;
+  }
+  return kinks;
+}
+
+}  // namespace
+
+Segments observe_segments(const Recording& recording, const std::string& name,
+                          const Platform& platform, size_t max_blocks) {
+  const Observation rows = observe(recording, name, platform, std::numeric_limits<size_t>::max());
+  const MotionColumns columns(recording, platform, name);
+  const double gap_s = long_gap_s(recording);
+  const std::vector<char> kinks = kinks_of(rows, platform);
+  Segments result;
+  const double share = static_cast<double>(max_blocks) / static_cast<double>(rows.blocks());
+  size_t first = 0;
+  const auto close = [&](size_t last) {
+    if (last > first && rows.readings(first, last) >= least_of_stretch) {
+      const auto blocks = static_cast<size_t>(share * static_cast<double>(last - first));
+      result.all.push_back(rows.part(first, last).averaged(std::max(least_of_stretch, blocks)));
+    } else {
+      result.too_short += last > first ? 1 : 0;
+    }
+    first = last;
+  };
+  for (size_t i = 0; i < rows.blocks(); ++i) {
+    if (i > 0 && recording.time_s[i] - recording.time_s[i - 1] >= gap_s) {
+      ++result.long_gaps;
+      close(i);
+    }
+    if (!columns.has_event(i) && kinks[i] == 0) continue;
+    (columns.has_event(i) ? result.events : result.kinks) += 1;
+    close(i);
+    first = i + 1;
+  }
+  close(rows.blocks());
+  if (result.all.empty()) {
+    throw InputError({name, 0}, "t_s",
+                     "no stretch between events and gaps with as many as " +
+                         std::to_string(least_of_stretch) + " readings",
+                     "a recording with longer ones");
+  }
+  return result;
+}
+
+}  // namespace photorque

@@ -1,0 +1,25 @@
+// A recording as stretches of undisturbed motion: it is cut where something hit the platform and
+// where nothing was read for long.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "attitude/estimation/observation.h"
+
+namespace photorque {
+
+struct Segments {
+  std::vector<Observation> all;
+  int64_t events = 0;     // rows in which something hit the platform: left out
+  int64_t kinks = 0;      // rows at which an angle changes its rate at once: left out as well
+  int64_t long_gaps = 0;  // at which the recording was cut
+  int64_t too_short = 0;  // stretches with too few readings for a start of their own: left out
+};
+
+// `max_blocks`: of all stretches together. InputError as observe() (observation.h), and where every
+// stretch is too short.
+Segments observe_segments(const Recording& recording, const std::string& name,
+                          const Platform& platform, size_t max_blocks = 6000);
+
+}  // namespace photorque

@@ -1,0 +1,59 @@
+#include "diagnosis/attitude/answer.h"
+
+#include "diagnosis/attitude/domain.h"
+#include "diagnosis/attitude/findings/account.h"
+#include "diagnosis/attitude/findings/locate.h"
+#include "diagnosis/attitude/refine.h"
+#include "inference/search.h"
+#include "inference/weigh.h"
+
+namespace photorque {
+
+void tell(const DiagnoseOptions& options, const std::string& what) {
+  if (options.progress) options.progress(what);
+}
+
+Answer explain(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
+               const DiagnoseOptions& options, Among among) {
+  Answer a;
+  a.all = all_candidates(nominal, data.train, options.limits);
+  if (among == Among::unscanned) {
+    std::erase_if(a.all.list, [](const Candidate& c) { return !c.is_linear(); });
+  }
+  if (among == Among::plain_physics) {
+    std::erase_if(a.all.list, [](const Candidate& c) {
+      return c.empirical() || !c.is_linear() || c.start.stage == Stage::measurement;
+    });
+  }
+  const AttitudeDomain domain(a.all);
+  tell(options, "fitting every effect of the catalogue");
+  a.trials =
+      inference::search(domain, nominal_trial(nominal_fit, a.all), data.train, options.threads);
+  a.depends_on = dependences(a.trials, a.all);
+  tell(options, "comparing with what was held out");
+  inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
+  const auto excess = [&](size_t trial) {
+    return domain.excess_sigma(a.trials[trial], data.train);
+  };
+  a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), excess,
+                                 options.limits.decision);
+  if (a.decision.finding == inference::Finding::unknown) {
+    Trial& chosen = a.trials[a.decision.chosen];
+    chosen = refined_in_time(chosen, a.all, data.train);
+  }
+  return a;
+}
+
+Answer unexplained(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
+                   const Thresholds& limits) {
+  Answer a;
+  a.all = all_candidates(nominal, data.train, limits);
+  a.trials = {nominal_trial(nominal_fit, a.all)};
+  a.decision.finding = inference::Finding::unknown;
+  a.decision.confidence = limits.decision.structure_confidence;
+  a.decision.because = "the nominal model leaves structure in the recording";
+  a.decision.probability = {1.0};
+  return a;
+}
+
+}  // namespace photorque
