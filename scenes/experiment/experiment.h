@@ -103,6 +103,11 @@ struct ExperimentFile {
 ExperimentFile read_experiment_file(const std::filesystem::path& path,
                                     std::span<const std::string> overrides = {});
 
+// The same for a text that need not be a file's: `path` is what messages call it, and the files
+// that it names are relative to the folder of that path.
+ExperimentFile read_experiment_text(const std::filesystem::path& path, const std::string& text,
+                                    std::span<const std::string> overrides = {});
+
 // A receiver and what the experiment calls it.
 struct NamedReceiver : MadeReceiver {
   std::string name;  // the key `name`, else the node, else the kind

@@ -8,25 +8,12 @@
 #include "core/errors.h"
 #include "core/provenance.h"
 #include "core/settings/settings.h"
-#include "tools/runs/verb.h"
+#include "tools/commands/verb.h"
 
 namespace photorque {
 
 std::filesystem::path CommandLine::out_folder() const {
   return out ? *out : std::filesystem::path("out") / experiment.stem() / verb;
-}
-
-std::vector<std::string> CommandLine::all_overrides() const {
-  std::vector<std::string> all = overrides;
-  if (seed) all.push_back("trace.seed=" + std::to_string(*seed));
-  const auto add = [&all](const char* key, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%s=%.17g", key, value);
-    all.emplace_back(text);
-  };
-  if (target_error) add("trace.target_error", *target_error);
-  if (max_time_s) add("trace.max_time_s", *max_time_s);
-  return all;
 }
 
 namespace {

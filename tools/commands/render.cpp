@@ -4,6 +4,7 @@
 #include "core/constants.h"
 #include "images/scene/picture.h"
 #include "raytrace/tracing/view.h"
+#include "tools/commands/terminal.h"
 #include "tools/runs/optical_run.h"
 
 namespace photorque {
@@ -103,7 +104,7 @@ SceneView make_view(const OpticalRun& run, const TraceResult& result, int thread
 }
 
 void run_render(const CommandLine& line) {
-  Console console(line);
+  const Console console = terminal(line);
   const OpticalRun run(line, console);
   const Experiment& experiment = run.experiment();
   const OpticalResult result = run.run(experiment.lab_from_body, console.progress("tracing"));

@@ -8,8 +8,9 @@
 #include "core/files.h"
 #include "core/text/numbers.h"
 #include "scenes/experiment/experiment.h"
-#include "tools/runs/optical_run.h"
-#include "tools/runs/sweep_design.h"
+#include "tools/commands/results.h"
+#include "tools/commands/sweep_design.h"
+#include "tools/commands/terminal.h"
 
 namespace photorque {
 namespace {
@@ -186,7 +187,7 @@ InputError in_design(const CommandLine& line, size_t design, size_t count,
 }
 
 void run_sweep(const CommandLine& line) {
-  Console console(line);
+  const Console console = terminal(line);
   const ExperimentFile file = read_experiment_file(line.experiment, line.all_overrides());
   const auto tables = file.others("sweep");
   if (tables.empty()) throw file.settings.error("sweep", "none", "a table [sweep]");
@@ -243,7 +244,7 @@ void run_sweep(const CommandLine& line) {
     }
     designs.push_back(read_figures(summary_of(design)));
   }
-  write_results(line, console, sweep_product(plan, designs), provenance, RunCost{});
+  write_results(line, console, {sweep_product(plan, designs), provenance, {}});
 }
 
 }  // namespace

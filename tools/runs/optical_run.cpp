@@ -3,25 +3,23 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/files.h"
 #include "diagnosis/light/apply.h"
-#include "images/writers/product.h"
 #include "images/writers/read_picture.h"
 #include "sources/profiles/beam_shape.h"
 
 namespace photorque {
 namespace {
 
-Experiment read(const CommandLine& line) {
-  Experiment experiment =
-      read_experiment(line.experiment, line.all_overrides(), [](const std::string& bytes) {
-        LinearPicture picture = read_picture(bytes);
-        return BaseColours{picture.width, picture.height, std::move(picture.rgb)};
-      });
+Experiment read(const RunOptions& options) {
+  ExperimentFile file =
+      read_experiment_text(options.experiment, options.experiment_text(), options.all_overrides());
+  Experiment experiment = resolve_experiment(std::move(file), [](const std::string& bytes) {
+    LinearPicture picture = read_picture(bytes);
+    return BaseColours{picture.width, picture.height, std::move(picture.rgb)};
+  });
   for (std::string& notice : apply_written_effects(experiment)) {
     experiment.notices.push_back(std::move(notice));
   }
@@ -63,8 +61,8 @@ double momentum_disagreement(const PowerBalance& power_balance, const BinSums& s
 
 }  // namespace
 
-OpticalRun::OpticalRun(const CommandLine& line, const Console& console)
-    : experiment_(read(line)), scene_(experiment_.scene), threads_(line.threads) {
+OpticalRun::OpticalRun(const RunOptions& options, const Console& console)
+    : experiment_(read(options)), scene_(experiment_.scene), threads_(options.threads) {
   wrench_ = whole_wrench(experiment_);
   const auto inside = std::make_shared<const InsideLightReceiver>(experiment_.scene);
   if (inside->bins() > 0) {
@@ -319,34 +317,6 @@ void append(Product& product, Product more) {
   move_all(product.maps, more.maps);
   move_all(product.tables, more.tables);
   move_all(product.plots, more.plots);
-}
-
-void write_results(const CommandLine& line, const Console& console, const Product& product,
-                   const Provenance& provenance, uint64_t rays, double wall_s) {
-  write_results(line, console, product, provenance, {wall_s, rays});
-}
-
-void write_results(const CommandLine& line, const Console& console, const Product& product,
-                   const Provenance& provenance, const RunCost& cost) {
-  const auto folder = line.out_folder();
-  for (const Quantity& figure : product.quantities) {
-    if (!std::isfinite(figure.estimate.value)) {
-      throw NumericalError(figure.name + " came out as no finite number");
-    }
-  }
-  const std::string summary = summary_json(product, provenance, cost);
-  if (line.summary_only) {
-    write_file_whole(folder / "summary.json", summary);
-    return;
-  }
-  const auto files = write_product(product, provenance, folder);
-  write_file_whole(folder / "summary.json", summary);
-  if (line.json) std::fputs(summary.c_str(), stdout);
-  console.heading("Written to " + folder.string());
-  console.line("  summary.json and " + std::to_string(files.size()) + " more files; pictures:");
-  for (const auto& file : files) {
-    if (file.extension() == ".png") console.line("  " + file.filename().string());
-  }
 }
 
 }  // namespace photorque

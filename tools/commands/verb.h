@@ -1,27 +1,22 @@
 // What every command of the program shares.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/runs/options.h"
+
 namespace photorque {
 
 // The command line: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
-struct CommandLine {
+struct CommandLine : RunOptions {
   std::string verb;
-  std::filesystem::path experiment;
-  std::vector<std::string> overrides;             // --set, in order
   std::optional<std::filesystem::path> out;       // --out
-  int threads = 0;                                // 0: all
-  std::optional<uint64_t> seed;                   // over the experiment's own
   bool quiet = false;                             // no text but errors
   bool json = false;                              // the summary as JSON on standard output
-  std::optional<double> target_error;             // --target-error, of commands that trace
-  std::optional<double> max_time_s;               // --max-time, likewise
   std::vector<std::filesystem::path> recordings;  // --recording, of commands that take some
   std::vector<std::filesystem::path> holdouts;    // --holdout, recordings held out from a fit
   std::optional<std::filesystem::path> cases;     // --cases, a folder of injected cases
@@ -31,8 +26,6 @@ struct CommandLine {
 
   // --out, or out/EXPERIMENT/VERB below the current folder.
   std::filesystem::path out_folder() const;
-  // The overrides with --seed among them.
-  std::vector<std::string> all_overrides() const;
 };
 
 // One command. `run` does everything and throws what goes wrong.

@@ -1,4 +1,4 @@
-#include "tools/runs/child_process.h"
+#include "tools/commands/child_process.h"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-#include "tools/runs/sweep_design.h"
+#include "tools/commands/sweep_design.h"
 
 #include <cmath>
 #include <cstdio>

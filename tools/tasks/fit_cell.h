@@ -1,0 +1,13 @@
+// The parameters of a solar cell, module or shaded string from measurements.
+#pragma once
+
+#include "tools/runs/console.h"
+#include "tools/runs/options.h"
+#include "tools/runs/result.h"
+
+namespace photorque {
+
+// What [fit] of the experiment asks for.
+RunResult fit_cell_of_experiment(const RunOptions& options, const Console& console);
+
+}  // namespace photorque
