@@ -83,7 +83,7 @@ class TracerPool {
 
 TraceSums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
                      std::span<const Receiver* const> receivers, uint64_t seed, size_t item,
-                     uint64_t parts) {
+                     uint64_t parts, const std::function<void()>& batch_done) {
   const uint64_t replicate = item / parts, part = item % parts;
   const uint64_t first_batch = plan.batches * part / parts;
   const uint64_t end_batch = plan.batches * (part + 1) / parts;
@@ -95,6 +95,7 @@ TraceSums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
     const uint64_t end = std::min(end_batch, beam.first_batch + beam.launch.cells.cells());
     for (uint64_t batch = begin; batch < end; ++batch) {
       tracer.run(beam, stream, static_cast<uint32_t>(batch - beam.first_batch), {item, b}, sums);
+      batch_done();
     }
   }
   return sums;
@@ -177,15 +178,17 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
   const size_t replicates = static_cast<size_t>(options.replicates);
   std::vector<TraceSums> done(replicates * parts, TraceSums(0, {}));
   TracerPool pool(data, receivers, options);
-  std::atomic<size_t> finished = 0;
+  std::atomic<uint64_t> finished = 0;
+  const uint64_t batches = plan.batches * replicates;
+  const auto batch_done = [&] {
+    const uint64_t now = ++finished;
+    if (options.progress) options.progress(static_cast<double>(now) / static_cast<double>(batches));
+  };
   parallel_for(done.size(), options.threads, [&](size_t item) {
     auto tracer = pool.take();
     done[item] = trace_part(*tracer, data.scene.instances.size(), plan, receivers, options.seed,
-                            item, parts);
+                            item, parts, batch_done);
     pool.give_back(std::move(tracer));
-    const size_t now = ++finished;
-    if (options.progress)
-      options.progress(static_cast<double>(now) / static_cast<double>(done.size()));
   });
 
   std::vector<TraceSums> by_replicate;
