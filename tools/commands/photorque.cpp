@@ -8,6 +8,7 @@
 #include "core/errors.h"
 #include "core/provenance.h"
 #include "core/settings/settings.h"
+#include "tools/commands/manual.h"
 #include "tools/commands/verb.h"
 
 namespace photorque {
@@ -31,6 +32,19 @@ void add_options(CLI::App& command, CommandLine& line) {
   command.add_flag("--json", line.json, "Print the summary as JSON instead of text");
 }
 
+// For packages: what other programs read of the same options.
+struct Manual {
+  bool page = false;
+  std::string shell;
+};
+
+void add_manual(CLI::App& app, Manual& manual) {
+  app.add_flag("--man", manual.page, "Print the manual page (troff)");
+  app.add_option("--completion", manual.shell,
+                 "Print the completion script of a shell: bash, zsh or fish")
+      ->check(CLI::IsMember(completion_shells));
+}
+
 // What is wrong without a file of its own is wrong in the experiment.
 int run_verb(const Verb& verb, const CommandLine& line) {
   try {
@@ -49,7 +63,7 @@ int run(int argc, char** argv) {
   app.name("photorque");
   const Provenance build = build_provenance();
   app.set_version_flag("--version", "photorque " + build.version + " (git " + build.git_hash + ")");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   CommandLine line;
   const std::vector<Verb> verbs = all_verbs();
   for (const Verb& verb : verbs) {
@@ -86,6 +100,8 @@ int run(int argc, char** argv) {
                           "designs done writes the table");
     }
   }
+  Manual manual;
+  add_manual(app, manual);
   if (argc > 1 && argv[1][0] != '-') {
     std::set<std::string> known;
     for (const Verb& verb : verbs) known.insert(verb.name);
@@ -103,6 +119,12 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "photorque: %s (see photorque --help)\n", error.what());
     return 2;
   }
+  if (manual.page || !manual.shell.empty()) {
+    const std::string text =
+        manual.page ? man_page(app, build.version) : completion_script(app, manual.shell);
+    std::fputs(text.c_str(), stdout);
+    return 0;
+  }
   for (const Verb& verb : verbs) {
     if (app.got_subcommand(verb.name)) {
       line.verb = verb.name;
@@ -110,7 +132,8 @@ int run(int argc, char** argv) {
       return run_verb(verb, line);
     }
   }
-  return 0;
+  std::fprintf(stderr, "photorque: A subcommand is required (see photorque --help)\n");
+  return 2;
 }
 
 }  // namespace
