@@ -32,6 +32,8 @@ size_t count_of(const LightLab& lab, LightEffectKind::Index index) {
       return lab.bypasses();
     case LightEffectKind::Index::wall:
       return lab.walls().size();
+    case LightEffectKind::Index::frame:
+      return 2;
   }
   return 0;
 }
@@ -91,7 +93,9 @@ LightCandidates light_candidates(const LightLab& lab, const LightState& nominal,
     const bool is_only = count < 2 && (kind.index == LightEffectKind::Index::string);
     for (size_t i = 0; i < count && !is_only; ++i) {
       LightCandidate c{kind, i, kind.name, {}, {}};
-      if (kind.index != LightEffectKind::Index::none) c.label += "[" + std::to_string(i) + "]";
+      const bool has_number =
+          kind.index != LightEffectKind::Index::none && kind.index != LightEffectKind::Index::frame;
+      if (has_number) c.label += "[" + std::to_string(i) + "]";
       add_numbers(c);
       all.list.push_back(std::move(c));
     }
