@@ -27,4 +27,5 @@ PYBIND11_MODULE(_photorque, module) {
   python::bind_platform(module);
   python::bind_diagnosis(module);
   python::bind_cell_fit(module);
+  python::bind_check(module);
 }

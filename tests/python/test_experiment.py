@@ -43,6 +43,16 @@ class FromDict(unittest.TestCase):
         self.assertEqual(second.to_dict()["attitude"]["tilt_deg"], 2.5)
 
 
+class Check(unittest.TestCase):
+    def test_a_good_and_a_bad_one(self):
+        good = photorque.check(photorque.Experiment(nominal))
+        self.assertEqual(good.mistakes, [])
+        self.assertIn("49 lamps", good.commands["trace"])
+        bad = photorque.check(photorque.Experiment(nominal, keys={"source[0].direction": [0, 0, 1]}))
+        self.assertEqual(len(bad.mistakes), 1)
+        self.assertIn("source[0].direction", bad.mistakes[0])
+
+
 class Errors(FolderTest):
     def line_of_program(self, verb, file):
         done = subprocess.run([program, verb, str(file)], capture_output=True, text=True, cwd=self.folder)

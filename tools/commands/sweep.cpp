@@ -9,8 +9,8 @@
 #include "core/text/numbers.h"
 #include "scenes/experiment/experiment.h"
 #include "tools/commands/results.h"
-#include "tools/commands/sweep_design.h"
 #include "tools/commands/terminal.h"
+#include "tools/tasks/sweep_design.h"
 
 namespace photorque {
 namespace {

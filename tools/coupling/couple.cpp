@@ -10,10 +10,8 @@
 #include "tools/coupling/report.h"
 
 namespace photorque {
-namespace {
 
-// What the experiment says of light and power by other means.
-void refuse_duplicates(const ExperimentFile& file) {
+void require_light_once(const ExperimentFile& file) {
   const bool has_array = !file.others("array").empty();
   for (const Settings& disturbance : file.others("disturbance")) {
     const std::string kind = disturbance.text_or("kind", "");
@@ -29,6 +27,8 @@ void refuse_duplicates(const ExperimentFile& file) {
     }
   }
 }
+
+namespace {
 
 Battery battery_of(const ExperimentFile& file, const DaySettings& day, const Platform& platform) {
   Battery battery = day.battery;
@@ -220,7 +220,7 @@ CoupledResult propagate_in_light(const RunOptions& options, const Console& conso
     console.done();
     return result;
   }
-  refuse_duplicates(file);
+  require_light_once(file);
   result.light = std::make_unique<LightModel>(options, console, settings, run.model.platform);
   constexpr double least_rad = 5.0 * degree_rad;
   const double limit_rad = result.light->max_angle_rad();

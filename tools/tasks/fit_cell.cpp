@@ -310,13 +310,30 @@ Product fit_uneven_light(const FitTask& task, const Console& console) {
 
 }  // namespace
 
+namespace {
+
+FitTask task_of(const RunOptions& options, const std::string& text) {
+  SettingsNode root = parse_toml(text, options.experiment.string());
+  for (const std::string& assignment : options.overrides) apply_override(root, assignment);
+  return read_task(Settings(std::make_shared<const SettingsNode>(std::move(root))),
+                   options.experiment.parent_path());
+}
+
+}  // namespace
+
+std::string what_fit_asks(const RunOptions& options) {
+  const FitTask task = task_of(options, options.experiment_text());
+  const std::string cells = std::to_string(task.cells_in_series) + " in series";
+  if (!task.datasheet.empty()) {
+    return std::to_string(task.datasheet.size()) + " point(s) of a datasheet, cells: " + cells;
+  }
+  return std::to_string(task.sweeps.size()) + " sweep(s), cells: " + cells;
+}
+
 RunResult fit_cell_of_experiment(const RunOptions& options, const Console& console) {
   const WallTime wall;
   const std::string text = options.experiment_text();
-  SettingsNode root = parse_toml(text, options.experiment.string());
-  for (const std::string& assignment : options.overrides) apply_override(root, assignment);
-  const FitTask task = read_task(Settings(std::make_shared<const SettingsNode>(std::move(root))),
-                                 options.experiment.parent_path());
+  const FitTask task = task_of(options, text);
   Provenance provenance = build_provenance();
   provenance.inputs.emplace_back(options.experiment.filename().string(), content_hash(text));
   for (const std::string& assignment : options.overrides)
