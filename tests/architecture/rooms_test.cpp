@@ -23,6 +23,7 @@ const std::vector<std::pair<std::string, std::string>> only_place = {
     {"zlib.h", "attitude/recordings"},
     {"pugixml", "sources/photometry"},
     {"pybind11", "python"},
+    {"hdf5.h", "images/writers"},
 };
 
 struct Include {
