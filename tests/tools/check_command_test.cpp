@@ -94,5 +94,22 @@ TEST_F(CheckCommand, FindsTheMistakesOfDifferentTablesTogether) {
   EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 3) << got.err;
 }
 
+TEST_F(CheckCommand, NewWritesWhatRuns) {
+  const std::string model = (shipped / "stasis" / "stasis.gltf").string();
+  const Outcome lit = run("new " + at("lab/lit.toml") + " --scene " + model);
+  ASSERT_EQ(lit.status, 0) << lit.err;
+  EXPECT_THAT(file_text(at("lab/lit.toml")), HasSubstr("array_board/solar_array"));
+  const Outcome traced = run("trace " + at("lab/lit.toml") + " --out " + at("out"));
+  EXPECT_EQ(traced.status, 0) << traced.err;
+  const std::string free = at("lab/free.toml");
+  ASSERT_EQ(run("new " + free).status, 0);
+  const Outcome moved = run("propagate " + free + " --out " + at("out2"));
+  EXPECT_EQ(moved.status, 0) << moved.err;
+  // What is there stays.
+  const std::string before = file_text(free);
+  EXPECT_EQ(run("new " + free + " --scene " + model).status, 2);
+  EXPECT_EQ(file_text(free), before);
+}
+
 }  // namespace
 }  // namespace photorque

@@ -94,6 +94,9 @@ int run(int argc, char** argv) {
       command->add_option("--cases", line.cases, "Score this folder of cases instead of new ones");
       command->add_flag("--only-make", line.only_make, "Make the cases, diagnose nothing");
     }
+    if (verb.takes_scene) {
+      command->add_option("--scene", line.scene, "A model (glTF or GLB) to be lit");
+    }
     if (verb.takes_shard) {
       command->add_option("--shard", line.shard,
                           "K/N: only every Nth design, from the Kth; the run that finds all "

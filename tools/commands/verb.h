@@ -22,6 +22,7 @@ struct CommandLine : RunOptions {
   std::optional<std::filesystem::path> cases;     // --cases, a folder of injected cases
   bool only_make = false;                         // --only-make: the cases, nothing more
   std::string shard;                              // --shard K/N, of a sweep
+  std::optional<std::filesystem::path> scene;     // --scene, of a new experiment
   bool summary_only = false;                      // of a design in a sweep: no other files
 
   // --out, or out/EXPERIMENT/VERB below the current folder.
@@ -38,6 +39,7 @@ struct Verb {
   bool takes_holdouts = false;
   bool takes_cases = false;
   bool takes_shard = false;
+  bool takes_scene = false;
 };
 
 // Every verb named in tools/CMakeLists.txt, in that order.
