@@ -73,6 +73,14 @@ Console Call::console() const {
   return Console(std::move(sinks));
 }
 
+Call::Failing Call::failing() const {
+  return [state = state_](py::error_already_set error) {
+    if (!state->raised) state->raised.emplace(std::move(error));
+    state->stopped = true;
+    state->go_on();
+  };
+}
+
 void Call::rethrow_python() const {
   if (!state_->raised) return;
   py::error_already_set error = std::move(*state_->raised);

@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -24,6 +25,11 @@ class Call {
 
   // To be handed to the run. What a callback raises, and Ctrl-C, ends the run at the next word.
   Console console() const;
+
+  // For code of the run that calls Python by itself and meets an error there: ends the run with it.
+  // Always throws.
+  using Failing = std::function<void(py::error_already_set)>;
+  Failing failing() const;
 
   // `work()` without the interpreter's lock. An error of the input that names no file gets that of
   // the experiment, as the program says it.

@@ -3,19 +3,37 @@
 #include "python/bindings/bind.h"
 #include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
+#include "python/bindings/own_torque.h"
 #include "python/bindings/results.h"
 #include "tools/tasks/propagate.h"
 
 namespace photorque::python {
 namespace {
 
+// The text of a function, where Python still has it.
+std::string source_of(const py::object& function) {
+  try {
+    return py::str(py::module_::import("inspect").attr("getsource")(function));
+  } catch (const py::error_already_set&) {
+    return "unknown";
+  }
+}
+
 std::shared_ptr<MotionRun> propagate_motion(const ExperimentHandle& experiment, int threads,
-                                            const py::object& seed, const py::object& progress,
-                                            const py::object& log) {
+                                            const py::object& seed, const py::dict& torques,
+                                            const py::object& progress, const py::object& log) {
   const RunOptions options = experiment.with(threads, seed);
   const Call call(options.experiment, progress, log);
-  return call.run(
-      [&] { return std::make_shared<MotionRun>(propagate_experiment(options, call.console())); });
+  FurtherTorques further;
+  for (const auto& [name, function] : torques) {
+    const auto text = name.cast<std::string>();
+    const auto law = py::reinterpret_borrow<py::object>(function);
+    further.disturbances.push_back(own_torque(text, law, call));
+    further.inputs.emplace_back("torque " + text, content_hash(source_of(law)));
+  }
+  return call.run([&] {
+    return std::make_shared<MotionRun>(propagate_experiment(options, call.console(), further));
+  });
 }
 
 const PropagationResult& motion_of(const py::object& self) {
@@ -93,10 +111,14 @@ void bind_motion(py::module_& module) {
       .def_property_readonly("charge_drawn_C", [](const py::object& self) {
         return state_view(self, &motion_of(self).states.front().charge_drawn_C, 1);
       });
-  module.def("propagate", &propagate_motion, py::arg("experiment"), py::kw_only(),
-             py::arg("threads") = 0, py::arg("seed") = py::none(), py::arg("progress") = py::none(),
-             py::arg("log") = py::none(),
-             "Propagates the platform through its disturbances, in the light of its scene.");
+  module.def(
+      "propagate", &propagate_motion, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
+      py::arg("seed") = py::none(), py::arg("torques") = py::dict(),
+      py::arg("progress") = py::none(), py::arg("log") = py::none(),
+      "Propagates the platform through its disturbances, in the light of its scene.\n\n"
+      "`torques`: laws to try out, by name: function(time_s (n,), attitude_wxyz (n, 4), "
+      "rate_body_rad_s (n, 3)) gives torques (n, 3) in N m, body axes. Slow: a law that stays "
+      "belongs into the catalogue.");
 }
 
 }  // namespace photorque::python

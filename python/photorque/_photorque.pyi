@@ -8,6 +8,7 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 Path = str | PathLike[str]
 Progress = Callable[[str, float], object] | None
+Torque = Callable[[Array, Array, Array], npt.ArrayLike]
 Log = Callable[[str], object] | None
 
 __version__: str
@@ -271,6 +272,7 @@ def propagate(
     *,
     threads: int = 0,
     seed: int | None = None,
+    torques: Mapping[str, Torque] = ...,
     progress: Progress = None,
     log: Log = None,
 ) -> Motion: ...

@@ -66,11 +66,8 @@ class SameAsProgram(FolderTest):
             photorque.Experiment(attitude, keys={"propagate.duration_s": 60}))
         recorded.write(self.folder / "recorded")
         recording = self.folder / "recorded" / "recording.csv"
-        # Fewer disturbances: the offset alone is unknown.
         files = self.run_program("diagnose", attitude, "--recording", recording)
         diagnosis = photorque.diagnose(photorque.Experiment(attitude), [recording])
-        (self.folder / "program" / "sibling").mkdir()
-        diagnosis.write(self.folder / "module")
         self.assertEqual(diagnosis.json.encode(), files["diagnosis.json"])
         self.assertEqual(diagnosis.report_html.encode(), files["report.html"])
         self.assertEqual(diagnosis.improved(self.folder / "module").encode(),

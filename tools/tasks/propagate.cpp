@@ -88,18 +88,21 @@ void add_light(const Console& console, const CoupledResult& coupled, const Propa
 
 }  // namespace
 
-MotionRun propagate_experiment(const RunOptions& options, const Console& console) {
+MotionRun propagate_experiment(const RunOptions& options, const Console& console,
+                               const FurtherTorques& further) {
   const WallTime wall;
   const RunOptions full = with_orbit_overrides(options);
   const AttitudeExperiment experiment(full);
   const auto run = std::make_shared<PropagationRun>(read_propagation(experiment.settings()));
   if (options.seed) run->seed = *options.seed;
+  for (const Disturbance& one : further.disturbances) run->model.disturbances.push_back(one);
   const auto coupled =
       std::make_shared<CoupledResult>(propagate_in_light(full, console, experiment.file(), *run));
   PropagationResult& motion = coupled->motion;
   RunResult result;
   result.provenance = experiment.provenance(run->seed);
   if (coupled->light) add_inputs(result.provenance, coupled->light->inputs());
+  add_inputs(result.provenance, further.inputs);
   print_run(console, *run, motion);
   result.product = std::move(motion.product);
   add_light(console, *coupled, *run, result.product);

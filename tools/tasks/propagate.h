@@ -2,7 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "attitude/model/disturbance.h"
 #include "tools/coupling/couple.h"
 #include "tools/runs/attitude_run.h"
 #include "tools/runs/result.h"
@@ -15,6 +19,13 @@ struct MotionRun {
   RunResult result;  // its files: recording.csv, attitude.aem
 };
 
-MotionRun propagate_experiment(const RunOptions& options, const Console& console);
+// Torques that act besides those of the experiment, and what the provenance says of them.
+struct FurtherTorques {
+  std::vector<Disturbance> disturbances;
+  std::vector<std::pair<std::string, std::string>> inputs;  // name, hash
+};
+
+MotionRun propagate_experiment(const RunOptions& options, const Console& console,
+                               const FurtherTorques& further = {});
 
 }  // namespace photorque
