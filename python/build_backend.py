@@ -50,12 +50,11 @@ def _compile():
     configure = ["cmake", "--preset", "release", "-B", str(build), "-DPHOTORQUE_PYTHON=ON"]
     # Not that of an environment, which may be gone when the build folder is used again.
     configure.append(f"-DPython_EXECUTABLE={sys._base_executable}")
-    try:
+    # CMake finds Debian's pybind11 by itself; that of pip's own environment is gone after the build.
+    if not any(pathlib.Path(f"/usr/{place}/cmake/pybind11").exists() for place in ("lib", "share")):
         import pybind11
 
         configure.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
-    except ImportError:
-        pass
     subprocess.run(configure, cwd=root, check=True)
     subprocess.run(["cmake", "--build", str(build), "--target", "photorque_python"], cwd=root, check=True)
     return build / "python" / "photorque"

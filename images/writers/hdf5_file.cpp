@@ -182,7 +182,10 @@ void Hdf5File::stamp(const std::string& place, const Provenance& provenance) {
     }
   };
   std::vector<std::string> inputs;
-  for (const auto& [file, hash] : provenance.inputs) inputs.push_back(file + " " + hash);
+  for (const auto& [file, hash] : provenance.inputs) {
+    inputs.push_back(file);
+    inputs.back().append(" ").append(hash);
+  }
   all("input", inputs);
   all("warning", provenance.warnings);
 }

@@ -28,7 +28,7 @@ std::vector<std::filesystem::path> write_run(const RunResult& result,
                                              const std::filesystem::path& folder) {
   check_figures(result);
   const std::string summary = result.summary();
-  const auto paths = write_product(result.product, result.provenance, folder);
+  auto paths = write_product(result.product, result.provenance, folder);
   write_file_whole(folder / "summary.json", summary);
   for (const RunFile& file : result.files) file.write(folder / file.name);
   return paths;
