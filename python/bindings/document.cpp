@@ -10,7 +10,9 @@ SettingsNode table_of(const py::dict& dict, const std::string& key) {
       throw InputError({}, key, py::str(py::repr(name)), "keys that are texts");
     }
     const auto text = name.cast<std::string>();
-    table.emplace(text, settings_of(value, key.empty() ? text : key + "." + text));
+    std::string below = key;
+    below.append(key.empty() ? "" : ".").append(text);
+    table.emplace(text, settings_of(value, below));
   }
   return {table};
 }
