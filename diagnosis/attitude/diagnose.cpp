@@ -15,6 +15,7 @@
 #include "diagnosis/attitude/recorded_data.h"
 #include "diagnosis/attitude/refine.h"
 #include "diagnosis/attitude/settle.h"
+#include "diagnosis/verdict.h"
 #include "inference/decide.h"
 #include "inference/search.h"
 #include "inference/weigh.h"
@@ -59,18 +60,6 @@ Answer explain(const NominalModel& nominal, const Fit& nominal_fit, const Record
     chosen = refined_in_time(chosen, a.all, data.train);
   }
   return a;
-}
-
-Verdict verdict_of(inference::Finding finding) {
-  switch (finding) {
-    case inference::Finding::nothing_missing:
-      return Verdict::consistent;
-    case inference::Finding::named:
-      return Verdict::missing_physics;
-    case inference::Finding::unknown:
-      return Verdict::unexplained;
-  }
-  return Verdict::unexplained;
 }
 
 // Nowhere where the nominal model cannot be propagated: they part from the start.

@@ -8,6 +8,7 @@
 #include "diagnosis/light/account.h"
 #include "diagnosis/light/clean.h"
 #include "diagnosis/light/domain.h"
+#include "diagnosis/verdict.h"
 #include "inference/decide.h"
 #include "inference/search.h"
 #include "inference/weigh.h"
@@ -94,18 +95,6 @@ LightData read_light_data(const LightLab& lab, const LightState& nominal,
     }
   }
   return data;
-}
-
-Verdict light_verdict(inference::Finding finding) {
-  switch (finding) {
-    case inference::Finding::nothing_missing:
-      return Verdict::consistent;
-    case inference::Finding::named:
-      return Verdict::missing_physics;
-    case inference::Finding::unknown:
-      return Verdict::unexplained;
-  }
-  return Verdict::unexplained;
 }
 
 // Leaves out the readings that are wild by an explanation; whether there were any.
@@ -309,7 +298,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightState& nominal,
   const LightAnswer answer = explain_light(lab, nominal, data, options);
   Diagnosis d;
   d.effect_table = "effect";
-  d.verdict = light_verdict(answer.decision.finding);
+  d.verdict = verdict_of(answer.decision.finding);
   d.confidence = answer.decision.confidence;
   d.because = answer.decision.because;
   d.where.channels = misfits(answer, data.train);

@@ -7,11 +7,13 @@
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/written.h"
+#include "diagnosis/module/diagnose.h"
 #include "diagnosis/report/improved.h"
 #include "diagnosis/report/json.h"
 #include "diagnosis/report/page.h"
 #include "images/drawing/bar_chart.h"
 #include "images/drawing/plot_picture.h"
+#include "scenes/experiment/toml_reader.h"
 #include "tools/runs/attitude_run.h"
 
 namespace photorque {
@@ -80,6 +82,26 @@ DiagnosisRun diagnose_light_recordings(const RunOptions& options,
   return {std::move(diagnosis), std::move(provenance), options.experiment, text, true};
 }
 
+// Curves of a module in sunlight: no scene is needed.
+DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& root,
+                                    const std::vector<fs::path>& paths,
+                                    const std::vector<fs::path>& holdout_paths) {
+  const ModuleDesign design = read_module(root, options.experiment.parent_path());
+  root.finish();
+  Provenance provenance = build_provenance();
+  const std::string text = options.experiment_text();
+  provenance.inputs.emplace_back(options.experiment.filename().string(), content_hash(text));
+  for (const fs::path& file : design.reference_files) {
+    provenance.inputs.emplace_back(file.filename().string(), content_hash(read_file(file)));
+  }
+  const std::vector<LightRecording> recordings = read_light(paths, {}, provenance),
+                                    holdouts = read_light(holdout_paths, {}, provenance);
+  ModuleDiagnoseOptions how;
+  how.threads = options.threads;
+  Diagnosis diagnosis = diagnose_module(design, recordings, holdouts, how);
+  return {std::move(diagnosis), std::move(provenance), options.experiment, text, true};
+}
+
 DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::path>& paths,
                              const std::vector<fs::path>& holdout_paths, const Console& console) {
   AttitudeExperiment experiment(options);
@@ -118,6 +140,10 @@ DiagnosisRun diagnose_experiment(const RunOptions& options, const std::vector<fs
   if (recordings.empty()) {
     throw InputError({options.experiment.string()}, "--recording", "nothing", "a recording (CSV)");
   }
+  SettingsNode node = parse_toml(options.experiment_text(), options.experiment.string());
+  for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
+  const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
+  if (root.has("module")) return diagnose_module_curves(options, root, recordings, holdouts);
   // One recording of light among them, and all are meant to be.
   return is_light_recording(recordings.front())
              ? diagnose_light_recordings(options, recordings, holdouts, console)

@@ -54,7 +54,7 @@ RatedPoint read_point(const Settings& s) {
 FitTask read_task(const Settings& root, const fs::path& folder) {
   const Settings s = root.table("fit");
   FitTask task;
-  task.cells_in_series = static_cast<int>(s.integer_or("cells_in_series", 1, 1, 100000));
+  task.cells_in_series = static_cast<int>(s.integer_or("cells_in_series", 1, 1, 2000));
   task.temperature_K = s.number_or("temperature_K", 298.15, {1.0, 1000.0});
   if (s.has("curves") == s.has("datasheet")) {
     throw s.error("curves", s.has("curves") ? "curves and a datasheet" : "neither",
@@ -123,9 +123,11 @@ Product parameter_product(const std::vector<Row>& rows) {
 void print_rows(const Console& console, const std::vector<Row>& rows) {
   console.heading("Fitted parameters (± standard error)");
   for (const Row& row : rows) {
+    // Beyond every leak that a curve could show there is no number.
+    const bool is_open = row.name == "shunt_ohm" && !(row.estimate.value < 1e12);
     console.line("  " + row.name +
                  std::string(row.name.size() < 26 ? 26 - row.name.size() : 1, ' ') +
-                 show(row.estimate, ""));
+                 (is_open ? std::string("none: these data show no leak") : show(row.estimate, "")));
   }
 }
 
@@ -134,12 +136,47 @@ double ideality_per_scale(const FitTask& task) {
   return 1.0 / (task.cells_in_series * thermal_V);
 }
 
-// No diode of one kind of recombination is sharper than its thermal voltage.
+// What no junction of silicon or any other material is: 0.5 is sharper than its thermal voltage
+// allows, 4 is a leak.
+void check_ideality(const SingleDiode& d, const FitTask& task) {
+  const double ideality = d.scale_V.value * ideality_per_scale(task);
+  constexpr double lowest = 0.5, highest = 4.0;
+  if (ideality >= lowest && ideality <= highest) return;
+  throw InputError({}, "fit.cells_in_series",
+                   std::to_string(task.cells_in_series) +
+                       " cells, which makes the ideality of one " + show(ideality),
+                   "the number of cells in series of this device (an ideality of 1 to 2)");
+}
+
 void print_ideality_note(const Console& console, const SingleDiode& d, const FitTask& task) {
   const double ideality = d.scale_V.value * ideality_per_scale(task);
   if (ideality >= 0.9 && ideality <= 3.0) return;
   console.line("  note: an ideality of " + show(ideality) + " is unusual: are cells_in_series (" +
                std::to_string(task.cells_in_series) + ") and the temperature right?");
+}
+
+// A diode that is off by a good part of the current describes nothing.
+void check_rms(double rms_A, const FitTask& task) {
+  double largest_A = 0.0;
+  for (const IvSweep& sweep : task.sweeps) {
+    largest_A = std::max(largest_A, *std::ranges::max_element(sweep.current_A));
+  }
+  constexpr double of_current = 0.1;
+  if (rms_A < of_current * largest_A) return;
+  throw InputError({}, "fit.curves",
+                   "a curve that no diode comes nearer than " + show(rms_A) + " A (rms)",
+                   "a sweep of one lit device in even light, currents positive; for uneven light "
+                   "substrings = N");
+}
+
+// The errors rest on the scatter, so they are as wide as the misfit is; but parameters of a model
+// that does not describe the data are off by more than chance.
+void print_misfit(const Console& console, double scatter) {
+  constexpr double usual = 3.0;
+  if (scatter < usual) return;
+  console.line("  warning: the scatter is " + show(scatter) +
+               " times what the noise makes: one diode does not describe these data. The errors "
+               "are widened to the scatter; `photorque diagnose` with [module] says what is wrong");
 }
 
 std::vector<Row> diode_rows(const SingleDiode& d, const FitTask& task) {
@@ -151,13 +188,18 @@ std::vector<Row> diode_rows(const SingleDiode& d, const FitTask& task) {
           {"shunt_ohm", d.shunt_ohm}};
 }
 
+// A number that is positive by its nature, and known to better than itself.
+bool is_determined(const Estimate& e) {
+  return e.standard_error < e.value;
+}
+
 // Parameters that are positive by their nature and come out with an error as large as themselves,
 // which may be infinite.
 void print_undetermined(const Console& console, const std::vector<Row>& rows) {
   std::string names;
   for (const Row& row : rows) {
     const Estimate& e = row.estimate;
-    if (e.standard_error < e.value) continue;
+    if (is_determined(e)) continue;
     names += (names.empty() ? "" : ", ") + row.name;
   }
   if (!names.empty()) console.line("  these data do not determine " + names);
@@ -236,6 +278,8 @@ ArrayPoint best_point(const CellCurve& cell, double light_A) {
 
 Product fit_even_light(const FitTask& task, const Console& console) {
   const SweepFit fit = fit_sweeps(task.sweeps, task.noise);
+  check_ideality(fit.diode, task);
+  check_rms(fit.rms_A, task);
   std::vector<Row> rows = diode_rows(fit.diode, task);
   const CellCurve cell(fit.diode.parameters(task.temperature_K));
   const ArrayPoint best = best_point(cell, fit.diode.photocurrent_A.value);
@@ -244,6 +288,7 @@ Product fit_even_light(const FitTask& task, const Console& console) {
   print_ideality_note(console, fit.diode, task);
   console.line("  rms of current " + show(fit.rms_A) + " A over " + std::to_string(fit.points) +
                " points; scatter over that expected " + show(std::sqrt(fit.variance)));
+  print_misfit(console, std::sqrt(fit.variance));
   console.line("  maximum " + show(best.power_W()) + " W at " + show(best.voltage_V) + " V");
   print_cell(console, fit.diode, task, task.cells_in_series);
   rows.push_back({"rms_current_A", {fit.rms_A, 0.0}});
@@ -259,6 +304,15 @@ Product fit_datasheet(const FitTask& task, const Console& console) {
   const RatedFit fit = fit_rated_points(task.datasheet, task.slopes, guess_V, task.tolerance);
   FitTask at_first = task;
   at_first.temperature_K = task.datasheet[0].temperature_K;
+  check_ideality(fit.diode, at_first);
+  // The search for the gap ends there, whatever the slope says.
+  constexpr double lowest_eV = 0.3, highest_eV = 4.0;
+  if (!(fit.model.gap_eV > lowest_eV && fit.model.gap_eV < highest_eV)) {
+    throw InputError({}, "fit.open_circuit_slope_per_K",
+                     show(task.slopes.open_circuit_1_K) + ", which takes a gap of " +
+                         show(fit.model.gap_eV) + " eV",
+                     "a fraction of the open-circuit voltage per kelvin, about -0.003");
+  }
   std::vector<Row> rows = diode_rows(fit.diode, at_first);
   rows.push_back({"gap_eV", {fit.model.gap_eV, fit.gap_error_eV}});
   rows.push_back({"rms_fraction", {fit.rms, 0.0}});

@@ -26,7 +26,13 @@ struct LightColumn {
 class LightHeader {
  public:
   explicit LightHeader(std::string_view line) {
-    for (const std::string_view cell : cells_of(line)) {
+    for (std::string_view cell : cells_of(line)) {
+      if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
+        cell = cell.substr(1, cell.size() - 2);
+      }
+      // As some instruments write it.
+      if (cell == "V") cell = "voltage_V";
+      if (cell == "I") cell = "current_A";
       const KeyUnit unit = unit_of_key(cell);
       names_.emplace_back(cell);
       units_.push_back(unit);
