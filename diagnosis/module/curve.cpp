@@ -101,8 +101,12 @@ class CrackedCell {
       };
       nodes.push_back({i + j, V, -1.0 / (slope(good, i) + slope(cut, j))});
     };
-    constexpr int backwards = 8, forwards = 60;
-    for (int k = 0; k < backwards; ++k) add(lowest_V * (1.0 - static_cast<double>(k) / backwards));
+    constexpr int backwards = 40, forwards = 160;
+    // The part cut off saturates a little backwards, where the resistance takes all its voltage.
+    for (int k = backwards; k > 0; --k) {
+      const double part = static_cast<double>(k) / backwards;
+      add(lowest_V * part * part);
+    }
     for (int k = 0; k <= forwards; ++k) add(1.15 * open_V * k / forwards);
     return nodes;
   }
@@ -219,7 +223,7 @@ std::vector<ModulePoint> module_curve(const ModuleWiring& wiring, const ModuleCe
     least = place(least.current_A - reach_A);
   }
   // Intervals are halved until their voltages are near each other.
-  const double near_V = span_V / 80.0;
+  const double near_V = span_V / 160.0;
   std::vector<Falling::Node> nodes;
   const std::function<void(const Place&, const Place&, int)> refine =
       [&](const Place& a, const Place& b, int depth) {  // a: less current, more voltage

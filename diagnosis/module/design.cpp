@@ -25,6 +25,44 @@ void read_temperatures(const Settings& s, ModuleDesign& design) {
       s.number_or("temperature_sigma_K", design.temperature_sigma_K, Range::positive());
 }
 
+void read_effect(const Settings& s, ModuleDesign& design) {
+  const std::vector<std::string> kinds = {"cell_shaded",   "cell_cracked",      "cell_shunted",
+                                          "shunt",         "series_resistance", "temperature",
+                                          "bypass_shorted"};
+  const size_t kind = s.choice("kind", kinds);
+  const auto count = [&] { return static_cast<int>(s.integer_or("count", 1, 1, design.cells)); };
+  const auto resistance = [&] { return s.number("resistance_ohm", Range::positive()); };
+  ModuleState& state = design.acting;
+  switch (kind) {
+    case 0:
+      state.shaded.push_back({count(), s.number("factor", Range::fraction()),
+                              s.number_or("breakdown_fraction", 0.0, {0.0, 7.0}),
+                              s.number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}),
+                              s.number_or("breakdown_exponent", 3.0, {1.0, 1e3})});
+      break;
+    case 1:
+      state.cracked.push_back(
+          {count(), s.number("fraction", {0.0, 1.0, true, true}), resistance()});
+      break;
+    case 2:
+      state.shunted.push_back({1, 1.0 / resistance()});
+      break;
+    case 3:
+      state.shunt_S += 1.0 / resistance();
+      break;
+    case 4:
+      state.series_ohm += resistance();
+      break;
+    case 5:
+      design.warmer_K += s.number("change_K", {-150.0, 150.0});
+      break;
+    default:
+      state.bypassed += design.bypass_every;
+  }
+  if (s.has("count_between")) s.text("count_between");
+  s.finish();
+}
+
 }  // namespace
 
 ModuleDesign read_module(const Settings& root, const std::filesystem::path& folder) {
@@ -63,6 +101,9 @@ ModuleDesign read_module(const Settings& root, const std::filesystem::path& fold
   }
   design.voltage_noise_V = s.number_or("voltage_noise_V", 0.0, Range::not_negative());
   s.finish();
+  if (root.has("effect")) {
+    for (const Settings& effect : root.tables("effect")) read_effect(effect, design);
+  }
   return design;
 }
 

@@ -21,9 +21,11 @@ struct Acting {
 Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const ModuleHypothesis& h,
               const VectorXd& x) {
   Acting a;
+  a.state = design.acting;
   a.cell = moved(nominal, x.segment<of_module>(of_curve));
   a.state.light = std::exp(x[0]);
-  a.state.temperature_K = design.temperature_K + design.temperature_sigma_K * x[1];
+  a.state.temperature_K =
+      design.temperature_K + design.warmer_K + design.temperature_sigma_K * x[1];
   const Index first = of_curve + of_module;
   h.act({x.data() + first, static_cast<size_t>(x.size() - first)}, a.state, a.cell);
   a.state.temperature_K = std::clamp(a.state.temperature_K, 100.0, 800.0);

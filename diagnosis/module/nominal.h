@@ -1,4 +1,4 @@
-// The module as it is believed to be: one diode fitted to reference curves, or a datasheet.
+// The nominal module: one diode fitted to reference curves, or a datasheet.
 #pragma once
 
 #include <Eigen/Core>

@@ -55,12 +55,13 @@ struct Network {
   ArrayCurve curve() const { return {wiring, tables, light_A}; }
 };
 
-void expect_like(const ArrayCurve& expected, const ModuleWiring& wiring, const ModuleState& state) {
+void expect_like(const ArrayCurve& expected, const ModuleWiring& wiring, const ModuleState& state,
+                 double tolerance_A) {
   std::vector<double> voltage_V;
   for (int i = 0; i < 40; ++i) voltage_V.push_back(0.97 * expected.open_circuit_V() * i / 39.0);
   const auto curve = module_curve(wiring, usual, state, voltage_V);
   for (size_t i = 0; i < voltage_V.size(); ++i) {
-    EXPECT_NEAR(curve[i].current_A, expected.current_A(voltage_V[i]), 2e-3) << voltage_V[i];
+    EXPECT_NEAR(curve[i].current_A, expected.current_A(voltage_V[i]), tolerance_A) << voltage_V[i];
   }
 }
 
@@ -74,7 +75,8 @@ TEST(ModuleCurve, OfShadedCellsIsThatOfTheNetwork) {
     network.light_A[0] *= 0.4;
     ModuleState state;
     state.shaded = {{1, 0.4, 0.6, -5.0, 3.0}};
-    expect_like(network.curve(), {cells, bypass_every, 0.5}, state);
+    // Where a diode begins to conduct there is a corner, over which it interpolates.
+    expect_like(network.curve(), {cells, bypass_every, 0.5}, state, 2e-3);
   }
 }
 
@@ -89,7 +91,7 @@ TEST(ModuleCurve, OfCrackedCellsIsThatOfPartsTiedInParallel) {
   network.light_A[cells] = fraction * usual.photocurrent_A;
   ModuleState state;
   state.cracked = {{1, fraction, resistance_ohm}};
-  expect_like(network.curve(), {cells, 0, 0.5}, state);
+  expect_like(network.curve(), {cells, 0, 0.5}, state, 3e-4);
 }
 
 LightRecording measured(const ArrayCurve& curve, unsigned seed) {
