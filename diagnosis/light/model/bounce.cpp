@@ -54,33 +54,44 @@ double exchange(const WallPatch& patch, const Vec3& point, const Vec3& normal) {
   return leaves * arrives / (r2 * r2) * patch.area_m2;
 }
 
-LampField diffuse_field(const LightLab& lab, const LightSites& sites, Illumination& lamp,
-                        const LightWall& wall, size_t index) {
-  const std::vector<WallPatch> patches = patches_of(lab, wall);
-  std::vector<std::vector<double>> share(sites.groups.size());
+// Of every group of places, by patch: the light on it over that which leaves the patch.
+using Shares = std::vector<std::vector<float>>;
+
+Shares shares_of(const LightLab& lab, const LightSites& sites,
+                 const std::vector<WallPatch>& patches) {
+  Shares share(sites.groups.size());
+  std::vector<double> sum(patches.size());
   for (size_t g = 0; g < sites.groups.size(); ++g) {
-    share[g].assign(patches.size(), 0.0);
+    std::ranges::fill(sum, 0.0);
     const LightSites::Group& group = sites.groups[g];
     for (size_t i = group.first_point; i < group.first_point + group.count; ++i) {
       for (size_t k = 0; k < patches.size(); ++k) {
-        share[g][k] +=
+        sum[k] +=
             sites.weights[i] / pi * exchange(patches[k], sites.points_body_m[i], lab.normal_body());
       }
     }
+    share[g].assign(sum.begin(), sum.end());
   }
+  return share;
+}
+
+LampField diffuse_field(const LightSites& sites, Illumination& lamp,
+                        const std::vector<WallPatch>& patches, const Shares& share, size_t index) {
   LampField field(sites.outputs.size(), 0.0);
-  std::vector<double> on_patch(patches.size());
+  std::vector<float> on_patch(patches.size());
   size_t attitude = no_wall;
   for (size_t o = 0; o < sites.outputs.size(); ++o) {
     if (sites.outputs[o].attitude != attitude) {
       attitude = sites.outputs[o].attitude;
       lamp.move_to(attitude);
       for (size_t k = 0; k < patches.size(); ++k) {
-        on_patch[k] = lamp.on(patches[k].centre_m, patches[k].normal, index);
+        on_patch[k] = static_cast<float>(lamp.on(patches[k].centre_m, patches[k].normal, index));
       }
     }
-    const std::vector<double>& to = share[sites.outputs[o].group];
-    for (size_t k = 0; k < patches.size(); ++k) field[o] += to[k] * on_patch[k];
+    const std::vector<float>& to = share[sites.outputs[o].group];
+    double sum = 0.0;
+    for (size_t k = 0; k < patches.size(); ++k) sum += to[k] * on_patch[k];
+    field[o] = sum;
   }
   return field;
 }
@@ -112,11 +123,24 @@ LampField specular_field(const LightLab& lab, Illumination& lamp, const LightWal
 
 }  // namespace
 
-LampField wall_field(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
-                     const LampGeometry& geometry, size_t wall, bool specular) {
-  Illumination lamp(lab, lamps, sites, geometry);
+std::vector<LampField> wall_fields(const LightLab& lab, const LampSet& lamps,
+                                   const LightSites& sites,
+                                   const std::vector<LampGeometry>& geometries, size_t wall,
+                                   bool specular) {
   const LightWall& w = lab.walls()[wall];
-  return specular ? specular_field(lab, lamp, w, wall) : diffuse_field(lab, sites, lamp, w, wall);
+  std::vector<WallPatch> patches;
+  Shares share;
+  if (!specular) {
+    patches = patches_of(lab, w);
+    share = shares_of(lab, sites, patches);
+  }
+  std::vector<LampField> fields;
+  for (const LampGeometry& geometry : geometries) {
+    Illumination lamp(lab, lamps, sites, geometry);
+    fields.push_back(specular ? specular_field(lab, lamp, w, wall)
+                              : diffuse_field(sites, lamp, patches, share, wall));
+  }
+  return fields;
 }
 
 }  // namespace photorque

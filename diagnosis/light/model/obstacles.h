@@ -20,9 +20,9 @@ class Obstacles {
 
   bool any() const { return !boxes_.empty() || !lab_.walls().empty(); }
 
-  // The fraction of a lamp's aperture that is open to a point. Body frame; `side` and `up` span the disc
-  // and have its radius. `skipped`: a wall that does not count, none where it is past the last.
-  // Exact for a box alone, and smooth as it moves; else from 100 points of the aperture.
+  // The fraction of a lamp's aperture that is open to a point. Body frame; `side` and `up` span the
+  // disc and have its radius. `skipped`: a wall that does not count, none where it is past the
+  // last. Exact for a box alone, and smooth as it moves; else from 100 points of the aperture.
   double visible(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up,
                  size_t skipped) const;
 

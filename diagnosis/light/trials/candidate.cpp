@@ -57,7 +57,13 @@ bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
 FittedRun prepared_run(LightRun run, const LightState& nominal) {
   FittedRun result;
   result.run = std::make_shared<const LightRun>(std::move(run));
-  result.nominal = std::make_shared<const LightFields>(result.run->fields(nominal, nullptr));
+  // With the light by way of every wall, of which most trials have none.
+  LightState with_walls = nominal;
+  with_walls.walls.clear();
+  for (size_t w = 0; w < result.run->lab().walls().size(); ++w) {
+    with_walls.walls.push_back({w, 1.0, 1.0});
+  }
+  result.nominal = std::make_shared<const LightFields>(result.run->fields(with_walls, nullptr));
   result.prior_slopes = std::make_shared<const Eigen::MatrixXd>(
       static_cast<Eigen::Index>(result.run->samples()), Eigen::Index{0});
   return result;
