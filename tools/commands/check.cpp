@@ -25,8 +25,10 @@ void run_check(const CommandLine& line) {
 }  // namespace
 
 Verb check_verb() {
-  return {"check", "What is wrong with an experiment, and what every command would do with it",
-          run_check};
+  Verb verb{"check", "What is wrong with an experiment, and what every command would do with it",
+            run_check};
+  verb.writes = false;
+  return verb;
 }
 
 }  // namespace photorque

@@ -181,6 +181,7 @@ Verb new_verb() {
   Verb verb{"new", "A first experiment, commented: for a glTF model (--scene), or a platform alone",
             run_new};
   verb.takes_scene = true;
+  verb.writes = false;
   return verb;
 }
 

@@ -7,6 +7,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "images/publishing/staged_files.h"
 #include "images/writers/product.h"
 #include "images/writers/summary.h"
 #include "scenes/experiment/toml_reader.h"
@@ -290,9 +291,11 @@ void run_prove(const CommandLine& line) {
       line.cases ? std::to_string(scores.size()) + " cases." : plan_text(settings), scores};
   const std::string text = proof_markdown(set);
   const Product product = proof_product(scores);
-  write_product(product, provenance, out, {"csv", "json"});
-  write_file_whole(out / "summary.json", summary_json(product, provenance));
-  write_file_whole(out / "proof.md", text);
+  StagedFiles staged(out);
+  write_formats(product, provenance, staged.path(), {"csv", "json"});
+  write_file_whole(staged.path() / "summary.json", summary_json(product, provenance));
+  write_file_whole(staged.path() / "proof.md", text);
+  staged.publish_as(line.verb, provenance);
   if (settings.document) {
     const std::string old = read_file(*settings.document);
     write_file_whole(*settings.document,

@@ -13,7 +13,7 @@ void write_results(const CommandLine& line, const Console& console, const RunRes
     write_file_whole(folder / "summary.json", result.summary());
     return;
   }
-  const auto paths = write_run(result, folder);
+  const auto paths = write_run(result, folder, line.verb);
   if (line.json) std::fputs(result.summary().c_str(), stdout);
   console.heading("Written to " + folder.string());
   console.line("  summary.json and " + std::to_string(paths.size()) + " more files; pictures:");

@@ -11,6 +11,8 @@
 
 namespace photorque {
 
+class Interruption;  // tools/guards/interruption.h
+
 // The command line: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
 struct CommandLine : RunOptions {
   std::string verb;
@@ -24,6 +26,7 @@ struct CommandLine : RunOptions {
   std::string shard;                              // --shard K/N, of a sweep
   std::optional<std::filesystem::path> scene;     // --scene, of a new experiment
   bool summary_only = false;                      // of a design in a sweep: no other files
+  Interruption* interruption = nullptr;           // the program's, when it is one
 
   // --out, or out/EXPERIMENT/VERB below the current folder.
   std::filesystem::path out_folder() const;
@@ -40,6 +43,8 @@ struct Verb {
   bool takes_cases = false;
   bool takes_shard = false;
   bool takes_scene = false;
+  bool takes_experiment = true;
+  bool writes = true;  // into its output folder
 };
 
 // Every verb named in tools/CMakeLists.txt, in that order.

@@ -21,6 +21,7 @@ std::vector<std::string> RunOptions::all_overrides() const {
   };
   if (target_error) add("trace.target_error", *target_error);
   if (max_time_s) add("trace.max_time_s", *max_time_s);
+  if (allow_outside) all.emplace_back("scene.allow_outside=true");
   return all;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "images/publishing/staged_files.h"
 #include "images/writers/product.h"
 
 namespace photorque {
@@ -25,12 +26,16 @@ void check_figures(const RunResult& result) {
 }
 
 std::vector<std::filesystem::path> write_run(const RunResult& result,
-                                             const std::filesystem::path& folder) {
+                                             const std::filesystem::path& folder,
+                                             const std::string& command) {
   check_figures(result);
-  const std::string summary = result.summary();
-  auto paths = write_product(result.product, result.provenance, folder);
-  write_file_whole(folder / "summary.json", summary);
-  for (const RunFile& file : result.files) file.write(folder / file.name);
+  StagedFiles staged(folder);
+  std::vector<std::filesystem::path> paths =
+      write_formats(result.product, result.provenance, staged.path());
+  for (std::filesystem::path& path : paths) path = folder / path.filename();
+  for (const RunFile& file : result.files) file.write(staged.path() / file.name);
+  write_file_whole(staged.path() / "summary.json", result.summary());
+  staged.publish_as(command, result.provenance);
   return paths;
 }
 

@@ -32,10 +32,12 @@ struct RunResult {
 // NumericalError for a headline figure that came out as no finite number.
 void check_figures(const RunResult& result);
 
-// Writes every item of the product, then summary.json, then the further files into the folder;
-// gives the paths of the first.
+// Writes every item of the product, the further files and summary.json into the folder, all
+// together and in place of what `command` wrote there last (StagedFiles); gives the paths of the
+// first.
 std::vector<std::filesystem::path> write_run(const RunResult& result,
-                                             const std::filesystem::path& folder);
+                                             const std::filesystem::path& folder,
+                                             const std::string& command = "run");
 
 // Seconds since `start`, for RunCost.
 class WallTime {

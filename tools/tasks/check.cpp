@@ -74,6 +74,7 @@ class Checker {
     std::shared_ptr<OpticalRun> run;
     if (!attempt([&] { run = std::make_shared<OpticalRun>(options_, Console()); })) return;
     report_.notes = run->experiment().notices;
+    for (const std::string& doubt : run->experiment().warnings) report_.notes.push_back(doubt);
     attempt([&] { read_published(file_->others("published")); });
     for (const InputError& mistake : light_mistakes(*run)) add_mistake(mistake);
     say_light(*run);

@@ -13,6 +13,7 @@
 #include "diagnosis/report/page.h"
 #include "images/drawing/bar_chart.h"
 #include "images/drawing/plot_picture.h"
+#include "images/publishing/staged_files.h"
 #include "scenes/experiment/toml_reader.h"
 #include "tools/runs/attitude_run.h"
 
@@ -152,9 +153,11 @@ DiagnosisRun diagnose_experiment(const RunOptions& options, const std::vector<fs
 
 void write_diagnosis(const DiagnosisRun& run, const fs::path& folder) {
   const std::string json = run.json(), improved = run.improved(folder), report = run.report();
-  write_file_whole(folder / "improved.toml", improved);
-  write_file_whole(folder / "report.html", report);
-  write_file_whole(folder / "diagnosis.json", json);
+  StagedFiles staged(folder);
+  write_file_whole(staged.path() / "improved.toml", improved);
+  write_file_whole(staged.path() / "report.html", report);
+  write_file_whole(staged.path() / "diagnosis.json", json);
+  staged.publish_as("diagnose", run.provenance);
 }
 
 }  // namespace photorque
