@@ -25,6 +25,12 @@ inline constexpr double solar_temperature_K = 5772.0;
 // Angular radius of the Sun at 1 au: nominal solar radius 6.957e8 m (IAU 2015 B3) over 1 au.
 inline constexpr double solar_angular_radius_rad = 6.957e8 / astronomical_unit_m;
 
+// No vertex of a model, opening of a lamp or start of a ray lies farther from its origin: well
+// inside what single precision can square and add, and larger than anything that is built.
+inline constexpr double largest_extent_m = 1e9;
+// No lamp stands farther from the platform; the Sun of another star's planet does not.
+inline constexpr double largest_distance_m = 1e12;
+
 inline constexpr double degree_rad = pi / 180.0;
 inline constexpr double arcsecond_rad = degree_rad / 3600.0;
 

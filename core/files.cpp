@@ -1,9 +1,14 @@
 #include "core/files.h"
 
+#include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
 #include <fstream>
-#include <sstream>
 
 #include "core/errors.h"
 
@@ -11,13 +16,80 @@ namespace photorque {
 
 namespace fs = std::filesystem;
 
-std::string read_file(const fs::path& path, uint64_t largest_bytes) {
-  std::error_code failure;
-  if (!fs::exists(path, failure)) throw InputError({path.string()}, "", "no such file", "a file");
-  if (fs::is_directory(path, failure)) throw InputError({path.string()}, "", "a folder", "a file");
-  if (fs::is_character_file(path, failure) || fs::is_block_file(path, failure)) {
-    throw InputError({path.string()}, "", "a device", "a file");
+namespace {
+
+// "@machine.part": the names of processes mean something on one machine only.
+std::string host_mark() {
+  char host[64] = {};
+  if (::gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
+  std::string mark = "@";
+  for (const char* c = host; *c != '\0'; ++c) {
+    mark += std::isalnum(static_cast<unsigned char>(*c)) != 0 ? *c : '-';
   }
+  return mark + ".part";
+}
+
+// The process of this machine that a temporary name belongs to.
+std::optional<pid_t> writer_of(const std::string& name) {
+  const size_t mark = name.rfind(host_mark());
+  if (!name.starts_with('.') || mark == std::string::npos) return std::nullopt;
+  const size_t dot = name.rfind('.', mark);
+  pid_t process = 0;
+  const auto [end, error] = std::from_chars(name.data() + dot + 1, name.data() + mark, process);
+  if (error != std::errc() || end != name.data() + mark || process <= 0) return std::nullopt;
+  return process;
+}
+
+void remove_where(const fs::path& folder, const std::function<bool(pid_t)>& unwanted) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::optional<pid_t> writer = writer_of(entry.path().filename().string());
+    if (writer && unwanted(*writer)) fs::remove_all(entry.path(), ignored);
+  }
+}
+
+// Before a file gets its name, or a power cut could leave the name without the bytes.
+bool reaches_disk(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool synced = ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
+  ::close(file);
+  return synced;
+}
+
+}  // namespace
+
+void require_plain_file(const fs::path& path) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  const auto refuse = [&](const char* found) {
+    throw InputError({path.string()}, "", found, "a file");
+  };
+  switch (status.type()) {
+    case fs::file_type::regular:
+      return;
+    case fs::file_type::directory:
+      refuse("a folder");
+      break;
+    case fs::file_type::character:
+    case fs::file_type::block:
+      refuse("a device");
+      break;
+    case fs::file_type::fifo:
+    case fs::file_type::socket:
+      refuse("a pipe, which can be read but once");
+      break;
+    case fs::file_type::not_found:
+      refuse("no such file");
+      break;
+    default:
+      refuse("nothing that can be looked at");
+  }
+}
+
+std::string read_file(const fs::path& path, uint64_t largest_bytes) {
+  require_plain_file(path);
+  std::error_code failure;
   const uint64_t size = fs::file_size(path, failure);
   if (!failure && size > largest_bytes) {
     throw InputError({path.string()}, "", std::to_string(size) + " bytes",
@@ -25,15 +97,59 @@ std::string read_file(const fs::path& path, uint64_t largest_bytes) {
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError({path.string()}, "", "a file that cannot be read", "a readable file");
-  std::ostringstream bytes;
-  bytes << in.rdbuf();
-  return std::move(bytes).str();
+  std::string bytes(failure ? 0 : size, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<size_t>(in.gcount()));
+  if (in.bad()) throw InputError({path.string()}, "", "a read that failed", "a readable file");
+  // What grew meanwhile, and files that the kernel makes up, whose size is 0.
+  constexpr size_t piece = 1 << 16;
+  while (in && bytes.size() <= largest_bytes) {
+    const size_t had = bytes.size();
+    bytes.resize(had + piece);
+    in.read(bytes.data() + had, piece);
+    bytes.resize(had + static_cast<size_t>(in.gcount()));
+  }
+  if (bytes.size() > largest_bytes) {
+    throw InputError({path.string()}, "", "more than " + std::to_string(largest_bytes) + " bytes",
+                     "at most these");
+  }
+  return bytes;
+}
+
+std::optional<std::string> read_file_beside(const fs::path& folder, const std::string& name,
+                                            uint64_t largest_bytes, bool may_leave) {
+  const fs::path path = folder / name;
+  std::error_code failure;
+  if (!fs::is_regular_file(path, failure)) return std::nullopt;
+  if (!may_leave) {
+    const fs::path inside = fs::weakly_canonical(folder.empty() ? "." : folder, failure);
+    const fs::path real = fs::weakly_canonical(path, failure);
+    const auto differs = std::mismatch(inside.begin(), inside.end(), real.begin(), real.end());
+    if (failure || differs.first != inside.end()) {
+      throw InputError({path.string()}, "", "a link or path out of its folder",
+                       "a file inside it (or --allow-outside)");
+    }
+  }
+  return read_file(path, largest_bytes);
+}
+
+fs::path temporary_beside(const fs::path& path) {
+  fs::path temporary = path;
+  temporary.replace_filename("." + path.stem().string() + "." + std::to_string(::getpid()) +
+                             host_mark() + path.extension().string());
+  return temporary;
+}
+
+void remove_leftovers(const fs::path& folder, int process) {
+  remove_where(folder, [&](pid_t writer) { return writer == process; });
+}
+
+void remove_leftovers_of_the_dead(const fs::path& folder) {
+  remove_where(folder, [](pid_t writer) { return ::kill(writer, 0) != 0 && errno == ESRCH; });
 }
 
 void write_file_whole(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-  fs::path temporary = path;
-  temporary.replace_filename("." + path.stem().string() + "." + std::to_string(::getpid()) +
-                             ".part" + path.extension().string());
+  const fs::path temporary = temporary_beside(path);
   std::error_code failure;
   if (!path.parent_path().empty()) fs::create_directories(path.parent_path(), failure);
   if (failure) {
@@ -42,7 +158,7 @@ void write_file_whole(const fs::path& path, const std::function<void(const fs::p
   try {
     write(temporary);
     // Libraries that write pictures do not all say when the disk is full.
-    if (fs::file_size(temporary, failure) == 0 && !failure) {
+    if ((fs::file_size(temporary, failure) == 0 && !failure) || !reaches_disk(temporary)) {
       throw InputError({path.string()}, "", "a write that failed", "space and permission");
     }
   } catch (...) {

@@ -3,17 +3,39 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace photorque {
 
-// The bytes of a file. InputError when it is a device, cannot be read or is larger than
-// `largest_bytes`.
+// Throws InputError unless there is a regular file: devices have no end, pipes can be read but
+// once.
+void require_plain_file(const std::filesystem::path& path);
+
+// The bytes of a regular file. InputError when it is something else, cannot be read or is larger
+// than `largest_bytes`.
 std::string read_file(const std::filesystem::path& path, uint64_t largest_bytes = 1ull << 30);
 
+// The bytes of the file that `folder` has under a relative path; nothing when there is none.
+// InputError when the path, or a symbolic link on it, leads out of the folder and may not: names
+// that stand in models come from strangers.
+std::optional<std::string> read_file_beside(const std::filesystem::path& folder,
+                                            const std::string& name, uint64_t largest_bytes,
+                                            bool may_leave);
+
+// A hidden name beside `path`, with its extension, for what is not whole yet. It names process and
+// machine, so that what a killed process leaves can be told from the work of a living one.
+std::filesystem::path temporary_beside(const std::filesystem::path& path);
+
+// Removes what one process of this machine left in `folder` under such names, or what all did that
+// are no more. Never throws.
+void remove_leftovers(const std::filesystem::path& folder, int process);
+void remove_leftovers_of_the_dead(const std::filesystem::path& folder);
+
 // Calls `write` with the path of a temporary file in the same folder (same extension) and then
-// renames it to `path`: the file appears whole or not at all. If `write` throws, the temporary is
-// removed. InputError when the folder cannot be written.
+// renames it to `path`: the file appears whole or not at all, after a power cut too, since it is on
+// the disk before it has its name. If `write` throws, the temporary is removed. InputError when the
+// folder cannot be written.
 void write_file_whole(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 

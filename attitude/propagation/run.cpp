@@ -258,6 +258,12 @@ PropagationRun read_propagation(const Settings& root) {
                          "at most platform.tilt_limit_deg");
   }
   run.initial.charge_drawn_C = settings.number_or("initial_charge_Ah", 0.0);
+  const std::optional<double>& capacity_C = run.model.platform.battery_capacity_C;
+  if (capacity_C && run.initial.charge_drawn_C > *capacity_C) {
+    throw settings.error(
+        "initial_charge_Ah", std::to_string(run.initial.charge_drawn_C / 3600.0) + " drawn",
+        "at most the " + std::to_string(*capacity_C / 3600.0) + " of platform.battery_capacity_Ah");
+  }
   run.initial.time_s = settings.number_or("initial_time_s", 0.0);
   settings.finish();
   return run;

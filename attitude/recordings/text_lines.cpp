@@ -3,6 +3,8 @@
 #include <zlib.h>
 
 #include "core/errors.h"
+#include "core/files.h"
+#include "core/text/lines.h"
 
 namespace photorque {
 namespace {
@@ -16,10 +18,10 @@ struct TextLines::File {
   gzFile handle;
 };
 
-TextLines::TextLines(const std::filesystem::path& path)
-    : path_(path), file_(new File{gzopen(path.c_str(), "rb")}) {
-  if (file_->handle == nullptr || std::filesystem::is_directory(path)) {
-    if (file_->handle != nullptr) gzclose(file_->handle);
+TextLines::TextLines(const std::filesystem::path& path) : path_(path) {
+  require_plain_file(path);
+  file_ = std::make_unique<File>(gzopen(path.c_str(), "rb"));
+  if (file_->handle == nullptr) {
     throw InputError({path.string(), 0}, "", "no file that can be read", "a recording");
   }
 }
@@ -44,6 +46,7 @@ bool TextLines::fill() {
   }
   buffer_.resize(had + static_cast<size_t>(got));
   at_end_ = got == 0;
+  if (number_ == 0 && had == 0) require_text(buffer_, {path_.string(), 1});
   return got > 0;
 }
 

@@ -69,8 +69,21 @@ std::string in_quotes(std::string_view text) {
   return "\"" + std::string(text.substr(0, max_bytes)) + (text.size() > max_bytes ? "…\"" : "\"");
 }
 
+void require_text(std::string_view begin, const InputLocation& where) {
+  constexpr size_t enough = 4096;
+  begin = begin.substr(0, enough);
+  const bool marked = begin.starts_with("\xff\xfe") || begin.starts_with("\xfe\xff");
+  const auto zeros = static_cast<size_t>(std::ranges::count(begin, '\0'));
+  if (marked || (begin.size() > 3 && 5 * zeros >= 2 * begin.size())) {
+    throw InputError(where, "", "UTF-16 text", "text in UTF-8 or ASCII");
+  }
+  if (zeros > 0) throw InputError(where, "", "bytes that are no text", "a text file");
+}
+
 DataLines::DataLines(std::string_view text, const std::string& file)
-    : lines_(lines_of(text)), where_{file, 0} {}
+    : lines_(lines_of(text)), where_{file, 0} {
+  require_text(text, {file, 1});
+}
 
 bool DataLines::next(std::string_view& line) {
   while (static_cast<size_t>(where_.line) < lines_.size()) {

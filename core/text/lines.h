@@ -33,10 +33,14 @@ std::vector<std::string_view> words_of(std::string_view line,
 // "text" in quotes for a message, cut after 40 bytes.
 std::string in_quotes(std::string_view text);
 
+// Throws InputError when the beginning of a text file is UTF-16 or no text at all: readers of lines
+// would find no column in it and say so misleadingly.
+void require_text(std::string_view begin, const InputLocation& where);
+
 // The lines of a text that say something: neither blank nor a comment from # on.
 class DataLines {
  public:
-  // `text` must outlive the reader; `file` is what messages name.
+  // `text` must outlive the reader; `file` is what messages name. See require_text().
   DataLines(std::string_view text, const std::string& file);
 
   // The next such line, trimmed; false at the end.

@@ -14,21 +14,10 @@
 #include "diagnosis/attitude/findings/manoeuvre.h"
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/settle.h"
+#include "diagnosis/verdict.h"
 
 namespace photorque {
 namespace {
-
-Verdict verdict_of(inference::Finding finding) {
-  switch (finding) {
-    case inference::Finding::nothing_missing:
-      return Verdict::consistent;
-    case inference::Finding::named:
-      return Verdict::missing_physics;
-    case inference::Finding::unknown:
-      return Verdict::unexplained;
-  }
-  return Verdict::unexplained;
-}
 
 // Nowhere where the nominal model cannot be propagated: they part from the start.
 Where where_they_part(const Fit& nominal_fit, const RecordedData& data,

@@ -101,8 +101,7 @@ void add_shadow(const LightTrial& trial, const LightCandidates& all, size_t whic
   effect.parameters.push_back({"u_m", {region.u_low, region.u_high}, {}});
   effect.parameters.push_back({"v_m", {region.v_low, region.v_high}, {}});
   effect.parameters.push_back({"darkest", {region.darkest}, {}});
-  const bool on_body =
-      all[trial.candidates[which]].kind.scan == LightEffectKind::Scan::shadow_on_body;
+  const bool on_body = all[trial.candidates[which]].index == 1;
   effect.texts.emplace_back("axes", on_body ? "body" : "lab");
 }
 
@@ -114,7 +113,8 @@ FoundEffect found_light_effect(const LightTrial& trial, const LightCandidates& a
   effect.explanation = c.kind.explanation;
   if (c.kind.index == LightEffectKind::Index::wall) {
     effect.texts.emplace_back("node", all.lab->walls()[c.index].node);
-  } else if (c.kind.index != LightEffectKind::Index::none) {
+  } else if (c.kind.index != LightEffectKind::Index::none &&
+             c.kind.index != LightEffectKind::Index::frame) {
     effect.parameters.push_back({"index", {static_cast<double>(c.index)}, {}});
   }
   if (is_dark(trial, all, which)) {
@@ -142,7 +142,7 @@ FoundEffect found_light_effect(const LightTrial& trial, const LightCandidates& a
       effect.parameters.back().sigma.push_back(std::abs(slope_of(p, x)) * sigma / to_SI);
     }
   }
-  if (c.kind.name == "unmodelled_shadow") add_shadow(trial, all, which, runs, effect);
+  if (c.kind.scan == LightEffectKind::Scan::shadow) add_shadow(trial, all, which, runs, effect);
   return effect;
 }
 

@@ -8,6 +8,7 @@
 #include "diagnosis/light/account.h"
 #include "diagnosis/light/clean.h"
 #include "diagnosis/light/domain.h"
+#include "diagnosis/verdict.h"
 #include "inference/decide.h"
 #include "inference/search.h"
 #include "inference/weigh.h"
@@ -96,25 +97,43 @@ LightData read_light_data(const LightLab& lab, const LightState& nominal,
   return data;
 }
 
-Verdict light_verdict(inference::Finding finding) {
-  switch (finding) {
-    case inference::Finding::nothing_missing:
-      return Verdict::consistent;
-    case inference::Finding::named:
-      return Verdict::missing_physics;
-    case inference::Finding::unknown:
-      return Verdict::unexplained;
+// Leaves out the readings that are wild by an explanation; whether there were any.
+bool drop_outliers(const LightTrial& about, const LightCandidates& all,
+                   const LightDiagnoseOptions& options, LightData& data) {
+  int64_t dropped = 0;
+  for (std::vector<FittedRun>* runs : {&data.train, &data.held}) {
+    for (FittedRun& run : *runs) {
+      const std::vector<size_t> good =
+          rows_without_outliers(*run.run, residuals_of(about, all, run), options.limits.noise);
+      if (good.size() == run.run->rows() || good.empty()) continue;
+      dropped += static_cast<int64_t>(run.run->rows() - good.size());
+      run = prepared_run(run.run->part(good), all.nominal);
+    }
   }
-  return Verdict::unexplained;
+  if (dropped == 0) return false;
+  data.quality.rejected["outlier"] += dropped;
+  data.quality.used -= dropped;
+  return true;
 }
 
-LightAnswer explain_light(const LightLab& lab, const LightState& nominal, const LightData& data,
+LightAnswer explain_light(const LightLab& lab, const LightState& nominal, LightData& data,
                           const LightDiagnoseOptions& options) {
   LightAnswer answer{light_candidates(lab, nominal, data.train, options.limits), {}, {}};
   const LightDomain domain(answer.all);
   tell(options, "fitting every effect of the catalogue");
   answer.trials = inference::search(domain, nominal_light_trial(answer.all, data.train), data.train,
                                     options.threads);
+  // Where something is missing, a wild reading looks like a part of it. It stands out once the best
+  // explanation is known, and the search goes on from there.
+  const LightTrial best = answer.trials[inference::by_evidence(answer.trials).front()];
+  if (drop_outliers(best, answer.all, options, data)) {
+    const LightTrial base = nominal_light_trial(answer.all, data.train);
+    const LightTrial from = domain.refit(best, data.train, {}, inference::patient(domain.limits()));
+    answer.trials =
+        inference::Rounds<LightDomain>(domain, {data.train}, base,
+                                       domain.limits().search.max_effects, options.threads)
+            .run(from);
+  }
   tell(options, "comparing with what was held out");
   inference::weigh_with_held_out(domain, data.train, data.held, options.threads, answer.trials);
   const auto excess = [&](size_t trial) {
@@ -274,12 +293,12 @@ Diagnosis diagnose_light(const LightLab& lab, const LightState& nominal,
   options.limits.fitting.trial_iterations = 10;
   options.limits.fitting.patient_iterations = 20;
   options.limits.search.max_effects = 3;
-  const LightData data =
+  LightData data =
       read_light_data(lab, nominal, std::move(recordings), std::move(holdouts), options);
   const LightAnswer answer = explain_light(lab, nominal, data, options);
   Diagnosis d;
   d.effect_table = "effect";
-  d.verdict = light_verdict(answer.decision.finding);
+  d.verdict = verdict_of(answer.decision.finding);
   d.confidence = answer.decision.confidence;
   d.because = answer.decision.because;
   d.where.channels = misfits(answer, data.train);

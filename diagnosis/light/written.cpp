@@ -24,6 +24,8 @@ size_t index_of(const Settings& effect, const LightEffectKind& kind, const Light
     case LightEffectKind::Index::bypass:
       count = lab.bypasses();
       break;
+    case LightEffectKind::Index::frame:
+      return effect.choice_or("axes", {"lab", "body"}, 0);
     case LightEffectKind::Index::wall: {
       const std::string node = effect.text("node");
       for (size_t w = 0; w < lab.walls().size(); ++w) {
@@ -48,13 +50,8 @@ std::vector<double> numbers_of(const Settings& effect, const EffectParameter& pa
   return numbers;
 }
 
-// Kinds that share a name differ in their parameters, or in the axes of a box.
+// Kinds that share a name differ in their parameters.
 bool is_meant(const LightEffectKind& kind, const Settings& effect) {
-  if (kind.scan == LightEffectKind::Scan::shadow_in_lab ||
-      kind.scan == LightEffectKind::Scan::shadow_on_body) {
-    const bool on_body = effect.choice_or("axes", {"lab", "body"}, 0) == 1;
-    return on_body == (kind.scan == LightEffectKind::Scan::shadow_on_body);
-  }
   return std::ranges::all_of(kind.parameters,
                              [&](const EffectParameter& p) { return effect.has(p.key); });
 }

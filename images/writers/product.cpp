@@ -1,11 +1,10 @@
 #include "images/writers/product.h"
 
-#include <unistd.h>
-
 #include <set>
 
 #include "core/errors.h"
 #include "core/settings/settings.h"
+#include "images/publishing/staged_files.h"
 #include "images/writers/kind.h"
 
 namespace photorque {
@@ -42,50 +41,6 @@ void require_distinct_files(const Product& product) {
   for (const Plot& plot : product.plots) take(plot.name);
 }
 
-// A folder in which files come into being, within the one where they belong; they move there when
-// all are whole. What it made goes away again unless they did.
-class Staging {
- public:
-  explicit Staging(const fs::path& folder) : folder_(folder) {
-    std::error_code failure;
-    for (fs::path p = fs::absolute(folder); !fs::exists(p, failure) && p.has_relative_path();
-         p = p.parent_path()) {
-      made_ = p;
-    }
-    path_ = folder / ("." + std::to_string(::getpid()) + ".part");
-    fs::create_directories(path_, failure);
-    if (failure) throw InputError({folder.string()}, "", failure.message(), "a writable folder");
-  }
-  Staging(const Staging&) = delete;
-  Staging& operator=(const Staging&) = delete;
-  ~Staging() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-    if (!moved_ && !made_.empty()) fs::remove_all(made_, ignored);
-  }
-
-  const fs::path& path() const { return path_; }
-
-  std::vector<fs::path> move(const std::vector<fs::path>& files) {
-    std::vector<fs::path> places;
-    for (const fs::path& file : files) {
-      places.push_back(folder_ / file.filename());
-      std::error_code failure;
-      fs::rename(file, places.back(), failure);
-      if (failure) {
-        throw InputError({places.back().string()}, "", failure.message(),
-                         "a path that can be written");
-      }
-    }
-    moved_ = true;
-    return places;
-  }
-
- private:
-  fs::path folder_, path_, made_;
-  bool moved_ = false;
-};
-
 }  // namespace
 
 fs::path file_in(const fs::path& folder, const std::string& name, const std::string& extension) {
@@ -98,18 +53,26 @@ fs::path file_in(const fs::path& folder, const std::string& name, const std::str
   return folder / ((stem.empty() ? "unnamed" : stem) + "." + extension);
 }
 
+std::vector<fs::path> write_formats(const Product& product, const Provenance& provenance,
+                                    const fs::path& folder,
+                                    const std::vector<std::string>& formats) {
+  require_distinct_files(product);
+  std::vector<fs::path> paths;
+  for (const WriterKind& kind : kinds_named(formats)) {
+    const std::vector<fs::path> written = kind.make()->write(product, provenance, folder);
+    paths.insert(paths.end(), written.begin(), written.end());
+  }
+  return paths;
+}
+
 std::vector<fs::path> write_product(const Product& product, const Provenance& provenance,
                                     const fs::path& folder,
                                     const std::vector<std::string>& formats) {
   require_distinct_files(product);
-  const std::vector<WriterKind> kinds = kinds_named(formats);
-  Staging staging(folder);
-  std::vector<fs::path> paths;
-  for (const WriterKind& kind : kinds) {
-    const std::vector<fs::path> written = kind.make()->write(product, provenance, staging.path());
-    paths.insert(paths.end(), written.begin(), written.end());
-  }
-  return staging.move(paths);
+  kinds_named(formats);
+  StagedFiles staged(folder);
+  write_formats(product, provenance, staged.path(), formats);
+  return staged.publish();
 }
 
 }  // namespace photorque

@@ -18,4 +18,11 @@ std::vector<std::filesystem::path> write_product(const Product& product,
                                                  const std::filesystem::path& folder,
                                                  const std::vector<std::string>& formats = {});
 
+// The same straight into `folder`, which may then hold a part when something fails: for folders
+// that are published as one (StagedFiles).
+std::vector<std::filesystem::path> write_formats(const Product& product,
+                                                 const Provenance& provenance,
+                                                 const std::filesystem::path& folder,
+                                                 const std::vector<std::string>& formats = {});
+
 }  // namespace photorque

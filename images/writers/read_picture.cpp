@@ -3,6 +3,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/errors.h"
@@ -19,7 +20,8 @@ float linear_from_srgb(float value) {
 
 LinearPicture read_picture(const std::string& bytes) {
   const InputError wrong({"picture"}, "", "bytes that are no picture", "a PNG or JPEG");
-  constexpr int64_t max_texels = int64_t{1} << 28;
+  // Three floats each: 0.8 GB.
+  constexpr int64_t max_texels = int64_t{1} << 26;
   const bool is_png = bytes.starts_with("\x89PNG");
   if (!is_png && !bytes.starts_with("\xFF\xD8")) throw wrong;
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
@@ -31,19 +33,29 @@ LinearPicture read_picture(const std::string& bytes) {
   }
   const OIIO::ImageSpec& spec = input->spec();
   const int channels = spec.nchannels;
-  if (spec.width < 1 || spec.height < 1 || channels < 1 ||
-      int64_t{spec.width} * spec.height > max_texels) {
-    throw wrong;
+  if (spec.width < 1 || spec.height < 1 || channels < 1) throw wrong;
+  if (int64_t{spec.width} * spec.height > max_texels) {
+    throw InputError({"picture"}, "",
+                     std::to_string(spec.width) + " x " + std::to_string(spec.height) + " texels",
+                     "at most " + std::to_string(max_texels) + " of them");
   }
-  const size_t texels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
-  std::vector<float> values(texels * static_cast<size_t>(channels));
-  if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) throw wrong;
-  LinearPicture picture{spec.width, spec.height, std::vector<float>(3 * texels)};
-  for (size_t i = 0; i < texels; ++i) {
-    for (size_t k = 0; k < 3; ++k) {
-      const size_t channel = channels >= 3 ? k : 0;
-      picture.rgb[3 * i + k] =
-          linear_from_srgb(values[i * static_cast<size_t>(channels) + channel]);
+  const auto width = static_cast<size_t>(spec.width);
+  LinearPicture picture{spec.width, spec.height, {}};
+  // As rows come, so that no header makes this allocate what the file does not bear out.
+  constexpr int rows_at_once = 64;
+  std::vector<float> values(width * rows_at_once * static_cast<size_t>(channels));
+  for (int row = 0; row < spec.height; row += rows_at_once) {
+    const int end = std::min(row + rows_at_once, spec.height);
+    if (!input->read_scanlines(0, 0, row, end, 0, 0, channels, OIIO::TypeDesc::FLOAT,
+                               values.data())) {
+      throw wrong;
+    }
+    for (size_t i = 0; i < width * static_cast<size_t>(end - row); ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        const size_t channel = channels >= 3 ? k : 0;
+        picture.rgb.push_back(
+            linear_from_srgb(values[i * static_cast<size_t>(channels) + channel]));
+      }
     }
   }
   return picture;

@@ -8,7 +8,7 @@ namespace photorque {
 
 std::string summary_json(const Product& product, const Provenance& provenance,
                          const RunCost& cost) {
-  nlohmann::ordered_json summary = {{"schema", "photorque.summary/1"},
+  nlohmann::ordered_json summary = {{"schema", summary_schema},
                                     {"warnings", nlohmann::ordered_json::array()}};
   for (const std::string& warning : provenance.warnings) {
     summary["warnings"].push_back(clean_text(warning));

@@ -9,6 +9,8 @@
 
 namespace photorque {
 
+inline constexpr const char* summary_schema = "photorque.summary/1";
+
 // What a run cost; left out where unknown. The wall time is the only number that differs between
 // two equal runs, and stands on a line of its own.
 struct RunCost {

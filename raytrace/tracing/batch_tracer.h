@@ -32,11 +32,9 @@ struct TraceSums {
     power_balance.absorbed_lanes_W.assign(instances, {});
     for (const Receiver* receiver : all) receivers.emplace_back(receiver->bins(), 0.0);
   }
-  void add(const TraceSums& other) {
+  // All but the receivers' bins.
+  void add_balance(const TraceSums& other) {
     power_balance.add(other.power_balance);
-    for (size_t r = 0; r < receivers.size(); ++r) {
-      for (size_t i = 0; i < receivers[r].size(); ++i) receivers[r][i] += other.receivers[r][i];
-    }
     segments += other.segments;
   }
 };

@@ -4,6 +4,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <mutex>
 
@@ -83,7 +84,7 @@ class TracerPool {
 
 TraceSums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
                      std::span<const Receiver* const> receivers, uint64_t seed, size_t item,
-                     uint64_t parts) {
+                     uint64_t parts, const std::function<void()>& batch_done) {
   const uint64_t replicate = item / parts, part = item % parts;
   const uint64_t first_batch = plan.batches * part / parts;
   const uint64_t end_batch = plan.batches * (part + 1) / parts;
@@ -95,10 +96,68 @@ TraceSums trace_part(BatchTracer& tracer, size_t instances, const Plan& plan,
     const uint64_t end = std::min(end_batch, beam.first_batch + beam.launch.cells.cells());
     for (uint64_t batch = begin; batch < end; ++batch) {
       tracer.run(beam, stream, static_cast<uint32_t>(batch - beam.first_batch), {item, b}, sums);
+      batch_done();
     }
   }
   return sums;
 }
+
+// The sums of each replicate, put together from its parts in their order as they come: what has
+// been added is forgotten at once, so that memory holds the replicates and little more, whatever
+// the number of parts.
+class Replicates {
+ public:
+  Replicates(size_t count, uint64_t parts, size_t instances,
+             std::span<const Receiver* const> receivers)
+      : parts_(parts), replicates_(count) {
+    for (Replicate& one : replicates_) {
+      one.sums = TraceSums(instances, {});
+    }
+    for (const Receiver* receiver : receivers) {
+      bins_.push_back({receiver->bins(), static_cast<int>(count), {}});
+      bins_.back().sums.assign(count * receiver->bins(), 0.0);
+    }
+  }
+
+  // From any thread.
+  void add(size_t item, TraceSums sums) {
+    Replicate& one = replicates_[item / parts_];
+    const std::lock_guard lock(one.mutex);
+    one.waiting.emplace(item % parts_, std::move(sums));
+    for (auto next = one.waiting.find(one.next); next != one.waiting.end();
+         next = one.waiting.find(++one.next)) {
+      join(item / parts_, next->second);
+      one.waiting.erase(next);
+    }
+  }
+
+  std::vector<TraceSums> totals() {
+    std::vector<TraceSums> all;
+    for (Replicate& one : replicates_) all.push_back(std::move(one.sums));
+    return all;
+  }
+  std::vector<BinSums> bins() { return std::move(bins_); }
+
+ private:
+  struct Replicate {
+    std::mutex mutex;
+    uint64_t next = 0;
+    std::map<uint64_t, TraceSums> waiting;
+    TraceSums sums{0, {}};
+  };
+
+  void join(size_t replicate, const TraceSums& part) {
+    replicates_[replicate].sums.add_balance(part);
+    for (size_t i = 0; i < bins_.size(); ++i) {
+      double* into = bins_[i].sums.data() + replicate * bins_[i].bins;
+      for (size_t b = 0; b < bins_[i].bins; ++b) into[b] += part.receivers[i][b];
+    }
+  }
+
+  uint64_t parts_;
+  std::vector<Replicate> replicates_;
+  std::vector<BinSums> bins_;
+};
 
 PowerBalance make_power_balance(const std::vector<TraceSums>& replicates, const Plan& plan) {
   std::vector<double> values(replicates.size());
@@ -161,6 +220,13 @@ void check(const TraceOptions& options, std::span<const Beam> beams) {
 
 }  // namespace
 
+uint64_t trace_bytes_per_bin(int replicates, int threads) {
+  // Two parts of the work for each thread: one that it adds up and one that waits for its turn.
+  constexpr int means_and_pictures = 4;
+  const auto numbers = replicates + replicates / 2 + 2 * threads + means_and_pictures;
+  return sizeof(double) * static_cast<uint64_t>(numbers);
+}
+
 size_t trace_parts(const TraceOptions& options) {
   return max_parts * static_cast<size_t>(options.replicates);
 }
@@ -175,34 +241,26 @@ TraceResult trace(const TraceableScene& scene, const RigidTransform& lab_from_bo
 
   const uint64_t parts = std::min(max_parts, plan.batches);
   const size_t replicates = static_cast<size_t>(options.replicates);
-  std::vector<TraceSums> done(replicates * parts, TraceSums(0, {}));
+  const size_t items = replicates * parts;
+  Replicates sums(replicates, parts, data.scene.instances.size(), receivers);
   TracerPool pool(data, receivers, options);
-  std::atomic<size_t> finished = 0;
-  parallel_for(done.size(), options.threads, [&](size_t item) {
+  std::atomic<uint64_t> finished = 0;
+  const uint64_t batches = plan.batches * replicates;
+  const auto batch_done = [&] {
+    const uint64_t now = ++finished;
+    if (options.progress) options.progress(static_cast<double>(now) / static_cast<double>(batches));
+  };
+  parallel_for(items, options.threads, [&](size_t item) {
     auto tracer = pool.take();
-    done[item] = trace_part(*tracer, data.scene.instances.size(), plan, receivers, options.seed,
-                            item, parts);
+    sums.add(item, trace_part(*tracer, data.scene.instances.size(), plan, receivers, options.seed,
+                              item, parts, batch_done));
     pool.give_back(std::move(tracer));
-    const size_t now = ++finished;
-    if (options.progress)
-      options.progress(static_cast<double>(now) / static_cast<double>(done.size()));
   });
 
-  std::vector<TraceSums> by_replicate;
   TraceResult result;
-  for (size_t r = 0; r < replicates; ++r) {
-    by_replicate.push_back(std::move(done[r * parts]));
-    for (uint64_t part = 1; part < parts; ++part) by_replicate.back().add(done[r * parts + part]);
-    result.segments += by_replicate.back().segments;
-  }
-  for (size_t i = 0; i < receivers.size(); ++i) {
-    BinSums sums{receivers[i]->bins(), options.replicates, {}};
-    for (const TraceSums& replicate : by_replicate) {
-      sums.sums.insert(sums.sums.end(), replicate.receivers[i].begin(),
-                       replicate.receivers[i].end());
-    }
-    result.sums.push_back(std::move(sums));
-  }
+  const std::vector<TraceSums> by_replicate = sums.totals();
+  for (const TraceSums& replicate : by_replicate) result.segments += replicate.segments;
+  result.sums = sums.bins();
   result.power_balance = make_power_balance(by_replicate, plan);
   result.rays = plan.rays;
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

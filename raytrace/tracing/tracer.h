@@ -84,6 +84,11 @@ struct TraceResult {
   double wall_s = 0.0;
 };
 
+// About how much memory [bytes] each of a receiver's bins takes in a trace and in what is made of
+// it: a number per replicate, for what one part of the work adds up on each thread, and some of the
+// means, errors and pictures after it.
+uint64_t trace_bytes_per_bin(int replicates, int threads);
+
 // The largest number of parts that a trace with these options is cut into.
 size_t trace_parts(const TraceOptions& options);
 

@@ -70,6 +70,8 @@ class Reader {
     if (std::optional<Line> line = next()) return *line;
     throw InputError({name_, static_cast<int>(lines_.size())}, "", "the end of the file", expected);
   }
+  // Lines at most.
+  size_t left() const { return lines_.size() - position_; }
   InputError error(const Line& line, const std::string& expected) const {
     return {{name_, line.number}, "", in_quotes(line.text), expected};
   }
@@ -93,11 +95,15 @@ Vec3 read_point(const Reader& reader, const Line& line, std::string_view text) {
   return point;
 }
 
-void check_motion(const Reader& reader, const Line& line, const Motion& motion) {
+void check_motion(const Reader& reader, const Line& line, const std::string& name,
+                  const Motion& motion) {
   const double steps = (motion.high_deg - motion.low_deg) / motion.step_deg;
   const bool whole = motion.step_deg > 0.0 && steps >= 1.0 && steps <= 1e5 &&
                      std::abs(steps - std::round(steps)) < 1e-6;
-  if (!whole) throw reader.error(line, "a positive step that divides Minimum to Maximum evenly");
+  if (!whole) {
+    throw reader.error(line,
+                       "for " + name + " a positive step that divides Minimum to Maximum evenly");
+  }
 }
 
 Header read_header(Reader& reader) {
@@ -119,11 +125,15 @@ Header read_header(Reader& reader) {
     if (key == "Maximum") header.motions[motion].high_deg = reader.number(line, value, key);
     if (key == "Step") {
       header.motions[motion].step_deg = reader.number(line, value, key);
-      check_motion(reader, line, header.motions[motion]);
+      check_motion(reader, line, motion, header.motions[motion]);
     }
     if (ended && !(header.motions.size() == 2 && header.motions.contains("Azimuth") &&
                    header.motions.contains("Elevation"))) {
       throw reader.error(line, "the two motions Azimuth and Elevation before this line");
+    }
+    // Again: a range may have been changed after its step, or have none.
+    for (const auto& [name, range] : header.motions) {
+      if (ended) check_motion(reader, line, name, range);
     }
   }
   return header;
@@ -209,6 +219,14 @@ SpadFile parse_spad(const std::string& text, const std::string& name) {
   const Columns columns = read_columns(reader);
   const Motion &azimuth = header.motions.at("Azimuth"), &elevation = header.motions.at("Elevation");
 
+  const auto require_rows = [&](size_t rows, bool enough) {
+    if (enough) return;
+    throw InputError({name, 0}, "rows", std::to_string(rows),
+                     std::to_string(azimuth.nodes() * elevation.nodes()) + " by the ranges and " +
+                         std::to_string(count) + " by the record count");
+  };
+  // Before room is made for what the file cannot hold.
+  require_rows(reader.left(), azimuth.nodes() * elevation.nodes() <= reader.left());
   SpadFile file{header.system,
                 make_wrench_table(WrenchTable::Angles::azimuth_elevation, elevation.angles_rad(),
                                   azimuth.angles_rad(), header.centre_of_mass_m),
@@ -226,11 +244,7 @@ SpadFile parse_spad(const std::string& text, const std::string& name) {
     file.table.force_body_N[node] = row.force_N;
     file.table.torque_body_N_m[node] = row.torque_N_m;
   }
-  if (rows != count || rows != file.table.nodes()) {
-    throw InputError({name, 0}, "rows", std::to_string(rows),
-                     std::to_string(file.table.nodes()) + " by the ranges and " +
-                         std::to_string(count) + " by the record count");
-  }
+  require_rows(rows, rows == count && rows == file.table.nodes());
   return file;
 }
 

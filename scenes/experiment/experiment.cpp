@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "receivers/kind.h"
 #include "receivers/settings.h"
+#include "scenes/experiment/doubts.h"
 #include "scenes/gltf/lights.h"
 #include "scenes/gltf/reader.h"
 #include "sources/kind.h"
@@ -36,6 +37,30 @@ void require_spectrum_inside(const Settings& source, const Beam& beam, const Ban
   throw source.error("", outside.str(), "[scene] bands_nm that hold all of it");
 }
 
+// What stands or spreads farther leaves the range that single precision can trace in.
+void require_traceable(const Settings& source, const Beam& beam) {
+  const double away_m = beam.lab_from_emitter.translation_m.stableNorm();
+  if (!(away_m <= largest_distance_m)) {
+    std::ostringstream found;
+    found << "a lamp " << away_m << " m away";
+    throw source.error("", found.str(), "at most 1e12 m");
+  }
+  SampleBlock samples;
+  std::array<uint32_t*, sobol_dimensions> columns;
+  for (size_t d = 0; d < sobol_dimensions; ++d) columns[d] = samples.bits[d].data();
+  sobol_points({}, 0, columns);
+  RayBlock rays;
+  beam.emitter->emit(samples, rays);
+  for (const auto& origins_m : rays.origin_m) {
+    for (const float origin_m : origins_m) {
+      if (std::abs(origin_m) <= largest_extent_m) continue;
+      std::ostringstream found;
+      found << "light that starts " << origin_m << " m from the lamp's middle";
+      throw source.error("", found.str(), "an opening of at most 1e9 m");
+    }
+  }
+}
+
 // Notices and the files that the sources read go to the model's.
 std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   const Scene& scene = model.scene;
@@ -46,7 +71,7 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   std::optional<std::vector<GltfLight>> lights;  // of the scene, once a source asks for one
   for (const Settings& written : file.sources) {
     if (written.has("light") && !lights) {
-      lights = read_gltf_lights(*file.scene_file, file.metres_per_unit);
+      lights = read_gltf_lights(*file.scene_file, file.metres_per_unit, file.may_leave_folder);
     }
     const bool at_light = written.has("light");
     const Settings source = at_light ? source_at_light(written, *lights) : written;
@@ -64,6 +89,7 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
     const SourceKind& kind = kinds[source.choice("kind", names_of(kinds))];
     for (Beam& beam : kind.make(source, context)) {
       require_spectrum_inside(source, beam, scene.bands);
+      require_traceable(source, beam);
       beams.push_back(std::move(beam));
     }
     if (at_light) source.finish();
@@ -174,7 +200,8 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
                                                  .materials = file.materials,
                                                  .material_file = files_beside(file.path),
                                                  .picture = file.textures ? picture : nullptr,
-                                                 .metres_per_unit = file.metres_per_unit});
+                                                 .metres_per_unit = file.metres_per_unit,
+                                                 .may_leave_folder = file.may_leave_folder});
   require_triangles(model.scene, *file.scene_file);
 
   std::vector<Beam> beams = make_beams(file, model);
@@ -190,6 +217,7 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
   experiment.lab_from_body =
       lab_from_body_at(experiment.file.attitude.tilt_rad, experiment.file.attitude.heading_rad);
   experiment.camera = camera;
+  experiment.warnings = doubts_about(experiment.scene, experiment.beams, experiment.lab_from_body);
   experiment.notices = std::move(model.notices);
   experiment.inputs = experiment.file.inputs;
   experiment.inputs.insert(experiment.inputs.end(), model.inputs.begin(), model.inputs.end());

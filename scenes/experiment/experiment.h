@@ -76,8 +76,9 @@ struct ExperimentFile {
 
   // Of an optical run; empty when the file has no [scene].
   std::optional<std::filesystem::path> scene_file;
-  double metres_per_unit = 1.0;  // [scene] metres_per_unit: of lengths in the scene's file
-  bool textures = false;         // [scene] textures: base colours from the model's pictures
+  double metres_per_unit = 1.0;   // [scene] metres_per_unit: of lengths in the scene's file
+  bool textures = false;          // [scene] textures: base colours from the model's pictures
+  bool may_leave_folder = false;  // [scene] allow_outside: of models that name files elsewhere
   Bands bands;
   std::vector<Settings> materials;  // [[material]], overrides by name
   std::vector<Settings> sources;
@@ -103,6 +104,11 @@ struct ExperimentFile {
 ExperimentFile read_experiment_file(const std::filesystem::path& path,
                                     std::span<const std::string> overrides = {});
 
+// The same for a text that need not be a file's: `path` is what messages call it, and the files
+// that it names are relative to the folder of that path.
+ExperimentFile read_experiment_text(const std::filesystem::path& path, const std::string& text,
+                                    std::span<const std::string> overrides = {});
+
 // A receiver and what the experiment calls it.
 struct NamedReceiver : MadeReceiver {
   std::string name;  // the key `name`, else the node, else the kind
@@ -118,6 +124,8 @@ struct Experiment {
   RigidTransform lab_from_body;  // from [attitude]
   Camera camera;
   std::vector<std::string> notices;  // what the scene's reader had to assume, one line each
+  // What makes results doubtful, one line each: see doubts_about().
+  std::vector<std::string> warnings = {};
   std::vector<std::pair<std::string, std::string>> inputs;  // experiment, overrides, scene files
 
   std::vector<const Receiver*> receiver_pointers() const;

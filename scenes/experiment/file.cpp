@@ -173,7 +173,11 @@ std::vector<Settings> ExperimentFile::others(const std::string& key) const {
 ExperimentFile read_experiment_file(const std::filesystem::path& path,
                                     std::span<const std::string> overrides) {
   constexpr uint64_t largest_bytes = 1ull << 26;
-  const std::string text = read_file(path, largest_bytes);
+  return read_experiment_text(path, read_file(path, largest_bytes), overrides);
+}
+
+ExperimentFile read_experiment_text(const std::filesystem::path& path, const std::string& text,
+                                    std::span<const std::string> overrides) {
   auto root = std::make_shared<SettingsNode>(parse_toml(text, path.string()));
   ExperimentFile file;
   file.path = path;
@@ -189,6 +193,7 @@ ExperimentFile read_experiment_file(const std::filesystem::path& path,
     file.scene_file = path.parent_path() / scene.text("file");
     file.metres_per_unit = scene.number_or("metres_per_unit", 1.0, Range::positive());
     file.textures = scene.flag_or("textures", false);
+    file.may_leave_folder = scene.flag_or("allow_outside", false);
     file.bands = read_bands(scene);
   }
   file.materials = settings.tables("material");

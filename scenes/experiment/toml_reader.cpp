@@ -1,10 +1,12 @@
 #include "scenes/experiment/toml_reader.h"
 
 #include <toml++/toml.h>
+#include <algorithm>
 #include <charconv>
 #include <sstream>
 
 #include "core/files.h"
+#include "core/text/lines.h"
 
 namespace photorque {
 namespace {
@@ -49,6 +51,47 @@ SettingsNode to_settings(const toml::node& node, const std::string& name) {
   return result;
 }
 
+// Tables within tables are built, walked and freed by recursion. Keys of so many parts, and no more
+// than toml++'s own 256 values within each other, stay far from the end of a stack.
+constexpr size_t max_key_parts = 16;
+
+// The text from a quote to behind its end, or to the end of all.
+size_t end_of_string(std::string_view text, size_t begin) {
+  const char quote = text[begin];
+  const bool multiline = text.substr(begin, 3) == std::string(3, quote);
+  const size_t quotes = multiline ? 3 : 1;
+  for (size_t i = begin + quotes; i < text.size(); ++i) {
+    if (text[i] == '\\' && quote == '"') {
+      ++i;
+    } else if (text.substr(i, quotes) == std::string(quotes, quote)) {
+      return i + quotes;
+    } else if (text[i] == '\n' && !multiline) {
+      return i;
+    }
+  }
+  return text.size();
+}
+
+// Throws InputError for keys of too many parts, before anything recurses into them.
+void require_shallow(std::string_view text, const std::string& name) {
+  size_t dots = 0;
+  int line = 1;
+  for (size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    size_t end = i + 1;
+    if (c == '"' || c == '\'') end = end_of_string(text, i);
+    if (c == '#') end = std::min(text.find('\n', i), text.size());
+    if (c == '.') ++dots;
+    if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) dots = 0;
+    if (dots >= max_key_parts) {
+      throw InputError({name, line}, "", "a key of more than 16 parts", "at most 16");
+    }
+    line += static_cast<int>(std::count(text.begin() + static_cast<ptrdiff_t>(i),
+                                        text.begin() + static_cast<ptrdiff_t>(end), '\n'));
+    i = end;
+  }
+}
+
 // A step of a key's path: a name, or an index when the name is empty.
 struct Step {
   std::string name;
@@ -82,6 +125,9 @@ std::vector<Step> steps_of(std::string_view key) {
     if (!key.starts_with('.') || key.size() == 1) return {};
     key.remove_prefix(1);
   }
+  if (steps.size() > 2 * max_key_parts) {  // each may have an index
+    throw InputError(command_line, "", "a key of more than 16 parts", "at most 16");
+  }
   return steps;
 }
 
@@ -94,6 +140,7 @@ bool is_bare_word(const std::string& text) {
 
 SettingsNode value_of(const std::string& text, const std::string& key) {
   SettingsNode node;
+  require_shallow(text, command_line.file);
   try {
     SettingsNode document = to_settings(toml::parse("value = " + text), command_line.file);
     auto& table = std::get<SettingsNode::Table>(document.value);
@@ -152,6 +199,8 @@ void erase_other_units(SettingsNode::Table& table, const std::string& key) {
 }  // namespace
 
 SettingsNode parse_toml(const std::string& text, const std::string& name) {
+  require_text(text, {name, 1});
+  require_shallow(text, name);
   try {
     return to_settings(toml::parse(text, name), name);
   } catch (const toml::parse_error& error) {

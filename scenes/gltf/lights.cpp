@@ -169,13 +169,11 @@ const GltfLight& light_named(const Settings& source, const std::vector<GltfLight
 
 }  // namespace
 
-std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, double metres_per_unit) {
+std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, double metres_per_unit,
+                                        bool may_leave_folder) {
   constexpr uint64_t largest_bytes = 4ull << 30;
   const GltfOpen open = [&](const std::string& relative_path) -> std::optional<std::string> {
-    const std::filesystem::path file = path.parent_path() / relative_path;
-    std::error_code failure;
-    if (!std::filesystem::is_regular_file(file, failure)) return std::nullopt;
-    return read_file(file, largest_bytes);
+    return read_file_beside(path.parent_path(), relative_path, largest_bytes, may_leave_folder);
   };
   return read_gltf_lights_bytes(read_file(path, largest_bytes), path.string(), open,
                                 metres_per_unit, largest_bytes);

@@ -32,7 +32,8 @@ struct GltfLight {
 
 // In the order of the nodes. Throws InputError as read_gltf() does, and for lights that are not as
 // the extension says.
-std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, double metres_per_unit);
+std::vector<GltfLight> read_gltf_lights(const std::filesystem::path& path, double metres_per_unit,
+                                        bool may_leave_folder = false);
 
 // The same from bytes, `file` is how messages call them.
 std::vector<GltfLight> read_gltf_lights_bytes(const std::string& bytes, const std::string& file,

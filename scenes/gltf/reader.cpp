@@ -5,6 +5,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "core/constants.h"
 #include "core/files.h"
 #include "core/provenance.h"
 #include "scenes/gltf/geometry.h"
@@ -22,8 +23,6 @@ using gltf::MemoryBudget;
 using gltf::Placement;
 using gltf::pointer;
 
-// Larger scenes are mistakes of units; it keeps coordinates well inside Embree's floats.
-constexpr double largest_radius_m = 1e12;
 // Larger than any platform, and than all spacecraft but a few.
 constexpr double surprising_radius_m = 100.0;
 
@@ -121,10 +120,10 @@ class Assembly {
     instance.body_from_mesh = body_from_world(options_.metres_per_unit) * placement.world_from_mesh;
     const double reach_m = instance.body_from_mesh.linear().norm() * radii_[mesh] +
                            instance.body_from_mesh.translation().norm();
-    if (!(reach_m <= largest_radius_m)) {
+    if (!(reach_m <= largest_extent_m)) {
       std::ostringstream found;
       found << "a mesh up to " << reach_m << " m away";
-      throw document_.wrong(pointer("nodes", placement.node), found.str(), "at most 1e12 m");
+      throw document_.wrong(pointer("nodes", placement.node), found.str(), "at most 1e9 m");
     }
     budget_->charge(1, sizeof(Instance) + placement.path.size(), pointer("nodes", placement.node));
     const GltfMaterial& optics = material_of(material);
@@ -309,10 +308,8 @@ GltfModel read_gltf_bytes(const std::string& bytes, const std::string& name, con
 GltfModel read_gltf(const std::filesystem::path& path, const GltfOptions& options) {
   const std::string bytes = read_file(path, options.largest_bytes);
   const GltfOpen open = [&](const std::string& relative_path) -> std::optional<std::string> {
-    const std::filesystem::path file = path.parent_path() / relative_path;
-    std::error_code failure;
-    if (!std::filesystem::is_regular_file(file, failure)) return std::nullopt;
-    return read_file(file, options.largest_bytes);
+    return read_file_beside(path.parent_path(), relative_path, options.largest_bytes,
+                            options.may_leave_folder);
   };
   GltfModel model = read_gltf_bytes(bytes, path.string(), open, options);
   model.inputs.front().first = path.filename().string();

@@ -95,8 +95,8 @@ std::optional<BaseColours> base_colour_picture(const Document& document, int mat
     BaseColours picture = read(bytes);
     budget->charge(picture.rgb.size(), sizeof(float), named);
     return picture;
-  } catch (const InputError&) {
-    throw document.wrong(named, "bytes that are no picture", "a PNG or JPEG");
+  } catch (const InputError& error) {
+    throw InputError({document.file}, named + ": " + error.what(), "", "");
   }
 }
 

@@ -135,6 +135,7 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
     file.labels.emplace_back(keyword, lines.text(keyword));
   }
   file.opening = read_opening(lines);
+  require_opening(file.opening, lines.where());
   for (int i = 0; i < 4; ++i) lines.number_or_zero("height of the luminous area");
   lines.number_or_zero("downward flux fraction");
   lines.number_or_zero("light output ratio");

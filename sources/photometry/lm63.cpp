@@ -50,13 +50,8 @@ class NumberStream {
     return values;
   }
 
-  std::string rest_of_line() {
-    if (line_ >= lines_.size()) return {};
-    const std::string_view rest = lines_[line_].substr(std::min(at_, lines_[line_].size()));
-    ++line_;
-    at_ = 0;
-    return std::string(trimmed(rest));
-  }
+  // The next word if it is a number.
+  std::optional<double> left_over() { return number_in(next_word()); }
 
  private:
   std::string_view next_word() {
@@ -149,6 +144,7 @@ IesHeader read_header(NumberStream& stream, PhotometricFile& file) {
   const double width_m = unit_m * stream.next("width");
   const double length_m = unit_m * stream.next("length");
   file.opening = read_opening(width_m, length_m, unit_m * stream.next("height"), file);
+  require_opening(file.opening, stream.where());
   const double ballast = stream.next("ballast factor");
   const double future = stream.next("ballast-lamp factor");
   file.input_power_W = stream.next("input watts");
@@ -161,6 +157,17 @@ IesHeader read_header(NumberStream& stream, PhotometricFile& file) {
   }
   if (lumens >= 0.0 && std::isfinite(lamps * lumens)) file.stated_flux_lm = lamps * lumens;
   return header;
+}
+
+// A count that is too low leaves numbers over, and has shifted all those before them.
+void require_end(NumberStream& stream, const IesHeader& header) {
+  const std::optional<double> left = stream.left_over();
+  if (!left) return;
+  throw InputError(stream.where(), "number of vertical angles",
+                   std::to_string(header.vertical) + " by " + std::to_string(header.horizontal) +
+                       " horizontal ones, and numbers after the last candela value (" +
+                       shortest(*left) + ")",
+                   "counts that agree with the table");
 }
 
 }  // namespace
@@ -185,6 +192,7 @@ PhotometricFile read_ies(const std::string& bytes, const std::string& name) {
                        "a finite intensity");
     }
   }
+  require_end(stream, header);
   if (header.type == 1) {
     require_goniometer_range(stored.polar_deg, angles_at);
     file.table = unfold(stored, implied_symmetry(stored.azimuth_deg), stream.where());

@@ -130,6 +130,15 @@ void require_ascending(const std::vector<double>& angles_deg, const std::string&
   }
 }
 
+void require_opening(const Opening& opening, const InputLocation& where) {
+  for (const double side_m : {opening.x_m, opening.y_m}) {
+    if (side_m <= largest_extent_m) continue;
+    std::ostringstream found;
+    found << side_m << " m";
+    throw InputError(where, "luminous opening", found.str(), "at most 1e9 m");
+  }
+}
+
 void require_light(PhotometricFile& file, const InputLocation& where) {
   size_t negative = 0;
   double least = 0.0, largest = 0.0;
@@ -140,8 +149,15 @@ void require_light(PhotometricFile& file, const InputLocation& where) {
     least = std::min(least, value);
     value = 0.0;
   }
+  // Squares and sums of such numbers neither overflow nor vanish.
+  constexpr double faintest_cd = 1e-60, brightest_cd = 1e60;
   if (!(largest > 0.0)) {
     throw InputError(where, "intensities", "none above zero", "a source that shines");
+  }
+  if (!(largest >= faintest_cd && largest <= brightest_cd)) {
+    std::ostringstream found;
+    found << largest << " as the largest";
+    throw InputError(where, "intensities", found.str(), "1e-60 to 1e60");
   }
   if (negative > 0) {
     std::ostringstream line;

@@ -45,8 +45,11 @@ void require_goniometer_range(const std::vector<double>& polar_deg, const InputL
 void require_ascending(const std::vector<double>& angles_deg, const std::string& key,
                        const InputLocation& where);
 
+// Throws InputError for an opening larger than largest_extent_m.
+void require_opening(const Opening& opening, const InputLocation& where);
+
 // Negative intensities, the noise of goniometers, become zero with a notice. Throws InputError when
-// nothing shines.
+// nothing shines, or nothing that can be computed with.
 void require_light(PhotometricFile& file, const InputLocation& where);
 
 }  // namespace photorque

@@ -259,6 +259,7 @@ PhotometricFile read_tm33(const std::string& bytes, const std::string& name) {
   file.opening = opening_of(text, found.emitter, file);
   StoredPlanes stored = planes_of(text, found.intensity);
   const InputLocation where = text.at(found.intensity);
+  require_opening(file.opening, where);
   const Pole pole = pole_of(text, root);
   if (pole == Pole::beam) {
     require_goniometer_range(stored.polar_deg, where);

@@ -6,8 +6,8 @@
 
 namespace photorque {
 
-// Throws InputError unless ray `index` has finite numbers, a direction of length one (to 1e-3) and
-// no negative flux.
+// Throws InputError unless ray `index` has finite numbers, a start within largest_extent_m, a
+// direction of length one (to 1e-3) and no negative flux.
 void require_sound(const RaySet::Ray& ray, size_t index, const InputLocation& where);
 
 // Throws InputError for a set without rays or without flux.

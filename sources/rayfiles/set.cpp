@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/constants.h"
+#include "core/text/numbers.h"
 #include "sources/rayfiles/checks.h"
 
 namespace photorque {
@@ -18,6 +20,9 @@ void require_sound(const RaySet::Ray& ray, size_t index, const InputLocation& wh
   };
   if (!ray.origin_m.allFinite() || !ray.direction.allFinite()) {
     fail("a number that is not finite", "a position and a direction");
+  }
+  if (!(ray.origin_m.cwiseAbs().maxCoeff() <= largest_extent_m)) {
+    fail("a start " + shortest(ray.origin_m.cwiseAbs().maxCoeff()) + " m away", "at most 1e9 m");
   }
   constexpr double tolerance = 1e-3;
   if (!(std::abs(ray.direction.norm() - 1.0) <= tolerance)) {

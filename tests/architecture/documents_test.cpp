@@ -57,7 +57,7 @@ std::vector<std::string> paths_in(const std::string& text) {
   static const std::regex source(R"([\w./-]*\w\.(h|cpp)\b)");
   static const std::regex path(
       R"((^|[\s(])((core|raytrace|sources|receivers|photovoltaics|images|attitude|inference|)"
-      R"(diagnosis|scenes|tools|tests|docs)(/[\w.*-]+)+))");
+      R"(diagnosis|scenes|tools|python|tests|docs)(/[\w.*-]+)+))");
   static const std::regex placeholder(R"([A-Z]{3}|\*)");
   std::vector<std::string> all = matches(text, source, 0);
   for (const std::string& found : matches(text, path, 2)) all.push_back(found);

@@ -20,7 +20,7 @@ inline const fs::path root = PHOTORQUE_SOURCE_DIR;
 // Folders of sources, as ARCHITECTURE.md's first column names them.
 inline const std::vector<std::string> top_folders = {
     "core",     "raytrace",  "sources",   "receivers", "photovoltaics", "images",
-    "attitude", "inference", "diagnosis", "scenes",    "tools"};
+    "attitude", "inference", "diagnosis", "scenes",    "tools",         "python"};
 
 inline bool is_source(const fs::path& file) {
   return file.extension() == ".h" || file.extension() == ".cpp";

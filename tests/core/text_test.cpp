@@ -102,5 +102,23 @@ TEST(Columns, AreFoundByNameAndWrongCellsByLine) {
   std::filesystem::remove(path);
 }
 
+TEST(Text, SixteenBitTextAndBytesAreToldApart) {
+  const auto message = [](std::string_view begin) -> std::string {
+    try {
+      require_text(begin, {"r.csv", 1});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using namespace std::string_literals;
+  EXPECT_THAT(message("\xff\xfet\0_\0s\0"s), testing::HasSubstr("found UTF-16 text"));
+  EXPECT_THAT(message("t\0_\0s\0,\0"s), testing::HasSubstr("found UTF-16 text"));
+  EXPECT_THAT(message("glTF\2\0 and more text"s),
+              testing::HasSubstr("found bytes that are no text"));
+  EXPECT_EQ(message("\xef\xbb\xbft_s,Ω\n1,2\n"), "");
+  EXPECT_EQ(message(""), "");
+}
+
 }  // namespace
 }  // namespace photorque

@@ -52,6 +52,15 @@ TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
   EXPECT_EQ(run.rejected.at("unreadable attitude"), 1);
 }
 
+// Once a conversion without a meaning.
+TEST(LightRecordings, NumbersOfSweepsBeyondAllCountingAreLeftOut) {
+  const auto sweep = read_light_recording(
+      written("many.csv", "sweep,voltage_V,current_A\n1e300,1,0.2\n-3,1,0.2\n"), {});
+  ASSERT_EQ(sweep.rows(), 1u);
+  EXPECT_EQ(sweep.sweep[0], -3);
+  EXPECT_EQ(sweep.rejected.at("unreadable number"), 1);
+}
+
 TEST(LightRecordings, OthersAreRefused) {
   const fs::path motion = written("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");
   EXPECT_FALSE(is_light_recording(motion));

@@ -38,5 +38,35 @@ TEST(ReadPicture, RefusesWhatIsNone) {
   EXPECT_THROW(read_picture(good.substr(0, 40)), InputError);
 }
 
+// The same with another size in its header, whose checksum is right (ISO 3309, as PNG has it).
+std::string of_size(uint32_t width, uint32_t height) {
+  std::string bytes = two_texels();
+  const auto put = [&](size_t at, uint32_t value) {
+    for (size_t k = 0; k < 4; ++k) bytes[at + k] = static_cast<char>(value >> (24 - 8 * k));
+  };
+  put(16, width);
+  put(20, height);
+  uint32_t sum = 0xffffffffU;
+  for (size_t i = 12; i < 29; ++i) {
+    sum ^= static_cast<unsigned char>(bytes[i]);
+    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ ((sum & 1U) != 0U ? 0xedb88320U : 0U);
+  }
+  put(29, ~sum);
+  return bytes;
+}
+
+// 12,000 x 12,000 texels took 3.5 GB before.
+TEST(ReadPicture, RefusesByTheHeaderWhatIsTooLarge) {
+  EXPECT_EQ(of_size(2, 1), two_texels());
+  try {
+    read_picture(of_size(12000, 12000));
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "picture: found 12000 x 12000 texels, expected at most 67108864 of them");
+  }
+  EXPECT_THROW(read_picture(of_size(8192, 8192)), InputError);  // whose rows are not there
+}
+
 }  // namespace
 }  // namespace photorque

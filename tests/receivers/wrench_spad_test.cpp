@@ -110,6 +110,11 @@ TEST(Spad, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(message("in^2      in^2      in^2", "acre acre acre"), HasSubstr("units"));
   EXPECT_THAT(message(": Elevation", ": Roll"), HasSubstr("Azimuth and Elevation"));
   EXPECT_THAT(message("(0.5, -1, +2.25)", "(0.5, -1)"), HasSubstr("small.spo:5"));
+  // Ranges that would take 10^10 directions, or that change after their step: once no memory, once
+  // a conversion without a meaning.
+  EXPECT_THAT(message("Step    : 180", "Step    : 0.004"), HasSubstr("by the ranges"));
+  EXPECT_THAT(message("Step    : 180\n", "Step    : 180\n  Minimum : -1e300\n"),
+              HasSubstr("for Azimuth a positive step"));
   EXPECT_THAT(input_error_of([] { parse_spad("", "empty.spo"); }), HasSubstr("end of the file"));
   for (size_t length = 0; length <= small_file.rfind('3'); length += 13) {
     EXPECT_NE(input_error_of([&] { parse_spad(small_file.substr(0, length), "cut.spo"); }), "");

@@ -98,7 +98,7 @@ const Broken cases[] = {
     {"no_value", 6, "power_W =", ":6", "syntax error"},
     {"key_twice", 7, "power_W = 2", ":7", "syntax error"},
     {"not_utf8", 8, "profile = \"\xff\"", ":8", "syntax error"},
-    {"binary", -1, std::string("glTF\x02\x00\x00\x00", 8), ":1", "syntax error"},
+    {"binary", -1, std::string("glTF\x02\x00\x00\x00", 8), ":1", "bytes that are no text"},
     // Tables
     {"empty_file", -1, "", ":1: scene", "expected a table [scene] with a file"},
     {"scene_not_a_table", -1, "scene = 3", ":1: scene", "found 3, expected a table"},

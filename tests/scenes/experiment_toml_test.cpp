@@ -1,6 +1,7 @@
 // TOML into settings, and overrides from the command line.
 #include "scenes/experiment/toml_reader.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace photorque {
@@ -117,6 +118,40 @@ TEST(Override, ThatMakesNoSenseIsRefused) {
   for (const char* assignment : {"x=", "x=two words", "x=[1", "x=1\ny=2", "x={", "x=\"a"}) {
     EXPECT_NE(error_of(text, assignment), "no error") << assignment;
   }
+}
+
+// They once ended the program: tables within tables are walked by recursion.
+TEST(Toml, KeysOfThirtyThousandPartsAreRefused) {
+  std::string deep = "a";
+  for (int i = 1; i < 30000; ++i) deep += ".a";
+  const auto message = [](const auto& act) -> std::string {
+    try {
+      act();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string too_deep = "a key of more than 16 parts";
+  EXPECT_THAT(message([&] { parse_toml("x = 1\n[" + deep + "]\n", "e.toml"); }),
+              testing::StartsWith("e.toml:2: found " + too_deep));
+  EXPECT_THAT(message([&] { parse_toml(deep + " = 1\n", "e.toml"); }),
+              testing::HasSubstr(too_deep));
+  EXPECT_THAT(message([&] { parse_toml("t = { " + deep + " = 1 }\n", "e.toml"); }),
+              testing::HasSubstr(too_deep));
+  SettingsNode root;
+  root.value = SettingsNode::Table{};
+  EXPECT_THAT(message([&] { apply_override(root, deep + "=1"); }), testing::HasSubstr(too_deep));
+  EXPECT_THAT(message([&] { apply_override(root, "a={" + deep + "=1}"); }),
+              testing::HasSubstr(too_deep));
+}
+
+TEST(Toml, DotsInTextsAndCommentsAreNoKeys) {
+  std::string dots(200, '.');
+  EXPECT_NO_THROW(parse_toml("a = \"" + dots + "\\\"" + dots + "\" # " + dots + "\nb = \'" + dots +
+                                 "\'\nc = \"\"\"" + dots + "\n" + dots + "\"\"\"\nd.\"" + dots +
+                                 "\".e = [1.0, 2.0, 3.0]\n",
+                             "e.toml"));
 }
 
 }  // namespace

@@ -177,11 +177,6 @@ INSTANTIATE_TEST_SUITE_P(
                   m.json["buffers"] = {{{"byteLength", 4}, {"uri", "gone.bin"}}};
                 },
                 "/buffers/0/uri: found \"gone.bin\", which does not exist"},
-        Mistake{"path_upwards",
-                [](TestModel& m) {
-                  m.json["buffers"] = {{{"byteLength", 4}, {"uri", "a/%2e%2e/../model.bin"}}};
-                },
-                "/buffers/0/uri: found \"a/%2e%2e/../model.bin\", expected a relative path inside"},
         Mistake{"absolute_path",
                 [](TestModel& m) {
                   m.json["buffers"] = {{{"byteLength", 4}, {"uri", "/etc/passwd"}}};
@@ -328,7 +323,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "/nodes/0: found a product of transforms that is singular or overflows"},
         Mistake{"far_away",
                 [](TestModel& m) { m.json["nodes"][0]["translation"] = {0, 1e15, 0}; },
-                "/nodes/0: found a mesh up to 1e+15 m away, expected at most 1e12 m"},
+                "/nodes/0: found a mesh up to 1e+15 m away, expected at most 1e9 m"},
         Mistake{"skin",
                 [](TestModel& m) {
                   m.json["skins"] = {{{"joints", {0}}}};

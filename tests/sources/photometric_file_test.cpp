@@ -46,6 +46,27 @@ void expect_refused(const std::string& text, const std::string& words) {
   }
 }
 
+// Each of these once ended the program, or gave numbers that were none.
+TEST(IesFile, OpeningsFartherThanAnythingBuiltAreRefused) {
+  expect_refused(with(small_ies, "-0.1 -0.1 0", "1e20 1e20 0"), "found 1e+20 m, expected at most");
+  expect_refused(with(small_ies, "-0.1 -0.1 0", "-1e300 0 0"), "luminous opening");
+  EXPECT_NO_THROW(read_ies(with(small_ies, "-0.1 -0.1 0", "1e9 1 0"), "lamp.ies"));
+}
+
+TEST(IesFile, CandelaThatOverflowAreRefused) {
+  expect_refused(with(small_ies, "100 50 0", "1e300 50 0"), "expected 1e-60 to 1e60");
+  expect_refused(with(small_ies, "100 50 0", "1e-300 0 0"), "expected 1e-60 to 1e60");
+}
+
+// A count that is one too low takes the last angle for an azimuth and shifts the whole table.
+TEST(IesFile, WrongVerticalCountsAreRefused) {
+  const std::string many = "0 30 60 90\n0\n100 90 50 0\n";
+  const std::string good = with(with(small_ies, "0 45 90\n0\n100 50 0\n", many), "2 3 1", "2 4 1");
+  EXPECT_EQ(read_ies(good, "lamp.ies").table.polar_rad.size(), 4u);
+  expect_refused(with(good, "2 4 1", "2 3 1"), "numbers after the last candela value");
+  expect_refused(with(good, "2 4 1", "2 5 1"), "vertical angles");
+}
+
 TEST(IesFile, SaysWhatIsInIt) {
   const PhotometricFile file = read_ies(small_ies, "lamp.ies");
   EXPECT_EQ(file.format, "IESNA:LM-63-2002");

@@ -30,6 +30,19 @@ RaySet three_rays() {
   return set;
 }
 
+// They once reached an assertion of Embree's.
+TEST(RaySetFiles, StartsFartherThanAnythingBuiltAreRefused) {
+  RaySet set = three_rays();
+  set.rays[1].origin_m.y() = 1e25;
+  try {
+    read_tm25(write_tm25(set), "far.tm25ray");
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("far.tm25ray: ray 1: found a start"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("at most 1e9 m"));
+  }
+}
+
 void expect_equal(const RaySet& a, const RaySet& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.flux_unit, b.flux_unit);

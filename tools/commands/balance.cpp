@@ -1,10 +1,9 @@
 // photorque balance: the centre of mass from a recording, and the masses' moves that remove it.
-#include "attitude/studies/balance.h"
+#include "tools/tasks/balance.h"
 
-#include <chrono>
-
-#include "tools/runs/attitude_run.h"
-#include "tools/runs/optical_run.h"
+#include "core/errors.h"
+#include "tools/commands/results.h"
+#include "tools/commands/terminal.h"
 
 namespace photorque {
 namespace {
@@ -49,20 +48,14 @@ void print_balance(const Console& console, const BalanceRun& run, const BalanceR
 }
 
 void run_balance(const CommandLine& line) {
-  const auto start = std::chrono::steady_clock::now();
-  Console console(line);
+  const Console console = terminal(line);
   if (line.recordings.size() != 1) {
     throw InputError({line.experiment.string()}, "--recording",
                      line.recordings.empty() ? "nothing" : "several recordings", "one recording");
   }
-  AttitudeExperiment experiment(line);
-  experiment.add_input(line.recordings.front());
-  const BalanceRun run = read_balance(experiment.settings(), line.recordings.front());
-  const BalanceResult result = balance(run);
-  const Product product = balance_product(run, result);
-  print_balance(console, run, result, product);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  write_results(line, console, product, experiment.provenance(0), {wall.count(), {}});
+  const BalanceOutcome outcome = balance_of_experiment(line, line.recordings.front());
+  print_balance(console, outcome.run, outcome.balance, outcome.result.product);
+  write_results(line, console, outcome.result);
 }
 
 }  // namespace

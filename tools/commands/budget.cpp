@@ -1,11 +1,10 @@
 // photorque budget: every disturbance torque at one state, ranked, beside the paper's figures.
-#include "attitude/studies/budget.h"
-
-#include <chrono>
+#include "tools/tasks/budget.h"
 
 #include "core/constants.h"
-#include "tools/runs/attitude_run.h"
-#include "tools/runs/optical_run.h"
+#include "core/errors.h"
+#include "tools/commands/results.h"
+#include "tools/commands/terminal.h"
 
 namespace photorque {
 namespace {
@@ -42,12 +41,10 @@ void print_air(const Console& console, const Table& parts) {
 }
 
 void run_budget(const CommandLine& line) {
-  const auto start = std::chrono::steady_clock::now();
-  Console console(line);
-  const AttitudeExperiment experiment(line);
-  const Budget budget = read_budget(experiment.settings());
-  const Product product = budget_product(budget);
-  const PlatformState& state = budget.state;
+  const Console console = terminal(line);
+  const BudgetRun run = budget_of_experiment(line);
+  const Product& product = run.result.product;
+  const PlatformState& state = run.budget.state;
   console.line("State: tilt " + show(tilt_rad(state) / degree_rad) + " deg, heading " +
                show(heading_rad(state) / degree_rad) + " deg, rate " +
                show(state.rate_body_rad_s.norm()) + " rad/s, charge drawn " +
@@ -75,8 +72,7 @@ void run_budget(const CommandLine& line) {
                {"as published", "ours_as_published"}});
   print_reasons(console, figures);
   print_air(console, table_named(product, "paper_external_air"));
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  write_results(line, console, product, experiment.provenance(0), {wall.count(), {}});
+  write_results(line, console, run.result);
 }
 
 }  // namespace

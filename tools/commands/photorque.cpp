@@ -8,7 +8,12 @@
 #include "core/errors.h"
 #include "core/provenance.h"
 #include "core/settings/settings.h"
-#include "tools/runs/verb.h"
+#include "core/text/numbers.h"
+#include "tools/commands/manual.h"
+#include "tools/commands/verb.h"
+#include "tools/guards/interruption.h"
+#include "tools/guards/memory.h"
+#include "tools/guards/output_folder.h"
 
 namespace photorque {
 
@@ -16,38 +21,64 @@ std::filesystem::path CommandLine::out_folder() const {
   return out ? *out : std::filesystem::path("out") / experiment.stem() / verb;
 }
 
-std::vector<std::string> CommandLine::all_overrides() const {
-  std::vector<std::string> all = overrides;
-  if (seed) all.push_back("trace.seed=" + std::to_string(*seed));
-  const auto add = [&all](const char* key, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%s=%.17g", key, value);
-    all.emplace_back(text);
-  };
-  if (target_error) add("trace.target_error", *target_error);
-  if (max_time_s) add("trace.max_time_s", *max_time_s);
-  return all;
-}
-
 namespace {
 
-void add_options(CLI::App& command, CommandLine& line) {
-  command.add_option("experiment", line.experiment, "Experiment file (TOML)")->required();
-  command.add_option("--set", line.overrides, "Change a key of the experiment: KEY=VALUE")
-      ->allow_extra_args(false);
-  command.add_option("--out", line.out, "Folder for the results (default: out/EXPERIMENT/VERB)");
+std::string seconds_above_zero(const std::string& text) {
+  const std::optional<double> seconds = number_in(text);
+  return seconds && *seconds > 0.0 ? "" : "found " + text + ", expected a number of seconds > 0";
+}
+
+void add_options(CLI::App& command, const Verb& verb, CommandLine& line) {
+  if (verb.takes_experiment) {
+    command.add_option("experiment", line.experiment, "Experiment file (TOML)")->required();
+    command.add_option("--set", line.overrides, "Change a key of the experiment: KEY=VALUE")
+        ->allow_extra_args(false);
+  }
+  if (verb.writes) {
+    command.add_option("--out", line.out, "Folder for the results (default: out/EXPERIMENT/VERB)");
+  }
   command.add_option("--threads", line.threads, "Threads to use (default: all)")
       ->check(CLI::Range(0, 1024));
   command.add_option("--seed", line.seed, "Seed of all randomness, over the experiment's own")
       ->check(CLI::Range(int64_t{0}, std::numeric_limits<int64_t>::max()));
+  command
+      .add_option("--max-memory", line.max_memory_GB,
+                  "Most memory to take, in GB (default: nine tenths of what the machine has free)")
+      ->check(CLI::Range(0.1, 1e6));
   command.add_flag("--quiet", line.quiet, "Print nothing but errors");
   command.add_flag("--json", line.json, "Print the summary as JSON instead of text");
+}
+
+// For packages: what other programs read of the same options.
+struct Manual {
+  bool page = false;
+  std::string shell;
+};
+
+void add_manual(CLI::App& app, Manual& manual) {
+  app.add_flag("--man", manual.page, "Print the manual page (troff)");
+  app.add_option("--completion", manual.shell,
+                 "Print the completion script of a shell: bash, zsh or fish")
+      ->check(CLI::IsMember(completion_shells));
+}
+
+// In the verb's output folder, which signals leave clean.
+void run_in_folder(const Verb& verb, const CommandLine& line) {
+  const auto others = verb.takes_shard ? OutputFolder::Others::share : OutputFolder::Others::refuse;
+  std::optional<Interruption::Watch> watch;
+  if (line.interruption != nullptr) watch.emplace(*line.interruption, line.out_folder());
+  const OutputFolder folder(line.out_folder(), others);
+  verb.run(line);
 }
 
 // What is wrong without a file of its own is wrong in the experiment.
 int run_verb(const Verb& verb, const CommandLine& line) {
   try {
-    verb.run(line);
+    if (verb.writes) {
+      run_in_folder(verb, line);
+    } else {
+      verb.run(line);
+    }
     return 0;
   } catch (const InputError& error) {
     const std::string what = error.what();
@@ -57,17 +88,18 @@ int run_verb(const Verb& verb, const CommandLine& line) {
   }
 }
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, Interruption& interruption) {
   CLI::App app("Light, torque and attitude of free-floating platforms.");
   app.name("photorque");
   const Provenance build = build_provenance();
   app.set_version_flag("--version", "photorque " + build.version + " (git " + build.git_hash + ")");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   CommandLine line;
+  line.interruption = &interruption;
   const std::vector<Verb> verbs = all_verbs();
   for (const Verb& verb : verbs) {
     CLI::App* command = app.add_subcommand(verb.name, verb.summary);
-    add_options(*command, line);
+    add_options(*command, verb, line);
     if (verb.traces_light) {
       command
           ->add_option("--target-error", line.target_error,
@@ -77,7 +109,9 @@ int run(int argc, char** argv) {
       command
           ->add_option("--max-time", line.max_time_s,
                        "Stop adding rays before this many seconds have passed")
-          ->check(CLI::PositiveNumber);
+          ->check(seconds_above_zero);
+      command->add_flag("--allow-outside", line.allow_outside,
+                        "Follow links and paths of the model that lead out of its folder");
     }
     if (verb.takes_recordings) {
       command->add_option("--recording", line.recordings, "A recording (CSV); may be repeated")
@@ -93,12 +127,17 @@ int run(int argc, char** argv) {
       command->add_option("--cases", line.cases, "Score this folder of cases instead of new ones");
       command->add_flag("--only-make", line.only_make, "Make the cases, diagnose nothing");
     }
+    if (verb.takes_scene) {
+      command->add_option("--scene", line.scene, "A model (glTF or GLB) to be lit");
+    }
     if (verb.takes_shard) {
       command->add_option("--shard", line.shard,
                           "K/N: only every Nth design, from the Kth; the run that finds all "
                           "designs done writes the table");
     }
   }
+  Manual manual;
+  add_manual(app, manual);
   if (argc > 1 && argv[1][0] != '-') {
     std::set<std::string> known;
     for (const Verb& verb : verbs) known.insert(verb.name);
@@ -116,14 +155,22 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "photorque: %s (see photorque --help)\n", error.what());
     return 2;
   }
+  if (manual.page || !manual.shell.empty()) {
+    const std::string text =
+        manual.page ? man_page(app, build.version) : completion_script(app, manual.shell);
+    std::fputs(text.c_str(), stdout);
+    return 0;
+  }
   for (const Verb& verb : verbs) {
     if (app.got_subcommand(verb.name)) {
       line.verb = verb.name;
       if (line.out && line.out->empty()) throw InputError({"--out"}, "", "nothing", "a folder");
+      hold_memory(line.max_memory_GB);
       return run_verb(verb, line);
     }
   }
-  return 0;
+  std::fprintf(stderr, "photorque: A subcommand is required (see photorque --help)\n");
+  return 2;
 }
 
 }  // namespace
@@ -131,7 +178,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    const int status = photorque::run(argc, argv);
+    photorque::Interruption interruption;
+    const int status = photorque::run(argc, argv, interruption);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       std::fprintf(stderr, "photorque: standard output could not be written\n");
       return 3;

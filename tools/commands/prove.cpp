@@ -7,12 +7,13 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "images/publishing/staged_files.h"
 #include "images/writers/product.h"
 #include "images/writers/summary.h"
 #include "scenes/experiment/toml_reader.h"
+#include "tools/commands/child_process.h"
+#include "tools/commands/terminal.h"
 #include "tools/proof/files.h"
-#include "tools/runs/child_process.h"
-#include "tools/runs/console.h"
 #include "tools/scoring/document.h"
 #include "tools/scoring/replay.h"
 
@@ -83,7 +84,7 @@ bool is_case(const fs::path& folder) {
 
 // Makes the cases that are not there yet.
 std::vector<fs::path> make_cases(const ProveSettings& settings, const fs::path& folder, int threads,
-                                 Console& console) {
+                                 const Console& console) {
   const size_t count = std::min(case_count(settings.plan), settings.max_cases);
   std::vector<fs::path> folders(count);
   std::atomic<size_t> done = 0;
@@ -190,7 +191,7 @@ bool has_oracle(const fs::path& case_folder, const CaseScore& score) {
 
 std::vector<CaseScore> diagnose_and_score(const std::vector<fs::path>& folders,
                                           const ProveSettings& settings, const CommandLine& line,
-                                          Console& console) {
+                                          const Console& console) {
   const fs::path out = line.out_folder();
   const std::string program = content_hash(read_file(own_program()));
   const int threads = std::max(1, line.threads);
@@ -271,7 +272,7 @@ std::string plan_text(const ProveSettings& s) {
 }
 
 void run_prove(const CommandLine& line) {
-  Console console(line);
+  const Console console = terminal(line);
   const ProveSettings settings = read_settings(line);
   const fs::path out = line.out_folder();
   const std::vector<fs::path> folders =
@@ -290,9 +291,11 @@ void run_prove(const CommandLine& line) {
       line.cases ? std::to_string(scores.size()) + " cases." : plan_text(settings), scores};
   const std::string text = proof_markdown(set);
   const Product product = proof_product(scores);
-  write_product(product, provenance, out, {"csv", "json"});
-  write_file_whole(out / "summary.json", summary_json(product, provenance));
-  write_file_whole(out / "proof.md", text);
+  StagedFiles staged(out);
+  write_formats(product, provenance, staged.path(), {"csv", "json"});
+  write_file_whole(staged.path() / "summary.json", summary_json(product, provenance));
+  write_file_whole(staged.path() / "proof.md", text);
+  staged.publish_as(line.verb, provenance);
   if (settings.document) {
     const std::string old = read_file(*settings.document);
     write_file_whole(*settings.document,

@@ -2,8 +2,10 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "images/publishing/staged_files.h"
 #include "images/scene/picture.h"
 #include "raytrace/tracing/view.h"
+#include "tools/commands/terminal.h"
 #include "tools/runs/optical_run.h"
 
 namespace photorque {
@@ -103,7 +105,7 @@ SceneView make_view(const OpticalRun& run, const TraceResult& result, int thread
 }
 
 void run_render(const CommandLine& line) {
-  Console console(line);
+  const Console console = terminal(line);
   const OpticalRun run(line, console);
   const Experiment& experiment = run.experiment();
   const OpticalResult result = run.run(experiment.lab_from_body, console.progress("tracing"));
@@ -127,7 +129,9 @@ void run_render(const CommandLine& line) {
   }
   labels.body_axes_camera = axes;
   const auto path = line.out_folder() / "render.png";
-  write_scene_picture(path, view, labels, run.provenance());
+  StagedFiles staged(line.out_folder());
+  write_scene_picture(staged.path() / path.filename(), view, labels, run.provenance());
+  staged.publish_as(line.verb, run.provenance());
   console.heading("Written to " + path.string());
 }
 

@@ -8,8 +8,11 @@
 #include "core/files.h"
 #include "core/text/numbers.h"
 #include "scenes/experiment/experiment.h"
-#include "tools/runs/optical_run.h"
-#include "tools/runs/sweep_design.h"
+#include "tools/commands/results.h"
+#include "tools/commands/terminal.h"
+#include "tools/guards/interruption.h"
+#include "tools/guards/output_folder.h"
+#include "tools/tasks/sweep_design.h"
 
 namespace photorque {
 namespace {
@@ -31,7 +34,7 @@ Shard read_shard(const std::string& text) {
 
 const Verb& verb_called(const std::vector<Verb>& verbs, const std::string& name) {
   const auto it = std::ranges::find_if(verbs, [&](const Verb& v) {
-    return v.name == name && v.name != "sweep" && v.name != "prove";
+    return v.name == name && v.name != "sweep" && v.name != "prove" && v.writes;
   });
   if (it == verbs.end()) {
     throw InputError({}, "sweep.verb", '"' + name + '"', "a command that writes a summary: power");
@@ -73,14 +76,23 @@ double number_of(const nlohmann::json& value) {
   return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
-// The figures of one design, in the order of its summary.
+// The figures of one design, in the order of its summary. InputError that names the summary when it
+// is not one that this program writes.
 std::vector<Quantity> read_figures(const std::filesystem::path& summary) {
-  const auto json = nlohmann::ordered_json::parse(read_file(summary));
+  const InputError damaged({summary.string()}, "", "a damaged summary of a design",
+                           "one that the sweep wrote: delete it, and the design is run again");
+  const auto json = nlohmann::ordered_json::parse(read_file(summary), nullptr, false);
+  if (!json.is_object() || json.value("schema", nlohmann::ordered_json()) != summary_schema) {
+    throw damaged;
+  }
   std::vector<Quantity> figures;
   for (const auto& [name, value] : json.items()) {
     if (!value.is_object() || !value.contains("value")) continue;
-    figures.push_back({name, {number_of(value["value"]), number_of(value["standard_error"])}});
+    const double error = number_of(value.value("standard_error", nlohmann::ordered_json()));
+    figures.push_back({name, {number_of(value["value"]), error}});
+    if (std::isnan(figures.back().estimate.value)) throw damaged;
   }
+  if (figures.empty()) throw damaged;
   return figures;
 }
 
@@ -186,7 +198,7 @@ InputError in_design(const CommandLine& line, size_t design, size_t count,
 }
 
 void run_sweep(const CommandLine& line) {
-  Console console(line);
+  const Console console = terminal(line);
   const ExperimentFile file = read_experiment_file(line.experiment, line.all_overrides());
   const auto tables = file.others("sweep");
   if (tables.empty()) throw file.settings.error("sweep", "none", "a table [sweep]");
@@ -211,12 +223,20 @@ void run_sweep(const CommandLine& line) {
   const auto progress = console.progress("designs");
   size_t kept = 0, run = 0;
   for (size_t design = shard.first; design < count; design += shard.step) {
-    if (std::filesystem::exists(summary_of(design))) {
+    const auto summary = summary_of(design);
+    std::optional<Interruption::Watch> watch;
+    if (line.interruption != nullptr) watch.emplace(*line.interruption, summary.parent_path());
+    std::optional<OutputFolder> own;
+    if (!std::filesystem::exists(summary)) {
+      own.emplace(summary.parent_path(), OutputFolder::Others::wait);
+    }
+    // Another run of this sweep may have made it while this one waited.
+    if (std::filesystem::exists(summary)) {
       ++kept;
     } else {
       CommandLine one = line;
       one.verb = plan.verb;
-      one.out = summary_of(design).parent_path();
+      one.out = summary.parent_path();
       one.quiet = one.summary_only = true;
       one.json = false;
       const auto changes = plan.overrides(design);
@@ -243,7 +263,9 @@ void run_sweep(const CommandLine& line) {
     }
     designs.push_back(read_figures(summary_of(design)));
   }
-  write_results(line, console, sweep_product(plan, designs), provenance, RunCost{});
+  // The last of several shards may be two.
+  const OutputFolder alone(line.out_folder() / "designs", OutputFolder::Others::wait);
+  write_results(line, console, {sweep_product(plan, designs), provenance, {}});
 }
 
 }  // namespace

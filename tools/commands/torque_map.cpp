@@ -1,133 +1,15 @@
 // photorque torque-map: force, torque and power over a grid of attitudes.
-#include <optional>
+#include "tools/tasks/torque_map.h"
 
-#include "core/constants.h"
-#include "receivers/wrench/table_product.h"
-#include "tools/runs/array_power.h"
-#include "tools/runs/direction_map.h"
-#include "tools/runs/optical_run.h"
+#include "tools/commands/results.h"
+#include "tools/commands/terminal.h"
 
 namespace photorque {
 namespace {
 
-// Power over the attitudes, one row per node in the order of the wrench table.
-class PowerTable {
- public:
-  explicit PowerTable(bool with_array) {
-    std::vector<std::string> columns = {"tilt_deg", "heading_deg", "on_receiver_W",
-                                        "on_receiver_error_W"};
-    if (with_array) columns.insert(columns.end(), {"electric_W", "electric_error_W"});
-    table_ = Table::of("power_over_attitude", "Power over tilt and heading", columns);
-  }
-  void add(double tilt_rad, double heading_rad, const Estimate& light,
-           const std::optional<Estimate>& electric) {
-    Table::Row row = table_.row();
-    row.set("tilt_deg", stated_deg(tilt_rad)).set("heading_deg", stated_deg(heading_rad));
-    row.set("on_receiver_W", light.value).set("on_receiver_error_W", light.standard_error);
-    if (!electric) return;
-    row.set("electric_W", electric->value).set("electric_error_W", electric->standard_error);
-  }
-  const Table& table() const { return table_; }
-
-  // Curves over the tilt, one per heading, of the columns `stem`_W and `stem`_error_W.
-  Plot plot(size_t headings, size_t tilts, const std::string& stem, const std::string& name,
-            const std::string& title) const {
-    const auto& power_W = table_.column(stem + "_W").values;
-    const auto& error_W = table_.column(stem + "_error_W").values;
-    Plot plot;
-    plot.name = name;
-    plot.title = title;
-    plot.x_label = "tilt [deg]";
-    plot.y_label = "power [W]";
-    for (size_t h = 0; h < headings; ++h) {
-      Plot::Curve curve;
-      for (size_t t = 0; t < tilts; ++t) {
-        const size_t row = h * tilts + t;
-        curve.x.push_back(table_.column("tilt_deg").values[row]);
-        curve.y.push_back(power_W[row]);
-        curve.y_error.push_back(error_W[row]);
-      }
-      curve.label = "heading " + show(table_.column("heading_deg").values[h * tilts]) + " deg";
-      plot.curves.push_back(std::move(curve));
-    }
-    return plot;
-  }
-
- private:
-  Table table_;
-};
-
-void map_over_attitude(const CommandLine& line, Console& console, OpticalRun& run) {
-  std::optional<ArrayPower> array;
-  if (!run.experiment().file.others("array").empty()) array = read_array_power(run);
-  if (array) {
-    for (const std::string& notice : array->notices) console.line("note: " + notice);
-  }
-  const AttitudeGrid& grid = run.experiment().file.torque_map;
-  const size_t flux_map = array ? array->flux_map : run.flux_map_index("");
-
-  WrenchTable wrenches =
-      make_wrench_table(WrenchTable::Angles::tilt_heading, grid.tilt_rad, grid.heading_rad);
-  PowerTable powers(array.has_value());
-  uint64_t rays = 0;
-  double wall_s = 0.0;
-  Warnings warnings;
-  const auto progress = console.progress("attitudes");
-  for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
-    for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
-      const size_t node = wrenches.node(h, t);
-      // The same seed everywhere: neighbouring attitudes share their sampling errors, so that
-      // differences between them are better known than each.
-      const OpticalResult result = run.run(lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]),
-                                           {}, run.experiment().file.torque_map_rays);
-      set_node(wrenches, node, run.wrench().total(result.sums[run.wrench_index()]));
-      std::optional<Estimate> electric;
-      if (array) electric = evaluate(*array, run, result).power_W;
-      powers.add(grid.tilt_rad[t], grid.heading_rad[h],
-                 run.flux_map(flux_map).flux_map(result.sums[flux_map]).incident.power_W, electric);
-      warnings.add(run.warnings(result), "tilt " + show(stated_deg(grid.tilt_rad[t])) +
-                                             " deg, heading " +
-                                             show(stated_deg(grid.heading_rad[h])) + " deg");
-      rays += result.rays;
-      wall_s += result.wall_s;
-      if (progress) progress(static_cast<double>(node + 1) / static_cast<double>(wrenches.nodes()));
-    }
-  }
-  console.done();
-
-  Product product = wrench_table_product(wrenches, "body");
-  product.tables.push_back(powers.table());
-  product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), "on_receiver",
-                                      "power_on_receiver_over_tilt",
-                                      "Light on " + run.experiment().receivers[flux_map].name));
-  if (array) {
-    product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), "electric",
-                                        "electric_power_over_tilt", "Electric power of the array"));
-  }
-  console.heading("Torque about the centre of rotation, body frame");
-  console.line("  tilt [deg]  heading [deg]   torque y");
-  for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
-    for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
-      const size_t node = wrenches.node(h, t);
-      const Estimate y{wrenches.torque_body_N_m[node].y(), wrenches.torque_error_N_m[node].y()};
-      char angles[64];
-      std::snprintf(angles, sizeof angles, "  %10g  %13g   ", grid.tilt_rad[t] / degree_rad,
-                    grid.heading_rad[h] / degree_rad);
-      console.line(angles + show(y, "N m"));
-    }
-  }
-  warnings.print(console);
-  write_results(line, console, product, warnings.into(run.provenance()), rays, wall_s);
-}
-
 void run_torque_map(const CommandLine& line) {
-  Console console(line);
-  OpticalRun run(line, console);
-  if (run.experiment().file.light_directions) {
-    map_over_direction(line, console, run);
-  } else {
-    map_over_attitude(line, console, run);
-  }
+  const Console console = terminal(line);
+  write_results(line, console, torque_map_of_experiment(line, console).result);
 }
 
 }  // namespace

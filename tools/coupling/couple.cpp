@@ -10,10 +10,8 @@
 #include "tools/coupling/report.h"
 
 namespace photorque {
-namespace {
 
-// What the experiment says of light and power by other means.
-void refuse_duplicates(const ExperimentFile& file) {
+void require_light_once(const ExperimentFile& file) {
   const bool has_array = !file.others("array").empty();
   for (const Settings& disturbance : file.others("disturbance")) {
     const std::string kind = disturbance.text_or("kind", "");
@@ -29,6 +27,8 @@ void refuse_duplicates(const ExperimentFile& file) {
     }
   }
 }
+
+namespace {
 
 Battery battery_of(const ExperimentFile& file, const DaySettings& day, const Platform& platform) {
   Battery battery = day.battery;
@@ -179,7 +179,7 @@ std::optional<double> attitude_error_rad(const PropagationRun& run, const Rotati
 }
 
 // One run in light that is known up to a tilt; at it the run stops.
-void attempt(CoupledResult& result, Console& console, const ExperimentFile& file,
+void attempt(CoupledResult& result, const Console& console, const ExperimentFile& file,
              const LightSettings& settings, PropagationRun run, double table_tilt_rad) {
   const std::vector<GroupOutput> outputs =
       group_outputs(*result.light, settings, run.initial.time_s);
@@ -211,7 +211,7 @@ void attempt(CoupledResult& result, Console& console, const ExperimentFile& file
 
 }  // namespace
 
-CoupledResult propagate_in_light(const CommandLine& line, Console& console,
+CoupledResult propagate_in_light(const RunOptions& options, const Console& console,
                                  const ExperimentFile& file, const PropagationRun& run) {
   CoupledResult result;
   const LightSettings settings = has_light(file) ? read_light(file) : LightSettings{};
@@ -220,8 +220,8 @@ CoupledResult propagate_in_light(const CommandLine& line, Console& console,
     console.done();
     return result;
   }
-  refuse_duplicates(file);
-  result.light = std::make_unique<LightModel>(line, console, settings, run.model.platform);
+  require_light_once(file);
+  result.light = std::make_unique<LightModel>(options, console, settings, run.model.platform);
   constexpr double least_rad = 5.0 * degree_rad;
   const double limit_rad = result.light->max_angle_rad();
   double tilt_now_rad = limit_rad;

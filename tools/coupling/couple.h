@@ -26,10 +26,13 @@ struct CoupledResult {
 // the Sun of [[source]] stands. InputError where both name a direction and differ.
 std::vector<std::string> orbit_overrides(const ExperimentFile& file);
 
+// InputError for what an experiment says of light and power twice: as a disturbance beside a scene.
+void require_light_once(const ExperimentFile& file);
+
 // Propagates in the light of the experiment. A table of light first holds twice the initial tilt
 // (at least 5 deg); a run that goes beyond begins again with one twice as wide, up to the
 // platform's stop. InputError for a disturbance that would count light or power twice.
-CoupledResult propagate_in_light(const CommandLine& line, Console& console,
+CoupledResult propagate_in_light(const RunOptions& options, const Console& console,
                                  const ExperimentFile& file, const PropagationRun& run);
 
 }  // namespace photorque

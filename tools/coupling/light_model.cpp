@@ -58,10 +58,10 @@ std::optional<Vec3> direction_of_suns(const std::vector<Beam>& beams) {
 
 LightModel::~LightModel() = default;
 
-LightModel::LightModel(const CommandLine& line, const Console& console,
+LightModel::LightModel(const RunOptions& options, const Console& console,
                        const LightSettings& settings, const Platform& platform)
-    : settings_(settings), threads_(line.threads) {
-  CommandLine own = line;
+    : settings_(settings), threads_(options.threads) {
+  RunOptions own = options;
   own.seed.reset();  // that of the instruments
   // Of a table many attitudes are traced at a time, which keeps all processors busier than one
   // does.
@@ -94,13 +94,10 @@ LightModel::LightModel(const CommandLine& line, const Console& console,
   for (const Beam& beam : beams) {
     if (std::ranges::find(names, group_of(beam)) == names.end()) names.push_back(group_of(beam));
   }
-  CommandLine silent = own;
-  silent.quiet = true;
   const bool has_array = !file.others("array").empty();
   key_ = content_key(file);
   for (const std::string& name : names) {
-    auto run = names.size() == 1 ? std::move(whole)
-                                 : std::make_unique<OpticalRun>(silent, Console(silent));
+    auto run = names.size() == 1 ? std::move(whole) : std::make_unique<OpticalRun>(own, Console());
     run->keep_beams([&](const Beam& beam) { return group_of(beam) == name; });
     Group group{.name = name};
     for (const Beam& beam : run->experiment().beams) {
@@ -176,7 +173,7 @@ std::string LightModel::content_key(const ExperimentFile& file) const {
   return text + numbers;
 }
 
-std::shared_ptr<const RotationTable> LightModel::make_table(Console& console,
+std::shared_ptr<const RotationTable> LightModel::make_table(const Console& console,
                                                             double max_angle_rad) const {
   auto table = std::make_shared<RotationTable>();
   char limit[40];

@@ -22,7 +22,7 @@ namespace photorque {
 class LightModel {
  public:
   // Reads scene, sources and array. Lamps that [[light.switch]] names singly form groups.
-  LightModel(const CommandLine& line, const Console& console, const LightSettings& settings,
+  LightModel(const RunOptions& options, const Console& console, const LightSettings& settings,
              const Platform& platform);
   ~LightModel();
 
@@ -51,7 +51,8 @@ class LightModel {
   // the only light, from the Sun: that of the platform's stop or of [light] max_tilt_deg.
   double max_angle_rad() const { return max_angle_rad_; }
   // The table up to an angle, from the cache or traced now; says which on the console.
-  std::shared_ptr<const RotationTable> make_table(Console& console, double max_angle_rad) const;
+  std::shared_ptr<const RotationTable> make_table(const Console& console,
+                                                  double max_angle_rad) const;
 
   // Names of the channels' groups as RotationTableError counts them, with their units.
   static constexpr const char* quantities[] = {"torque", "force", "photocurrent", "light on cells"};

@@ -1,10 +1,11 @@
 #include "tools/coupling/table_cache.h"
 
+#include <dlfcn.h>
+
 #include <cstdio>
 
 #include "core/files.h"
 #include "core/provenance.h"
-#include "tools/runs/child_process.h"
 
 namespace photorque {
 namespace {
@@ -16,11 +17,21 @@ std::filesystem::path file_of(const std::filesystem::path& folder, const std::st
   return folder / ("light_" + key + ".table");
 }
 
+// The file that holds this code: the program, or a library that another program has loaded.
+std::filesystem::path own_file() {
+  Dl_info info = {};
+  if (dladdr(reinterpret_cast<const void*>(&table_cache_version), &info) != 0 &&
+      std::filesystem::path(info.dli_fname).extension() == ".so") {
+    return info.dli_fname;
+  }
+  return "/proc/self/exe";
+}
+
 }  // namespace
 
 std::string table_cache_version() {
-  // The program itself, which a version does not tell apart while it is being worked on.
-  return format + build_provenance().version + " " + content_hash(read_file(own_program())) + "\n";
+  // The code itself, which a version does not tell apart while it is being worked on.
+  return format + build_provenance().version + " " + content_hash(read_file(own_file())) + "\n";
 }
 
 std::string written_out(const SettingsNode& node, const std::set<std::string>& without) {

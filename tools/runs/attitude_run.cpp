@@ -47,8 +47,9 @@ size_t width_of(const std::string& text) {
 
 }  // namespace
 
-AttitudeExperiment::AttitudeExperiment(const CommandLine& line)
-    : file_(read_experiment_file(line.experiment, line.overrides)) {
+AttitudeExperiment::AttitudeExperiment(const RunOptions& options)
+    : file_(
+          read_experiment_text(options.experiment, options.experiment_text(), options.overrides)) {
   const Settings& root = file_.settings;
   for (const char* table : optical_tables) {
     if (root.has(table)) root.raw(table);
@@ -56,7 +57,7 @@ AttitudeExperiment::AttitudeExperiment(const CommandLine& line)
   root.finish();
   std::vector<std::filesystem::path> files;
   for (const std::string& key : root.keys()) {
-    if (!is_optical(key)) collect_files(root.raw(key), line.experiment.parent_path(), files);
+    if (!is_optical(key)) collect_files(root.raw(key), options.experiment.parent_path(), files);
   }
   for (const std::filesystem::path& file : files) add_input(file);
 }

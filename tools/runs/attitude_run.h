@@ -8,20 +8,21 @@
 #include "core/provenance.h"
 #include "scenes/experiment/experiment.h"
 #include "tools/runs/console.h"
+#include "tools/runs/options.h"
 
 namespace photorque {
 
-// An experiment file with the overrides of the command line. InputError for tables that no command
+// An experiment file with its overrides. InputError for tables that no command
 // reads; those of optical commands are left alone.
 class AttitudeExperiment {
  public:
-  explicit AttitudeExperiment(const CommandLine& line);
+  explicit AttitudeExperiment(const RunOptions& options);
 
   const Settings& settings() const { return file_.settings; }
   const ExperimentFile& file() const { return file_; }
   // Names and hashes of the experiment, the overrides and every file that the experiment names.
   Provenance provenance(uint64_t seed) const;
-  // Another input, of the command line.
+  // Another input, such as a recording.
   void add_input(const std::filesystem::path& path);
 
  private:

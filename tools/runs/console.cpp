@@ -1,7 +1,5 @@
 #include "tools/runs/console.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -28,13 +26,10 @@ int magnitude(double value) {
 
 }  // namespace
 
-Console::Console(const CommandLine& line)
-    : silent_(line.quiet || line.json),
-      bar_(!silent_ && ::isatty(STDERR_FILENO) != 0),
-      last_(std::chrono::steady_clock::now()) {}
+Console::Console(ConsoleSinks sinks) : sinks_(std::move(sinks)) {}
 
 void Console::line(const std::string& text) const {
-  if (!silent_) std::printf("%s\n", text.c_str());
+  if (sinks_.line) sinks_.line(text);
 }
 
 void Console::heading(const std::string& text) const {
@@ -42,33 +37,17 @@ void Console::heading(const std::string& text) const {
   line(text);
 }
 
-std::function<void(double)> Console::progress(const std::string& what) {
-  if (!bar_) return {};
-  return [this, what](double fraction) {
-    const std::scoped_lock lock(mutex_);
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(100) && fraction < 1.0) return;
-    last_ = now;
-    constexpr int width = 30;
-    const int filled = static_cast<int>(std::lround(width * fraction));
-    std::string bar;
-    for (int i = 0; i < width; ++i) bar += i < filled ? "█" : "·";
-    std::fprintf(stderr, "\r%s %s %3.0f %%\033[K", what.c_str(), bar.c_str(), 100.0 * fraction);
-    std::fflush(stderr);
-  };
+std::function<void(double)> Console::progress(const std::string& what) const {
+  if (!sinks_.progress) return {};
+  return [progress = sinks_.progress, what](double fraction) { progress(what, fraction); };
 }
 
-void Console::note_progress(const std::string& text) {
-  if (silent_ || bar_) return;
-  const std::scoped_lock lock(mutex_);
-  const auto now = std::chrono::steady_clock::now();
-  if (now - last_ < std::chrono::seconds(10)) return;
-  last_ = now;
-  std::fprintf(stderr, "%s\n", text.c_str());
+void Console::note_progress(const std::string& text) const {
+  if (sinks_.note) sinks_.note(text);
 }
 
-void Console::done() {
-  if (bar_) std::fprintf(stderr, "\r\033[K");
+void Console::done() const {
+  if (sinks_.done) sinks_.done();
 }
 
 std::string show(double value) {

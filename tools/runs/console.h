@@ -1,38 +1,38 @@
-// What a person sees while the program works.
+// What a person sees while a run works.
 #pragma once
 
-#include <chrono>
 #include <functional>
-#include <mutex>
 #include <string>
 
 #include "core/estimate.h"
-#include "tools/runs/verb.h"
 
 namespace photorque {
 
-// Text on standard output; silent with --quiet, and with --json, where only the summary appears.
+// Where the words of a run go; what is empty stays unsaid. All but `line` may be called from any
+// thread.
+struct ConsoleSinks {
+  std::function<void(const std::string&)> line;  // text, a line at a time
+  // A task and the fraction of it that is done, called often.
+  std::function<void(const std::string& what, double fraction)> progress;
+  std::function<void(const std::string&)> note;  // how far a long task is, in words
+  std::function<void()> done;                    // the task of `progress` is over
+};
+
 class Console {
  public:
-  explicit Console(const CommandLine& line);
+  // Without sinks a run is silent.
+  explicit Console(ConsoleSinks sinks = {});
 
   void line(const std::string& text = "") const;
   void heading(const std::string& text) const;
 
-  // A progress bar on standard error for TraceOptions::progress; nothing when that is not a
-  // terminal, or when silent.
-  std::function<void(double)> progress(const std::string& what);
-  // The same as a line of its own on standard error where there is no terminal for a bar, at most
-  // every ten seconds.
-  void note_progress(const std::string& text);
-  // Removes the bar.
-  void done();
+  // For TraceOptions::progress and the like; empty where nobody listens.
+  std::function<void(double)> progress(const std::string& what) const;
+  void note_progress(const std::string& text) const;
+  void done() const;
 
  private:
-  bool silent_;
-  bool bar_;
-  std::mutex mutex_;
-  std::chrono::steady_clock::time_point last_;
+  ConsoleSinks sinks_;
 };
 
 // "79.112 ± 0.004 W": as many digits as the error supports; exact numbers with six.

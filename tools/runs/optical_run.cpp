@@ -3,25 +3,25 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
+#include <thread>
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/files.h"
 #include "diagnosis/light/apply.h"
-#include "images/writers/product.h"
 #include "images/writers/read_picture.h"
 #include "sources/profiles/beam_shape.h"
+#include "tools/guards/memory.h"
 
 namespace photorque {
 namespace {
 
-Experiment read(const CommandLine& line) {
-  Experiment experiment =
-      read_experiment(line.experiment, line.all_overrides(), [](const std::string& bytes) {
-        LinearPicture picture = read_picture(bytes);
-        return BaseColours{picture.width, picture.height, std::move(picture.rgb)};
-      });
+Experiment read(const RunOptions& options) {
+  ExperimentFile file =
+      read_experiment_text(options.experiment, options.experiment_text(), options.all_overrides());
+  Experiment experiment = resolve_experiment(std::move(file), [](const std::string& bytes) {
+    LinearPicture picture = read_picture(bytes);
+    return BaseColours{picture.width, picture.height, std::move(picture.rgb)};
+  });
   for (std::string& notice : apply_written_effects(experiment)) {
     experiment.notices.push_back(std::move(notice));
   }
@@ -35,6 +35,14 @@ size_t whole_wrench(Experiment& experiment) {
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
     const auto& wrench = experiment.receivers[i].wrench;
     if (wrench && wrench->part_names().size() == all.size()) return i;
+  }
+  // Its files would overwrite each other's; told before the trace.
+  for (size_t i = 0; i < experiment.receivers.size(); ++i) {
+    const NamedReceiver& other = experiment.receivers[i];
+    if (other.wrench && other.name == "body") {
+      throw experiment.file.receivers[i].error(
+          "name", "a wrench of a part called \"body\", as the one of the whole is", "another name");
+    }
   }
   const auto wrench = std::make_shared<const WrenchReceiver>("body", experiment.scene, all);
   experiment.receivers.push_back({{.receiver = wrench, .wrench = wrench}, "body", "wrench"});
@@ -61,10 +69,25 @@ double momentum_disagreement(const PowerBalance& power_balance, const BinSums& s
   return worst;
 }
 
+// Before the trace: whether its maps fit into memory.
+Experiment checked(Experiment experiment, const RunOptions& options) {
+  const int threads =
+      options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  uint64_t bytes = 0;
+  for (const NamedReceiver& named : experiment.receivers) {
+    bytes +=
+        named.receiver->bins() * trace_bytes_per_bin(experiment.file.trace.replicates, threads);
+  }
+  require_memory(options.max_memory_GB, bytes, {options.experiment.string()}, "receiver");
+  return experiment;
+}
+
 }  // namespace
 
-OpticalRun::OpticalRun(const CommandLine& line, const Console& console)
-    : experiment_(read(line)), scene_(experiment_.scene), threads_(line.threads) {
+OpticalRun::OpticalRun(const RunOptions& options, const Console& console)
+    : experiment_(checked(read(options), options)),
+      scene_(experiment_.scene),
+      threads_(options.threads) {
   wrench_ = whole_wrench(experiment_);
   const auto inside = std::make_shared<const InsideLightReceiver>(experiment_.scene);
   if (inside->bins() > 0) {
@@ -75,6 +98,7 @@ OpticalRun::OpticalRun(const CommandLine& line, const Console& console)
   provenance_.seed = experiment_.file.trace.seed;
   provenance_.inputs = experiment_.inputs;
   for (const std::string& notice : experiment_.notices) console.line("note: " + notice);
+  for (const std::string& warning : experiment_.warnings) console.line("WARNING: " + warning);
   console.line("Sources");
   for (const std::string& text : beam_shape_lines(experiment_.beams)) console.line("  " + text);
 }
@@ -134,7 +158,7 @@ double loud_sigma_of(int replicates) {
 std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const {
   constexpr double lost = 1e-9;
   const double loud_sigma = loud_sigma_of(experiment_.file.trace.replicates);
-  std::vector<std::string> lines;
+  std::vector<std::string> lines = experiment_.warnings;
   const PowerBalance& power_balance = result.power_balance;
   if (power_balance.closure > lost) {
     lines.push_back("the power balance is off by " + show(power_balance.closure) +
@@ -319,34 +343,6 @@ void append(Product& product, Product more) {
   move_all(product.maps, more.maps);
   move_all(product.tables, more.tables);
   move_all(product.plots, more.plots);
-}
-
-void write_results(const CommandLine& line, const Console& console, const Product& product,
-                   const Provenance& provenance, uint64_t rays, double wall_s) {
-  write_results(line, console, product, provenance, {wall_s, rays});
-}
-
-void write_results(const CommandLine& line, const Console& console, const Product& product,
-                   const Provenance& provenance, const RunCost& cost) {
-  const auto folder = line.out_folder();
-  for (const Quantity& figure : product.quantities) {
-    if (!std::isfinite(figure.estimate.value)) {
-      throw NumericalError(figure.name + " came out as no finite number");
-    }
-  }
-  const std::string summary = summary_json(product, provenance, cost);
-  if (line.summary_only) {
-    write_file_whole(folder / "summary.json", summary);
-    return;
-  }
-  const auto files = write_product(product, provenance, folder);
-  write_file_whole(folder / "summary.json", summary);
-  if (line.json) std::fputs(summary.c_str(), stdout);
-  console.heading("Written to " + folder.string());
-  console.line("  summary.json and " + std::to_string(files.size()) + " more files; pictures:");
-  for (const auto& file : files) {
-    if (file.extension() == ".png") console.line("  " + file.filename().string());
-  }
 }
 
 }  // namespace photorque

@@ -9,13 +9,14 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
-#include "images/writers/summary.h"
 #include "receivers/maps/flux_map.h"
 #include "receivers/maps/inside_light.h"
 #include "receivers/wrench/wrench.h"
 #include "scenes/experiment/experiment.h"
 #include "tools/runs/console.h"
 #include "tools/runs/direct_light.h"
+#include "tools/runs/options.h"
+#include "tools/runs/result.h"
 
 namespace photorque {
 
@@ -30,7 +31,7 @@ struct OpticalResult : TraceResult {
 class OpticalRun {
  public:
   // Reads the experiment; prints its notices and the shapes of its sources.
-  OpticalRun(const CommandLine& line, const Console& console);
+  OpticalRun(const RunOptions& options, const Console& console);
 
   const Experiment& experiment() const { return experiment_; }
   const TraceableScene& scene() const { return scene_; }
@@ -97,13 +98,5 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
 
 // Adds the items of `more` to `product`.
 void append(Product& product, Product more);
-
-// Writes every item of the product and summary.json into the command's folder and says where; with
-// --json prints the summary.
-void write_results(const CommandLine& line, const Console& console, const Product& product,
-                   const Provenance& provenance, uint64_t rays, double wall_s);
-// The same for a command that traces nothing.
-void write_results(const CommandLine& line, const Console& console, const Product& product,
-                   const Provenance& provenance, const RunCost& cost);
 
 }  // namespace photorque

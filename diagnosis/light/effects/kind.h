@@ -40,7 +40,8 @@ struct EffectParameter {
 struct LightEffectKind {
   std::string name;
   std::string explanation;  // a sentence of physics without a full stop
-  enum class Index { none, lamp, cell, string, bypass, wall };
+  // `frame`: 0 what is fixed in the lab, 1 what is fixed on the body.
+  enum class Index { none, lamp, cell, string, bypass, wall, frame };
   Index index = Index::none;
   std::vector<EffectParameter> parameters;
   // Which recordings can show it.
@@ -48,7 +49,7 @@ struct LightEffectKind {
   // Whether it acts on the array's circuit, and not on light or photocurrents alone.
   bool in_circuit = false;
   // How the recordings say where to start what is not linear.
-  enum class Scan { none, shadow_in_lab, shadow_on_body, trapped };
+  enum class Scan { none, shadow, trapped, wave };
   Scan scan = Scan::none;
   // Writes x into the state; `x` holds all parameters' numbers in order.
   std::function<void(LightState& state, size_t index, std::span<const double> x)> act;

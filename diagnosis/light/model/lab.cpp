@@ -6,6 +6,7 @@
 
 #include "core/errors.h"
 #include "core/numerics/quadrature.h"
+#include "diagnosis/light/model/lamp_table.h"
 #include "photovoltaics/cell/response.h"
 #include "receivers/maps/flux_map.h"
 #include "sources/kind.h"
@@ -54,7 +55,7 @@ std::vector<Beam> beams_of(const Experiment& experiment, double scale) {
   return beams;
 }
 
-std::shared_ptr<const LampSet> lamp_set(const Experiment& experiment, double scale) {
+std::shared_ptr<LampSet> lamp_set(const Experiment& experiment, double scale) {
   auto set = std::make_shared<LampSet>();
   set->beams = beams_of(experiment, scale);
   std::map<const Emitter*, std::shared_ptr<const DiscLight>> known;
@@ -74,15 +75,49 @@ std::shared_ptr<const LampSet> lamp_set(const Experiment& experiment, double sca
 }  // namespace
 
 LightLab::LightLab(const Experiment& experiment) : experiment_(experiment) {
-  lamps_ = lamp_set(experiment, 1.0);
   find_receiver();
   read_noise();
   find_walls();
+  lamps_ = lamps_with(1.0);
   read_array();
 }
 
 std::shared_ptr<const LampSet> LightLab::lamps_with(double divergence) const {
-  return divergence == 1.0 ? lamps_ : lamp_set(experiment_, divergence);
+  if (divergence == 1.0 && lamps_) return lamps_;
+  auto set = lamp_set(experiment_, divergence);
+  tabulate(*set);
+  return set;
+}
+
+// Over the heights at which receiver and walls may stand, whichever way the body is turned.
+void LightLab::tabulate(LampSet& set) const {
+  double reach_m = 0.0;
+  for (const double u : {grid_->u_low, grid_->u_high}) {
+    for (const double v : {grid_->v_low, grid_->v_high}) {
+      reach_m = std::max(reach_m, point_body_m(u, v).norm());
+    }
+  }
+  for (const LightWall& wall : walls_) {
+    reach_m = std::max(reach_m, wall.centre_m.norm() + wall.radius_m);
+  }
+  struct Heights {
+    double low_m = 1e300, high_m = 0.0;
+  };
+  std::map<const DiscLight*, Heights> heights;
+  for (size_t l = 0; l < set.beams.size(); ++l) {
+    const double away_m = set.beams[l].lab_from_emitter.translation_m.norm();
+    Heights& h = heights[set.lights[l].get()];
+    h.low_m =
+        std::min(h.low_m, std::max(3.0 * set.lights[l]->radius_m(), 0.8 * (away_m - reach_m)));
+    h.high_m = std::max(h.high_m, 1.1 * (away_m + reach_m));
+  }
+  std::map<const DiscLight*, std::shared_ptr<const LampTable>> known;
+  for (const auto& light : set.lights) {
+    auto& table = known[light.get()];
+    const Heights& h = heights[light.get()];
+    if (!table) table = std::make_shared<const LampTable>(light, h.low_m, h.high_m);
+    set.tables.push_back(table);
+  }
 }
 
 void LightLab::find_receiver() {

@@ -13,6 +13,8 @@
 
 namespace photorque {
 
+class LampTable;  // diagnosis/light/model/lamp_table.h
+
 // Noise of the readings as stated, one standard deviation; 0: not stated.
 struct LightNoise {
   double irradiance_W_m2 = 0.0, relative = 0.0;
@@ -33,6 +35,7 @@ struct LampSet {
   std::vector<Beam> beams;
   // Of each beam; those of one emitter share one.
   std::vector<std::shared_ptr<const DiscLight>> lights;
+  std::vector<std::shared_ptr<const LampTable>> tables;
 };
 
 // Active area of a cell on the receiver, with a rule to average over it.
@@ -80,6 +83,7 @@ class LightLab {
   void find_walls();
   void place_cells();
   size_t points_of_rule() const;
+  void tabulate(LampSet& set) const;
 
   const Experiment& experiment_;
   const SurfaceGrid* grid_ = nullptr;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/errors.h"
@@ -225,7 +226,8 @@ void LitNetwork::at(double x, State& state) const {
 }
 
 LitNetwork::Point LitNetwork::nearest(double voltage_V, double current_A, double voltage_error_V,
-                                      double current_error_A, bool derivatives) const {
+                                      double current_error_A, bool derivatives,
+                                      const Trace& trace) const {
   if (strings_.empty()) return {voltage_V, 0.0, 0.0, std::vector<double>(photocurrents_A_.size())};
   const double R = settings_.series_ohm;
   const double wv = 1.0 / (voltage_error_V * voltage_error_V),
@@ -267,10 +269,19 @@ LitNetwork::Point LitNetwork::nearest(double voltage_V, double current_A, double
     }
     return std::pair(now, x);
   };
-  auto best = descend(by_current() ? current_A : voltage_V);
+  double start = by_current() ? current_A : voltage_V, least = unlimited;
+  for (const Trace::Place& p : trace.places) {
+    const double v = voltage_V - p.voltage_V, i = current_A - p.current_A;
+    const double far = v * v * wv + i * i * wi;
+    if (far < least) {
+      least = far;
+      start = p.x;
+    }
+  }
+  auto best = descend(start);
   // A corner of the curve has two sides.
   constexpr double far2 = 9.0;
-  if (best.first > far2) {
+  if (best.first > far2 && trace.places.empty()) {
     double other = voltage_V;
     if (by_current()) {
       StringPoint p;
@@ -289,6 +300,37 @@ LitNetwork::Point LitNetwork::nearest(double voltage_V, double current_A, double
   point.current_by_photocurrent = current_derivatives(state);
   for (double& d : point.current_by_photocurrent) d /= 1.0 + R * state.slope_S;
   return point;
+}
+
+LitNetwork::Trace LitNetwork::trace() const {
+  Trace result;
+  if (strings_.empty()) return result;
+  const double R = settings_.series_ohm, end = end_x();
+  if (!(end > 0.0)) return result;
+  State state;
+  const auto place = [&](double x) -> Trace::Place {
+    at(x, state);
+    return {x, state.voltage_V - R * state.current_A, state.current_A};
+  };
+  const Trace::Place first = place(-0.05 * end), last = place(1.05 * end);
+  const double largest_V = std::max(std::abs(first.voltage_V), std::abs(last.voltage_V)),
+               largest_A = std::max(std::abs(first.current_A), std::abs(last.current_A));
+  constexpr double near = 0.015;
+  const std::function<void(const Trace::Place&, const Trace::Place&, int)> refine =
+      [&](const Trace::Place& a, const Trace::Place& b, int depth) {
+        const bool far = std::abs(a.voltage_V - b.voltage_V) > near * largest_V ||
+                         std::abs(a.current_A - b.current_A) > near * largest_A;
+        if (far && depth < 14) {
+          const Trace::Place middle = place(0.5 * (a.x + b.x));
+          refine(a, middle, depth + 1);
+          refine(middle, b, depth + 1);
+          return;
+        }
+        result.places.push_back(b);
+      };
+  result.places.push_back(first);
+  refine(first, last, 0);
+  return result;
 }
 
 std::vector<double> LitNetwork::current_derivatives(const State& state) const {

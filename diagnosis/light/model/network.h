@@ -70,9 +70,18 @@ class LitNetwork {
     // ∂I/∂I_k at fixed voltage, per cell.
     std::vector<double> current_by_photocurrent;
   };
+  // Places along the curve from backwards to beyond the open circuit, a hundredth of voltage and
+  // current apart; where many points are asked for, the nearest is found from there.
+  struct Trace {
+    struct Place {
+      double x, voltage_V, current_A;
+    };
+    std::vector<Place> places;
+  };
+  Trace trace() const;
   // The point nearest to a reading, distances measured in the readings' errors (> 0).
   Point nearest(double voltage_V, double current_A, double voltage_error_V, double current_error_A,
-                bool derivatives) const;
+                bool derivatives, const Trace& trace = {}) const;
 
   // A local maximum of the power and how it moves with each photocurrent.
   struct Maximum {

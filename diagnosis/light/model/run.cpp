@@ -295,22 +295,25 @@ LightFields LightRun::fields(const LightState& state, const LightFields* near) c
         expanded(lamp_field(*lab_, lamp_set(), sites_, geometry)));
     result.lamps.push_back({std::move(geometry), std::move(field)});
   }
+  // Light by way of walls takes long, and is kept as long as the lamps stay where they are.
+  std::vector<LampGeometry> geometries;
+  for (size_t l = 0; l < lab_->lamps(); ++l) geometries.push_back(geometry_of(state, l, false));
+  if (near != nullptr) {
+    for (const auto& [key, parts] : near->walls) {
+      const bool same = std::ranges::equal(parts, geometries, {}, &LightFields::Part::geometry);
+      if (same) result.walls[key] = parts;
+    }
+  }
   for (const WallShare& share : state.walls) {
     for (const bool specular : {false, true}) {
       const double part = specular ? share.specular : share.diffuse;
       const auto key = std::pair(share.wall, specular);
-      const bool known = near != nullptr && near->walls.contains(key);
-      if (part == 0.0 && !known) continue;
-      std::vector<LightFields::Part>& parts = result.walls[key];
-      for (size_t l = 0; l < lab_->lamps(); ++l) {
-        LampGeometry geometry = geometry_of(state, l, false);
-        if (known && near->walls.at(key)[l].geometry == geometry) {
-          parts.push_back(near->walls.at(key)[l]);
-          continue;
-        }
-        auto field = std::make_shared<const LampField>(
-            expanded(wall_field(*lab_, lamp_set(), sites_, geometry, share.wall, specular)));
-        parts.push_back({std::move(geometry), std::move(field)});
+      if (part == 0.0 || result.walls.contains(key)) continue;
+      std::vector<LampField> by_lamp =
+          wall_fields(*lab_, lamp_set(), sites_, geometries, share.wall, specular);
+      for (size_t l = 0; l < geometries.size(); ++l) {
+        result.walls[key].push_back(
+            {geometries[l], std::make_shared<const LampField>(expanded(std::move(by_lamp[l])))});
       }
     }
   }
@@ -419,18 +422,20 @@ Eigen::VectorXd LightRun::residuals(const LightState& state, const std::vector<d
   const double sigma_V = noise_factor_ * lab_->noise().voltage_V,
                sigma_A = noise_factor_ * lab_->noise().current_A;
   std::optional<LitNetwork> network_of_row;
+  LitNetwork::Trace trace;
   size_t known = static_cast<size_t>(-1);
   Eigen::Index at = 0;
   for (size_t row = 0; row < rows(); ++row) {
     if (first_output_[row] != known) {
       network_of_row.emplace(network(state, signals, row));
       known = first_output_[row];
+      if (!is_run()) trace = network_of_row->trace();
     }
     const double law_A = current_law(state, row, recording_.voltage_V[row]);
     const double V = recording_.voltage_V[row], I = recording_.current_A[row] - law_A;
     if (!holds_maximum()) {
       const LitNetwork::Point p =
-          network_of_row->nearest(V, I, sigma_V, sigma_A, slopes != nullptr);
+          network_of_row->nearest(V, I, sigma_V, sigma_A, slopes != nullptr, trace);
       const double across = std::hypot(sigma_A, p.slope_S * sigma_V);
       const double off_V = (V - p.voltage_V) / sigma_V, off_A = (I - p.current_A) / sigma_A;
       const double side = (I - p.current_A) + p.slope_S * (V - p.voltage_V);

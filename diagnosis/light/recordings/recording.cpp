@@ -26,7 +26,13 @@ struct LightColumn {
 class LightHeader {
  public:
   explicit LightHeader(std::string_view line) {
-    for (const std::string_view cell : cells_of(line)) {
+    for (std::string_view cell : cells_of(line)) {
+      if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
+        cell = cell.substr(1, cell.size() - 2);
+      }
+      // As some instruments write it.
+      if (cell == "V") cell = "voltage_V";
+      if (cell == "I") cell = "current_A";
       const KeyUnit unit = unit_of_key(cell);
       names_.emplace_back(cell);
       units_.push_back(unit);
@@ -136,7 +142,8 @@ class RowReader {
         into_.time_s.push_back(time_s);
       } else {
         const double sweep = columns_.sweep ? value(columns_.sweep) : 0.0;
-        if (!std::isfinite(sweep)) return "unreadable number";
+        constexpr double most = 1e9;  // what an int holds, and more than anybody measures
+        if (!(std::abs(sweep) <= most)) return "unreadable number";
         into_.sweep.push_back(static_cast<int>(sweep));
       }
       into_.voltage_V.push_back(V);

@@ -18,7 +18,7 @@ namespace photorque {
 struct LightRecording {
   enum class Kind {
     scan,   // u_m, v_m, irradiance_W_m2 [, tilt_deg, heading_deg]
-    sweep,  // voltage_V, current_A [, sweep, tilt_deg, heading_deg, cell_temperature_K]
+    sweep,  // voltage_V, current_A (or V, I) [, sweep, tilt_deg, heading_deg, cell_temperature_K]
     run,    // t_s, q_w … q_z, array_voltage_V, array_current_A [, cell_temperature_K, …]
   };
   Kind kind = Kind::scan;

@@ -32,6 +32,8 @@ size_t count_of(const LightLab& lab, LightEffectKind::Index index) {
       return lab.bypasses();
     case LightEffectKind::Index::wall:
       return lab.walls().size();
+    case LightEffectKind::Index::frame:
+      return 2;
   }
   return 0;
 }
@@ -55,7 +57,13 @@ bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
 FittedRun prepared_run(LightRun run, const LightState& nominal) {
   FittedRun result;
   result.run = std::make_shared<const LightRun>(std::move(run));
-  result.nominal = std::make_shared<const LightFields>(result.run->fields(nominal, nullptr));
+  // With the light by way of every wall, of which most trials have none.
+  LightState with_walls = nominal;
+  with_walls.walls.clear();
+  for (size_t w = 0; w < result.run->lab().walls().size(); ++w) {
+    with_walls.walls.push_back({w, 1.0, 1.0});
+  }
+  result.nominal = std::make_shared<const LightFields>(result.run->fields(with_walls, nullptr));
   result.prior_slopes = std::make_shared<const Eigen::MatrixXd>(
       static_cast<Eigen::Index>(result.run->samples()), Eigen::Index{0});
   return result;
@@ -91,7 +99,9 @@ LightCandidates light_candidates(const LightLab& lab, const LightState& nominal,
     const bool is_only = count < 2 && (kind.index == LightEffectKind::Index::string);
     for (size_t i = 0; i < count && !is_only; ++i) {
       LightCandidate c{kind, i, kind.name, {}, {}};
-      if (kind.index != LightEffectKind::Index::none) c.label += "[" + std::to_string(i) + "]";
+      const bool has_number =
+          kind.index != LightEffectKind::Index::none && kind.index != LightEffectKind::Index::frame;
+      if (has_number) c.label += "[" + std::to_string(i) + "]";
       add_numbers(c);
       all.list.push_back(std::move(c));
     }

@@ -63,11 +63,7 @@ LightCandidate ripple() {
                         .highest = 40.0,
                         .is_strength = false,
                         .step = 0.01}};
-  for (double waves = 0.0; waves <= 16.0; waves += 0.4) {
-    c.kind.parameters[1].starts.push_back(waves);
-    c.kind.parameters[2].starts.push_back(waves);
-    if (waves > 0.0) c.kind.parameters[2].starts.push_back(-waves);
-  }
+  c.kind.scan = LightEffectKind::Scan::wave;
   c.kind.act = [](LightState& state, size_t, std::span<const double> x) {
     state.light_laws.emplace_back([a = x[0], b = x[1], u = x[2], v = x[3]](const Circumstance& at) {
       const double phase = pi * (u * at.u + v * at.v);

@@ -5,6 +5,15 @@
 
 namespace photorque {
 
+// What a trial leaves of a recording, with what it takes to see how a law on the light would lower
+// it.
+struct LeftOfRun {
+  const LightRun* run;
+  std::vector<double> signals;
+  Eigen::VectorXd residuals;
+  SignalSlopes slopes;
+};
+
 // Of each candidate, the few starts that promise most; none where nothing does.
 std::vector<std::vector<LightStart>> scanned_starts(const LightTrial& parent,
                                                     const LightCandidates& all,
@@ -18,6 +27,11 @@ std::vector<std::vector<LightStart>> scanned_starts(const LightTrial& parent,
 // largest patch of such elements, at the height where it explains most.
 std::vector<LightStart> shadow_starts(const LightTrial& parent, const LightCandidates& all,
                                       const std::vector<FittedRun>& runs, bool on_body);
+
+// Waves over the receiver, of those whose cycles over half of its width and height lie on a grid up
+// to 16 each way, that explain most of what is left of the scans.
+std::vector<LightStart> wave_starts(const LightCandidate& wave, const std::vector<LeftOfRun>& left,
+                                    const Thresholds::Scoring& limits);
 
 // The interval over which the second highest maximum explains most, {from_s, to_s, recording}; of
 // no length where it explains nothing.

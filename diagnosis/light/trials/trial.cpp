@@ -54,6 +54,30 @@ AtState evaluated(const FittedRun& run, const LightState& state, bool slopes) {
   return at;
 }
 
+// A law that multiplies the light changes each signal in the ratio of its functions, in which it is
+// linear: no field is needed for its derivatives by a strength.
+bool is_factor(const LightCandidate& c) {
+  return c.is_empirical() && !c.kind.in_circuit;
+}
+
+Eigen::VectorXd factor_slope(const LightCandidate& c, std::vector<double> x, size_t number,
+                             const FittedRun& run, const AtState& at) {
+  LightState now(0, 0, 0, 0), alone(0, 0, 0, 0);
+  c.kind.act(now, 0, x);
+  for (size_t k = 0; k < x.size(); ++k) {
+    if (c.numbers[k].is_strength) x[k] = k == number ? 1.0 : 0.0;
+  }
+  c.kind.act(alone, 0, x);
+  std::vector<double> change(at.signals.size());
+  const auto& circumstances = run.run->circumstances();
+  for (size_t i = 0; i < change.size(); ++i) {
+    if (at.signals[i] == 0.0) continue;
+    change[i] = at.signals[i] * (alone.light_laws.front()(circumstances[i]) - 1.0) /
+                now.light_laws.front()(circumstances[i]);
+  }
+  return -run.run->moved(at.slopes, change);
+}
+
 // ∂(predicted/noise) by one number of one member, by central differences of an evaluation without
 // noise; from one side where the number stands on a bound.
 Eigen::VectorXd slope_by(const LightCandidates& all, const std::vector<size_t>& candidates,
@@ -61,6 +85,9 @@ Eigen::VectorXd slope_by(const LightCandidates& all, const std::vector<size_t>& 
                          const AtState& at) {
   const LightCandidate& c = all[candidates[place.member]];
   const LightCandidate::Number& n = c.numbers[place.number];
+  if (is_factor(c) && n.is_strength) {
+    return factor_slope(c, x[place.member], place.number, run, at);
+  }
   Numbers low = x, high = x;
   double& a = low[place.member][place.number];
   double& b = high[place.member][place.number];
@@ -80,25 +107,6 @@ Eigen::VectorXd slope_by(const LightCandidates& all, const std::vector<size_t>& 
   std::vector<double> change(low_signals.size());
   for (size_t i = 0; i < change.size(); ++i) {
     change[i] = (high_signals[i] - low_signals[i]) / (b - a);
-  }
-  return -run.run->moved(at.slopes, change);
-}
-
-// A law that multiplies the light changes each signal in the ratio of its functions: no field is
-// needed for its derivatives at no strength.
-bool is_factor(const LightCandidate& c) {
-  return c.is_empirical() && !c.kind.in_circuit;
-}
-
-Eigen::VectorXd factor_slope(const LightCandidate& c, std::vector<double> x, size_t number,
-                             const FittedRun& run, const AtState& at) {
-  x[number] = 1.0;
-  LightState alone(0, 0, 0, 0);
-  c.kind.act(alone, 0, x);
-  std::vector<double> change(at.signals.size());
-  const auto& circumstances = run.run->circumstances();
-  for (size_t i = 0; i < change.size(); ++i) {
-    change[i] = at.signals[i] * (alone.light_laws.front()(circumstances[i]) - 1.0);
   }
   return -run.run->moved(at.slopes, change);
 }
@@ -315,9 +323,7 @@ LightSlopes slopes_of(const LightTrial& trial, const LightCandidates& all,
     x.push_back(start);
     for (size_t k = 0; k < c.numbers.size(); ++k) {
       if (!c.numbers[k].is_strength) continue;
-      columns.push_back(is_factor(c)
-                            ? factor_slope(c, start, k, run, at)
-                            : slope_by(all, candidates, x, {candidates.size() - 1, k}, run, at));
+      columns.push_back(slope_by(all, candidates, x, {candidates.size() - 1, k}, run, at));
     }
   }
   result.slopes.resize(result.residuals.size(),

@@ -149,7 +149,8 @@ class Loader {
     return *decoded;
   }
 
-  // The path of an external file, relative to the model's folder and inside it.
+  // The path of an external file, relative to the model's folder. Whether it may lead out of it is
+  // for whoever opens files to say.
   std::string checked_path(const std::string& uri) const {
     const std::string expected = "a relative path inside the model's folder";
     const std::optional<std::string> decoded = percent_decoded(uri);
@@ -159,7 +160,7 @@ class Loader {
     const std::string first = decoded->substr(0, decoded->find_first_of("/\\"));
     const std::filesystem::path path = std::filesystem::path(*decoded).lexically_normal();
     if (first.find(':') != std::string::npos || decoded->find('\\') != std::string::npos ||
-        path.is_absolute() || *path.begin() == "..") {
+        path.is_absolute()) {
       throw wrong("uri", excerpt(uri), expected);
     }
     return path.generic_string();

@@ -7,7 +7,8 @@
 
 namespace photorque {
 
-// The bytes behind a relative path (percent decoded, inside the model's folder), or nothing.
+// The bytes behind a relative path (percent decoded), or nothing. InputError where the path, or a
+// link on it, leads out of the model's folder and may not.
 using GltfOpen = std::function<std::optional<std::string>(const std::string& relative_path)>;
 
 }  // namespace photorque

@@ -1,38 +1,35 @@
 // What every command of the program shares.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/runs/options.h"
+
 namespace photorque {
 
+class Interruption;  // tools/guards/interruption.h
+
 // The command line: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
-struct CommandLine {
+struct CommandLine : RunOptions {
   std::string verb;
-  std::filesystem::path experiment;
-  std::vector<std::string> overrides;             // --set, in order
   std::optional<std::filesystem::path> out;       // --out
-  int threads = 0;                                // 0: all
-  std::optional<uint64_t> seed;                   // over the experiment's own
   bool quiet = false;                             // no text but errors
   bool json = false;                              // the summary as JSON on standard output
-  std::optional<double> target_error;             // --target-error, of commands that trace
-  std::optional<double> max_time_s;               // --max-time, likewise
   std::vector<std::filesystem::path> recordings;  // --recording, of commands that take some
   std::vector<std::filesystem::path> holdouts;    // --holdout, recordings held out from a fit
   std::optional<std::filesystem::path> cases;     // --cases, a folder of injected cases
   bool only_make = false;                         // --only-make: the cases, nothing more
   std::string shard;                              // --shard K/N, of a sweep
+  std::optional<std::filesystem::path> scene;     // --scene, of a new experiment
   bool summary_only = false;                      // of a design in a sweep: no other files
+  Interruption* interruption = nullptr;           // the program's, when it is one
 
   // --out, or out/EXPERIMENT/VERB below the current folder.
   std::filesystem::path out_folder() const;
-  // The overrides with --seed among them.
-  std::vector<std::string> all_overrides() const;
 };
 
 // One command. `run` does everything and throws what goes wrong.
@@ -45,6 +42,9 @@ struct Verb {
   bool takes_holdouts = false;
   bool takes_cases = false;
   bool takes_shard = false;
+  bool takes_scene = false;
+  bool takes_experiment = true;
+  bool writes = true;  // into its output folder
 };
 
 // Every verb named in tools/CMakeLists.txt, in that order.

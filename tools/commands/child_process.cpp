@@ -1,4 +1,4 @@
-#include "tools/runs/child_process.h"
+#include "tools/commands/child_process.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -34,7 +34,17 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   pid_t child = -1;
-  const int failed = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+  // This program's threads block the signals that end it (see Interruption); the child decides
+  // anew.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  const int failed =
+      posix_spawn(&child, program.c_str(), &actions, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) throw NumericalError("cannot start " + program.string());
   return child;

@@ -1,4 +1,4 @@
-#include "tools/runs/direction_map.h"
+#include "tools/tasks/direction_map.h"
 
 #include <cmath>
 #include <cstdio>
@@ -98,7 +98,9 @@ void print_summary(const Console& console, const WrenchTable& table, const SunLi
 
 }  // namespace
 
-void map_over_direction(const CommandLine& line, Console& console, const OpticalRun& run) {
+TorqueMapRun map_over_direction(const Console& console,
+                                const std::shared_ptr<const OpticalRun>& shared) {
+  const OpticalRun& run = *shared;
   const DirectionGrid& grid = *run.experiment().file.light_directions;
   const SunLight sun = only_sun(run.experiment());
   WrenchTable table = make_wrench_table(WrenchTable::Angles::azimuth_elevation, grid.elevation_rad,
@@ -131,15 +133,18 @@ void map_over_direction(const CommandLine& line, Console& console, const Optical
   print_summary(console, table, sun);
 
   warnings.print(console);
-  write_results(line, console, wrench_table_product(table, "body"), warnings.into(run.provenance()),
-                rays, wall_s);
+  RunResult result{
+      wrench_table_product(table, "body"), warnings.into(run.provenance()), {wall_s, rays}};
   if (covers_sphere(table)) {
     const std::string body = run.experiment().file.path.stem().string();
     const SpadFile spad{body, scaled(table, 1.0 / sun.pressure_Pa), true};
-    write_file_whole(line.out_folder() / (body + ".spo"),
-                     format_spad(spad, run.provenance().one_line()));
-    console.line("  " + body + ".spo: force and torque over pressure in the SPAD layout");
+    result.files.push_back(
+        {body + ".spo",
+         [text = format_spad(spad, run.provenance().one_line())](
+             const std::filesystem::path& path) { write_file_whole(path, text); },
+         "force and torque over pressure in the SPAD layout"});
   }
+  return {shared, std::move(table), std::move(result)};
 }
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-#include "tools/runs/sweep_design.h"
+#include "tools/tasks/sweep_design.h"
 
 #include <cmath>
 #include <cstdio>

@@ -1,0 +1,51 @@
+#include "diagnosis/light/model/illumination.h"
+
+#include <cmath>
+
+namespace photorque {
+namespace {
+
+Quat turned(const Quat& recorded, const Vec2& bias_rad) {
+  const double angle = bias_rad.norm();
+  if (angle == 0.0) return recorded;
+  const Vec3 axis(bias_rad.x() / angle, bias_rad.y() / angle, 0.0);
+  return Quat(Eigen::AngleAxisd(angle, axis)) * recorded;
+}
+
+}  // namespace
+
+LampAtAttitude::LampAtAttitude(const RigidTransform& lab_from_lamp, const Quat& lab_from_body,
+                               double radius_m)
+    : body_from_lamp{(lab_from_body.conjugate() * lab_from_lamp.rotation).normalized(),
+                     lab_from_body.conjugate() * lab_from_lamp.translation_m} {
+  const Mat3 rotation = body_from_lamp.rotation.toRotationMatrix();
+  lamp_from_body = rotation.transpose();
+  offset_m = -(lamp_from_body * body_from_lamp.translation_m);
+  side = radius_m * rotation.col(0);
+  up = radius_m * rotation.col(1);
+}
+
+Illumination::Illumination(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
+                           const LampGeometry& geometry)
+    : lab_(lab),
+      sites_(sites),
+      geometry_(geometry),
+      light_(*lamps.tables[geometry.lamp]),
+      pose_(pose_of(lamps.beams[geometry.lamp], geometry)) {}
+
+void Illumination::move_to(size_t attitude) {
+  const Quat q = turned(sites_.lab_from_body[attitude], geometry_.attitude_bias_rad);
+  at_.emplace(pose_, q, std::isfinite(light_.radius_m()) ? light_.radius_m() : 0.0);
+  obstacles_.emplace(lab_, geometry_.boxes, q);
+}
+
+double Illumination::on(const Vec3& point, const Vec3& normal, size_t skipped) const {
+  const Vec3 p = at_->lamp_from_body * point + at_->offset_m, n = at_->lamp_from_body * normal;
+  const double E = light_.irradiance_W_m2(p, n);
+  if (!(E > 0.0)) return 0.0;
+  if (!obstacles_->any()) return E;
+  return E *
+         obstacles_->visible(point, at_->body_from_lamp.translation_m, at_->side, at_->up, skipped);
+}
+
+}  // namespace photorque

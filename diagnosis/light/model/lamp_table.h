@@ -1,0 +1,44 @@
+// Irradiance of a lamp on points, tabulated: a diagnosis asks for it millions of times.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "raytrace/direct/disc_light.h"
+
+namespace photorque {
+
+// With s = d/h the slope under which a point at the distance d from the axis and the height h sees
+// the middle of the aperture, h² times both factors of DiscLight is a smooth function of s whose
+// shape hardly changes with (R/h)²: polynomials of degree five in s, whose nodes lie evenly, and
+// in (R/h)². They are held against the quadrature when they are made, and refined
+// until they differ by less than 1e-6 of the light on the axis. Beams with edges have kinks and are
+// not tabulated.
+class LampTable {
+ public:
+  // For heights between these; elsewhere it integrates. `light` is kept.
+  LampTable(std::shared_ptr<const DiscLight> light, double lowest_m, double highest_m);
+
+  // As DiscLight::irradiance_W_m2.
+  double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const;
+  double radius_m() const { return light_->radius_m(); }
+  bool is_tabulated() const { return !nodes_.empty(); }
+
+ private:
+  static constexpr size_t terms = 6;  // of the polynomial in (R/h)²
+  using Node = std::array<Eigen::Array2d, terms>;
+
+  double place_of(double height_m) const;
+  std::vector<Node> nodes_at(double step) const;
+  Eigen::Array2d factors(double slope, double height_m) const;
+  bool holds() const;
+
+  std::shared_ptr<const DiscLight> light_;
+  double lowest_m_, highest_m_;
+  double middle_ = 0.0, half_ = 1.0;  // of (R/h)²
+  double step_ = 0.0, largest_slope_ = 0.0;
+  std::vector<Node> nodes_;  // from the slope −2 steps on; empty: nothing is tabulated
+};
+
+}  // namespace photorque

@@ -1,0 +1,182 @@
+#include "diagnosis/light/model/obstacles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+bool crosses(const ShadowBox& box, const Vec3& from, const Vec3& to) {
+  double enter = 0.0, leave = 1.0;
+  for (int k = 0; k < 3; ++k) {
+    const double d = to[k] - from[k];
+    if (std::abs(d) < 1e-15) {
+      if (from[k] < box.low_m[k] || from[k] > box.high_m[k]) return false;
+      continue;
+    }
+    const double a = (box.low_m[k] - from[k]) / d, b = (box.high_m[k] - from[k]) / d;
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  return enter < leave;
+}
+
+// Of a sphere, from the straight line between two points.
+bool may_reach(const Vec3& centre, double radius, const Vec3& from, const Vec3& to) {
+  const Vec3 d = to - from;
+  const double t = std::clamp((centre - from).dot(d) / d.squaredNorm(), 0.0, 1.0);
+  return (from + t * d - centre).squaredNorm() < radius * radius;
+}
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+// The signed area that the disc of radius 1 shares with the triangle of its centre and two points.
+double disc_part(const Vec2& a, const Vec2& b) {
+  const auto sector = [](const Vec2& p, const Vec2& q) {
+    return 0.5 * std::atan2(cross(p, q), p.dot(q));
+  };
+  const Vec2 d = b - a;
+  const double square = d.squaredNorm(), along = a.dot(d);
+  const double root2 = along * along - square * (a.squaredNorm() - 1.0);
+  if (!(square > 0.0)) return 0.0;
+  if (root2 <= 0.0) return sector(a, b);
+  const double root = std::sqrt(root2);
+  const double enter = (-along - root) / square, leave = (-along + root) / square;
+  if (leave <= 0.0 || enter >= 1.0) return sector(a, b);
+  const Vec2 p = a + std::max(enter, 0.0) * d, q = a + std::min(leave, 1.0) * d;
+  return 0.5 * cross(p, q) + (enter > 0.0 ? sector(a, p) : 0.0) +
+         (leave < 1.0 ? sector(q, b) : 0.0);
+}
+
+// The area that the disc of radius 1 shares with the convex hull of some points. The hull by
+// A. Andrew, Information Processing Letters 9, 216 (1979).
+double area_on_disc(std::array<Vec2, 8>& points) {
+  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  });
+  std::array<Vec2, 17> hull;
+  size_t count = 0;
+  const auto extend = [&](const Vec2& p, size_t least) {
+    while (count >= least && cross(hull[count - 1] - hull[count - 2], p - hull[count - 2]) <= 0.0) {
+      --count;
+    }
+    hull[count++] = p;
+  };
+  for (const Vec2& p : points) extend(p, 2);
+  const size_t least = count + 1;
+  for (size_t i = points.size() - 1; i-- > 0;) extend(points[i], least);
+  double area = 0.0;
+  for (size_t i = 0; i + 1 < count; ++i) area += disc_part(hull[i], hull[i + 1]);
+  return std::clamp(area, 0.0, pi);
+}
+
+}  // namespace
+
+std::vector<Vec2> even_disc(size_t count) {
+  const double golden = pi * (3.0 - std::sqrt(5.0));
+  std::vector<Vec2> points;
+  for (size_t i = 0; i < count; ++i) {
+    const double r = std::sqrt((static_cast<double>(i) + 0.5) / static_cast<double>(count));
+    points.emplace_back(r * std::cos(golden * static_cast<double>(i)),
+                        r * std::sin(golden * static_cast<double>(i)));
+  }
+  return points;
+}
+
+bool crosses(const std::array<Vec3, 3>& t, const Vec3& from, const Vec3& to) {
+  const Vec3 d = to - from, a = t[1] - t[0], b = t[2] - t[0], n = d.cross(b);
+  const double det = a.dot(n);
+  if (std::abs(det) < 1e-18) return false;
+  const Vec3 s = from - t[0];
+  const double u = s.dot(n) / det;
+  if (u < 0.0 || u > 1.0) return false;
+  const Vec3 q = s.cross(a);
+  const double v = d.dot(q) / det, along = b.dot(q) / det;
+  constexpr double touch = 1e-9;  // what it starts or ends on does not hide it
+  return v >= 0.0 && u + v <= 1.0 && along > touch && along < 1.0 - touch;
+}
+
+Obstacles::Obstacles(const LightLab& lab, const std::vector<ShadowBox>& boxes,
+                     const Quat& lab_from_body)
+    : lab_(lab), boxes_(boxes), lab_from_body_(lab_from_body) {
+  for (const ShadowBox& box : boxes) {
+    BodyBox b;
+    const Quat body_from_box = box.on_body ? Quat::Identity() : lab_from_body.conjugate();
+    for (size_t k = 0; k < b.corners.size(); ++k) {
+      const Vec3 corner((k & 1) != 0 ? box.high_m.x() : box.low_m.x(),
+                        (k & 2) != 0 ? box.high_m.y() : box.low_m.y(),
+                        (k & 4) != 0 ? box.high_m.z() : box.low_m.z());
+      b.corners[k] = body_from_box * corner;
+    }
+    b.centre = body_from_box * Vec3(0.5 * (box.low_m + box.high_m));
+    b.radius = 0.5 * (box.high_m - box.low_m).norm();
+    in_body_.push_back(b);
+  }
+}
+
+double Obstacles::visible(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up,
+                          size_t skipped) const {
+  const double radius = side.norm();
+  near_walls_.clear();
+  near_boxes_.clear();
+  for (size_t w = 0; w < lab_.walls().size(); ++w) {
+    const LightWall& wall = lab_.walls()[w];
+    if (w != skipped && may_reach(wall.centre_m, wall.radius_m + radius, point, lamp)) {
+      near_walls_.push_back(w);
+    }
+  }
+  for (size_t b = 0; b < boxes_.size(); ++b) {
+    if (may_reach(in_body_[b].centre, in_body_[b].radius + radius, point, lamp)) {
+      near_boxes_.push_back(b);
+    }
+  }
+  if (near_walls_.empty() && near_boxes_.empty()) return 1.0;
+  if (!near_walls_.empty() || near_boxes_.size() > 1 || !(radius > 0.0)) {
+    return sampled(point, lamp, side, up);
+  }
+  // The box as it is seen from the point, projected onto the aperture.
+  const BodyBox& box = in_body_[near_boxes_.front()];
+  const Vec3 normal = side.cross(up), away = lamp - point;
+  const double height = normal.dot(away), per_radius = 1.0 / (radius * radius);
+  std::array<Vec2, 8> seen;
+  for (size_t k = 0; k < seen.size(); ++k) {
+    const Vec3 to = box.corners[k] - point;
+    const double part = normal.dot(to) / height;
+    if (!(part > 1e-6 && part < 1.0)) return sampled(point, lamp, side, up);
+    const Vec3 at = to / part - away;
+    seen[k] = per_radius * Vec2(at.dot(side), at.dot(up));
+  }
+  return 1.0 - boxes_[near_boxes_.front()].opacity * area_on_disc(seen) / pi;
+}
+
+double Obstacles::sampled(const Vec3& point, const Vec3& lamp, const Vec3& side,
+                          const Vec3& up) const {
+  static const std::vector<Vec2> disc = even_disc(100);
+  double sum = 0.0;
+  const Vec3 point_lab = lab_from_body_ * point;
+  for (const Vec2& d : disc) {
+    const Vec3 to = lamp + d.x() * side + d.y() * up;
+    double passes = 1.0;
+    for (const size_t w : near_walls_) {
+      const auto& triangles = lab_.walls()[w].triangles;
+      if (std::ranges::any_of(triangles, [&](const auto& t) { return crosses(t, point, to); })) {
+        passes = 0.0;
+        break;
+      }
+    }
+    for (const size_t b : near_boxes_) {
+      const ShadowBox& box = boxes_[b];
+      const bool hit =
+          box.on_body ? crosses(box, point, to) : crosses(box, point_lab, lab_from_body_ * to);
+      if (hit) passes *= 1.0 - box.opacity;
+    }
+    sum += passes;
+  }
+  return sum / static_cast<double>(disc.size());
+}
+
+}  // namespace photorque

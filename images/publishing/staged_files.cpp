@@ -1,0 +1,157 @@
+#include "images/publishing/staged_files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/errors.h"
+#include "core/files.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* list_name = "files.json";
+// What tells of all other files: goes first and comes last.
+constexpr const char* heads[] = {"summary.json", "diagnosis.json"};
+
+bool is_head(const std::string& name) {
+  return std::ranges::find(heads, name) != std::end(heads);
+}
+
+// Lists of what commands wrote, by command; empty where there is none that can be read.
+Json read_lists(const fs::path& path) {
+  std::error_code failure;
+  if (!fs::is_regular_file(path, failure)) return Json::object();
+  const Json read = Json::parse(read_file(path), nullptr, false);
+  const bool known = read.is_object() && read.value("schema", "") == "photorque.files/1" &&
+                     read.contains("commands") && read["commands"].is_object();
+  return known ? read["commands"] : Json::object();
+}
+
+// Plain names alone: a list that was tampered with must not reach other folders.
+std::set<std::string> listed(const Json& lists, const std::string& command) {
+  std::set<std::string> names;
+  const auto list = lists.find(command);
+  if (list == lists.end() || !list->is_object() || !list->contains("files")) return names;
+  for (const Json& name : (*list)["files"]) {
+    if (!name.is_string()) continue;
+    const auto& text = name.get_ref<const std::string&>();
+    const bool plain = !text.empty() && text.front() != '.' && text.find('/') == std::string::npos;
+    if (plain) names.insert(text);
+  }
+  return names;
+}
+
+// What one command has just written is no other's any more.
+void write_lists(const fs::path& path, Json lists, const std::string& command,
+                 const std::set<std::string>& names, const Provenance& provenance) {
+  for (auto& [other, list] : lists.items()) {
+    if (!list.is_object()) continue;
+    std::set<std::string> left = listed(lists, other);
+    for (const std::string& name : names) left.erase(name);
+    list["files"] = left;
+  }
+  lists[command] = {{"files", names}, {"made_by", provenance.one_line()}};
+  const Json all = {{"schema", "photorque.files/1"}, {"commands", lists}};
+  write_file_whole(path, all.dump(2) + "\n");
+}
+
+// New names reach the disk with their folder.
+void sync_folder(const fs::path& folder) {
+  const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened < 0) return;
+  ::fsync(opened);
+  ::close(opened);
+}
+
+}  // namespace
+
+StagedFiles::StagedFiles(const fs::path& folder)
+    : folder_(folder), path_(temporary_beside(folder / "results")) {
+  std::error_code failure;
+  for (fs::path p = fs::absolute(folder); !fs::exists(p, failure) && p.has_relative_path();
+       p = p.parent_path()) {
+    made_ = p;
+  }
+  fs::create_directories(path_, failure);
+  if (failure) throw InputError({folder.string()}, "", failure.message(), "a writable folder");
+}
+
+StagedFiles::~StagedFiles() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  if (!published_ && !made_.empty()) fs::remove_all(made_, ignored);
+}
+
+std::vector<std::string> StagedFiles::names() const {
+  std::vector<std::string> names;
+  std::error_code failure;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_, failure)) {
+    names.push_back(entry.path().filename().string());
+  }
+  if (failure) {
+    throw InputError({folder_.string()}, "", failure.message(), "a folder that stays");
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+void StagedFiles::move(const std::string& name) const {
+  std::error_code failure;
+  fs::rename(path_ / name, folder_ / name, failure);
+  if (failure) {
+    throw InputError({(folder_ / name).string()}, "", failure.message(),
+                     "a path that can be written");
+  }
+}
+
+std::vector<fs::path> StagedFiles::publish() {
+  std::vector<fs::path> places;
+  for (const std::string& name : names()) {
+    move(name);
+    places.push_back(folder_ / name);
+  }
+  published_ = true;
+  sync_folder(folder_);
+  return places;
+}
+
+std::vector<fs::path> StagedFiles::publish_as(const std::string& command,
+                                              const Provenance& provenance) {
+  const fs::path list_path = folder_ / list_name;
+  const Json lists = read_lists(list_path);
+  const std::vector<std::string> all = names();
+  const std::set<std::string> now(all.begin(), all.end());
+  std::set<std::string> ever = listed(lists, command);
+  ever.insert(now.begin(), now.end());
+  // Whoever is killed from here on leaves a list of everything that may stand here.
+  write_lists(list_path, lists, command, ever, provenance);
+  published_ = true;
+  std::error_code ignored;
+  for (const std::string& name : ever) {
+    if (is_head(name)) fs::remove(folder_ / name, ignored);
+  }
+  for (const std::string& name : ever) {
+    if (!now.contains(name)) fs::remove(folder_ / name, ignored);
+  }
+  std::vector<fs::path> places;
+  for (const std::string& name : now) {
+    if (!is_head(name)) move(name);
+    places.push_back(folder_ / name);
+  }
+  write_lists(list_path, lists, command, now, provenance);
+  sync_folder(folder_);
+  for (const std::string& name : now) {
+    if (is_head(name)) move(name);
+  }
+  sync_folder(folder_);
+  return places;
+}
+
+}  // namespace photorque

@@ -1,0 +1,43 @@
+// Results that appear together: written aside, then moved to where they belong.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/provenance.h"
+
+namespace photorque {
+
+// A hidden folder within the one where files belong. What it made goes away with it unless the
+// files were published.
+class StagedFiles {
+ public:
+  // InputError when the folder cannot be made.
+  explicit StagedFiles(const std::filesystem::path& folder);
+  ~StagedFiles();
+  StagedFiles(const StagedFiles&) = delete;
+  StagedFiles& operator=(const StagedFiles&) = delete;
+
+  // Where to write.
+  const std::filesystem::path& path() const { return path_; }
+
+  // Moves all files to where they belong and returns their paths, in the order of their names.
+  std::vector<std::filesystem::path> publish();
+
+  // The same for the results of one command, which replace those of its last run in this folder:
+  // files.json lists what a command wrote, and files of the list that were not written again go
+  // away. summary.json (of `diagnose`, diagnosis.json) goes first and comes last: where it
+  // stands, all that it tells of is of one run.
+  std::vector<std::filesystem::path> publish_as(const std::string& command,
+                                                const Provenance& provenance);
+
+ private:
+  std::vector<std::string> names() const;
+  void move(const std::string& name) const;
+
+  std::filesystem::path folder_, path_, made_;
+  bool published_ = false;
+};
+
+}  // namespace photorque

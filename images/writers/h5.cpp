@@ -1,0 +1,116 @@
+// Everything of a run as one HDF5 file, run.h5, for h5py, MATLAB's h5read and others:
+//
+//   /figures/NAME          value, standard error
+//   /maps/NAME/value       row by row, y and x rising; /maps/NAME/standard_error; attributes title,
+//                          unit, x_label, y_label, extent (x_low, x_high, y_low, y_high)
+//   /tables/NAME/COLUMN    numbers or texts
+//   /plots/NAME/AXES/CURVE/x, y, y_error   axes and curves counted from 1; attribute label
+//   attributes of /        program, git_hash, seed, input_1 …, warning_1 …
+#include "core/errors.h"
+#include "images/drawing/consistency.h"
+#include "images/writers/hdf5_file.h"
+#include "images/writers/kind.h"
+
+namespace photorque {
+namespace {
+
+// Below a group, under a name that nobody else has there.
+std::string place_for(const Hdf5File& file, const std::string& group, const std::string& name) {
+  std::string place = group + "/" + Hdf5File::part(name);
+  if (file.has(place)) throw InputError({}, name, "two results with this name", "different names");
+  return place;
+}
+
+void add_map(Hdf5File& file, const Map& map) {
+  require_consistent(map);
+  const std::string place = place_for(file, "/maps", map.name);
+  const std::vector<size_t> shape = {static_cast<size_t>(map.height),
+                                     static_cast<size_t>(map.width)};
+  file.numbers(place + "/value", map.value, shape);
+  if (!map.standard_error.empty()) {
+    file.numbers(place + "/standard_error", map.standard_error, shape);
+  }
+  file.attribute(place, "title", map.title);
+  file.attribute(place, "unit", map.unit);
+  file.attribute(place, "x_label", map.x_label);
+  file.attribute(place, "y_label", map.y_label);
+  file.attribute(place, "extent",
+                 std::vector<double>{map.x_low, map.x_high, map.y_low, map.y_high});
+}
+
+void add_table(Hdf5File& file, const Table& table) {
+  require_consistent(table);
+  const std::string place = place_for(file, "/tables", table.name);
+  file.group(place);
+  file.attribute(place, "title", table.title);
+  for (const Table::Column& column : table.columns) {
+    const std::string own = place_for(file, place, column.name);
+    if (column.size() == 0) {
+      file.group(own);  // no rows
+    } else if (column.texts.empty()) {
+      file.numbers(own, column.values, {column.values.size()});
+    } else {
+      file.texts(own, column.texts);
+    }
+  }
+}
+
+void add_axes(Hdf5File& file, const std::string& place, const std::string& y_label,
+              const std::vector<Plot::Curve>& curves) {
+  file.group(place);
+  file.attribute(place, "y_label", y_label);
+  for (size_t i = 0; i < curves.size(); ++i) {
+    const Plot::Curve& curve = curves[i];
+    const std::string own = place + "/" + std::to_string(i + 1);
+    file.group(own);
+    file.attribute(own, "label", curve.label);
+    for (const auto& [name, values] :
+         {std::pair{"/x", &curve.x}, {"/y", &curve.y}, {"/y_error", &curve.y_error}}) {
+      if (!values->empty()) file.numbers(own + name, *values, {values->size()});
+    }
+  }
+}
+
+void add_plot(Hdf5File& file, const Plot& plot) {
+  require_consistent(plot);
+  const std::string place = place_for(file, "/plots", plot.name);
+  add_axes(file, place + "/1", plot.y_label, plot.curves);
+  for (size_t i = 0; i < plot.below.size(); ++i) {
+    add_axes(file, place + "/" + std::to_string(i + 2), plot.below[i].y_label,
+             plot.below[i].curves);
+  }
+  file.attribute(place, "title", plot.title);
+  file.attribute(place, "x_label", plot.x_label);
+}
+
+class H5Writer final : public Writer {
+ public:
+  std::vector<std::filesystem::path> write(const Product& product, const Provenance& provenance,
+                                           const std::filesystem::path& folder) const override {
+    if (product.quantities.empty() && product.maps.empty() && product.tables.empty() &&
+        product.plots.empty()) {
+      return {};
+    }
+    Hdf5File file;
+    for (const Quantity& figure : product.quantities) {
+      file.numbers(place_for(file, "/figures", figure.name),
+                   {figure.estimate.value, figure.estimate.standard_error}, {2});
+    }
+    for (const Map& map : product.maps) add_map(file, map);
+    for (const Table& table : product.tables) add_table(file, table);
+    for (const Plot& plot : product.plots) add_plot(file, plot);
+    file.stamp("/", provenance);
+    const std::filesystem::path path = file_in(folder, "run", "h5");
+    file.write(path);
+    return {path};
+  }
+};
+
+}  // namespace
+
+WriterKind h5_kind() {
+  return {"h5", "Everything of a run as one HDF5 file, for h5py and MATLAB",
+          [] { return std::make_unique<H5Writer>(); }};
+}
+
+}  // namespace photorque

@@ -1,0 +1,34 @@
+// fit_cell(): the parameters of a solar cell from measurements.
+#include "python/bindings/bind.h"
+#include "python/bindings/call.h"
+#include "python/bindings/experiment.h"
+#include "python/bindings/results.h"
+#include "tools/tasks/fit_cell.h"
+
+namespace photorque::python {
+namespace {
+
+struct CellFit {
+  RunResult result;
+};
+
+std::shared_ptr<CellFit> fit_cell(const ExperimentHandle& experiment, const py::object& log) {
+  const Call call(experiment.options.experiment, py::none(), log);
+  return call.run([&] {
+    return std::make_shared<CellFit>(
+        CellFit{fit_cell_of_experiment(experiment.options, call.console())});
+  });
+}
+
+}  // namespace
+
+void bind_cell_fit(py::module_& module) {
+  auto type = py::class_<CellFit, std::shared_ptr<CellFit>>(
+      module, "CellFit", "Parameters of a cell with their standard errors: its figures.");
+  add_result(type);
+  module.def("fit_cell", &fit_cell, py::arg("experiment"), py::kw_only(),
+             py::arg("log") = py::none(),
+             "Solar cell parameters from the current-voltage sweeps or datasheet of [fit].");
+}
+
+}  // namespace photorque::python

@@ -1,0 +1,46 @@
+// check(): what is wrong with an experiment, without running it.
+#include <pybind11/stl.h>
+
+#include "python/bindings/bind.h"
+#include "python/bindings/call.h"
+#include "python/bindings/experiment.h"
+#include "tools/tasks/check.h"
+
+namespace photorque::python {
+namespace {
+
+std::shared_ptr<CheckReport> check_of(const ExperimentHandle& experiment) {
+  const Call call(experiment.options.experiment, py::none(), py::none());
+  return call.run(
+      [&] { return std::make_shared<CheckReport>(check_experiment(experiment.options)); });
+}
+
+}  // namespace
+
+void bind_check(py::module_& module) {
+  py::class_<CheckReport, std::shared_ptr<CheckReport>>(
+      module, "CheckReport", "What is wrong with an experiment, and what could be done with it.")
+      .def_property_readonly(
+          "commands",
+          [](const CheckReport& report) {
+            py::dict commands;
+            for (const CheckReport::Command& one : report.commands) {
+              commands[py::str(one.name)] = one.what;
+            }
+            return commands;
+          },
+          "What each command would do, by its name.")
+      .def_property_readonly(
+          "mistakes",
+          [](const CheckReport& report) {
+            py::list lines;
+            for (const InputError& mistake : report.mistakes) lines.append(mistake.what());
+            return lines;
+          },
+          "One line each; the first of every table.")
+      .def_readonly("notes", &CheckReport::notes);
+  module.def("check", &check_of, py::arg("experiment"),
+             "Reads the experiment as every command would, and runs nothing.");
+}
+
+}  // namespace photorque::python

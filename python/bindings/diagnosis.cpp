@@ -1,0 +1,93 @@
+// diagnose(): what physics is missing between an experiment and its recordings.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "python/bindings/arrays.h"
+#include "python/bindings/bind.h"
+#include "python/bindings/call.h"
+#include "python/bindings/experiment.h"
+#include "python/bindings/results.h"
+#include "tools/tasks/diagnose.h"
+
+namespace photorque::python {
+namespace {
+
+using Paths = std::vector<std::filesystem::path>;
+
+std::shared_ptr<DiagnosisRun> diagnose_recordings(const ExperimentHandle& experiment,
+                                                  const Paths& recordings, const Paths& holdouts,
+                                                  int threads, const py::object& log) {
+  const RunOptions options = experiment.with(threads, py::none());
+  const Call call(options.experiment, py::none(), log);
+  return call.run([&] {
+    return std::make_shared<DiagnosisRun>(
+        diagnose_experiment(options, recordings, holdouts, call.console()));
+  });
+}
+
+py::dict parameters_of(const FoundEffect& effect) {
+  py::dict all;
+  for (const FittedParameter& parameter : effect.parameters) {
+    py::dict one;
+    one["value"] = copy_of(parameter.value);
+    one["standard_error"] = copy_of(parameter.sigma);
+    all[py::str(parameter.key)] = one;
+  }
+  return all;
+}
+
+void bind_effect(py::module_& module) {
+  py::class_<FoundEffect>(module, "Effect", "An effect beyond what the experiment states.")
+      .def_readonly("kind", &FoundEffect::kind)
+      .def_readonly("probability", &FoundEffect::probability)
+      .def_readonly("explanation", &FoundEffect::explanation)
+      .def_readonly("indistinguishable_from", &FoundEffect::indistinguishable_from)
+      .def_property_readonly("parameters", &parameters_of,
+                             "By key, in its unit: {\"value\": array, \"standard_error\": array}.");
+}
+
+}  // namespace
+
+void bind_diagnosis(py::module_& module) {
+  bind_effect(module);
+  const auto of = [](auto Diagnosis::*member) {
+    return [member](const DiagnosisRun& run) { return run.diagnosis.*member; };
+  };
+  py::class_<DiagnosisRun, std::shared_ptr<DiagnosisRun>>(
+      module, "Diagnosis", "What is missing from the experiment, and how sure that is.")
+      .def_property_readonly(
+          "verdict", [](const DiagnosisRun& run) { return name_of(run.diagnosis.verdict); },
+          "\"consistent\", \"missing_physics\" or \"unexplained\".")
+      .def_property_readonly("confidence", of(&Diagnosis::confidence))
+      .def_property_readonly("sentence", of(&Diagnosis::sentence))
+      .def_property_readonly("effects", of(&Diagnosis::effects))
+      .def_property_readonly("warnings", of(&Diagnosis::warnings))
+      .def_property_readonly("chi2_per_sample_before", of(&Diagnosis::chi2_per_sample_before))
+      .def_property_readonly("chi2_per_sample_after", of(&Diagnosis::chi2_per_sample_after))
+      .def_property_readonly("provenance",
+                             [](const DiagnosisRun& run) { return provenance_of(run.provenance); })
+      .def_property_readonly("json", &DiagnosisRun::json,
+                             "What the program writes as diagnosis.json.")
+      .def(
+          "improved",
+          [](const DiagnosisRun& run, const std::filesystem::path& folder) {
+            return run.improved(folder);
+          },
+          py::arg("folder") = ".",
+          "The experiment with what was found, as TOML, as it would stand in a folder.")
+      .def_property_readonly("report_html", &DiagnosisRun::report, "A page with charts.")
+      .def(
+          "write",
+          [](const DiagnosisRun& run, const std::filesystem::path& folder) {
+            const py::gil_scoped_release release;
+            write_diagnosis(run, folder);
+          },
+          py::arg("folder"), "Writes diagnosis.json, improved.toml and report.html.");
+  module.def("diagnose", &diagnose_recordings, py::arg("experiment"), py::arg("recordings"),
+             py::kw_only(), py::arg("holdouts") = Paths{}, py::arg("threads") = 0,
+             py::arg("log") = py::none(),
+             "What physics is missing between an experiment and its recordings (CSV files of "
+             "motion, or of light and power).");
+}
+
+}  // namespace photorque::python

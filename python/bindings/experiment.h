@@ -1,0 +1,22 @@
+// The Python class Experiment.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "tools/runs/options.h"
+
+namespace photorque::python {
+
+namespace py = pybind11;
+
+// The nominal model of a laboratory: the text of an experiment and changes to its keys.
+struct ExperimentHandle {
+  RunOptions options;  // with a text
+
+  // For a run on so many threads (0: all) and, unless None, with another seed.
+  RunOptions with(int threads, const py::object& seed) const;
+};
+
+void bind_experiment(py::module_& module);
+
+}  // namespace photorque::python

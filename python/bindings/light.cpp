@@ -1,0 +1,199 @@
+// trace() and power(): irradiance, radiation force and torque, the solar array.
+#include <pybind11/stl.h>
+
+#include "python/bindings/arrays.h"
+#include "python/bindings/bind.h"
+#include "python/bindings/call.h"
+#include "python/bindings/experiment.h"
+#include "python/bindings/results.h"
+#include "tools/tasks/power.h"
+#include "tools/tasks/trace.h"
+
+namespace photorque::python {
+namespace {
+
+using FluxMaps = std::vector<std::pair<std::string, FluxMap>>;
+
+struct LightHandle {
+  std::shared_ptr<const OpticalRun> run;
+  OpticalResult light;
+  RunResult result;
+  FluxMaps flux_maps = {};
+  WrenchEstimate wrench = {};  // on the whole scene about the centre of rotation, body frame
+
+  void evaluate() {
+    for (size_t i = 0; i < run->experiment().receivers.size(); ++i) {
+      const NamedReceiver& receiver = run->experiment().receivers[i];
+      if (!receiver.flux_map) continue;
+      flux_maps.emplace_back(receiver.name, receiver.flux_map->flux_map(light.sums[i]));
+    }
+    wrench = wrench_about(run->wrench().total(light.sums[run->wrench_index()]), Vec3::Zero());
+  }
+};
+
+struct PowerHandle : LightHandle {
+  ArrayResult power = {};
+};
+
+RunOptions options_of(const ExperimentHandle& experiment, int threads, const py::object& seed,
+                      std::optional<double> target_error, std::optional<double> max_time_s) {
+  RunOptions options = experiment.with(threads, seed);
+  options.target_error = target_error;
+  options.max_time_s = max_time_s;
+  return options;
+}
+
+std::shared_ptr<LightHandle> trace(const ExperimentHandle& experiment, int threads,
+                                   const py::object& seed, std::optional<double> target_error,
+                                   std::optional<double> max_time_s, const py::object& progress,
+                                   const py::object& log) {
+  const RunOptions options = options_of(experiment, threads, seed, target_error, max_time_s);
+  const Call call(options.experiment, progress, log);
+  return call.run([&] {
+    TraceRun traced = trace_experiment(options, call.console());
+    auto handle = std::make_shared<LightHandle>(
+        LightHandle{std::move(traced.run), std::move(traced.light), std::move(traced.result)});
+    handle->evaluate();
+    return handle;
+  });
+}
+
+std::shared_ptr<PowerHandle> power(const ExperimentHandle& experiment, int threads,
+                                   const py::object& seed, std::optional<double> target_error,
+                                   std::optional<double> max_time_s, const py::object& progress,
+                                   const py::object& log) {
+  const RunOptions options = options_of(experiment, threads, seed, target_error, max_time_s);
+  const Call call(options.experiment, progress, log);
+  return call.run([&] {
+    PowerRun found = power_of_experiment(options, call.console());
+    auto handle = std::make_shared<PowerHandle>();
+    handle->run = std::move(found.run);
+    handle->light = std::move(found.light);
+    handle->result = std::move(found.result);
+    handle->power = std::move(found.power);
+    handle->evaluate();
+    return handle;
+  });
+}
+
+py::array layer_view(const py::object& self, FluxLayer FluxMap::*layer, double Estimate::*number) {
+  const auto& map = self.cast<const FluxMap&>();
+  return view((map.*layer).per_bin_W_m2, number, static_cast<size_t>(map.grid.height),
+              static_cast<size_t>(map.grid.width), self);
+}
+
+void bind_flux_map(py::module_& module) {
+  const auto layer = [](FluxLayer FluxMap::*of, double Estimate::*number) {
+    return [of, number](const py::object& self) { return layer_view(self, of, number); };
+  };
+  py::class_<FluxMap>(module, "FluxMap",
+                      "Light on a surface, bin by bin: arrays of shape (bins along v, bins along "
+                      "u), both rising; NaN where there is no surface.")
+      .def_property_readonly("irradiance_W_m2", layer(&FluxMap::incident, &Estimate::value))
+      .def_property_readonly("irradiance_standard_error_W_m2",
+                             layer(&FluxMap::incident, &Estimate::standard_error))
+      .def_property_readonly("absorbed_W_m2", layer(&FluxMap::absorbed, &Estimate::value))
+      .def_property_readonly("absorbed_standard_error_W_m2",
+                             layer(&FluxMap::absorbed, &Estimate::standard_error))
+      .def_property_readonly("power_W", [](const FluxMap& map) { return map.incident.power_W; })
+      .def_property_readonly("absorbed_power_W",
+                             [](const FluxMap& map) { return map.absorbed.power_W; })
+      .def_property_readonly(
+          "area_m2",
+          [](const py::object& self) {
+            const SurfaceGrid& grid = self.cast<const FluxMap&>().grid;
+            return view(grid.area_m2, static_cast<size_t>(grid.height),
+                        static_cast<size_t>(grid.width), self);
+          },
+          "Area of surface in every bin.")
+      .def_property_readonly(
+          "extent",
+          [](const FluxMap& map) {
+            return py::make_tuple(map.grid.u_low, map.grid.u_high, map.grid.v_low, map.grid.v_high);
+          },
+          "Outer edges (u, u, v, v), in metres or in texture coordinates.");
+}
+
+py::dict flux_maps_of(const py::object& self) {
+  py::dict maps;
+  for (const auto& [name, map] : self.cast<const LightHandle&>().flux_maps) {
+    maps[py::str(name)] = py::cast(map, py::return_value_policy::reference_internal, self);
+  }
+  return maps;
+}
+
+py::object cells_view(const py::object& self, const std::vector<double>& cells) {
+  const ArrayResult& power = self.cast<const PowerHandle&>().power;
+  return view(cells, static_cast<size_t>(power.rows), static_cast<size_t>(power.columns), self);
+}
+
+void bind_runs(py::module_& module) {
+  auto trace = py::class_<LightHandle, std::shared_ptr<LightHandle>>(
+      module, "Trace", "Where the light went and what it did.");
+  add_result(trace);
+  trace.def_property_readonly("flux_maps", &flux_maps_of, "A FluxMap for every such receiver.")
+      .def_property_readonly(
+          "force_body_N", [](const LightHandle& self) { return copy_of(self.wrench.mean.force_N); })
+      .def_property_readonly(
+          "force_standard_error_N",
+          [](const LightHandle& self) { return copy_of(self.wrench.force_error_N()); })
+      .def_property_readonly(
+          "torque_body_N_m",
+          [](const LightHandle& self) { return copy_of(self.wrench.mean.torque_N_m); },
+          "About the centre of rotation.")
+      .def_property_readonly(
+          "torque_standard_error_N_m",
+          [](const LightHandle& self) { return copy_of(self.wrench.torque_error_N_m()); })
+      .def_property_readonly("rays", [](const LightHandle& self) { return self.light.rays; });
+  auto power = py::class_<PowerHandle, LightHandle, std::shared_ptr<PowerHandle>>(
+      module, "Power", "A trace and what the solar array makes of it.");
+  power
+      .def_property_readonly(
+          "curve",
+          [](const py::object& self) {
+            return py::cast(table_called(self.cast<const PowerHandle&>().result, "iv"),
+                            py::return_value_policy::reference_internal, self);
+          },
+          "Table voltage_V, current_A, power_W from short to open circuit.")
+      .def_property_readonly(
+          "maxima",
+          [](const py::object& self) {
+            return py::cast(table_called(self.cast<const PowerHandle&>().result, "maxima"),
+                            py::return_value_policy::reference_internal, self);
+          },
+          "Table of all local maxima of the power, by rising voltage.")
+      .def_property_readonly("power_W", [](const PowerHandle& self) { return self.power.power_W; })
+      .def_property_readonly("voltage_V",
+                             [](const PowerHandle& self) { return self.power.voltage_V; })
+      .def_property_readonly("current_A",
+                             [](const PowerHandle& self) { return self.power.current_A; })
+      .def_property_readonly("cell_light_W",
+                             [](const py::object& self) {
+                               return cells_view(
+                                   self, self.cast<const PowerHandle&>().power.cell_light_W);
+                             })
+      .def_property_readonly("cell_voltage_V", [](const py::object& self) {
+        return cells_view(self, self.cast<const PowerHandle&>().power.cells.voltages_V);
+      });
+}
+
+template <class Function>
+void def_light(py::module_& module, const char* name, Function function, const char* doc) {
+  module.def(name, function, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
+             py::arg("seed") = py::none(), py::arg("target_error") = py::none(),
+             py::arg("max_time_s") = py::none(), py::arg("progress") = py::none(),
+             py::arg("log") = py::none(), doc);
+}
+
+}  // namespace
+
+void bind_light(py::module_& module) {
+  bind_flux_map(module);
+  bind_runs(module);
+  def_light(module, "trace", &trace,
+            "Irradiance on every receiver, where the power went, radiation force and torque.");
+  def_light(module, "power", &power,
+            "Trace, then the solar array: current-voltage curve and maximum power point.");
+}
+
+}  // namespace photorque::python

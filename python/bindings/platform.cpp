@@ -1,0 +1,67 @@
+// budget() and balance(): the platform's torques at one state, and where its mass is.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "python/bindings/arrays.h"
+#include "python/bindings/bind.h"
+#include "python/bindings/call.h"
+#include "python/bindings/experiment.h"
+#include "python/bindings/results.h"
+#include "tools/tasks/balance.h"
+#include "tools/tasks/budget.h"
+
+namespace photorque::python {
+namespace {
+
+std::shared_ptr<BudgetRun> budget_of(const ExperimentHandle& experiment) {
+  const Call call(experiment.options.experiment, py::none(), py::none());
+  return call.run(
+      [&] { return std::make_shared<BudgetRun>(budget_of_experiment(experiment.options)); });
+}
+
+std::shared_ptr<BalanceOutcome> balance_of(const ExperimentHandle& experiment,
+                                           const std::filesystem::path& recording) {
+  const Call call(experiment.options.experiment, py::none(), py::none());
+  return call.run([&] {
+    return std::make_shared<BalanceOutcome>(balance_of_experiment(experiment.options, recording));
+  });
+}
+
+void bind_budget(py::module_& module) {
+  py::class_<BudgetEntry>(module, "BudgetEntry", "A disturbance at the state of a budget.")
+      .def_readonly("kind", &BudgetEntry::kind)
+      .def_readonly("name", &BudgetEntry::name)
+      .def_property_readonly(
+          "torque_body_N_m",
+          [](const BudgetEntry& entry) { return copy_of(entry.torque_body_N_m); })
+      .def_readonly("angle_after_minute_rad", &BudgetEntry::angle_after_minute_rad)
+      .def_readonly("angle_after_hour_rad", &BudgetEntry::angle_after_hour_rad)
+      .def_readonly("angle_after_day_rad", &BudgetEntry::angle_after_day_rad);
+  auto type = py::class_<BudgetRun, std::shared_ptr<BudgetRun>>(
+      module, "Budget", "Every disturbance torque at one state, largest first.");
+  add_result(type);
+  type.def_property_readonly("entries", [](const BudgetRun& run) { return run.budget.entries; });
+  module.def("budget", &budget_of, py::arg("experiment"),
+             "Every disturbance torque at the state of [budget], ranked, beside the paper's.");
+}
+
+}  // namespace
+
+void bind_platform(py::module_& module) {
+  bind_budget(module);
+  auto type = py::class_<BalanceOutcome, std::shared_ptr<BalanceOutcome>>(
+      module, "Balance", "The centre of mass that a recording shows.");
+  add_result(type);
+  type.def_property_readonly(
+          "offset_body_m",
+          [](const BalanceOutcome& self) { return copy_of(self.balance.offset_body_m); },
+          "Centre of mass from the centre of rotation, body axes.")
+      .def_property_readonly(
+          "standard_error_m",
+          [](const BalanceOutcome& self) { return copy_of(self.balance.sigma_m); },
+          "Infinite along an axis that the recording does not determine.");
+  module.def("balance", &balance_of, py::arg("experiment"), py::arg("recording"),
+             "The centre of mass from a recording, and the balancing masses' moves.");
+}
+
+}  // namespace photorque::python

@@ -1,0 +1,161 @@
+#include "python/bindings/results.h"
+
+#include "core/errors.h"
+#include "python/bindings/arrays.h"
+
+namespace photorque::python {
+namespace {
+
+py::object column_view(const Table::Column& column, const py::object& owner) {
+  if (column.texts.empty()) return view(column.values, owner);
+  py::list texts;
+  for (const std::string& text : column.texts) texts.append(text);
+  return texts;
+}
+
+py::dict columns_of(const py::object& self) {
+  py::dict columns;
+  for (const Table::Column& column : self.cast<const Table&>().columns) {
+    columns[py::str(column.name)] = column_view(column, self);
+  }
+  return columns;
+}
+
+py::object column_called(const py::object& self, const std::string& name) {
+  for (const Table::Column& column : self.cast<const Table&>().columns) {
+    if (column.name == name) return column_view(column, self);
+  }
+  throw py::key_error(name);
+}
+
+void bind_table(py::module_& module) {
+  py::class_<Table>(module, "Table",
+                    "Columns of equal length, by name; the unit is the name's end.")
+      .def_readonly("name", &Table::name)
+      .def_readonly("title", &Table::title)
+      .def("keys", [](const py::object& self) { return py::list(columns_of(self)); })
+      .def("to_dict", &columns_of, "All columns as a dict of arrays.")
+      .def("__getitem__", &column_called, py::arg("column"))
+      .def("__contains__",
+           [](const py::object& self, const std::string& name) {
+             return columns_of(self).contains(name.c_str());
+           })
+      .def("__len__",
+           [](const Table& table) {
+             return table.columns.empty() ? 0 : table.columns.front().size();
+           })
+      .def(
+          "to_pandas",
+          [](const py::object& self) {
+            return py::module_::import("pandas").attr("DataFrame")(columns_of(self));
+          },
+          "As a pandas DataFrame.")
+      .def("__repr__", [](const Table& table) {
+        return "Table(\"" + table.name + "\", " + std::to_string(table.columns.size()) +
+               " columns)";
+      });
+}
+
+py::array map_view(const py::object& self, std::vector<double> Map::*numbers) {
+  const auto& map = self.cast<const Map&>();
+  return view(map.*numbers, static_cast<size_t>(map.height), static_cast<size_t>(map.width), self);
+}
+
+void bind_map(py::module_& module) {
+  py::class_<Map>(module, "Map", "A field over a regular grid: averages over its bins.")
+      .def_readonly("name", &Map::name)
+      .def_readonly("title", &Map::title)
+      .def_readonly("unit", &Map::unit)
+      .def_readonly("x_label", &Map::x_label)
+      .def_readonly("y_label", &Map::y_label)
+      .def_property_readonly(
+          "value", [](const py::object& self) { return map_view(self, &Map::value); },
+          "Row by row, y and x rising.")
+      .def_property_readonly(
+          "standard_error",
+          [](const py::object& self) -> py::object {
+            if (self.cast<const Map&>().standard_error.empty()) return py::none();
+            return map_view(self, &Map::standard_error);
+          },
+          "Of every value; None where they are exact.")
+      .def_property_readonly(
+          "extent",
+          [](const Map& map) {
+            return py::make_tuple(map.x_low, map.x_high, map.y_low, map.y_high);
+          },
+          "Outer edges (x, x, y, y), as matplotlib's imshow takes them with origin=\"lower\".");
+}
+
+}  // namespace
+
+void bind_results(py::module_& module) {
+  py::class_<Estimate>(module, "Estimate", "A number and its standard error (0: exact).")
+      .def_readonly("value", &Estimate::value)
+      .def_readonly("standard_error", &Estimate::standard_error)
+      .def("__float__", [](const Estimate& estimate) { return estimate.value; })
+      .def("__repr__", [](const Estimate& estimate) {
+        return "Estimate(" + std::string(py::str(py::float_(estimate.value))) + " ± " +
+               std::string(py::str(py::float_(estimate.standard_error))) + ")";
+      });
+  bind_table(module);
+  bind_map(module);
+}
+
+py::dict figures_of(const RunResult& result) {
+  py::dict figures;
+  for (const Quantity& figure : result.product.quantities) {
+    figures[py::str(figure.name)] = py::cast(figure.estimate);
+  }
+  return figures;
+}
+
+py::dict tables_of(const RunResult& result, const py::object& owner) {
+  py::dict tables;
+  for (const Table& table : result.product.tables) {
+    tables[py::str(table.name)] =
+        py::cast(table, py::return_value_policy::reference_internal, owner);
+  }
+  return tables;
+}
+
+py::dict maps_of(const RunResult& result, const py::object& owner) {
+  py::dict maps;
+  for (const Map& map : result.product.maps) {
+    maps[py::str(map.name)] = py::cast(map, py::return_value_policy::reference_internal, owner);
+  }
+  return maps;
+}
+
+py::dict provenance_of(const Provenance& provenance) {
+  py::dict all;
+  all["program"] = provenance.program;
+  all["version"] = provenance.version;
+  all["git_hash"] = provenance.git_hash;
+  all["seed"] = provenance.seed;
+  py::dict inputs;
+  for (const auto& [name, hash] : provenance.inputs) inputs[py::str(name)] = hash;
+  all["inputs"] = inputs;
+  return all;
+}
+
+py::list write_of(const RunResult& result, const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> paths;
+  {
+    const py::gil_scoped_release release;
+    paths = write_run(result, folder);
+  }
+  paths.push_back(folder / "summary.json");
+  for (const RunFile& file : result.files) paths.push_back(folder / file.name);
+  py::list texts;
+  for (const auto& path : paths) texts.append(path.string());
+  return texts;
+}
+
+const Table& table_called(const RunResult& result, const std::string& name) {
+  for (const Table& table : result.product.tables) {
+    if (table.name == name) return table;
+  }
+  throw NumericalError("the run gave no table " + name);
+}
+
+}  // namespace photorque::python

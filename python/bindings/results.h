@@ -1,0 +1,66 @@
+// What every run gives: figures with errors, tables, maps, provenance, files.
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <string>
+
+#include "tools/runs/result.h"
+
+namespace photorque::python {
+
+namespace py = pybind11;
+
+// The Python classes Estimate, Table and Map.
+void bind_results(py::module_& module);
+
+py::dict figures_of(const RunResult& result);
+// Views: they keep `owner` alive.
+py::dict tables_of(const RunResult& result, const py::object& owner);
+py::dict maps_of(const RunResult& result, const py::object& owner);
+py::dict provenance_of(const Provenance& provenance);
+py::list write_of(const RunResult& result, const std::filesystem::path& folder);
+// NumericalError if there is none of this name.
+const Table& table_called(const RunResult& result, const std::string& name);
+
+// Gives the class of a run, which has a member `result`, what all runs have.
+template <class Run, class... More>
+void add_result(py::class_<Run, More...>& type) {
+  const auto result_of = [](const py::object& self) -> const RunResult& {
+    return self.cast<const Run&>().result;
+  };
+  type.def_property_readonly(
+          "figures", [result_of](const py::object& self) { return figures_of(result_of(self)); },
+          "Headline figures with their standard errors, by name; the unit is the name's end.")
+      .def_property_readonly(
+          "tables",
+          [result_of](const py::object& self) { return tables_of(result_of(self), self); },
+          "Tables by name.")
+      .def_property_readonly(
+          "maps", [result_of](const py::object& self) { return maps_of(result_of(self), self); },
+          "Maps by name.")
+      .def_property_readonly(
+          "warnings",
+          [result_of](const py::object& self) {
+            py::list lines;
+            for (const std::string& line : result_of(self).provenance.warnings) lines.append(line);
+            return lines;
+          },
+          "One line for each of the run's own checks that failed.")
+      .def_property_readonly(
+          "provenance",
+          [result_of](const py::object& self) { return provenance_of(result_of(self).provenance); },
+          "Version, git hash, seed and the hashes of all inputs.")
+      .def_property_readonly(
+          "summary_json", [result_of](const py::object& self) { return result_of(self).summary(); },
+          "What the program writes as summary.json.")
+      .def(
+          "write",
+          [result_of](const py::object& self, const std::filesystem::path& folder) {
+            return write_of(result_of(self), folder);
+          },
+          py::arg("folder"), "Writes every file that the program writes; gives their paths.");
+}
+
+}  // namespace photorque::python

@@ -1,0 +1,75 @@
+// torque_map(): the wrench of light over attitudes, or over directions of light.
+#include "python/bindings/arrays.h"
+#include "python/bindings/bind.h"
+#include "python/bindings/call.h"
+#include "python/bindings/experiment.h"
+#include "python/bindings/results.h"
+#include "tools/tasks/torque_map.h"
+
+namespace photorque::python {
+namespace {
+
+std::shared_ptr<TorqueMapRun> torque_map(const ExperimentHandle& experiment, int threads,
+                                         const py::object& seed, const py::object& progress,
+                                         const py::object& log) {
+  const RunOptions options = experiment.with(threads, seed);
+  const Call call(options.experiment, progress, log);
+  return call.run([&] {
+    return std::make_shared<TorqueMapRun>(torque_map_of_experiment(options, call.console()));
+  });
+}
+
+auto node_view(std::vector<Vec3> WrenchTable::*vectors) {
+  return [vectors](const py::object& self) {
+    const WrenchTable& table = self.cast<const TorqueMapRun&>().wrenches;
+    return view(table.*vectors,
+                {static_cast<py::ssize_t>(table.around_rad.size()),
+                 static_cast<py::ssize_t>(table.polar_rad.size())},
+                self);
+  };
+}
+
+py::tuple wrench_between(const TorqueMapRun& run, double polar_rad, double around_rad) {
+  const Wrench wrench = wrench_at(run.wrenches, {polar_rad, around_rad});
+  return py::make_tuple(copy_of(wrench.force_N), copy_of(wrench.torque_N_m));
+}
+
+}  // namespace
+
+void bind_wrenches(py::module_& module) {
+  auto type = py::class_<TorqueMapRun, std::shared_ptr<TorqueMapRun>>(
+      module, "TorqueMap",
+      "Force and torque of light on the body over two angles, body frame: arrays of shape (around, "
+      "polar, 3).");
+  add_result(type);
+  type.def_property_readonly(
+          "angles",
+          [](const TorqueMapRun& run) {
+            const bool tilts = run.wrenches.angles == WrenchTable::Angles::tilt_heading;
+            return tilts ? "tilt_heading" : "azimuth_elevation";
+          },
+          "\"tilt_heading\": polar is the tilt, around the heading; \"azimuth_elevation\" of the "
+          "direction towards the light: polar is the elevation, around the azimuth.")
+      .def_property_readonly("polar_rad",
+                             [](const py::object& self) {
+                               return view(self.cast<const TorqueMapRun&>().wrenches.polar_rad,
+                                           self);
+                             })
+      .def_property_readonly("around_rad",
+                             [](const py::object& self) {
+                               return view(self.cast<const TorqueMapRun&>().wrenches.around_rad,
+                                           self);
+                             })
+      .def_property_readonly("force_body_N", node_view(&WrenchTable::force_body_N))
+      .def_property_readonly("force_standard_error_N", node_view(&WrenchTable::force_error_N))
+      .def_property_readonly("torque_body_N_m", node_view(&WrenchTable::torque_body_N_m))
+      .def_property_readonly("torque_standard_error_N_m", node_view(&WrenchTable::torque_error_N_m))
+      .def("at", &wrench_between, py::arg("polar_rad"), py::arg("around_rad"),
+           "(force, torque) between the nodes, bilinear. NumericalError outside the grid.");
+  module.def("torque_map", &torque_map, py::arg("experiment"), py::kw_only(),
+             py::arg("threads") = 0, py::arg("seed") = py::none(), py::arg("progress") = py::none(),
+             py::arg("log") = py::none(),
+             "Force, torque and power over the attitudes or directions of [torque_map].");
+}
+
+}  // namespace photorque::python

@@ -1,0 +1,96 @@
+"""Builds the wheel of photorque: CMake compiles, this packs. PEP 517, the standard library alone.
+
+Environment: PHOTORQUE_BUILD names another build folder than build/; there what is compiled already is
+not compiled again.
+"""
+
+import base64
+import hashlib
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import tomllib
+import zipfile
+
+root = pathlib.Path(__file__).resolve().parent.parent
+
+
+def _version():
+    text = (root / "CMakeLists.txt").read_text(encoding="utf-8")
+    return re.search(r"project\(photorque VERSION ([\d.]+)", text).group(1)
+
+
+def _metadata():
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    lines = [
+        "Metadata-Version: 2.1",
+        f"Name: {project['name']}",
+        f"Version: {_version()}",
+        f"Summary: {project['description']}",
+        f"Requires-Python: {project['requires-python']}",
+        *(f"Requires-Dist: {one}" for one in project["dependencies"]),
+        "Description-Content-Type: text/markdown",
+    ]
+    return "\n".join(lines) + "\n\n" + (root / project["readme"]).read_text(encoding="utf-8")
+
+
+def _tag():
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+    return f"{python}-{python}-{platform}"
+
+
+def _compile():
+    """The folder of the package with the compiled module."""
+    build = pathlib.Path(os.environ.get("PHOTORQUE_BUILD", root / "build"))
+    configure = ["cmake", "--preset", "release", "-B", str(build), "-DPHOTORQUE_PYTHON=ON"]
+    # Not that of an environment, which may be gone when the build folder is used again.
+    configure.append(f"-DPython_EXECUTABLE={sys._base_executable}")
+    # CMake finds Debian's pybind11 by itself; that of pip's own environment is gone after the build.
+    if not any(pathlib.Path(f"/usr/{place}/cmake/pybind11").exists() for place in ("lib", "share")):
+        import pybind11
+
+        configure.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
+    subprocess.run(configure, cwd=root, check=True)
+    subprocess.run(["cmake", "--build", str(build), "--target", "photorque_python"], cwd=root, check=True)
+    return build / "python" / "photorque"
+
+
+def get_requires_for_build_wheel(config_settings=None):
+    return []
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    package = _compile()
+    suffix = sysconfig.get_config_var("EXT_SUFFIX")
+    files = {f"photorque/{file.name}": file.read_bytes() for file in sorted(package.iterdir())
+             if file.name.endswith(suffix) or file.suffix in (".py", ".pyi", ".typed")}
+    info = f"photorque-{_version()}.dist-info"
+    files[f"{info}/METADATA"] = _metadata().encode()
+    files[f"{info}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: photorque\n"
+                              f"Root-Is-Purelib: false\nTag: {_tag()}\n").encode()
+    files[f"{info}/LICENSE"] = (root / "LICENSE").read_bytes()
+    record = ""
+    for name, content in files.items():
+        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+        record += f"{name},sha256={digest},{len(content)}\n"
+    files[f"{info}/RECORD"] = (record + f"{info}/RECORD,,\n").encode()
+    wheel = f"photorque-{_version()}-{_tag()}.whl"
+    with zipfile.ZipFile(pathlib.Path(wheel_directory) / wheel, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return wheel
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    """What git knows of the tree, as it lies there."""
+    name = f"photorque-{_version()}"
+    known = subprocess.run(["git", "ls-files"], cwd=root, check=True, capture_output=True, text=True)
+    with tarfile.open(pathlib.Path(sdist_directory) / f"{name}.tar.gz", "w:gz") as archive:
+        for file in known.stdout.splitlines():
+            archive.add(root / file, f"{name}/{file}")
+    return f"{name}.tar.gz"

@@ -1,0 +1,122 @@
+#include "scenes/experiment/doubts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/constants.h"
+#include "scenes/experiment/coincident_faces.h"
+
+namespace photorque {
+namespace {
+
+constexpr size_t max_named = 3;
+
+std::string coincidence_line(const Scene& scene) {
+  const std::vector<CoincidentFaces> all = coincident_faces(scene);
+  if (all.empty()) return "";
+  std::ostringstream line;
+  line << "faces lie in each other, and rounding decides which of them meets the light: ";
+  for (size_t i = 0; i < std::min(all.size(), max_named); ++i) {
+    line << (i > 0 ? "; " : "") << scene.instances[all[i].first].path << " and "
+         << scene.instances[all[i].second].path << " (" << all[i].triangles
+         << " pairs of triangles)";
+  }
+  if (all.size() > max_named) line << "; and " << all.size() - max_named << " more pairs of parts";
+  return line.str();
+}
+
+Eigen::AlignedBox3d box_of(const Scene& scene, const Instance& instance) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
+    box.extend(instance.body_from_mesh * vertex);
+  }
+  return box;
+}
+
+// How often a closed surface goes round a point: 1 inside, 0 outside, 1/2 on a face of it. The sum
+// of the solid angles of its triangles over 4π.
+// Source: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125, eq. 8.
+double winding(const Scene& scene, const Instance& instance, const Vec3& point_m) {
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  double half_angles = 0.0;
+  for (const auto& triangle : mesh.triangles) {
+    std::array<Vec3, 3> to;
+    std::array<double, 3> length{};
+    for (size_t k = 0; k < 3; ++k) {
+      to[k] = instance.body_from_mesh * mesh.vertices_m[triangle[k]] - point_m;
+      length[k] = to[k].norm();
+    }
+    half_angles += std::atan2(to[0].dot(to[1].cross(to[2])),
+                              length[0] * length[1] * length[2] + to[0].dot(to[1]) * length[2] +
+                                  to[0].dot(to[2]) * length[1] + to[1].dot(to[2]) * length[0]);
+  }
+  return std::abs(half_angles) / (2.0 * pi);
+}
+
+bool is_opaque(const Scene& scene, const Instance& instance) {
+  const auto lets_through = [](const OpticalSurface& surface) {
+    return std::ranges::any_of(surface.transmitted, [](double part) { return part > 0.0; });
+  };
+  return !lets_through(scene.surfaces[instance.front_surface]) &&
+         !lets_through(scene.surfaces[instance.back_surface]);
+}
+
+void add_lamps_inside(const Scene& scene, std::span<const Beam> beams,
+                      const RigidTransform& lab_from_body, std::vector<std::string>& lines) {
+  constexpr double inside = 0.75;
+  size_t triangles_left = 100'000'000, named = 0;
+  const RigidTransform body_from_lab = lab_from_body.inverse();
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (!mesh.encloses || !is_opaque(scene, instance)) continue;
+    const Eigen::AlignedBox3d box = box_of(scene, instance);
+    for (const Beam& beam : beams) {
+      const Vec3 at_m = body_from_lab.point(beam.lab_from_emitter.translation_m);
+      if (!box.contains(at_m) || mesh.triangles.size() > triangles_left) continue;
+      triangles_left -= mesh.triangles.size();
+      if (winding(scene, instance, at_m) < inside || named++ >= max_named) continue;
+      lines.push_back("the lamp " + beam.name + " stands inside the closed part " + instance.path +
+                      ", and its light stays there");
+    }
+  }
+}
+
+void add_unresolved_parts(const Scene& scene, std::vector<std::string>& lines) {
+  // Rays start so far above the surface that they leave (TraceableScene), as a part of the scene.
+  constexpr double offset_of_size = 5e-7, offsets = 20.0;
+  Eigen::AlignedBox3d all;
+  std::vector<double> size_m;
+  for (const Instance& instance : scene.instances) {
+    const Eigen::AlignedBox3d box = box_of(scene, instance);
+    size_m.push_back(box.diagonal().norm());
+    all.extend(box);
+  }
+  const double least_m =
+      offsets * offset_of_size * (all.center().cwiseAbs().maxCoeff() + 0.5 * all.diagonal().norm());
+  size_t count = 0, smallest = 0;
+  for (size_t i = 0; i < size_m.size(); ++i) {
+    if (size_m[i] >= least_m) continue;
+    if (count++ == 0 || size_m[i] < size_m[smallest]) smallest = i;
+  }
+  if (count == 0) return;
+  std::ostringstream line;
+  line.precision(2);
+  line << count << " part(s) are smaller than " << least_m
+       << " m, which is what single precision resolves in a scene of this size; the smallest is "
+       << scene.instances[smallest].path << ", " << size_m[smallest] << " m";
+  lines.push_back(line.str());
+}
+
+}  // namespace
+
+std::vector<std::string> doubts_about(const Scene& scene, std::span<const Beam> beams,
+                                      const RigidTransform& lab_from_body) {
+  std::vector<std::string> lines;
+  if (std::string line = coincidence_line(scene); !line.empty()) lines.push_back(std::move(line));
+  add_lamps_inside(scene, beams, lab_from_body, lines);
+  add_unresolved_parts(scene, lines);
+  return lines;
+}
+
+}  // namespace photorque

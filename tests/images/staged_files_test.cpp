@@ -1,0 +1,77 @@
+// Results replace those of the command's last run, and nobody else's files.
+#include "images/publishing/staged_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <set>
+
+#include "core/files.h"
+#include "core/provenance.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Staged : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / ("staged_" + std::to_string(::getpid()));
+    fs::remove_all(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void run(const std::string& command, const std::set<std::string>& files) {
+    StagedFiles staged(folder_);
+    for (const std::string& name : files) write_file_whole(staged.path() / name, command);
+    staged.publish_as(command, build_provenance());
+  }
+  std::set<std::string> there() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
+    return names;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Staged, FilesOfTheLastRunDoNotStayBesideNewOnes) {
+  run("trace", {"a.csv", "b.csv", "summary.json"});
+  write_file_whole(folder_ / "of_the_user.csv", "mine");
+  run("trace", {"b.csv", "summary.json"});
+  EXPECT_THAT(there(), testing::UnorderedElementsAre("b.csv", "files.json", "of_the_user.csv",
+                                                     "summary.json"));
+}
+
+TEST_F(Staged, FilesOfOtherCommandsStay) {
+  run("trace", {"a.csv", "shared.csv"});
+  run("power", {"iv.csv", "shared.csv"});
+  run("trace", {"a.csv"});
+  EXPECT_THAT(there(),
+              testing::UnorderedElementsAre("a.csv", "files.json", "iv.csv", "shared.csv"));
+  EXPECT_EQ(read_file(folder_ / "shared.csv"), "power");
+}
+
+TEST_F(Staged, ListsThatWereTamperedWithReachNoOtherFolder) {
+  const fs::path outside = folder_.string() + "_outside.csv";
+  write_file_whole(outside, "precious");
+  write_file_whole(folder_ / "files.json",
+                   R"({"schema": "photorque.files/1", "commands": {"trace": {"files": ["../)" +
+                       outside.filename().string() + R"(", 7, "..", ""]}, "x": 3}})");
+  run("trace", {"a.csv"});
+  EXPECT_EQ(read_file(outside), "precious");
+  fs::remove(outside);
+}
+
+TEST_F(Staged, WhatWasNotPublishedGoesAwayWithItsFolder) {
+  {
+    const StagedFiles staged(folder_ / "deep" / "er");
+    write_file_whole(staged.path() / "a.csv", "a");
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "deep"));
+}
+
+}  // namespace
+}  // namespace photorque

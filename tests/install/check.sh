@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Installs into a folder of its own and uses what is there as a stranger would: a CMake project, pkg-config,
+# the manual page, the completions.
+#   check.sh BUILD_FOLDER SOURCE_FOLDER
+set -euo pipefail
+build="$1"
+source="$2"
+place="$(mktemp -d)"
+trap 'rm -rf "$place"' EXIT
+prefix="$place/prefix"
+cmake --install "$build" --prefix "$prefix" >/dev/null
+
+echo "== find_package"
+cmake -S "$source/tests/install/example" -B "$place/example" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
+cmake --build "$place/example"
+"$place/example/example" "$source/scenes/stasis/nominal.toml" | tee "$place/said"
+"$prefix/bin/photorque" trace "$prefix/share/photorque/scenes/stasis/nominal.toml" --set trace.rays=65536 \
+  --out "$place/out" --quiet
+absorbed="$(sed -n 's/^absorbed \(.*\) W$/\1/p' "$place/said")"
+# The program and a project with the library find the same number, to the last bit.
+/usr/bin/python3 - "$place/out/summary.json" "$absorbed" <<'P'
+import json, sys
+assert json.load(open(sys.argv[1]))["absorbed_W"]["value"] == float(sys.argv[2]), sys.argv
+P
+grep -q '^error absent.toml: ' "$place/said"
+grep -qE '^tilt 0\.[0-9]+ rad$|^tilt [0-9.]+e-[0-9]+ rad$' "$place/said"
+
+echo "== Only our own symbols"
+library="$(find "$prefix" -name 'libphotorque.so.*.*.*')"
+foreign="$(nm -D --defined-only -C "$library" | grep -cvE 'photorque::' || true)"
+echo "$foreign of $(nm -D --defined-only "$library" | wc -l) are not"
+[[ "$foreign" -eq 0 ]]
+
+echo "== Headers: nothing missing, nothing of others"
+for header in $(cd "$prefix/include/photorque" && find . -path ./core/precompiled.h -prune -o -name '*.h' -print); do
+  for included in $(sed -n 's/^#include "\(.*\)".*/\1/p' "$prefix/include/photorque/$header"); do
+    [[ -f "$prefix/include/photorque/$included" ]] || { echo "$header wants $included"; exit 1; }
+  done
+done
+if grep -rE '#include <(embree|tbb|OpenImageIO|nlohmann|CLI|toml|cairo)' "$prefix/include"; then exit 1; fi
+
+echo "== pkg-config"
+PKG_CONFIG_PATH="$(dirname "$(find "$prefix" -name photorque.pc)")"
+export PKG_CONFIG_PATH
+[[ -f "$(pkg-config --variable=includedir photorque)/photorque/tools/tasks/trace.h" ]]
+[[ -f "$(pkg-config --variable=libdir photorque)/libphotorque.so" ]]
+pkg-config --modversion --cflags --libs-only-l photorque
+
+echo "== Manual page and completions"
+verbs="$("$prefix/bin/photorque" --help | sed -n 's/^  \([a-z][a-z-]*\)  .*/\1/p')"
+for file in man/man1/photorque.1 bash-completion/completions/photorque zsh/vendor-completions/_photorque \
+  fish/vendor_completions.d/photorque.fish; do
+  text="$(sed 's/\\-/-/g' "$prefix/share/$file")"
+  for verb in $verbs; do
+    grep -qw -- "$verb" <<<"$text" || { echo "$file does not name $verb"; exit 1; }
+  done
+done
+bash -n "$prefix/share/bash-completion/completions/photorque"
+# shellcheck disable=SC1091
+(source "$prefix/share/bash-completion/completions/photorque"
+ COMP_WORDS=(photorque pro) COMP_CWORD=1 && _photorque && [[ "${COMPREPLY[*]}" == "propagate prove" ]]
+ COMP_WORDS=(photorque trace x.toml --tar) COMP_CWORD=3 && _photorque && [[ "${COMPREPLY[*]}" == "--target-error" ]])
+echo "$(wc -w <<<"$verbs") commands"

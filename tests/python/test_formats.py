@@ -1,0 +1,65 @@
+"""Files for other programs, read by their readers where these are installed."""
+
+import importlib.util
+import unittest
+
+import numpy as np
+import photorque
+from support import FolderTest, nominal
+
+
+def there(module):
+    return importlib.util.find_spec(module) is not None
+
+
+class Formats(FolderTest):
+    def setUp(self):
+        super().setUp()
+        self.power = photorque.power(photorque.Experiment(nominal, keys={"trace.rays": 65536}))
+        self.power.write(self.folder)
+
+    @unittest.skipUnless(there("h5py"), "no h5py (python3-h5py)")
+    def test_h5py_reads_everything_of_the_run(self):
+        import h5py
+
+        with h5py.File(self.folder / "run.h5") as file:
+            for name, map in self.power.maps.items():
+                np.testing.assert_array_equal(file[f"maps/{name}/value"][:], map.value)
+            for name, figure in self.power.figures.items():
+                value, error = file[f"figures/{name}"][:]
+                self.assertEqual((value, error), (figure.value, figure.standard_error))
+            for name, table in self.power.tables.items():
+                for column, values in table.to_dict().items():
+                    found = file[f"tables/{name}/{column}"]
+                    if isinstance(values, list):
+                        self.assertEqual([text.decode() for text in found[:]], values)
+                    else:
+                        np.testing.assert_array_equal(found[:], values)
+            self.assertEqual(file.attrs["git_hash"].decode(), photorque.git_hash)
+
+    @unittest.skipUnless(there("vtk"), "no VTK (python3-vtk9)")
+    def test_vtk_reads_the_maps(self):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkIOHDF import vtkHDFReader
+
+        reader = vtkHDFReader()
+        reader.SetFileName(str(self.folder / "irradiance_solar_array.vtkhdf"))
+        reader.Update()
+        image = reader.GetOutput()
+        map = self.power.maps["irradiance_solar_array"]
+        height, width = map.value.shape
+        self.assertEqual(image.GetDimensions(), (width, height, 2))
+        values = vtk_to_numpy(image.GetPointData().GetArray("value")).reshape(2, height, width)
+        np.testing.assert_array_equal(values[0], map.value)
+        np.testing.assert_array_equal(values[1], map.value)
+        errors = vtk_to_numpy(image.GetPointData().GetArray("standard_error"))
+        np.testing.assert_array_equal(errors.reshape(2, height, width)[0], map.standard_error)
+        x_low, _, y_low, _ = map.extent
+        dx, dy, _ = image.GetSpacing()
+        x, y, _ = image.GetPoint(0)
+        self.assertAlmostEqual(x - dx / 2, x_low, places=12)
+        self.assertAlmostEqual(y - dy / 2, y_low, places=12)
+
+
+if __name__ == "__main__":
+    unittest.main()

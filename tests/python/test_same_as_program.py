@@ -1,0 +1,95 @@
+"""Every run gives the program's files, byte for byte."""
+
+import csv
+import io
+import unittest
+
+import numpy as np
+import photorque
+from support import FolderTest, attitude, nominal
+
+few_rays = {"trace.rays": 65536}
+
+
+class SameAsProgram(FolderTest):
+    def test_trace(self):
+        files = self.run_program("trace", nominal, "--set", "trace.rays=65536")
+        traced = photorque.trace(photorque.Experiment(nominal, keys=few_rays))
+        self.assert_same_files(traced, files, 10)
+
+    def test_power_and_its_numbers(self):
+        experiment = photorque.Experiment(nominal, keys=few_rays | {"attitude.tilt_deg": 30})
+        files = self.run_program("power", nominal, "--set", "trace.rays=65536", "--set",
+                                 "attitude.tilt_deg=30")
+        power = photorque.power(experiment)
+        self.assert_same_files(power, files, 20)
+        rows = [line for line in files["iv.csv"].decode().splitlines() if not line.startswith("#")]
+        table = list(csv.DictReader(io.StringIO("\n".join(rows))))
+        for column in ("voltage_V", "current_A", "power_W"):
+            np.testing.assert_array_equal([float(row[column]) for row in table],
+                                          power.curve[column])
+        self.assertEqual(power.maxima["power_W"].max(), power.figures["array_power_W"].value)
+
+    def test_torque_map(self):
+        keys = {"trace.rays": 65536, "torque_map.tilt_deg": [0, 30], "torque_map.heading_deg": [0, 90]}
+        files = self.run_program("torque-map", nominal, "--set", "trace.rays=65536", "--set",
+                                 "torque_map.tilt_deg=[0, 30]", "--set",
+                                 "torque_map.heading_deg=[0, 90]")
+        table = photorque.torque_map(photorque.Experiment(nominal, keys=keys))
+        self.assert_same_files(table, files, 5)
+        self.assertEqual(table.torque_body_N_m.shape, (2, 2, 3))
+        written = table.tables["wrench_table_body"]
+        np.testing.assert_array_equal(table.torque_body_N_m[..., 1].ravel(), written["torque_y_N_m"])
+        force, torque = table.at(polar_rad=table.polar_rad[1], around_rad=table.around_rad[0])
+        np.testing.assert_array_equal(torque, table.torque_body_N_m[0, 1])
+        np.testing.assert_array_equal(force, table.force_body_N[0, 1])
+
+    def test_budget(self):
+        files = self.run_program("budget", attitude)
+        budget = photorque.budget(photorque.Experiment(attitude))
+        self.assert_same_files(budget, files, 3)
+        sizes = [np.linalg.norm(entry.torque_body_N_m) for entry in budget.entries]
+        self.assertEqual(sizes, sorted(sizes, reverse=True))
+
+    def test_propagate(self):
+        files = self.run_program("propagate", attitude, "--seed", "7", "--set",
+                                 "propagate.duration_s=20")
+        motion = photorque.propagate(
+            photorque.Experiment(attitude, keys={"propagate.duration_s": 20}), seed=7)
+        self.assert_same_files(motion, files, 5)
+        np.testing.assert_array_equal(motion.time_s, motion.recording["t_s"])
+        np.testing.assert_allclose(np.linalg.norm(motion.attitude_wxyz, axis=1), 1, rtol=1e-14)
+        self.assertEqual(motion.rate_body_rad_s.shape, (len(motion.time_s), 3))
+
+    def test_diagnose(self):
+        recorded = photorque.propagate(
+            photorque.Experiment(attitude, keys={"propagate.duration_s": 60}))
+        recorded.write(self.folder / "recorded")
+        recording = self.folder / "recorded" / "recording.csv"
+        files = self.run_program("diagnose", attitude, "--recording", recording)
+        diagnosis = photorque.diagnose(photorque.Experiment(attitude), [recording])
+        self.assertEqual(diagnosis.json.encode(), files["diagnosis.json"])
+        self.assertEqual(diagnosis.report_html.encode(), files["report.html"])
+        self.assertEqual(diagnosis.improved(self.folder / "module").encode(),
+                         files["improved.toml"])
+        self.assertIn(diagnosis.verdict, ("consistent", "missing_physics", "unexplained"))
+
+    def test_fit_cell(self):
+        text = """[fit]
+cells_in_series = 36
+[[fit.datasheet]]
+short_circuit_A = 5.116
+open_circuit_V = 22.05
+maximum_A = 4.66
+maximum_V = 17.63
+"""
+        file = self.folder / "fit.toml"
+        file.write_text(text)
+        files = self.run_program("fit-cell", file)
+        fit = photorque.fit_cell(photorque.Experiment(file))
+        self.assert_same_files(fit, files, 2)
+        self.assertGreater(fit.figures["series_ohm"].value, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

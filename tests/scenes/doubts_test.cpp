@@ -1,0 +1,113 @@
+// Scenes that can be traced and whose results are doubtful.
+#include "scenes/experiment/doubts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenes/experiment/coincident_faces.h"
+
+namespace photorque {
+namespace {
+
+// A square in the plane z = `height_m`, looking up, from (x, 0) to (x + 1, 1).
+Mesh square(double x, double height_m, bool other_diagonal) {
+  Mesh mesh;
+  mesh.vertices_m = {
+      {x, 0, height_m}, {x + 1, 0, height_m}, {x + 1, 1, height_m}, {x, 1, height_m}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  if (other_diagonal) mesh.triangles = {{0, 1, 3}, {1, 2, 3}};
+  return mesh;
+}
+
+// A cube of side 2 about the origin, looking out.
+Mesh cube() {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices_m.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+  }
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  mesh.encloses = true;
+  return mesh;
+}
+
+OpticalSurface black() {
+  OpticalSurface surface;
+  surface.absorbed.fill(1.0);
+  surface.specular.fill(0.0);
+  surface.diffuse.fill(0.0);
+  surface.transmitted.fill(0.0);
+  return surface;
+}
+
+Scene scene_of(const std::vector<Mesh>& meshes) {
+  Scene scene;
+  scene.surfaces = {black()};
+  for (const Mesh& mesh : meshes) {
+    Instance instance;
+    instance.path = "part" + std::to_string(scene.meshes.size());
+    instance.mesh = static_cast<uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(mesh);
+    scene.instances.push_back(instance);
+  }
+  return scene;
+}
+
+Beam lamp_at(const Vec3& position_m) {
+  return {"lamp", nullptr, {Quat::Identity(), position_m}, {}};
+}
+
+TEST(CoincidentFaces, AreFoundWhereTheyOverlapAndLookTheSameWay) {
+  const auto pairs = [](double x, double height_m) {
+    const auto found = coincident_faces(scene_of({square(0, 0, false), square(x, height_m, true)}));
+    return found.empty() ? size_t{0} : found.front().triangles;
+  };
+  EXPECT_EQ(pairs(0.0, 0.0), 4u);  // each triangle over both of the other
+  EXPECT_GE(pairs(0.5, 0.0), 1u);
+  EXPECT_EQ(pairs(1.0, 0.0), 0u);   // side by side
+  EXPECT_EQ(pairs(0.0, 1e-3), 0u);  // one above the other
+}
+
+TEST(CoincidentFaces, OfPartsThatStandOnEachOtherAreNone) {
+  Mesh below = square(0, 0, false);
+  for (auto& triangle : below.triangles) std::swap(triangle[1], triangle[2]);
+  EXPECT_TRUE(coincident_faces(scene_of({square(0, 0, false), below})).empty());
+}
+
+TEST(Doubts, NameCoincidentFaces) {
+  const auto lines = doubts_about(scene_of({square(0, 0, false), square(0, 0, false)}), {}, {});
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], testing::HasSubstr("part0 and part1 (2 pairs of triangles)"));
+}
+
+TEST(Doubts, NameLampsInsideClosedParts) {
+  const Scene scene = scene_of({cube()});
+  const std::vector<Beam> inside = {lamp_at({0.3, -0.9, 0.5})};
+  const auto lines = doubts_about(scene, inside, {});
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], testing::HasSubstr("lamp stands inside the closed part part0"));
+  for (const Vec3& outside : {Vec3(0, 0, 1.0), Vec3(0, 0, 1.5), Vec3(5, 0, 0)}) {
+    EXPECT_TRUE(doubts_about(scene, std::vector<Beam>{lamp_at(outside)}, {}).empty());
+  }
+  // What was outside is inside once the platform has turned under it.
+  const std::vector<Beam> corner = {lamp_at({1.2, 0, 0})};
+  EXPECT_TRUE(doubts_about(scene, corner, {}).empty());
+  EXPECT_EQ(doubts_about(scene, corner, lab_from_body_at(M_PI / 4, M_PI / 2)).size(), 0u);
+  EXPECT_EQ(
+      doubts_about(scene, corner, {Quat(Eigen::AngleAxisd(M_PI / 4, Vec3::UnitZ())), {}}).size(),
+      1u);
+}
+
+TEST(Doubts, NamePartsThatSinglePrecisionDoesNotResolve) {
+  Mesh tiny = square(0, 0, false);
+  for (Vec3& vertex : tiny.vertices_m) vertex = 1e-6 * vertex + Vec3(0, 0, 5);
+  EXPECT_TRUE(doubts_about(scene_of({square(0, 0, false)}), {}, {}).empty());
+  Mesh far = square(0, 0, false);
+  for (Vec3& vertex : far.vertices_m) vertex += Vec3(1e3, 0, 0);
+  const auto lines = doubts_about(scene_of({tiny, far}), {}, {});
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], testing::HasSubstr("the smallest is part0"));
+}
+
+}  // namespace
+}  // namespace photorque

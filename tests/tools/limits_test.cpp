@@ -1,0 +1,119 @@
+// What a run refuses before it works, and what it warns of: each was once accepted, or ended the
+// program.
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/command_test.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const fs::path shipped_scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
+const std::string stasis_nominal = (shipped_scenes / "stasis" / "nominal.toml").string();
+const std::string quick_run = " --set trace.rays=16384", endless_run = " --set trace.rays=3e10";
+
+class Limits : public CommandTest {
+ protected:
+  void expect_refused(const std::string& arguments, const std::string& words) const {
+    const Outcome got = run(arguments + " --out " + at("o"));
+    EXPECT_EQ(got.status, 2) << arguments << got.err;
+    EXPECT_THAT(got.err, HasSubstr(words));
+    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+    EXPECT_FALSE(fs::exists(at("o")));
+  }
+};
+
+TEST_F(Limits, MapsThatDoNotFitIntoMemoryAreRefusedBeforeTheWork) {
+  expect_refused("trace " + stasis_nominal + endless_run +
+                     " --set receiver[0].bins=[4096,4096] --max-memory 2",
+                 "expected at most 2 GB (--max-memory)");
+}
+
+TEST_F(Limits, MemoryIsHeldWhereItIsAllowed) {
+  EXPECT_EQ(run("trace " + stasis_nominal + quick_run + " --max-memory 2 --out " + at("o")).status,
+            0);
+}
+
+TEST_F(Limits, TimesOfZeroAreRefused) {
+  expect_refused("trace " + stasis_nominal + " --max-time 0",
+                 "--max-time: found 0, expected a number of seconds > 0");
+}
+
+TEST_F(Limits, LampsAndOpeningsFartherThanAnythingBuiltAreRefused) {
+  expect_refused("trace " + stasis_nominal + " --set source[0].aperture_diameter_m=1e11",
+                 "expected an opening of at most 1e9 m");
+}
+
+TEST_F(Limits, WrenchesOfAPartCalledBodyAreRefusedBeforeTheTrace) {
+  expect_refused("trace " + stasis_nominal + endless_run +
+                     " --set receiver[1].node=solar_array --set receiver[1].name=body",
+                 "expected another name");
+}
+
+TEST_F(Limits, DevicesAreNoExperiments) {
+  expect_refused("trace /dev/zero", "/dev/zero: found a device, expected a file");
+}
+
+TEST_F(Limits, ChargesBeyondTheBatteryAreRefused) {
+  expect_refused("propagate " + (shipped_scenes / "stasis" / "attitude.toml").string() +
+                     " --set platform.battery_capacity_Ah=1 --set propagate.initial_charge_Ah=2",
+                 "expected at most the 1.000000 of platform.battery_capacity_Ah");
+}
+
+// The stasis model as its buffer inside the file; here the buffer lies elsewhere, behind a link.
+TEST_F(Limits, LinksOutOfTheModelsFolderAreFollowedOnlyWhenAllowed) {
+  nlohmann::json model =
+      nlohmann::json::parse(file_text(shipped_scenes / "dumbbell" / "dumbbell.gltf"));
+  const std::string uri = model["buffers"][0]["uri"];
+  ASSERT_TRUE(uri.starts_with("data:"));
+  fs::create_directories(at("model"));
+  nlohmann::json image = {{"uri", "link.bin"}, {"byteLength", 4}};
+  model["buffers"].push_back(image);
+  write("secret.bin", "1234");
+  fs::create_symlink(at("secret.bin"), at("model/link.bin"));
+  write("model/dumbbell.gltf", model.dump());
+  const std::string experiment =
+      write("model/e.toml", file_text(shipped_scenes / "dumbbell" / "dumbbell.toml"));
+  expect_refused("trace " + experiment + quick_run, "a link or path out of its folder");
+  const Outcome allowed =
+      run("trace " + experiment + quick_run + " --allow-outside --out " + at("o"));
+  EXPECT_EQ(allowed.status, 0) << allowed.err;
+}
+
+TEST_F(Limits, CoincidentFacesAreALoudWarning) {
+  nlohmann::json model =
+      nlohmann::json::parse(file_text(shipped_scenes / "dumbbell" / "dumbbell.gltf"));
+  size_t with_mesh = 0;
+  while (!model["nodes"][with_mesh].contains("mesh")) ++with_mesh;
+  nlohmann::json twin = model["nodes"][with_mesh];
+  twin["name"] = "twin";
+  twin.erase("children");
+  model["nodes"].push_back(twin);
+  bool placed = false;
+  for (auto& node : model["nodes"]) {
+    if (!node.contains("children")) continue;
+    for (const auto& child : node["children"]) placed = placed || child == with_mesh;
+    if (!placed) continue;
+    node["children"].push_back(model["nodes"].size() - 1);
+    break;
+  }
+  if (!placed) model["scenes"][0]["nodes"].push_back(model["nodes"].size() - 1);
+  write("dumbbell.gltf", model.dump());
+  const std::string experiment =
+      write("e.toml", file_text(shipped_scenes / "dumbbell" / "dumbbell.toml"));
+  const Outcome got = run("trace " + experiment + quick_run + " --out " + at("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("WARNING: faces lie in each other"));
+  EXPECT_THAT(file_text(at("o/summary.json")), HasSubstr("faces lie in each other"));
+}
+
+TEST_F(Limits, SelftestPasses) {
+  const Outcome got = run("selftest");
+  EXPECT_EQ(got.status, 0) << got.out << got.err;
+  EXPECT_THAT(got.out, HasSubstr(" checks, 0 wrong"));
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,163 @@
+// Where a run writes: found wanting before the work, kept by one run at a time, left clean.
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "core/files.h"
+#include "tests/tools/command_test.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using Clock = std::chrono::steady_clock;
+
+const std::string stasis =
+    (fs::path(PHOTORQUE_SOURCE_DIR) / "scenes" / "stasis" / "nominal.toml").string();
+const std::string quick = " --set trace.rays=16384", endless = " --set trace.rays=3e10";
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+class OutputFolders : public CommandTest {
+ protected:
+  // `photorque trace` on its own, as another process.
+  pid_t start(const std::string& arguments) const {
+    const std::string command = "exec " + std::string(PHOTORQUE_BINARY_DIR) + "/photorque trace " +
+                                stasis + arguments + " >/dev/null 2>&1";
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::signal(SIGINT, SIG_DFL);  // what a shell starts in the background ignores it
+      ::signal(SIGHUP, SIG_DFL);
+      ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+      ::_exit(127);
+    }
+    return child;
+  }
+  static void wait_until(const std::function<bool()>& there) {
+    for (const auto begin = Clock::now(); !there() && seconds_since(begin) < 20.0;) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  std::vector<std::string> hidden(const std::string& name) const {
+    std::vector<std::string> all;
+    std::error_code gone;
+    for (const auto& entry : fs::recursive_directory_iterator(at(name), gone)) {
+      const std::string file = entry.path().filename().string();
+      if (file.starts_with('.')) all.push_back(file);
+    }
+    return all;
+  }
+};
+
+// It took 16 s of work before.
+TEST_F(OutputFolders, ThatAreFilesAreFoundBeforeTheWork) {
+  write("taken", "mine");
+  const auto begin = Clock::now();
+  for (const std::string out : {"taken", "taken/below"}) {
+    const Outcome got = run("trace " + stasis + endless + " --out " + at(out));
+    EXPECT_EQ(got.status, 2);
+    EXPECT_THAT(got.err, HasSubstr("--out: found"));
+  }
+  EXPECT_LT(seconds_since(begin), 10.0);
+  EXPECT_EQ(file_text(at("taken")), "mine");
+}
+
+TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
+  const Outcome kernel = run("trace " + stasis + endless + " --out /sys/kernel/photorque");
+  EXPECT_EQ(kernel.status, 2);
+  EXPECT_THAT(kernel.err, HasSubstr("expected a folder that can be made"));
+  fs::create_directories(at("locked"));
+  fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
+  if (::access(at("locked").c_str(), W_OK) == 0) GTEST_SKIP() << "the superuser may write anywhere";
+  const Outcome locked = run("trace " + stasis + endless + " --out " + at("locked"));
+  EXPECT_EQ(locked.status, 2);
+  EXPECT_THAT(locked.err, HasSubstr("a folder that takes no files"));
+}
+
+TEST_F(OutputFolders, AreNotLeftBehindByRunsThatAreRefused) {
+  EXPECT_EQ(run("trace " + at("none.toml") + " --out " + at("a/b/c")).status, 2);
+  EXPECT_FALSE(fs::exists(at("a")));
+}
+
+TEST_F(OutputFolders, BelongToOneRunAtATime) {
+  const pid_t first = start(endless + " --out " + at("o"));
+  wait_until([&] { return fs::exists(at("o")); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const Outcome second = run("trace " + stasis + quick + " --out " + at("o"));
+  ::kill(first, SIGKILL);
+  ::waitpid(first, nullptr, 0);
+  EXPECT_EQ(second.status, 2);
+  EXPECT_THAT(second.err, HasSubstr("a folder that another run is writing into"));
+  // Whoever is killed holds nothing any more.
+  EXPECT_EQ(run("trace " + stasis + quick + " --out " + at("o")).status, 0);
+}
+
+TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int after_ms : {30, 200, 450}) {
+      const pid_t child = start(quick + " --out " + at("o/p"));
+      std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+      const auto begin = Clock::now();
+      ::kill(child, signal);
+      int status = 0;
+      ::waitpid(child, &status, 0);
+      EXPECT_LT(seconds_since(begin), 1.0);
+      wait_until([&] { return hidden("o").empty(); });
+      EXPECT_THAT(hidden("o"), testing::IsEmpty()) << after_ms;
+      EXPECT_LT(seconds_since(begin), 2.0);
+      const bool ended = WIFSIGNALED(status) && WTERMSIG(status) == signal;
+      EXPECT_TRUE(ended || (WIFEXITED(status) && WEXITSTATUS(status) == 0)) << status;
+      fs::remove_all(at("o"));
+    }
+  }
+}
+
+TEST_F(OutputFolders, AreClearedOfWhatKilledRunsLeft) {
+  const pid_t child = start(endless + " --out " + at("o"));
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  std::string name = temporary_beside(fs::path(at("o")) / "results").filename().string();
+  const std::string own = std::to_string(::getpid());
+  name.replace(name.find(own), own.size(), std::to_string(child));
+  fs::create_directories(fs::path(at("o")) / name);
+  ASSERT_EQ(run("trace " + stasis + quick + " --out " + at("o")).status, 0);
+  EXPECT_THAT(hidden("o"), testing::IsEmpty());
+}
+
+TEST_F(OutputFolders, HoldFilesOfTheLastRunAlone) {
+  const std::string rays = " --set trace.arriving_rays=4096";
+  ASSERT_EQ(run("trace " + stasis + quick + rays + " --out " + at("o")).status, 0);
+  write("o/mine.csv", "mine");
+  ASSERT_TRUE(fs::exists(at("o/rays_solar_array.tm25ray")));
+  ASSERT_EQ(run("trace " + stasis + quick + " --out " + at("o")).status, 0);
+  EXPECT_FALSE(fs::exists(at("o/rays_solar_array.tm25ray")));
+  EXPECT_TRUE(fs::exists(at("o/mine.csv")));
+}
+
+TEST_F(OutputFolders, SayWhichDesignOfASweepIsDamaged) {
+  const std::string plan = write("plan.toml", file_text(stasis) +
+                                                  "\n[sweep]\nverb = \"trace\"\n[[sweep.axis]]\n"
+                                                  "key = \"attitude.tilt_deg\"\nvalues = [0, 5]\n");
+  fs::copy(fs::path(stasis).parent_path() / "stasis.gltf", at("stasis.gltf"));
+  const std::string sweep = "sweep " + plan + quick + " --out " + at("o");
+  const Outcome first = run(sweep);
+  ASSERT_EQ(first.status, 0) << first.err;
+  for (const std::string damage : {"", "{", "{}", "{\"a\": {\"value\": null}}"}) {
+    for (const auto& entry : fs::directory_iterator(at("o/designs"))) {
+      std::ofstream(entry.path() / "summary.json") << damage;
+    }
+    const Outcome got = run(sweep);
+    EXPECT_EQ(got.status, 2);
+    EXPECT_THAT(got.err, HasSubstr("summary.json: found a damaged summary of a design"));
+  }
+}
+
+}  // namespace
+}  // namespace photorque

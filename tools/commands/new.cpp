@@ -1,0 +1,188 @@
+// photorque new: a first experiment, commented, for a model of one's own or for a platform alone.
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/text/numbers.h"
+#include "receivers/surface_grid.h"
+#include "scenes/experiment/toml_writer.h"
+#include "scenes/gltf/reader.h"
+#include "tools/commands/terminal.h"
+#include "tools/tasks/check.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* platform_text = R"(
+# ---- The platform: for budget, propagate, balance and diagnose
+[platform]
+topology = "tabletop"                 # dumbbell | tabletop | hollow | free (a spacecraft)
+mass_kg = 7.0                         # of everything that turns
+inertia_kg_m2 = [[0.11, 0, 0], [0, 0.12, 0], [0, 0, 0.19]]   # about the centre of rotation, body axes
+tilt_limit_deg = 30                   # the bearing's stop
+
+[environment]
+gravity_m_s2 = 9.80665
+latitude_deg = 45.5
+
+# One table for every torque that acts; docs/disturbances.md has them all. A number may be given with
+# its uncertainty, which diagnose then fits.
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = { value = [0, 0, -1e-5], sigma = [2e-7, 2e-7, 1e-6] }   # of the centre of mass
+
+[[disturbance]]
+kind = "bearing_drag"
+coefficient_N_m_s = 2e-5
+
+[sensors.camera]
+noise_arcsec = [37, 37, 12]           # about lab x, y and z
+[sensors.gyro]
+noise_rad_s = 2e-4
+
+[propagate]
+duration_s = 600
+initial_tilt_deg = 1
+)";
+
+std::string quoted(const std::string& text) {
+  return toml_value({text});
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+double top_m(const Scene& scene) {
+  double top = 0.0;
+  for (const Instance& instance : scene.instances) {
+    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
+      top = std::max(top, (instance.body_from_mesh * vertex).z());
+    }
+  }
+  return top;
+}
+
+double upward_area_m2(const Scene& scene, uint32_t instance) {
+  double area = 0.0;
+  const std::vector<uint32_t> alone = {instance};
+  for (const SurfaceFace& face : faces_of(scene, alone, Vec3::UnitZ())) {
+    area += face.area_body_m2.z();
+  }
+  return area;
+}
+
+// The part that light from above most likely is meant for: one whose name says so, else the one
+// with most surface to be seen from above.
+std::string lit_node(const Scene& scene) {
+  std::string best;
+  double best_score = -1.0;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const std::string& path = scene.instances[i].path;
+    const auto says = [&](const char* word) { return path.find(word) != std::string::npos; };
+    const double bonus = says("solar") || says("cells") || says("panel") ? 1e6 : 0.0;
+    const double area_m2 = upward_area_m2(scene, i);
+    const double score = area_m2 > 0.0 ? area_m2 * (1.0 + bonus) : -1.0;
+    if (score > best_score) {
+      best_score = score;
+      best = path;
+    }
+  }
+  return best;
+}
+
+std::string listed(const std::string& what, const std::set<std::string>& names) {
+  constexpr size_t most = 40;
+  std::string text = "# " + what + ":\n";
+  size_t count = 0;
+  for (const std::string& name : names) {
+    if (++count > most) return text + "#   and " + std::to_string(names.size() - most) + " more\n";
+    text += "#   " + quoted(name) + "\n";
+  }
+  return text;
+}
+
+std::string light_text(const GltfModel& model, const std::string& file) {
+  const Scene& scene = model.scene;
+  std::set<std::string> nodes, materials;
+  for (const Instance& instance : scene.instances) {
+    nodes.insert(instance.path);
+    if (!instance.material.empty()) materials.insert(instance.material);
+  }
+  const double radius_m = scene.radius_m(), height_m = top_m(scene) + 2.0 * radius_m;
+  return "[scene]\nfile = " + quoted(file) +
+         "   # metres, +Y up: glTF (x, y, z) is body (x, -z, y), its origin the centre of "
+         "rotation\n"
+         "# metres_per_unit = 0.001            # of a model in millimetres\n\n" +
+         listed("Materials whose optics may be given here instead of derived", materials) +
+         "# [[material]]\n# name = \"...\"\n# absorptance = 0.9\n# diffuse = 0.1\n\n"
+         "# ---- Light\n[[source]]\nkind = \"led\"                         # led | led_array | "
+         "laser "
+         "| sun | solar_simulator | ies | ray_file\npower_W = 10                          # "
+         "radiant\n"
+         "aperture_diameter_m = " +
+         number(0.1 * radius_m) +
+         "\nprofile = \"gaussian\"\nfwhm_deg = 10                         # of the radiant "
+         "intensity\nwavelength_nm = 730\nposition_m = [0, 0, " +
+         number(height_m) +
+         "]              # lab: z up\ndirection = [0, 0, -1]\n\n# ---- What is measured\n" +
+         listed("Parts", nodes) +
+         "[[receiver]]\nkind = \"flux_map\"\nnode = " + quoted(lit_node(scene)) +
+         "\nfacing = [0, 0, 1]                    # only faces turned up\nbins = [100, 100]\n\n"
+         "[[receiver]]\nkind = \"wrench\"                       # force and torque of light on the "
+         "whole\nname = \"platform\"\n\n[attitude]\ntilt_deg = 0\nheading_deg = 0\n\n[trace]\nrays "
+         "= 1048576                        # standard errors fall with their root\n";
+}
+
+void run_new(const CommandLine& line) {
+  const Console console = terminal(line);
+  std::error_code unreadable;
+  if (fs::exists(line.experiment, unreadable)) {
+    throw InputError({line.experiment.string()}, "", "a file that is there already",
+                     "a name for a new one");
+  }
+  std::string text =
+      "# Made by photorque new: a first guess at everything. Keys carry their unit; "
+      "docs/experiment.md has them all.\n# photorque check " +
+      line.experiment.filename().string() + " says what can be done with it.\n\n";
+  if (line.scene) {
+    const GltfModel model = read_gltf(*line.scene);
+    const fs::path file =
+        fs::absolute(*line.scene).lexically_proximate(fs::absolute(line.experiment).parent_path());
+    text += light_text(model, file.generic_string());
+  } else {
+    text += std::string(platform_text).substr(1);
+  }
+  // So that names of files beside it can be followed.
+  if (line.experiment.has_parent_path())
+    fs::create_directories(line.experiment.parent_path(), unreadable);
+  RunOptions options;
+  options.experiment = line.experiment;
+  options.text = text;
+  const CheckReport report = check_experiment(options);
+  if (!report.mistakes.empty()) throw InputError(report.mistakes.front());
+  write_file_whole(line.experiment, text);
+  console.line("Written to " + line.experiment.string());
+  for (const CheckReport::Command& command : report.commands) {
+    console.line("  " + padded(command.name, 12) + command.what);
+  }
+  for (const std::string& note : report.notes) console.line("note: " + note);
+}
+
+}  // namespace
+
+Verb new_verb() {
+  Verb verb{"new", "A first experiment, commented: for a glTF model (--scene), or a platform alone",
+            run_new};
+  verb.takes_scene = true;
+  verb.writes = false;
+  return verb;
+}
+
+}  // namespace photorque

@@ -1,0 +1,50 @@
+// Ctrl-C, SIGTERM, SIGHUP: the program ends at once and leaves no half-written file behind.
+#pragma once
+
+#include <csignal>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace photorque {
+
+// Made first thing in main(), before other threads are, which inherit that they are not to be
+// interrupted: one thread waits for the signals, removes the temporary files of the folders in use,
+// stops the processes that were started, and lets the signal end the program, as whoever started it
+// expects. Signals that are ignored (nohup) stay so.
+class Interruption {
+ public:
+  Interruption();
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  // A folder in use, and those above it that are not there yet, as long as it lives.
+  class Watch {
+   public:
+    Watch(Interruption& interruption, const std::filesystem::path& folder);
+    ~Watch();
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
+
+   private:
+    Interruption& interruption_;
+  };
+
+ private:
+  struct InUse {
+    std::filesystem::path folder;
+    size_t missing = 0;  // folders at the end of the path that were not there
+  };
+  void wait();
+  void clean(pid_t process) const;
+  [[noreturn]] void end(int signal);
+
+  sigset_t signals_{};
+  std::thread waiting_;
+  std::mutex mutex_;
+  std::vector<InUse> in_use_;
+};
+
+}  // namespace photorque

@@ -1,0 +1,24 @@
+// Memory: what a run will take, told before it starts.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/errors.h"
+
+namespace photorque {
+
+// What a run may take [bytes]: what the user allows (--max-memory), else nine tenths of what the
+// machine, or the control group that the process lives in, has free; no limit where neither is
+// known.
+uint64_t memory_limit_bytes(std::optional<double> allowed_GB);
+
+// Where the user allows so much the system holds it too: what is not foreseen ends with "not enough
+// memory" and exit status 3.
+void hold_memory(std::optional<double> allowed_GB);
+
+// Throws InputError at `where` when about `bytes` for `what` are more than the limit.
+void require_memory(std::optional<double> allowed_GB, uint64_t bytes, const InputLocation& where,
+                    const std::string& what);
+
+}  // namespace photorque

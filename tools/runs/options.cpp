@@ -1,0 +1,28 @@
+#include "tools/runs/options.h"
+
+#include <cstdio>
+
+#include "core/files.h"
+
+namespace photorque {
+
+std::string RunOptions::experiment_text() const {
+  constexpr uint64_t largest_bytes = 1ull << 26;
+  return text ? *text : read_file(experiment, largest_bytes);
+}
+
+std::vector<std::string> RunOptions::all_overrides() const {
+  std::vector<std::string> all = overrides;
+  if (seed) all.push_back("trace.seed=" + std::to_string(*seed));
+  const auto add = [&all](const char* key, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%s=%.17g", key, value);
+    all.emplace_back(text);
+  };
+  if (target_error) add("trace.target_error", *target_error);
+  if (max_time_s) add("trace.max_time_s", *max_time_s);
+  if (allow_outside) all.emplace_back("scene.allow_outside=true");
+  return all;
+}
+
+}  // namespace photorque

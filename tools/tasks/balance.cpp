@@ -1,0 +1,17 @@
+#include "tools/tasks/balance.h"
+
+namespace photorque {
+
+BalanceOutcome balance_of_experiment(const RunOptions& options,
+                                     const std::filesystem::path& recording) {
+  const WallTime wall;
+  AttitudeExperiment experiment(options);
+  experiment.add_input(recording);
+  BalanceRun run = read_balance(experiment.settings(), recording);
+  BalanceResult found = balance(run);
+  Product product = balance_product(run, found);
+  RunResult result{std::move(product), experiment.provenance(0), {wall.elapsed_s(), {}}};
+  return {std::move(run), std::move(found), std::move(result)};
+}
+
+}  // namespace photorque

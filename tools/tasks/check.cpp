@@ -1,0 +1,192 @@
+#include "tools/tasks/check.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "attitude/disturbances/mass/moving_masses.h"
+#include "attitude/propagation/run.h"
+#include "attitude/recordings/recording.h"
+#include "attitude/studies/budget.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "tools/coupling/couple.h"
+#include "tools/runs/array_power.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/tasks/fit_cell.h"
+#include "tools/tasks/light_sanity.h"
+#include "tools/tasks/sweep_design.h"
+
+namespace photorque {
+namespace {
+
+std::string counted(size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+// What is found, table by table, with the first mistake of each.
+class Checker {
+ public:
+  explicit Checker(const RunOptions& options) : options_(options) {}
+
+  CheckReport report() {
+    attempt([&] {
+      file_ = read_experiment_text(options_.experiment, options_.experiment_text(),
+                                   options_.all_overrides());
+    });
+    if (!file_) return std::move(report_);
+    const bool fits = file_->settings.has("fit"), proves = file_->settings.has("prove");
+    if (file_->scene_file) check_light();
+    if (file_->settings.has("platform")) check_motion();
+    if (fits) check_fit();
+    if (file_->settings.has("sweep")) check_sweep();
+    if (proves) add("prove", "a plan of recordings with injected effects, not looked at here");
+    if (!file_->scene_file && !file_->settings.has("platform") && !fits && !proves) {
+      add_mistake(file_->settings.error("", "nothing that a command starts from",
+                                        "[scene], [platform] or [fit]"));
+    }
+    return std::move(report_);
+  }
+
+ private:
+  // Whether it went well; else its one line, once.
+  bool attempt(const std::function<void()>& work) {
+    try {
+      work();
+      return true;
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      const bool whole = error.names_file() || what.starts_with("--");
+      add_mistake(whole ? error : InputError({options_.experiment.string()}, what, "", ""));
+      return false;
+    }
+  }
+  void add_mistake(const InputError& mistake) {
+    const std::string line = mistake.what();
+    const bool known = std::ranges::any_of(
+        report_.mistakes, [&](const InputError& other) { return other.what() == line; });
+    if (!known) report_.mistakes.push_back(mistake);
+  }
+  void add(const std::string& command, const std::string& what) {
+    report_.commands.push_back({command, what});
+  }
+
+  void check_light() {
+    std::shared_ptr<OpticalRun> run;
+    if (!attempt([&] { run = std::make_shared<OpticalRun>(options_, Console()); })) return;
+    report_.notes = run->experiment().notices;
+    for (const std::string& doubt : run->experiment().warnings) report_.notes.push_back(doubt);
+    attempt([&] { read_published(file_->others("published")); });
+    for (const InputError& mistake : light_mistakes(*run)) add_mistake(mistake);
+    say_light(*run);
+    if (!file_->others("array").empty()) attempt([&] { check_array(*run); });
+  }
+
+  void say_light(const OpticalRun& run) {
+    const Experiment& experiment = run.experiment();
+    double power_W = 0.0;
+    for (const Beam& beam : experiment.beams) power_W += beam.emitter->power_W();
+    std::string onto;
+    for (size_t i = 0; i < experiment.file.receivers.size(); ++i) {
+      const NamedReceiver& receiver = experiment.receivers[i];
+      onto += (onto.empty() ? "" : ", ") + receiver.name + " (" + receiver.kind + ")";
+    }
+    add("trace", std::to_string(experiment.file.trace.rays) + " rays of " +
+                     counted(experiment.beams.size(), "lamp") + ", " + show(power_W) + " W, " +
+                     (onto.empty() ? "without receivers" : "onto " + onto));
+    add("render", std::to_string(experiment.camera.width) + " × " +
+                      std::to_string(experiment.camera.height) + " pixels");
+    const AttitudeGrid& grid = file_->torque_map;
+    if (file_->light_directions) {
+      add("torque-map", counted(file_->light_directions->elevation_rad.size(), "elevation") +
+                            " × " +
+                            counted(file_->light_directions->azimuth_rad.size(), "azimuth"));
+    } else if (file_->settings.has("torque_map")) {
+      add("torque-map", counted(grid.tilt_rad.size(), "tilt") + " × " +
+                            counted(grid.heading_rad.size(), "heading"));
+    }
+  }
+
+  void check_array(OpticalRun& run) {
+    const ArrayPower array = read_array_power(run);
+    for (const std::string& notice : array.notices) report_.notes.push_back(notice);
+    // Dark, but the cells must lie on the map.
+    const FluxMapReceiver& map = run.flux_map(array.flux_map);
+    const BinSums dark{map.bins(), 2, std::vector<double>(2 * map.bins(), 0.0)};
+    BinSums dark_angles;
+    if (array.incidence) {
+      const size_t bins = run.experiment().receivers[*array.incidence].receiver->bins();
+      dark_angles = {bins, 2, std::vector<double>(2 * bins, 0.0)};
+    }
+    cell_currents(array.design, array_light(map, dark, dark_angles), array.responsivity_A_W);
+    add("power", counted(static_cast<size_t>(array.design.cells()), "cell") + " on " + map.name());
+  }
+
+  void check_motion() {
+    RunOptions full = options_;
+    attempt([&] {
+      for (const std::string& one : orbit_overrides(*file_)) full.overrides.push_back(one);
+    });
+    std::unique_ptr<AttitudeExperiment> experiment;
+    if (!attempt([&] { experiment = std::make_unique<AttitudeExperiment>(full); })) return;
+    const Settings& settings = experiment->settings();
+    if (!attempt([&] { read_attitude_model(settings); })) return;
+    attempt([&] { say_propagation(read_propagation(settings)); });
+    attempt([&] {
+      const Budget budget = read_budget(settings);
+      add("budget", counted(budget.entries.size(), "torque"));
+    });
+    attempt([&] {
+      if (!settings.has("balance")) return;
+      const Settings balance = own_table(settings, "balance", false);
+      const auto masses = read_moving_masses(balance);
+      balance.finish();
+      add("balance",
+          "a recording (--recording FILE); moving masses: " + std::to_string(masses.size()));
+    });
+    attempt([&] {
+      const Settings recording = own_table(settings, "recording", false);
+      read_recording_options(recording);
+      recording.finish();
+      add("diagnose", "recordings of motion (--recording FILE)");
+    });
+  }
+
+  void say_propagation(const PropagationRun& run) {
+    std::string light;
+    if (has_light(*file_)) {
+      const LightSettings settings = read_light(*file_);
+      require_light_once(*file_);
+      if (settings.mode == LightSettings::Mode::table) light = ", in light by a table";
+      if (settings.mode == LightSettings::Mode::trace) light = ", in light traced on the way";
+    }
+    add("propagate", show(run.duration_s) + " s of " + show(run.model.platform.mass_kg) +
+                         " kg under " + counted(run.model.disturbances.size(), "disturbance") +
+                         light);
+  }
+
+  void check_fit() {
+    attempt([&] { add("fit-cell", what_fit_asks(options_)); });
+  }
+
+  void check_sweep() {
+    attempt([&] {
+      const SweepPlan plan = read_sweep_plan(file_->others("sweep").front());
+      RunOptions first = options_;
+      for (const std::string& one : plan.overrides(0)) first.overrides.push_back(one);
+      read_experiment_text(first.experiment, first.experiment_text(), first.all_overrides());
+      add("sweep", counted(plan.designs(), "design") + " by " + plan.verb);
+    });
+  }
+
+  const RunOptions& options_;
+  std::optional<ExperimentFile> file_;
+  CheckReport report_;
+};
+
+}  // namespace
+
+CheckReport check_experiment(const RunOptions& options) {
+  return Checker(options).report();
+}
+
+}  // namespace photorque

@@ -1,0 +1,163 @@
+#include "tools/tasks/diagnose.h"
+
+#include <regex>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/light/diagnose.h"
+#include "diagnosis/light/written.h"
+#include "diagnosis/module/diagnose.h"
+#include "diagnosis/report/improved.h"
+#include "diagnosis/report/json.h"
+#include "diagnosis/report/page.h"
+#include "images/drawing/bar_chart.h"
+#include "images/drawing/plot_picture.h"
+#include "images/publishing/staged_files.h"
+#include "scenes/experiment/toml_reader.h"
+#include "tools/runs/attitude_run.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<NamedRecording> read_all(const std::vector<fs::path>& paths,
+                                     const RecordingOptions& options,
+                                     AttitudeExperiment& experiment) {
+  std::vector<NamedRecording> all;
+  for (const fs::path& path : paths) {
+    experiment.add_input(path);
+    all.push_back({path.string(), read_recording(path, options)});
+  }
+  return all;
+}
+
+// The text of an experiment with the files that it names found from another folder.
+std::string seen_from(const std::string& text, const fs::path& experiment, const fs::path& folder) {
+  static const std::regex quoted("\"([^\"\n]+)\"");
+  std::string result;
+  size_t done = 0;
+  for (std::sregex_iterator it(text.begin(), text.end(), quoted), end; it != end; ++it) {
+    const fs::path file = fs::absolute(experiment).parent_path() / (*it)[1].str();
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) continue;
+    const auto at = static_cast<size_t>(it->position());
+    result += text.substr(done, at - done) + "\"" +
+              file.lexically_proximate(fs::absolute(folder)).generic_string() + "\"";
+    done = at + static_cast<size_t>(it->length());
+  }
+  return result + text.substr(done);
+}
+
+std::vector<LightRecording> read_light(const std::vector<fs::path>& paths,
+                                       const UsualCircumstances& usual, Provenance& provenance) {
+  std::vector<LightRecording> all;
+  for (const fs::path& path : paths) {
+    all.push_back(read_light_recording(path, usual));
+    provenance.inputs.emplace_back(path.filename().string(), content_hash(read_file(path)));
+  }
+  return all;
+}
+
+DiagnosisRun diagnose_light_recordings(const RunOptions& options,
+                                       const std::vector<fs::path>& paths,
+                                       const std::vector<fs::path>& holdout_paths,
+                                       const Console& console) {
+  const std::string text = options.experiment_text();
+  const Experiment experiment =
+      resolve_experiment(read_experiment_text(options.experiment, text, options.all_overrides()));
+  Provenance provenance = build_provenance();
+  provenance.inputs = experiment.inputs;
+  const LightLab lab(experiment);
+  const LightState nominal = written_state(lab);
+  const UsualCircumstances usual{experiment.lab_from_body.rotation,
+                                 lab.has_array() ? lab.design().temperature_K : 298.15};
+  std::vector<LightRecording> recordings = read_light(paths, usual, provenance),
+                              holdouts = read_light(holdout_paths, usual, provenance);
+  LightDiagnoseOptions how;
+  how.threads = options.threads;
+  how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
+  Diagnosis diagnosis =
+      diagnose_light(lab, nominal, std::move(recordings), std::move(holdouts), how);
+  return {std::move(diagnosis), std::move(provenance), options.experiment, text, true};
+}
+
+// Curves of a module in sunlight: no scene is needed.
+DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& root,
+                                    const std::vector<fs::path>& paths,
+                                    const std::vector<fs::path>& holdout_paths) {
+  const ModuleDesign design = read_module(root, options.experiment.parent_path());
+  root.finish();
+  Provenance provenance = build_provenance();
+  const std::string text = options.experiment_text();
+  provenance.inputs.emplace_back(options.experiment.filename().string(), content_hash(text));
+  for (const fs::path& file : design.reference_files) {
+    provenance.inputs.emplace_back(file.filename().string(), content_hash(read_file(file)));
+  }
+  const std::vector<LightRecording> recordings = read_light(paths, {}, provenance),
+                                    holdouts = read_light(holdout_paths, {}, provenance);
+  ModuleDiagnoseOptions how;
+  how.threads = options.threads;
+  Diagnosis diagnosis = diagnose_module(design, recordings, holdouts, how);
+  return {std::move(diagnosis), std::move(provenance), options.experiment, text, true};
+}
+
+DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::path>& paths,
+                             const std::vector<fs::path>& holdout_paths, const Console& console) {
+  AttitudeExperiment experiment(options);
+  const NominalModel nominal = read_attitude_model(experiment.settings());
+  const Settings recording = own_table(experiment.settings(), "recording", false);
+  const RecordingOptions reading = read_recording_options(recording);
+  recording.finish();
+  const std::vector<NamedRecording> recordings = read_all(paths, reading, experiment);
+  const std::vector<NamedRecording> holdouts = read_all(holdout_paths, reading, experiment);
+  DiagnoseOptions how;
+  how.threads = options.threads;
+  how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
+  Diagnosis diagnosis = diagnose(nominal, recordings, holdouts, how);
+  return {std::move(diagnosis), experiment.provenance(0), options.experiment,
+          options.experiment_text(), false};
+}
+
+}  // namespace
+
+std::string DiagnosisRun::json() const {
+  return diagnosis_json(diagnosis, provenance);
+}
+
+std::string DiagnosisRun::improved(const fs::path& folder) const {
+  return improved_experiment(of_light ? seen_from(text, experiment, folder) : text, diagnosis,
+                             fs::absolute(folder));
+}
+
+std::string DiagnosisRun::report() const {
+  return report_html(diagnosis, experiment.stem().string(), provenance,
+                     {plot_html, bar_chart_html});
+}
+
+DiagnosisRun diagnose_experiment(const RunOptions& options, const std::vector<fs::path>& recordings,
+                                 const std::vector<fs::path>& holdouts, const Console& console) {
+  if (recordings.empty()) {
+    throw InputError({options.experiment.string()}, "--recording", "nothing", "a recording (CSV)");
+  }
+  SettingsNode node = parse_toml(options.experiment_text(), options.experiment.string());
+  for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
+  const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
+  if (root.has("module")) return diagnose_module_curves(options, root, recordings, holdouts);
+  // One recording of light among them, and all are meant to be.
+  return is_light_recording(recordings.front())
+             ? diagnose_light_recordings(options, recordings, holdouts, console)
+             : diagnose_motion(options, recordings, holdouts, console);
+}
+
+void write_diagnosis(const DiagnosisRun& run, const fs::path& folder) {
+  const std::string json = run.json(), improved = run.improved(folder), report = run.report();
+  StagedFiles staged(folder);
+  write_file_whole(staged.path() / "improved.toml", improved);
+  write_file_whole(staged.path() / "report.html", report);
+  write_file_whole(staged.path() / "diagnosis.json", json);
+  staged.publish_as("diagnose", run.provenance);
+}
+
+}  // namespace photorque

@@ -1,0 +1,38 @@
+// What physics is missing between an experiment and its recordings.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/provenance.h"
+#include "diagnosis/diagnosis.h"
+#include "tools/runs/console.h"
+#include "tools/runs/options.h"
+
+namespace photorque {
+
+struct DiagnosisRun {
+  Diagnosis diagnosis;
+  Provenance provenance;
+  std::filesystem::path experiment;
+  std::string text;       // of the experiment
+  bool of_light = false;  // of scans, sweeps and runs instead of motion
+
+  std::string json() const;
+  // The experiment with what was found, as it would stand in a folder.
+  std::string improved(const std::filesystem::path& folder) const;
+  // A page with charts.
+  std::string report() const;
+};
+
+// Recordings of motion, or of light and power: told apart by the first one's header. At least one.
+DiagnosisRun diagnose_experiment(const RunOptions& options,
+                                 const std::vector<std::filesystem::path>& recordings,
+                                 const std::vector<std::filesystem::path>& holdouts,
+                                 const Console& console);
+
+// improved.toml, report.html and diagnosis.json into a folder.
+void write_diagnosis(const DiagnosisRun& run, const std::filesystem::path& folder);
+
+}  // namespace photorque

@@ -1,0 +1,31 @@
+// The platform through its disturbances, in the light of its scene where there is one.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "attitude/model/disturbance.h"
+#include "tools/coupling/couple.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/runs/result.h"
+
+namespace photorque {
+
+struct MotionRun {
+  std::shared_ptr<const PropagationRun> run;
+  std::shared_ptr<const CoupledResult> coupled;
+  RunResult result;  // its files: recording.csv, attitude.aem
+};
+
+// Torques that act besides those of the experiment, and what the provenance says of them.
+struct FurtherTorques {
+  std::vector<Disturbance> disturbances;
+  std::vector<std::pair<std::string, std::string>> inputs;  // name, hash
+};
+
+MotionRun propagate_experiment(const RunOptions& options, const Console& console,
+                               const FurtherTorques& further = {});
+
+}  // namespace photorque
