@@ -37,7 +37,7 @@ Answer explain(const NominalModel& nominal, const Fit& nominal_fit, const Record
   };
   a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), excess,
                                  options.limits.decision);
-  if (a.decision.finding == inference::Finding::unknown) {
+  if (among == Among::all && a.decision.finding == inference::Finding::unknown) {
     Trial& chosen = a.trials[a.decision.chosen];
     chosen = refined_in_time(chosen, a.all, data.train);
   }

@@ -58,6 +58,7 @@ std::map<std::string, Entries> examples() {
       {"radiation_pressure", {{"table", node(light.c_str())}}},
       {"gravity_gradient", {}},
       {"earth_rotation", {}},
+      {"wheel_momentum", {{"inertia_kg_m2", numbers({1e-4, 2e-4, 3e-4})}}},
       {"rotor_momentum", {{"momentum_N_m_s", numbers({4e-4, -2e-3, -1e-3})}}},
       {"tether", {{"stiffness_N_m_per_rad", node(2e-4)}}},
       {"floor_vibration",
@@ -114,7 +115,9 @@ std::vector<std::string> kind_names() {
 // The model that a kind is tried in: an offset for those that need one, the field, a command.
 AttitudeModel model_with(const std::string& kind) {
   AttitudeModel model = bench_model();
-  model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4}, .battery_current_A = 2.0});
+  model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
+                              .battery_current_A = 2.0,
+                              .wheel = {0.0, {20.0, -10.0, 30.0}, {0.3, 0.2, -0.1}}});
   model = with(model, "static_unbalance", {{"offset_m", numbers({1e-6, 2e-6, -2e-5})}});
   model = with(model, "magnetic_dipole", {{"dipole_A_m2", numbers({0.01, -0.02, 0.005})}});
   const auto all = examples();
@@ -263,7 +266,9 @@ TEST_P(EveryDisturbance, DerivativesAgreeWithCentralDifferences) {
 // field, the centre of mass or the inertia.
 TEST(Disturbances, DerivativesAgreeWhenAllActTogether) {
   AttitudeModel model = bench_model();
-  model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4}, .battery_current_A = 2.0});
+  model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
+                              .battery_current_A = 2.0,
+                              .wheel = {0.0, {20.0, -10.0, 30.0}, {0.3, 0.2, -0.1}}});
   for (const auto& [kind, entries] : examples()) model = with(model, kind, entries);
   std::mt19937_64 engine(11);
   const PlatformState state = random_state(model, engine);

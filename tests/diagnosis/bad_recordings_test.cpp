@@ -32,9 +32,10 @@ std::string refusal_of(const Recording& recording) {
 }
 
 TEST(BadRecording, WithoutAttitudeNamesTheMissingChannel) {
-  const Recording rates = recording_of("t_s,gyro_x_rad_s", "0.1", 100);
-  EXPECT_EQ(refusal_of(rates),
-            "run.csv: header: found no channel q_w, expected the attitude q_w, q_x, q_y, q_z");
+  const Recording currents = recording_of("t_s,battery_current_A", "0.1", 100);
+  EXPECT_EQ(refusal_of(currents),
+            "run.csv: header: found no channel q_w and no gyro, expected the attitude q_w, q_x, "
+            "q_y, q_z, or gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s");
   const Recording three = recording_of("t_s,q_w,q_x,q_y", "1,0,0", 100);
   EXPECT_NE(refusal_of(three).find("no channel q_z"), std::string::npos);
 }

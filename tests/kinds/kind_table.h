@@ -32,12 +32,19 @@ inline std::string screening_text(const Screening& screening) {
   std::string text;
   for (const Parametrisation& p : screening.parametrisations) {
     text += (text.empty() ? "" : "; or ") + widths_text(p);
+    if (p.of_free_bodies) text += " of a free body";
   }
   constexpr const char* scans[] = {"", "its instant is scanned", "its frequency is scanned",
                                    "its frequency and axis are scanned"};
   if (screening.scan != Scan::nothing) text += "; " + std::string(scans[int(screening.scan)]);
-  constexpr const char* needs[] = {"", "commanded torques", "a battery current",
-                                   "a magnetic field"};
+  constexpr const char* needs[] = {"",
+                                   "commanded torques",
+                                   "a battery current",
+                                   "a magnetic field",
+                                   "weight on a bearing",
+                                   "a bearing",
+                                   "an air bearing",
+                                   "the measured speed of a wheel"};
   if (screening.needs != Requirement::none) {
     text += "; needs " + std::string(needs[int(screening.needs)]);
   }

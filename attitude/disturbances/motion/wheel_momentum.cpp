@@ -43,14 +43,15 @@ DisturbanceKind wheel_momentum_kind() {
   return {.name = "wheel_momentum",
           .summary = "wheels whose speed was measured exchange momentum with the body",
           .read = read,
-          .screening = {
-              .parametrisations = {{"a wheel on board takes up and gives back angular momentum",
-                                    {{.key = common_inertia.name,
-                                      .start = {0.0},
-                                      .scale = 1e-3,
-                                      .lowest = 0.0,
-                                      .times_inertia = true}}}},
-              .needs = Requirement::wheel}};
+          .screening =
+              {.parametrisations = {{"a wheel on board takes up and gives back angular momentum",
+                                     {{.key = common_inertia.name,
+                                       .start = {0.0},
+                                       .scale = 1e-3,
+                                       .lowest = 0.0,
+                                       .times_inertia = true}}}},
+               .needs = Requirement::wheel},
+          .injection = {.reason_against = "prove makes no recordings of the speed of a wheel"}};
 }
 
 }  // namespace photorque

@@ -70,6 +70,21 @@ CoveredMotion covered_by(const std::vector<Observation>& runs) {
   return covered;
 }
 
+// Whether some recorded attitude is far from the first of its run.
+bool turns(const std::vector<Observation>& runs) {
+  constexpr double far_rad = 0.3;
+  return std::any_of(runs.begin(), runs.end(), [&](const Observation& seen) {
+    size_t first = 0;
+    while (first < seen.blocks() && !(seen.attitude_rows[first] > 0.0)) ++first;
+    for (size_t i = first; i < seen.blocks(); ++i) {
+      if (!(seen.attitude_rows[i] > 0.0)) continue;
+      const Quat turn = seen.attitude[first].conjugate() * seen.attitude[i];
+      if (rotation_vector(turn).norm() > far_rad) return true;
+    }
+    return false;
+  });
+}
+
 // Whether a candidate of the size to be expected makes the motion depend on the attitude.
 bool needs_attitude(const Candidate& c, AttitudeModel model) {
   Disturbance acting = c.start;
@@ -130,6 +145,12 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     all.list.push_back(candidate_of(law));
   }
   scale_to_machine(nominal, runs, all.list);
+  // A law of the heading cannot be told from a constant where the heading hardly changes.
+  if (!context.platform.has_air_bearing() && !turns(runs)) {
+    std::erase_if(all.list, [](const Candidate& c) {
+      return c.variable == "heading" || c.variable == "tilt";
+    });
+  }
   // Nobody knows the attitude.
   if (nominal.model.holds_attitude) {
     std::erase_if(all.list, [&](const Candidate& c) { return needs_attitude(c, nominal.model); });

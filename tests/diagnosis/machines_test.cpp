@@ -1,0 +1,271 @@
+// Machines that are no table-top platforms: one axis, free flight, whatever was recorded of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "attitude/estimation/columns.h"
+#include "attitude/estimation/segments.h"
+#include "attitude/noise/reading_level.h"
+#include "attitude/propagation/run.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/attitude/discrepancy.h"
+#include "scenes/experiment/toml_reader.h"
+
+namespace photorque {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+NominalModel machine(const std::string& toml) {
+  return read_attitude_model(
+      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "machine.toml"))));
+}
+
+// Rows of named channels at even times.
+Recording recording_of(double interval_s, const std::vector<Channel>& channels) {
+  Recording recording;
+  recording.channels = channels;
+  const size_t rows = channels.front().values.size();
+  for (size_t i = 0; i < rows; ++i) recording.time_s.push_back(interval_s * static_cast<double>(i));
+  recording.report.rows_read = recording.report.rows_kept = static_cast<int64_t>(rows);
+  recording.report.median_interval_s = interval_s;
+  return recording;
+}
+
+std::vector<std::string> kinds_of(const Diagnosis& d) {
+  std::vector<std::string> kinds;
+  for (const FoundEffect& effect : d.effects) kinds.push_back(effect.kind);
+  return kinds;
+}
+
+const char* const wheel_toml = R"([platform]
+topology = "one_axis"
+[[disturbance]]
+kind = "bearing_drag"
+coefficient_N_m_s = { value = 1e-3, sigma = 1e-2 }
+[sensors.gyro]
+noise_rad_s = 0.003
+)";
+
+// I ω' = −τ − k ω² from ω₀: ω = √(τ/k) tan(atan(ω₀ √(k/τ)) − √(τk) t/I), by separation.
+double coasting_rad_s(double time_s, double start_rad_s, double dry, double form) {
+  const double unit = std::sqrt(dry / form);
+  return unit * std::tan(std::atan(start_rad_s / unit) - std::sqrt(dry * form) * time_s);
+}
+
+TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
+  constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  Channel rate{"gyro_z_rad_s", {}};
+  for (int i = 0; i < 1200; ++i) {
+    rate.values.push_back(coasting_rad_s(0.25 * i, start_rad_s, dry, form) + noise(random));
+  }
+  const Diagnosis d =
+      diagnose(machine(wheel_toml), {{"wheel.csv", recording_of(0.25, {rate})}}, {});
+  EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
+  for (const FoundEffect& effect : d.effects) {
+    const double truth = effect.kind == "dry_friction" ? dry : form;
+    const FittedParameter& p = effect.parameters.front();
+    EXPECT_NEAR(p.value[0], truth, std::max(5.0 * p.sigma[0], 0.02 * truth)) << effect.kind;
+  }
+  ASSERT_TRUE(d.holdout);
+  EXPECT_LT(d.holdout->chi2_per_sample_after, 2.0);
+  EXPECT_GT(d.holdout->chi2_per_sample_before, 100.0);
+}
+
+TEST(Machines, ABodyThatTurnsFreelyLacksNothing) {
+  // A body with two equal moments precesses: ωx + i ωy turns with λ = (Iz − Ix) ωz / Ix (Landau and
+  // Lifshitz, Mechanics, section 36).
+  constexpr double Ix = 0.02, Iz = 0.03, spin = 8.0, across = 2.0, interval_s = 0.01;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 0.002);
+  std::vector<Channel> gyro = {{"gyro_x_rad_s", {}}, {"gyro_y_rad_s", {}}, {"gyro_z_rad_s", {}}};
+  for (int i = 0; i < 600; ++i) {
+    const double angle = (Iz - Ix) / Ix * spin * interval_s * i;
+    gyro[0].values.push_back(across * std::cos(angle) + noise(random));
+    gyro[1].values.push_back(across * std::sin(angle) + noise(random));
+    gyro[2].values.push_back(spin + noise(random));
+  }
+  const NominalModel nominal = machine(R"([platform]
+topology = "free"
+inertia_kg_m2 = { value = [[0.02, 0, 0], [0, 0.02, 0], [0, 0, 0.03]], sigma = [[0, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]] }
+[sensors.gyro]
+noise_rad_s = 0.002
+)");
+  const Diagnosis d = diagnose(nominal, {{"throw.csv", recording_of(interval_s, gyro)}}, {});
+  EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
+  EXPECT_NEAR(d.chi2_per_sample_after, 1.0, 5.0 * std::sqrt(2.0 / (3.0 * 450.0)));
+}
+
+// Angular momentum in the frame of the stars is kept whatever a wheel on board does.
+TEST(Machines, AWheelExchangesMomentumWithItsBody) {
+  NominalModel nominal = machine(R"([platform]
+topology = "free"
+inertia_kg_m2 = [[0.02, 0, 0], [0, 0.03, 0], [0, 0, 0.04]]
+[[disturbance]]
+kind = "wheel_momentum"
+inertia_kg_m2 = 1e-4
+)");
+  constexpr double wheel_kg_m2 = 1e-4, speed_up_rad_s2 = 300.0, duration_s = 2.0;
+  ZeroOrderHold held;
+  held.wheel.acceleration_rad_s2 = {0.0, 0.0, speed_up_rad_s2};
+  nominal.model.schedule.append(-1.0, held);
+  nominal.model.schedule.held.front().wheel.from_s = 0.0;
+  const Dynamics dynamics(nominal.model);
+  PlatformState start = dynamics.initial_state({2.0, -1.0, 0.5});
+  PropagationOptions options;
+  options.tolerance = 1e-10;
+  Propagator propagator(dynamics, start, duration_s, options);
+  PlatformState end = start;
+  sample(
+      propagator, 1, [&](size_t) { return duration_s; },
+      [&](const Samples& samples) {
+        std::vector<double> y;
+        for (const Lanes& c : samples.y) y.push_back(c[0]);
+        end = to_state(duration_s, y);
+      });
+  const auto momentum = [&](const PlatformState& s, double wheel_rad_s) {
+    const Vec3 body = nominal.model.platform.inertia_kg_m2 * s.rate_body_rad_s +
+                      wheel_kg_m2 * wheel_rad_s * Vec3::UnitZ();
+    return Vec3(s.lab_from_body * body);
+  };
+  const Vec3 before = momentum(start, 0.0), after = momentum(end, speed_up_rad_s2 * duration_s);
+  EXPECT_LT((after - before).norm(), 1e-8 * before.norm());
+  EXPECT_GT((end.rate_body_rad_s - start.rate_body_rad_s).norm(), 1.0);
+}
+
+TEST(Machines, APendulumSwingsAboutItsAxisAlone) {
+  // Small swings of a compound pendulum: ω₀ = √(m g l / I) (Huygens). The product of inertia would
+  // turn it about y and z if its bearings let it.
+  const NominalModel nominal = machine(R"([platform]
+topology = "one_axis"
+axis = "x"
+mass_kg = 2
+inertia_kg_m2 = [[0.5, 0.1, 0], [0.1, 0.6, 0], [0, 0, 0.7]]
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = [0, 0, -0.2]
+)");
+  const Dynamics dynamics(nominal.model);
+  PlatformState start = dynamics.initial_state();
+  constexpr double amplitude_rad = 1e-4;
+  start.lab_from_body = Quat(Eigen::AngleAxisd(amplitude_rad, Vec3::UnitX()));
+  const double rate = std::sqrt(2.0 * standard_gravity_m_s2 * 0.2 / 0.5), time_s = 3.0;
+  PropagationOptions options;
+  options.tolerance = 1e-12;
+  Propagator propagator(dynamics, start, time_s, options);
+  sample(
+      propagator, 1, [&](size_t) { return time_s; },
+      [&](const Samples& samples) {
+        EXPECT_NEAR(samples.y[1][0], 0.5 * amplitude_rad * std::cos(rate * time_s), 1e-10);
+        EXPECT_EQ(samples.y[2][0], 0.0);
+        EXPECT_EQ(samples.y[component::rate + 1][0], 0.0);
+        EXPECT_EQ(samples.y[component::rate + 2][0], 0.0);
+      });
+}
+
+TEST(Machines, ColumnsSayWhatTheyAre) {
+  Platform wheel;
+  wheel.topology = Topology::one_axis;
+  const Recording one = recording_of(
+      1.0, {{"roll_rad", {0.1, 7.0}}, {"thruster", {0.0, 1.0}}, {"gas_Pa", {1.0, 1.0}}});
+  const MotionColumns columns(one, wheel, "one.csv");
+  EXPECT_THAT(columns.sees_axis(), ElementsAre(false, false, true));
+  EXPECT_FALSE(columns.has_event(0));
+  EXPECT_TRUE(columns.has_event(1));
+  EXPECT_THAT(columns.unused(), ElementsAre("gas_Pa"));
+  const Vec3 turned = columns.attitude(0) * Vec3::UnitX();
+  EXPECT_NEAR(turned.y(), std::sin(0.1), 1e-15);
+
+  const Recording angles =
+      recording_of(1.0, {{"roll_rad", {pi / 2}}, {"pitch_rad", {0.0}}, {"yaw_rad", {pi / 2}}});
+  const MotionColumns euler(angles, {}, "angles.csv");
+  // Body z goes to −y by the roll, then to x by the yaw.
+  EXPECT_NEAR((euler.attitude(0) * Vec3::UnitZ() - Vec3::UnitX()).norm(), 0.0, 1e-15);
+
+  const Recording none = recording_of(1.0, {{"gas_Pa", {1.0}}});
+  EXPECT_THROW(MotionColumns(none, {}, "none.csv"), InputError);
+}
+
+TEST(Machines, RecordingsAreCutWhereSomethingHappened) {
+  Platform spacecraft;
+  spacecraft.topology = Topology::one_axis;
+  Channel angle{"angle_rad", {}}, thruster{"thruster", {}};
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0.0, 1e-7);
+  for (int i = 0; i < 60; ++i) {
+    // Two stretches of other rates, the firing noted in row 20; in row 40 one that nobody noted.
+    const double t = i < 20 ? i : i < 40 ? 20.0 - (i - 20) : 3.0 * (i - 40);
+    angle.values.push_back(1e-5 * t + noise(random));
+    thruster.values.push_back(i == 20 ? 1.0 : 0.0);
+  }
+  Recording recording = recording_of(10.0, {angle, thruster});
+  const Segments cut = observe_segments(recording, "roll.csv", spacecraft);
+  EXPECT_EQ(cut.events, 1);
+  EXPECT_EQ(cut.kinks, 1);
+  ASSERT_EQ(cut.all.size(), 3u);
+  EXPECT_EQ(cut.all[0].blocks(), 20u);
+  EXPECT_DOUBLE_EQ(cut.all[1].time_s.front(), 210.0);
+  EXPECT_DOUBLE_EQ(cut.all[2].time_s.front(), 410.0);
+
+  // A clock that jumps by years.
+  for (size_t i = 10; i < recording.rows(); ++i) recording.time_s[i] += 1e8;
+  recording.report.gaps = {{recording.time_s[9], recording.time_s[10]}};
+  const Segments jumped = observe_segments(recording, "roll.csv", spacecraft);
+  EXPECT_EQ(jumped.long_gaps, 1);
+  EXPECT_EQ(jumped.all.size(), 4u);
+}
+
+TEST(Machines, ReadingsTellTheirOwnNoise) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  Channel rate{"gyro_z_rad_s", {}}, steps{"gyro_y_rad_s", {}};
+  for (int i = 0; i < 2000; ++i) {
+    rate.values.push_back(3.0 * std::sin(0.01 * i) + noise(random));
+    steps.values.push_back(0.5 * std::round(0.004 * i));
+  }
+  const std::vector<Observation> runs = {
+      observe(recording_of(0.1, {rate, steps}), "run.csv", {}, 5000)};
+  // The median of |third differences| of n numbers scatters by about 1.4/√n, as second ones do.
+  EXPECT_NEAR(*reading_level(runs, 5), 0.02, 4.0 * 0.02 * 1.4 / std::sqrt(2000.0));
+  EXPECT_NEAR(*reading_level(runs, 4), 0.5 / std::sqrt(12.0), 1e-12);
+  EXPECT_FALSE(reading_level(runs, 3));
+}
+
+TEST(Machines, WhatIsLeftCountsAsNoiseAsCorrelatedAsItIs) {
+  // White noise of 1 and a process of 2 that is correlated over 5 s.
+  constexpr double time_s = 5.0, interval_s = 0.1;
+  std::mt19937_64 random(13);
+  std::normal_distribution<double> normal;
+  Observation seen;
+  Prediction left;
+  const double keep = std::exp(-interval_s / time_s);
+  double slow = 0.0;
+  for (int i = 0; i < 60000; ++i) {
+    slow = keep * slow + 2.0 * std::sqrt(1.0 - keep * keep) * normal(random);
+    WhiteRow row = WhiteRow::Constant(NAN);
+    row[5] = slow + normal(random);
+    left.off.push_back(row);
+    seen.time_s.push_back(interval_s * i);
+  }
+  NoiseLevels own;
+  own.gyro_rad_s = Vec3::Constant(0.5);
+  const NoiseLevels noise = with_discrepancy({left}, {seen}, own, Remainder::correlated);
+  // 60000 readings hold about 600 independent numbers: 4 % of the variance, 8 % of the time.
+  EXPECT_NEAR(noise.gyro_rad_s[2], std::sqrt(5.0), 0.15 * std::sqrt(5.0));
+  EXPECT_NEAR(noise.gyro_colour.fraction[2], 0.8, 0.05);
+  EXPECT_NEAR(noise.gyro_colour.time_s[2], time_s, 0.35 * time_s);
+  EXPECT_EQ(noise.gyro_rad_s[0], 0.5);
+  EXPECT_FALSE(is_quieter(noise, noise));
+  EXPECT_TRUE(is_quieter(own, noise));
+}
+
+}  // namespace
+}  // namespace photorque
