@@ -25,7 +25,7 @@ std::shared_ptr<CellFit> fit_cell(const ExperimentHandle& experiment, const py::
 void bind_cell_fit(py::module_& module) {
   auto type = py::class_<CellFit, std::shared_ptr<CellFit>>(
       module, "CellFit", "Parameters of a cell with their standard errors: its figures.");
-  add_result(type);
+  add_result(type, "fit-cell");
   module.def("fit_cell", &fit_cell, py::arg("experiment"), py::kw_only(),
              py::arg("log") = py::none(),
              "Solar cell parameters from the current-voltage sweeps or datasheet of [fit].");

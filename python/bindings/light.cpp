@@ -130,7 +130,7 @@ py::object cells_view(const py::object& self, const std::vector<double>& cells) 
 void bind_runs(py::module_& module) {
   auto trace = py::class_<LightHandle, std::shared_ptr<LightHandle>>(
       module, "Trace", "Where the light went and what it did.");
-  add_result(trace);
+  add_result(trace, "trace");
   trace.def_property_readonly("flux_maps", &flux_maps_of, "A FluxMap for every such receiver.")
       .def_property_readonly(
           "force_body_N", [](const LightHandle& self) { return copy_of(self.wrench.mean.force_N); })
@@ -147,6 +147,7 @@ void bind_runs(py::module_& module) {
       .def_property_readonly("rays", [](const LightHandle& self) { return self.light.rays; });
   auto power = py::class_<PowerHandle, LightHandle, std::shared_ptr<PowerHandle>>(
       module, "Power", "A trace and what the solar array makes of it.");
+  add_result(power, "power");
   power
       .def_property_readonly(
           "curve",

@@ -83,7 +83,7 @@ py::list events_of(const MotionRun& run) {
 void bind_motion(py::module_& module) {
   auto type = py::class_<MotionRun, std::shared_ptr<MotionRun>>(
       module, "Motion", "The motion of the platform: what happened and what instruments saw.");
-  add_result(type);
+  add_result(type, "propagate");
   type.def_property_readonly(
           "history",
           [](const py::object& self) {

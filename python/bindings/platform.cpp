@@ -39,7 +39,7 @@ void bind_budget(py::module_& module) {
       .def_readonly("angle_after_day_rad", &BudgetEntry::angle_after_day_rad);
   auto type = py::class_<BudgetRun, std::shared_ptr<BudgetRun>>(
       module, "Budget", "Every disturbance torque at one state, largest first.");
-  add_result(type);
+  add_result(type, "budget");
   type.def_property_readonly("entries", [](const BudgetRun& run) { return run.budget.entries; });
   module.def("budget", &budget_of, py::arg("experiment"),
              "Every disturbance torque at the state of [budget], ranked, beside the paper's.");
@@ -51,7 +51,7 @@ void bind_platform(py::module_& module) {
   bind_budget(module);
   auto type = py::class_<BalanceOutcome, std::shared_ptr<BalanceOutcome>>(
       module, "Balance", "The centre of mass that a recording shows.");
-  add_result(type);
+  add_result(type, "balance");
   type.def_property_readonly(
           "offset_body_m",
           [](const BalanceOutcome& self) { return copy_of(self.balance.offset_body_m); },

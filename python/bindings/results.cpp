@@ -138,11 +138,12 @@ py::dict provenance_of(const Provenance& provenance) {
   return all;
 }
 
-py::list write_of(const RunResult& result, const std::filesystem::path& folder) {
+py::list write_of(const RunResult& result, const std::filesystem::path& folder,
+                  const std::string& command) {
   std::vector<std::filesystem::path> paths;
   {
     const py::gil_scoped_release release;
-    paths = write_run(result, folder);
+    paths = write_run(result, folder, command);
   }
   paths.push_back(folder / "summary.json");
   for (const RunFile& file : result.files) paths.push_back(folder / file.name);

@@ -20,13 +20,16 @@ py::dict figures_of(const RunResult& result);
 py::dict tables_of(const RunResult& result, const py::object& owner);
 py::dict maps_of(const RunResult& result, const py::object& owner);
 py::dict provenance_of(const Provenance& provenance);
-py::list write_of(const RunResult& result, const std::filesystem::path& folder);
+// As the results of this command of the program.
+py::list write_of(const RunResult& result, const std::filesystem::path& folder,
+                  const std::string& command);
 // NumericalError if there is none of this name.
 const Table& table_called(const RunResult& result, const std::string& name);
 
-// Gives the class of a run, which has a member `result`, what all runs have.
+// Gives the class of a run, which has a member `result`, what all runs have. `command`: that of the
+// program that gives the same.
 template <class Run, class... More>
-void add_result(py::class_<Run, More...>& type) {
+void add_result(py::class_<Run, More...>& type, const std::string& command) {
   const auto result_of = [](const py::object& self) -> const RunResult& {
     return self.cast<const Run&>().result;
   };
@@ -57,8 +60,8 @@ void add_result(py::class_<Run, More...>& type) {
           "What the program writes as summary.json.")
       .def(
           "write",
-          [result_of](const py::object& self, const std::filesystem::path& folder) {
-            return write_of(result_of(self), folder);
+          [result_of, command](const py::object& self, const std::filesystem::path& folder) {
+            return write_of(result_of(self), folder, command);
           },
           py::arg("folder"), "Writes every file that the program writes; gives their paths.");
 }

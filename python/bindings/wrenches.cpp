@@ -41,7 +41,7 @@ void bind_wrenches(py::module_& module) {
       module, "TorqueMap",
       "Force and torque of light on the body over two angles, body frame: arrays of shape (around, "
       "polar, 3).");
-  add_result(type);
+  add_result(type, "torque-map");
   type.def_property_readonly(
           "angles",
           [](const TorqueMapRun& run) {
