@@ -213,6 +213,7 @@ NominalModel read_attitude_model(const Settings& root) {
   const DisturbanceContext context{model.platform, model.environment};
   model.disturbances = read_own_disturbances(root, context);
   if (const Mat3 sigma = inertia_sigma_kg_m2(platform); sigma.maxCoeff() > 0.0) {
+    nominal.uncertain_inertia = model.disturbances.size();
     model.disturbances.push_back(uncertain_inertia(sigma, context));
   }
   nominal.sensors = root.has("sensors") ? read_sensors(sensors, context) : perfect_sensors();

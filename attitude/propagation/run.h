@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ Settings own_table(const Settings& root, const std::string& key, bool required);
 struct NominalModel {
   AttitudeModel model;
   Sensors sensors;
+  // The disturbance by which the sigmas of [platform] inertia_kg_m2 stand in the model.
+  std::optional<size_t> uncertain_inertia = {};
 };
 NominalModel read_attitude_model(const Settings& root);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "attitude/disturbances/kind.h"
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/noise.h"
 #include "core/errors.h"
@@ -125,6 +126,21 @@ NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   return nominal;
 }
 
+// Whether the inertia as it was fitted can be written: measured moments may break what every body
+// obeys by their errors.
+bool is_an_inertia(const Trial& chosen, size_t disturbance) {
+  const AttitudeModel& model = chosen.fit.best.model;
+  const Disturbance& d = model.disturbances[disturbance];
+  const Mat3 fitted =
+      model.platform.inertia_kg_m2 + find_kind(d.kind)->screening.inertia_change_kg_m2(d);
+  try {
+    check_inertia(fitted, {}, "inertia_kg_m2");
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 Replay replay_of(const Fit& fit, const Observation& seen) {
   Replay replay;
   replay.recording = seen.name;
@@ -176,6 +192,9 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   if (named) {
     answer = std::move(*named);
     say_names_beside_the_rest(answer, d);
+  }
+  if (nominal.uncertain_inertia && is_an_inertia(answer.chosen(), *nominal.uncertain_inertia)) {
+    d.unnamed.push_back(as_fitted(answer.chosen(), *nominal.uncertain_inertia));
   }
   say_how_well(nominal_fit, answer.chosen(), data, is_lost || named, options.limits, d);
   d.warnings = warnings_of(data, answer.decision);

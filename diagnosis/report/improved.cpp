@@ -70,8 +70,7 @@ std::string effect_text(const FoundEffect& effect, const std::string& table) {
 }
 
 std::string unnamed_text(const FoundEffect& effect) {
-  std::string text =
-      "\n" + comment("Fitted beside the torque below, without being proved: " + effect.kind + ".");
+  std::string text = "\n" + comment("Fitted beside, without being proved: " + effect.kind + ".");
   text += "[[disturbance]]\nkind = \"" + effect.kind + "\"\n";
   for (const FittedParameter& p : effect.parameters) text += p.key + " = " + value_text(p) + "\n";
   return text;

@@ -171,6 +171,22 @@ std::vector<FittedParameter> refined_priors(const Trial& chosen) {
   return result;
 }
 
+FoundEffect as_fitted(const Trial& chosen, size_t disturbance) {
+  const Disturbance& d = chosen.fit.best.model.disturbances[disturbance];
+  FoundEffect effect;
+  effect.kind = d.kind;
+  // All its numbers, those that are exact among them.
+  for (const Parameter& p : d.parameters) {
+    const double unit = unit_of_key(p.key).to_SI;
+    if (effect.parameters.empty() || effect.parameters.back().key != p.key) {
+      effect.parameters.push_back({p.key, {}, {}});
+    }
+    effect.parameters.back().value.push_back(p.value / unit);
+    effect.parameters.back().sigma.push_back(0.0);
+  }
+  return effect;
+}
+
 std::vector<std::string> contradicted_beliefs(const Trial& chosen,
                                               const Thresholds::Decision& limits) {
   std::vector<std::string> sentences;

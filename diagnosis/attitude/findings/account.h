@@ -24,11 +24,13 @@ std::vector<FittedParameter> fitted_parameters(const Trial& trial, size_t distur
 std::vector<Alternative> alternatives(const inference::Decision& decision,
                                       const std::vector<Trial>& trials, const Candidates& all);
 
-// What was nominal with an uncertainty, as the chosen trial has it.
 // One sentence for each nominal value that the recording contradicts.
 std::vector<std::string> contradicted_beliefs(const Trial& chosen,
                                               const Thresholds::Decision& limits);
+// What was nominal with an uncertainty, as the chosen trial has it.
 std::vector<FittedParameter> refined_priors(const Trial& chosen);
+// An uncertain disturbance that no table of the experiment states, as the chosen trial has it.
+FoundEffect as_fitted(const Trial& chosen, size_t disturbance);
 
 std::string sentence_of(const Diagnosis& diagnosis);
 
