@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "attitude/estimation/columns.h"
+#include "attitude/estimation/law_breaks.h"
 #include "core/errors.h"
 
 namespace photorque {
@@ -77,14 +78,21 @@ Segments observe_segments(const Recording& recording, const std::string& name,
   Segments result;
   const double share = static_cast<double>(max_blocks) / static_cast<double>(rows.blocks());
   size_t first = 0;
-  const auto close = [&](size_t last) {
+  const auto close = [&](size_t end) {
+    size_t last = end;
+    if (platform.turns_about_one_axis() && rows.has_gyro) {
+      LawfulStretch lawful = lawful_stretch(rows, platform.axis, first, last);
+      first = lawful.first;
+      last = lawful.last;
+      if (!lawful.left_out.empty()) result.lawless.push_back(std::move(lawful.left_out));
+    }
     if (last > first && rows.readings(first, last) >= least_of_stretch) {
       const auto blocks = static_cast<size_t>(share * static_cast<double>(last - first));
       result.all.push_back(rows.part(first, last).averaged(std::max(least_of_stretch, blocks)));
     } else {
       result.too_short += last > first ? 1 : 0;
     }
-    first = last;
+    first = end;
   };
   for (size_t i = 0; i < rows.blocks(); ++i) {
     if (i > 0 && recording.time_s[i] - recording.time_s[i - 1] >= gap_s) {

@@ -15,6 +15,7 @@ struct Segments {
   int64_t kinks = 0;      // rows at which an angle changes its rate at once: left out as well
   int64_t long_gaps = 0;  // at which the recording was cut
   int64_t too_short = 0;  // stretches with too few readings for a start of their own: left out
+  std::vector<std::string> lawless;  // why parts of stretches are left out (law_breaks.h)
 };
 
 // `max_blocks`: of all stretches together. InputError as observe() (observation.h), and where every

@@ -56,7 +56,20 @@ Sensitivity::Sensitivity(const Dynamics& dynamics, std::vector<Variable> variabl
     }
     if (initial >= 3 && initial < 6) seed_bound_states(v, initial - 3);
   }
+  largest_.assign(count, 0.0);
+  largest_scaled_.assign(count, 0.0);
+  note_extent();
   make_blocks();
+}
+
+void Sensitivity::note_extent() {
+  const size_t count = variables_.size();
+  for (size_t i = 0; i < start_.size(); ++i) {
+    const double size = std::abs(start_[i]);
+    double &largest = largest_[i % count], &scaled = largest_scaled_[i % count];
+    largest = std::max(largest, size);
+    scaled = std::max(scaled, size / dynamics_.scales()[i / count]);
+  }
 }
 
 // States that begin by turning with the body change with its initial rate.
@@ -155,7 +168,7 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
         size = larger_magnitude(size, stages[i]);
         increments_[i] = increment;
       }
-      const double of_size = largest(size);
+      const double of_size = std::max(largest(size), next_to_nothing * largest_[v]);
       if (of_size > 0.0) change = std::max(change, largest(moved) / of_size);
     }
     const Settling::Verdict verdict = settling.judge(change);
@@ -185,7 +198,7 @@ bool Sensitivity::is_resolved(const CollocationStep& step) const {
   constexpr double tolerance = 1e-3;
   const size_t count = variables_.size(), n = step.start().size();
   for (size_t v = 0; v < count; ++v) {
-    double size = 0.0, last = 0.0;
+    double size = next_to_nothing / tolerance * largest_scaled_[v], last = 0.0;
     for (size_t c = 0; c < n; ++c) {
       const double per_scale = 1.0 / dynamics_.scales()[c];
       const size_t i = c * count + v;
@@ -203,12 +216,14 @@ bool Sensitivity::is_resolved(const CollocationStep& step) const {
 void Sensitivity::accept() {
   for (size_t i = 0; i < start_.size(); ++i) start_[i] += sum(increments_[i]);
   std::swap(increments_, accepted_increments_);
+  note_extent();
   accepted_h_s_ = h_s_;
   has_polynomial_ = true;
 }
 
 void Sensitivity::add(size_t v, std::span<const double> change) {
   for (size_t c = 0; c < change.size(); ++c) start_[c * variables_.size() + v] += change[c];
+  note_extent();
 }
 
 void Sensitivity::dense(const Lanes& fraction, Lanes* derivatives) const {

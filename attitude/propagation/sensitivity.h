@@ -71,8 +71,14 @@ class Sensitivity {
   std::vector<ParameterBlock> parameter_blocks_;
   std::vector<double> start_;
   std::vector<Lanes> increments_, accepted_increments_;  // as in CollocationStep
+  // Of each variable, the largest component that any step began with, and the largest in units of
+  // the scales. What has died away to next to nothing of these need not be followed to its last
+  // bits: a derivative of a platform that rubs and stands still.
+  std::vector<double> largest_, largest_scaled_;
+  static constexpr double next_to_nothing = 1e-10;
   double h_s_ = 0.0, accepted_h_s_ = 0.0;
   bool has_polynomial_ = false;
+  void note_extent();
   void solve_at_once(const CollocationStep& step);
   bool is_resolved(const CollocationStep& step) const;
   std::vector<RateDerivative> jacobian_;

@@ -27,6 +27,9 @@ void say_cuts(const std::string& name, const Segments& segments,
       "begins anew after each of them");
   say(segments.long_gaps, " long gaps: the motion begins anew after each of them");
   say(segments.too_short, " stretches with too few readings for a start of their own are left out");
+  for (const std::string& why : segments.lawless) {
+    warnings.push_back(name + ": " + why + ", which is left out");
+  }
 }
 
 void say_unused(const NamedRecording& r, const Platform& platform,

@@ -86,6 +86,23 @@ TEST(Sticking, HasExactDerivatives) {
   EXPECT_NEAR(t.derivatives[2] / closed_form, 1.0, 2e-3);
 }
 
+// Of a wheel whose angle nobody asks for nothing is left once it stands but derivatives that die
+// away: ω = ω₀ − (τ/I) t until it stops, so ∂ω/∂τ = −t/I before and nothing after.
+TEST(Sticking, DerivativesThatDiedAwayCostNoSteps) {
+  constexpr double friction_N_m = 1e-3, start_rad_s = 1.0;
+  AttitudeModel model = with(bench_model(), "dry_friction", {{"torque_N_m", node(friction_N_m)}});
+  model.holds_attitude = true;
+  const double stops_s = start_rad_s * I_kg_m2 / friction_N_m;
+  const double times_s[] = {0.5 * stops_s, 5.0 * stops_s};
+  const Dynamics dynamics(model);
+  const Trajectory t = propagate(dynamics, state_of(model, Quat::Identity(), {0, 0, start_rad_s}),
+                                 times_s, {}, {Variable::of(0, 0)});
+  constexpr size_t rate_z = 5;
+  EXPECT_NEAR(t.derivatives[rate_z] / (-0.5 * stops_s / I_kg_m2), 1.0, 1e-6);
+  EXPECT_NEAR(t.derivatives[t.components + rate_z] / (stops_s / I_kg_m2), 0.0, 1e-9);
+  EXPECT_LT(t.statistics.steps, 2000);
+}
+
 // Between spring and friction every half swing ends 2 τ/k nearer, whatever the amplitude. The sign
 // of the friction changes within nanoseconds, anywhere within a step: 40 swings, at the tolerance
 // that a user has by default.

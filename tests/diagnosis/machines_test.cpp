@@ -223,6 +223,80 @@ TEST(Machines, RecordingsAreCutWhereSomethingHappened) {
   EXPECT_EQ(jumped.all.size(), 4u);
 }
 
+// A drive holds the wheel for 60 s before it coasts; now and then a count is lost.
+Channel driven_then_coasting(double noise_rad_s) {
+  std::mt19937_64 random(13);
+  std::normal_distribution<double> noise(0.0, noise_rad_s);
+  Channel rate{"gyro_z_rad_s", {}};
+  for (int i = 0; i < 1500; ++i) {
+    const double t = 0.25 * i, lost = i % 301 < 2 ? 2.0 / 3.0 : 1.0;
+    rate.values.push_back(lost * coasting_rad_s(std::max(0.0, t - 60.0), 30.0, 0.01, 1.2e-4) +
+                          noise(random));
+  }
+  return rate;
+}
+
+TEST(Machines, WhatADriveDidBeforeItLetGoIsLeftOut) {
+  const NominalModel wheel = machine(wheel_toml);
+  const Recording recording = recording_of(0.25, {driven_then_coasting(0.003)});
+  const Segments cut = observe_segments(recording, "wheel.csv", wheel.model.platform);
+  ASSERT_EQ(cut.all.size(), 1u);
+  // Not before it let go, and at most two seconds after.
+  EXPECT_GT(cut.all[0].time_s.front(), 59.9);
+  EXPECT_LT(cut.all[0].time_s.front(), 62.0);
+  EXPECT_DOUBLE_EQ(cut.all[0].time_s.back(), recording.time_s.back());
+  ASSERT_EQ(cut.lawless.size(), 1u);
+  EXPECT_THAT(cut.lawless[0], HasSubstr("something else acts before"));
+
+  const Diagnosis d = diagnose(wheel, {{"wheel.csv", recording}}, {});
+  EXPECT_THAT(kinds_of(d), UnorderedElementsAre("dry_friction", "air_pressure_drag"));
+}
+
+TEST(Machines, WhatFollowsOneLawIsNotCut) {
+  Platform axle;
+  axle.topology = Topology::one_axis;
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  Channel stops{"gyro_z_rad_s", {}}, swings = stops, commanded = stops, command{"command_z_N_m", {}};
+  for (int i = 0; i < 1500; ++i) {
+    const double t = 0.25 * i;
+    stops.values.push_back(std::max(0.0, 30.0 - 0.15 * t) + noise(random));  // dry friction alone
+    swings.values.push_back(std::sin(0.4 * t) * std::exp(-t / 200.0) + noise(random));
+    commanded.values.push_back(30.0 + 0.15 * std::max(0.0, t - 60.0) + noise(random));
+    command.values.push_back(t < 60.0 ? 0.0 : 0.15);
+  }
+  for (const std::vector<Channel>& channels :
+       {std::vector<Channel>{stops}, {swings}, {commanded, command}}) {
+    const Segments cut = observe_segments(recording_of(0.25, channels), "axle.csv", axle);
+    EXPECT_TRUE(cut.lawless.empty()) << cut.lawless.front();
+    EXPECT_EQ(cut.all.front().rows, 1500);
+  }
+}
+
+// A dry torque that differs from run to run, guessed so large that the wheel would stop half-way.
+TEST(Machines, WhatDiffersFromRunToRunDoesNotHideWhatTheyShare) {
+  const NominalModel wheel = machine(std::string(wheel_toml) + R"(
+[[disturbance]]
+kind = "dry_friction"
+torque_N_m = { value = 5e-2, sigma = 5e-2 }
+per_recording = true
+)");
+  std::mt19937_64 random(19);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  std::vector<NamedRecording> runs;
+  for (const double dry : {0.008, 0.010, 0.013}) {
+    Channel rate{"gyro_z_rad_s", {}};
+    for (int i = 0; i < 1200; ++i) {
+      rate.values.push_back(coasting_rad_s(0.25 * i, 30.0, dry, 1.2e-4) + noise(random));
+    }
+    runs.push_back({"run.csv", recording_of(0.25, {rate})});
+  }
+  const Diagnosis d = diagnose(wheel, {runs[0], runs[1]}, {runs[2]});
+  EXPECT_THAT(kinds_of(d), ElementsAre("air_pressure_drag"));
+  const FittedParameter& drag = d.effects.front().parameters.front();
+  EXPECT_NEAR(drag.value[0], 1.2e-4, std::max(5.0 * drag.sigma[0], 0.01 * 1.2e-4));
+}
+
 TEST(Machines, ReadingsTellTheirOwnNoise) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise(0.0, 0.02);
