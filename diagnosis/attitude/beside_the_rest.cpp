@@ -14,8 +14,17 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
+// Whether no explanation that physics allows predicts what was held out better.
+bool predicts_best(const std::vector<Trial>& trials, double held) {
+  return std::none_of(trials.begin(), trials.end(), [&](const Trial& t) {
+    return t.objection.empty() && t.holdout_chi2_per_sample && *t.holdout_chi2_per_sample < held;
+  });
+}
+
 // Whether known physics is part of the answer: it predicts what was held out far better than the
 // nominal model, and where a law without a name explains more, it does so beside the same names.
+// What was held out may hold more of the rest than what was fitted, which no distribution foretells:
+// then the names have to predict better by a factor still larger, and best of all.
 bool has_names(const Answer& a, const Thresholds& limits) {
   const inference::Decision& decision = a.decision;
   if (decision.best_named == 0) return false;
@@ -27,6 +36,10 @@ bool has_names(const Answer& a, const Thresholds& limits) {
     return false;
   }
   if (decision.finding == inference::Finding::named) return true;
+  if (decision.chosen == decision.best_named) {
+    return *named_held < limits.decision.max_unforetold_fraction * *nominal_held &&
+           predicts_best(a.trials, *named_held);
+  }
   const std::set<size_t> all(chosen.candidates.begin(), chosen.candidates.end());
   return chosen.candidates.size() > named.candidates.size() &&
          std::all_of(named.candidates.begin(), named.candidates.end(),
