@@ -4,6 +4,7 @@
 #include "attitude/estimation/nominal_model.h"
 #include "diagnosis/attitude/answer.h"
 #include "diagnosis/attitude/discrepancy.h"
+#include "diagnosis/attitude/holdout.h"
 
 namespace photorque {
 namespace {
@@ -14,18 +15,25 @@ void use_noise(const NoiseLevels& noise, RecordedData& data) {
   }
 }
 
-// Whether no explanation that physics allows predicts what was held out better.
-bool predicts_best(const std::vector<Trial>& trials, double held) {
+bool contains(const std::vector<size_t>& all, const std::vector<size_t>& some) {
+  const std::set<size_t> in(all.begin(), all.end());
+  return std::all_of(some.begin(), some.end(), [&](size_t c) { return in.count(c) > 0; });
+}
+
+// Whether nothing that physics allows predicts what was held out better without these names.
+bool predicts_best(const std::vector<Trial>& trials, const Trial& named) {
   return std::none_of(trials.begin(), trials.end(), [&](const Trial& t) {
-    return t.objection.empty() && t.holdout_chi2_per_sample && *t.holdout_chi2_per_sample < held;
+    return t.objection.empty() && !contains(t.candidates, named.candidates) &&
+           t.holdout_chi2_per_sample && *t.holdout_chi2_per_sample < *named.holdout_chi2_per_sample;
   });
 }
 
 // Whether known physics is part of the answer: it predicts what was held out far better than the
 // nominal model, and where a law without a name explains more, it does so beside the same names.
-// What was held out may hold more of the rest than what was fitted, which no distribution foretells:
-// then the names have to predict better by a factor still larger, and best of all.
-bool has_names(const Answer& a, const Thresholds& limits) {
+// What was held out may hold more of the rest than what was fitted, which no distribution
+// foretells: then the names have to predict better by a factor still larger, and best of all;
+// nothing is added so to names that were `found` before.
+bool has_names(const Answer& a, bool found, const Thresholds& limits) {
   const inference::Decision& decision = a.decision;
   if (decision.best_named == 0) return false;
   const Trial &named = a.trials[decision.best_named], &chosen = a.chosen();
@@ -37,21 +45,37 @@ bool has_names(const Answer& a, const Thresholds& limits) {
   }
   if (decision.finding == inference::Finding::named) return true;
   if (decision.chosen == decision.best_named) {
-    return *named_held < limits.decision.max_unforetold_fraction * *nominal_held &&
-           predicts_best(a.trials, *named_held);
+    return !found && *named_held < limits.decision.max_unforetold_fraction * *nominal_held &&
+           predicts_best(a.trials, named);
   }
-  const std::set<size_t> all(chosen.candidates.begin(), chosen.candidates.end());
   return chosen.candidates.size() > named.candidates.size() &&
-         std::all_of(named.candidates.begin(), named.candidates.end(),
-                     [&](size_t c) { return all.count(c) > 0; });
+         contains(chosen.candidates, named.candidates);
 }
 
-// The names with parameters and errors by what is left beside them.
-void refit_beside_the_rest(const NoiseLevels& own, RecordedData data, Answer& answer) {
+// χ² of what was held out against the noise that `data` has, whatever that is.
+double held_chi2(const Fit& fit, const RecordedData& data, const Thresholds& limits) {
+  return propagate_model(fit, data.held, limits).chi2;
+}
+
+// The names with parameters and errors by what is left beside them. The less is left, the more the
+// readings weigh against what was stated; so it goes on as long as what was held out gains by it.
+void refit_beside_the_rest(const NoiseLevels& own, RecordedData data, const Thresholds& limits,
+                           Answer& answer) {
+  constexpr int most_rounds = 6;
   Trial& named = answer.trials[answer.decision.chosen];
-  use_noise(
-      with_discrepancy(residuals_of(named.fit, data.train), data.train, own, Remainder::correlated),
-      data);
+  const auto rest = [&](Remainder remainder) {
+    return with_discrepancy(residuals_of(named.fit, data.train), data.train, own, remainder);
+  };
+  for (int round = 0; round < most_rounds; ++round) {
+    use_noise(rest(Remainder::white), data);
+    const Trial again = refit(named, answer.all, data.train, named.fit.best.runs);
+    if (!std::isfinite(again.fit.chi2) || !again.objection.empty() ||
+        !(held_chi2(again.fit, data, limits) < 0.9 * held_chi2(named.fit, data, limits))) {
+      break;
+    }
+    named.fit = again.fit;
+  }
+  use_noise(rest(Remainder::correlated), data);
   const Trial again = refit(named, answer.all, data.train, named.fit.best.runs);
   if (std::isfinite(again.fit.chi2)) named.fit = again.fit;
 }
@@ -92,14 +116,14 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
     tell(options, "naming what stands out, with the rest counted as noise");
     Answer next = explain(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
                           Among::plain_physics);
-    const bool named = has_names(next, options.limits);
+    const bool named = has_names(next, best.has_value(), options.limits);
     if (!named && (best || next.decision.best_named == 0)) break;
     left_by = next.trials[next.decision.best_named].fit;
     if (!named) continue;
     next.decision.chosen = next.decision.best_named;
     best = std::move(next);
   }
-  if (best) refit_beside_the_rest(own, data, *best);
+  if (best) refit_beside_the_rest(own, data, options.limits, *best);
   return best;
 }
 
