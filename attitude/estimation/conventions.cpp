@@ -131,7 +131,78 @@ std::string text_of(Reading reading) {
   return "";
 }
 
+void read_gyro_as(const Mat3& matrix, Observation& seen) {
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    seen.gyro_rad_s[i] = matrix * seen.gyro_rad_s[i];
+    seen.gyro_rows[i] = matrix.cwiseSign().cwiseAbs() * seen.gyro_rows[i];
+  }
+}
+
+// The rates of all three axes and how they change, by straight lines through seven neighbours.
+struct Change {
+  Vec3 rate_rad_s, slope_rad_s2;
+};
+
+std::vector<Change> changes_of(const Observation& seen) {
+  constexpr size_t most = 600, reach = 3;
+  const Observation rows = seen.averaged(most);
+  std::vector<Change> all;
+  for (size_t i = reach; i + reach < rows.blocks(); ++i) {
+    double mean_s = 0.0, spread_s2 = 0.0;
+    Vec3 mean = Vec3::Zero(), product = Vec3::Zero();
+    constexpr double count = 2.0 * reach + 1.0;
+    for (size_t j = i - reach; j <= i + reach; ++j) {
+      mean_s += rows.time_s[j] / count;
+      mean += rows.gyro_rad_s[j] / count;
+    }
+    for (size_t j = i - reach; j <= i + reach; ++j) {
+      const double t = rows.time_s[j] - mean_s;
+      spread_s2 += t * t;
+      product += t * (rows.gyro_rad_s[j] - mean);
+    }
+    if (mean.allFinite() && product.allFinite()) all.push_back({mean, product / spread_s2});
+  }
+  return all;
+}
+
+// Mean square of I ω' + ω × I ω over that of I ω', in the units that `gyro` makes of the readings.
+double disagreement(const std::vector<Change>& changes, const Mat3& inertia_kg_m2,
+                    const Mat3& gyro) {
+  double off = 0.0, all = 0.0;
+  for (const Change& c : changes) {
+    const Vec3 rate = gyro * c.rate_rad_s, torque = inertia_kg_m2 * (gyro * c.slope_rad_s2);
+    off += (torque + rate.cross(inertia_kg_m2 * rate)).squaredNorm();
+    all += torque.squaredNorm();
+  }
+  return all > 0.0 ? off / all : 0.0;
+}
+
 }  // namespace
+
+std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2) {
+  constexpr size_t fewest = 20;
+  if (!seen.has_gyro || seen.sees_some_attitude()) return "";
+  const std::vector<Change> changes = changes_of(seen);
+  if (changes.size() < fewest) return "";
+  const double as_is = disagreement(changes, inertia_kg_m2, Mat3::Identity());
+  // The body's own inertia explains half of what the rates do: torques may do the rest.
+  if (as_is < 0.5) return "";
+  double best = as_is, best_cost = as_is;
+  GyroReading best_gyro{Mat3::Identity(), 0, ""};
+  for (const GyroReading& gyro : gyro_readings()) {
+    const double d = disagreement(changes, inertia_kg_m2, gyro.matrix);
+    const double cost = d + 0.01 * gyro.changes;
+    if (cost >= best_cost) continue;
+    best = d;
+    best_cost = cost;
+    best_gyro = gyro;
+  }
+  if (best > agrees || best > 0.2 * as_is) return "";
+  read_gyro_as(best_gyro.matrix, seen);
+  return "convention: " + best_gyro.text +
+         ": the recording was read so, because only then do the rates change as the stated inertia "
+         "makes them; a free body cannot tell one reversed axis from another";
+}
 
 std::string repair_conventions(Observation& seen) {
   if (!seen.has_gyro) return "";
@@ -157,11 +228,8 @@ std::string repair_conventions(Observation& seen) {
     }
   }
   if (best > agrees || best > 0.2 * as_is) return "";
-  for (size_t i = 0; i < seen.blocks(); ++i) {
-    seen.attitude[i] = read(seen.attitude[i], best_reading);
-    seen.gyro_rad_s[i] = best_gyro.matrix * seen.gyro_rad_s[i];
-    seen.gyro_rows[i] = best_gyro.matrix.cwiseSign().cwiseAbs() * seen.gyro_rows[i];
-  }
+  for (Quat& attitude : seen.attitude) attitude = read(attitude, best_reading);
+  read_gyro_as(best_gyro.matrix, seen);
   const std::string quaternions = text_of(best_reading);
   const bool both = !quaternions.empty() && !best_gyro.text.empty();
   return "convention: " + quaternions + (both ? "; " : "") + best_gyro.text +

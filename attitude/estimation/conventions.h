@@ -14,4 +14,11 @@ namespace photorque {
 // checked.
 std::string repair_conventions(Observation& seen);
 
+// The same for the rates of a body on which nothing but its own inertia acts, or little else: they
+// must change as Euler's equations say, which an odd number of reversed axes, two axes exchanged or
+// another unit spoil. Which of the axes are reversed such a body cannot tell: the one with the
+// fewest changes is taken. Nothing is done where an attitude is read, or where the moments are so
+// alike that nothing follows from them.
+std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2);
+
 }  // namespace photorque

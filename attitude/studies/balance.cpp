@@ -5,8 +5,11 @@
 #include <cmath>
 
 #include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/segments.h"
+#include "attitude/noise/discrepancy.h"
 #include "attitude/propagation/run.h"
 #include "core/errors.h"
+#include "core/text/display.h"
 
 namespace photorque {
 namespace {
@@ -26,8 +29,8 @@ size_t unbalance_of(AttitudeModel& model) {
 
 // The offset freely, and within their stated uncertainty all parameters that have one.
 Hypothesis hypothesis_of(const BalanceRun& run, const AttitudeModel& model, size_t unbalance,
-                         const Observation& seen) {
-  Hypothesis h = nominal_hypothesis({model, run.sensors}, {seen});
+                         const std::vector<Observation>& seen) {
+  Hypothesis h = nominal_hypothesis({model, run.sensors}, seen);
   std::erase_if(h.free, [&](const Free& f) { return f.disturbance == unbalance; });
   for (int k = 0; k < 3; ++k) h.free.push_back({unbalance, k});
   return h;
@@ -46,13 +49,62 @@ FitSettings patient_settings() {
 }
 
 // What is left of the camera's attitudes.
-void add_camera_residuals(const Observation& seen, BalanceResult& result) {
-  const Prediction predicted = std::move(residuals_of(result.fit, {seen}).front());
-  for (size_t i = 0; i < seen.blocks(); ++i) {
-    if (!(seen.attitude_rows[i] > 0.0)) continue;
-    result.residual_time_s.push_back(seen.time_s[i]);
-    result.camera_residual_rad.emplace_back(predicted.off[i].head<3>());
+void add_camera_residuals(const std::vector<Observation>& stretches, BalanceResult& result) {
+  const std::vector<Prediction> predicted = residuals_of(result.fit, stretches);
+  for (size_t s = 0; s < stretches.size(); ++s) {
+    const Observation& seen = stretches[s];
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      if (!(seen.attitude_rows[i] > 0.0)) continue;
+      result.residual_time_s.push_back(seen.time_s[i]);
+      result.camera_residual_rad.emplace_back(predicted[s].off[i].head<3>());
+    }
   }
+}
+
+// The recording without what gaps cut off, each stretch with a start of its own.
+std::vector<Observation> stretches_of(const BalanceRun& run) {
+  std::vector<Observation> all =
+      observe_segments(run.recording, "recording", run.model.platform, run.recording.rows()).all;
+  for (Observation& seen : all) seen.noise = noise_levels(run.sensors);
+  return all;
+}
+
+Vec3 offset_of(const Fit& fitted, size_t unbalance) {
+  Vec3 offset_m = Vec3::Zero();
+  for (const Free& f : fitted.best.free) {
+    if (f.disturbance == unbalance) offset_m[f.parameter] = fitted.best.parameter(f).value;
+  }
+  return offset_m;
+}
+
+// How far the offset of parts of the recording is from that of the whole at most, by axis: what the
+// model lacks pulls each of them another way, and all of them some way.
+Vec3 distance_of_parts_m(const BalanceRun& run, const Fit& whole, size_t unbalance,
+                         const std::vector<Observation>& stretches) {
+  constexpr size_t parts = 6, fewest_blocks = 60;
+  const Vec3 offset_m = offset_of(whole, unbalance);
+  Vec3 largest_m = Vec3::Zero();
+  bool has_any = false;
+  for (const Observation& seen : stretches) {
+    const size_t length = std::max(fewest_blocks, seen.blocks() / parts);
+    for (size_t first = 0; first + length <= seen.blocks(); first += length) {
+      const std::vector<Observation> part = {seen.part(first, first + length)};
+      const Hypothesis start = hypothesis_of(run, whole.best.model, unbalance, part);
+      const Fit fitted = fit(start, part, patient_settings());
+      if (!std::isfinite(fitted.chi2)) continue;
+      largest_m = largest_m.cwiseMax((offset_of(fitted, unbalance) - offset_m).cwiseAbs());
+      has_any = true;
+    }
+  }
+  return has_any ? largest_m : Vec3::Constant(INFINITY);
+}
+
+// The fit again with what it left counted as noise.
+Fit beside_the_rest(const Fit& fitted, std::vector<Observation> stretches) {
+  const NoiseLevels noise = with_discrepancy(residuals_of(fitted, stretches), stretches,
+                                             stretches.front().noise, Remainder::correlated);
+  for (Observation& seen : stretches) seen.noise = noise;
+  return fit(fitted.best, stretches, patient_settings());
 }
 
 Mat3 cross_matrix(const Vec3& v) {
@@ -193,23 +245,33 @@ BalanceResult balance(const BalanceRun& run) {
   std::vector<Parameter>& offset = model.disturbances[unbalance].parameters;
   for (size_t k = 0; k < 3; ++k) offset[k].value = guess_m[static_cast<Eigen::Index>(k)];
 
-  Observation seen = observe(run.recording, "recording", {}, run.recording.rows());
-  seen.noise = noise_levels(run.sensors);
+  const std::vector<Observation> stretches = stretches_of(run);
   BalanceResult result;
-  result.fit = fit(hypothesis_of(run, model, unbalance, seen), {seen}, patient_settings());
+  result.stretches = stretches.size();
+  result.fit = fit(hypothesis_of(run, model, unbalance, stretches), stretches, patient_settings());
   if (!std::isfinite(result.fit.chi2)) {
     throw NumericalError("the model cannot be propagated along the recording");
   }
-  add_camera_residuals(seen, result);
+  result.chi2_per_sample = result.fit.chi2_per_sample();
+  result.excess_sigma =
+      (result.chi2_per_sample - 1.0) * std::sqrt(0.5 * static_cast<double>(result.fit.samples));
+  if (result.leaves_more_than_noise()) {
+    const Fit beside = beside_the_rest(result.fit, stretches);
+    if (std::isfinite(beside.chi2)) result.fit = beside;
+  }
+  const Vec3 distance_m = result.leaves_more_than_noise()
+                              ? distance_of_parts_m(run, result.fit, unbalance, stretches)
+                              : Vec3(Vec3::Zero());
+  add_camera_residuals(stretches, result);
 
-  const double misfit = std::sqrt(std::max(1.0, result.fit.chi2_per_sample()));
+  result.offset_body_m = offset_of(result.fit, unbalance);
   const inference::Covariance known = result.fit.shared();
   Eigen::Index shared = 0;
   for (const Free& f : result.fit.best.free) {
     if (f.per_run) continue;
     if (f.disturbance == unbalance) {
-      result.offset_body_m[f.parameter] = result.fit.best.value(f);
-      result.sigma_m[f.parameter] = misfit * known.standard_error(shared);
+      result.sigma_m[f.parameter] =
+          std::hypot(known.standard_error(shared), distance_m[f.parameter]);
     }
     ++shared;
   }
@@ -219,6 +281,14 @@ BalanceResult balance(const BalanceRun& run) {
     result.resolution_m = std::max(result.resolution_m, com_resolution_m(mass, mass_kg));
   }
   return result;
+}
+
+std::string BalanceResult::warning() const {
+  if (!leaves_more_than_noise()) return "";
+  return "something acts that the experiment lacks: the fit leaves " +
+         readable_number(std::sqrt(chi2_per_sample), 3) +
+         " times the noise; the errors hold how far parts of the recording disagree, but what acts "
+         "may pull all of them (photorque diagnose says what it is)";
 }
 
 Product balance_product(const BalanceRun& run, const BalanceResult& result) {
@@ -262,7 +332,7 @@ Product balance_product(const BalanceRun& run, const BalanceResult& result) {
   exact("left_by_steps_N_m", left_m * weight_N);
   exact("resolution_m", result.resolution_m);
   exact("published_resolution_m", published_resolution_m);
-  exact("chi2_per_sample", result.fit.chi2_per_sample());
+  exact("chi2_per_sample", result.chi2_per_sample);
 
   Plot plot;
   plot.name = "balance_residuals";

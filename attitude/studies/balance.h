@@ -31,11 +31,21 @@ BalanceRun read_balance(const Settings& root, const std::filesystem::path& recor
 
 struct BalanceResult {
   Vec3 offset_body_m = Vec3::Zero();
-  // Standard errors, widened by the fit's misfit where chi² exceeds 1. Infinite along an axis that
-  // the recording does not determine, as the vertical of a platform that stays level.
+  // Standard errors; where the model leaves more than noise, that counts as noise, as loud and as
+  // correlated in time as it is, and how far six parts of the recording are from the whole is
+  // added. Infinite along an axis that the recording does not determine, as the vertical of a
+  // platform that stays level.
   Vec3 sigma_m = Vec3::Zero();
   BalanceCommand command;     // of the masses, and what their steps leave
   double resolution_m = 0.0;  // of the coarsest axis, half a step (eq. 1)
+  // Of the fit with the noise of the instruments alone, and by how many standard errors it exceeds
+  // one. Beyond `noticed_sigma` something acts that the model lacks: it pulls the offset as well,
+  // by how much nobody can tell who does not know what it is.
+  double chi2_per_sample = 0.0, excess_sigma = 0.0;
+  static constexpr double noticed_sigma = 6.0;
+  bool leaves_more_than_noise() const { return excess_sigma > noticed_sigma; }
+  std::string warning() const;  // for people; empty where nothing more than noise is left
+  size_t stretches = 1;         // into which gaps cut the recording
   Fit fit;
   // What is left of the camera's attitudes, lab axes, at these times.
   std::vector<double> residual_time_s;

@@ -3,7 +3,7 @@
 
 #include "attitude/estimation/nominal_model.h"
 #include "diagnosis/attitude/answer.h"
-#include "diagnosis/attitude/discrepancy.h"
+#include "attitude/noise/discrepancy.h"
 #include "diagnosis/attitude/holdout.h"
 
 namespace photorque {
@@ -26,6 +26,34 @@ bool predicts_best(const std::vector<Trial>& trials, const Trial& named) {
     return t.objection.empty() && !contains(t.candidates, named.candidates) &&
            t.holdout_chi2_per_sample && *t.holdout_chi2_per_sample < *named.holdout_chi2_per_sample;
   });
+}
+
+// Of the best names those that what was held out misses: without any one of them it would be
+// predicted worse by the factor that makes a name. What is left is no noise, and an effect that
+// bends a little with it gains evidence where it does not act.
+void drop_what_held_out_does_not_miss(const Thresholds& limits, Answer& a) {
+  size_t& best = a.decision.best_named;
+  const bool is_chosen = a.decision.chosen == best;
+  for (bool drops = best != 0; drops;) {
+    drops = false;
+    const Trial& whole = a.trials[best];
+    size_t fewer = best;
+    for (size_t i = 1; i < a.trials.size(); ++i) {
+      const Trial& part = a.trials[i];
+      const bool has_one_less = part.candidates.size() + 1 == whole.candidates.size() &&
+                                contains(whole.candidates, part.candidates);
+      if (!has_one_less || !part.objection.empty() || !part.holdout_chi2_per_sample ||
+          !whole.holdout_chi2_per_sample ||
+          *whole.holdout_chi2_per_sample <
+              limits.decision.max_held_out_fraction * *part.holdout_chi2_per_sample) {
+        continue;
+      }
+      if (fewer == best || part.log_evidence > a.trials[fewer].log_evidence) fewer = i;
+    }
+    drops = fewer != best;
+    best = fewer;
+  }
+  if (is_chosen) a.decision.chosen = best;
 }
 
 // Whether known physics is part of the answer: it predicts what was held out far better than the
@@ -116,6 +144,7 @@ std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, Recorde
     tell(options, "naming what stands out, with the rest counted as noise");
     Answer next = explain(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
                           Among::plain_physics);
+    drop_what_held_out_does_not_miss(options.limits, next);
     const bool named = has_names(next, best.has_value(), options.limits);
     if (!named && (best || next.decision.best_named == 0)) break;
     left_by = next.trials[next.decision.best_named].fit;

@@ -52,7 +52,10 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
     say_unused(r, platform, warnings);
     std::string convention;
     for (Observation& seen : segments.all) {
-      const std::string of_stretch = repair_conventions(seen);
+      const std::string of_stretch =
+          platform.has_bearing()
+              ? repair_conventions(seen)
+              : repair_conventions(seen) + repair_free_rates(seen, platform.inertia_kg_m2);
       if (convention.empty()) convention = of_stretch;
     }
     if (!convention.empty()) warnings.push_back(r.name + ": " + convention);

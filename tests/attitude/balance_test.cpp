@@ -92,6 +92,54 @@ TEST(Balance, ACameraAloneSuffices) {
   }
 }
 
+// A dipole that the experiment lacks bends the fit: the offset comes out wrong, and says so. The
+// errors have to hold the truth nearly as often as they say, however many rows there are.
+TEST(Balance, WhatTheModelLacksIsSaidAndWidensTheErrors) {
+  BalanceRun run = unbalanced(true, 7);
+  EXPECT_FALSE(balance(run).leaves_more_than_noise());
+  PropagationRun truth;
+  truth.model =
+      with(bench_model(), "static_unbalance",
+           {{"offset_m", numbers({true_offset_m[0], true_offset_m[1], true_offset_m[2]})}});
+  truth.model = with(truth.model, "magnetic_dipole", {{"dipole_A_m2", numbers({0.2, 0, 0.1})}});
+  truth.sensors = run.sensors;
+  truth.duration_s = 600.0;
+  truth.output_rate_Hz = 10.0;
+  truth.initial = state_of(truth.model, turned(0.2, {1, 1, 0}), {0.01, -0.01, 0.1});
+  run.recording = propagate(truth).recording;
+  run.model.schedule = run.recording.schedule();
+  const BalanceResult result = balance(run);
+  EXPECT_TRUE(result.leaves_more_than_noise());
+  EXPECT_NE(result.warning(), "");
+  EXPECT_GT(result.chi2_per_sample, 2.0);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LT(std::abs(result.offset_body_m[k] - true_offset_m[k]), 5 * result.sigma_m[k]) << k;
+  }
+}
+
+// Three hours without a reading tell nothing of the motion: both stretches begin anew.
+TEST(Balance, AGapCutsTheRecording) {
+  BalanceRun run = unbalanced(true, 8);
+  const size_t half = run.recording.rows() / 2;
+  run.model.schedule = {};
+  for (size_t i = half; i < run.recording.rows(); ++i) run.recording.time_s[i] += 1e4;
+  run.recording.report.gaps = {{run.recording.time_s[half - 1], run.recording.time_s[half]}};
+  std::erase_if(run.recording.channels,
+                [](const Channel& c) { return c.name.starts_with("command"); });
+  // The commands of the first stretch are over before it is used.
+  for (size_t i = 0; i < half; ++i) {
+    if (run.recording.time_s[i] > 115.0) continue;
+    for (Channel& c : run.recording.channels) c.values[i] = NAN;
+  }
+  const BalanceResult result = balance(run);
+  EXPECT_EQ(result.stretches, 2u);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LT(std::abs(result.offset_body_m[k] - true_offset_m[k]), 4 * result.sigma_m[k]);
+    EXPECT_LT(result.sigma_m[k], 1e-8);
+    EXPECT_GT(result.sigma_m[k], 0.0);
+  }
+}
+
 TEST(Balance, MomentumGivesAStartWithoutOne) {
   const BalanceRun run = unbalanced(true, 5);
   const Vec3 offset_m = offset_from_momentum_m(

@@ -12,7 +12,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
-#include "diagnosis/attitude/discrepancy.h"
+#include "attitude/noise/discrepancy.h"
 #include "scenes/experiment/toml_reader.h"
 
 namespace photorque {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "attitude/estimation/conventions.h"
 #include "core/constants.h"
 
 namespace photorque {
@@ -98,6 +99,53 @@ TEST(Observation, BlocksOfOneRowStayAsTheyAre) {
       EXPECT_LT(seen.attitude[i].angularDistance(same.attitude[i]), 1e-7);
     }
   }
+}
+
+// The rates of the top as a recording would have them that misnames their unit or their axes.
+Observation rates_read_as(const Mat3& matrix) {
+  Observation seen = seen_by(1, true);
+  seen.sees_axis = {false, false, false};
+  for (Vec3& rate : seen.gyro_rad_s) rate = matrix * rate;
+  return seen;
+}
+
+// How fast the rates turn about the axis, over the spin: I3/I1 − 1 of a top, in its own sense.
+double cone_per_spin(const Observation& seen) {
+  const auto phase = [&](size_t i) {
+    return std::atan2(seen.gyro_rad_s[i].y(), seen.gyro_rad_s[i].x());
+  };
+  return std::remainder(phase(160) - phase(0), 2.0 * pi) / (seen.time_s[160] - seen.time_s[0]) /
+         seen.gyro_rad_s[0].z();
+}
+
+TEST(FreeRates, AreReadSoThatEulersEquationHolds) {
+  const Mat3 inertia = Vec3(1.0, 1.0, Top::ratio).asDiagonal();
+  Mat3 degrees = Mat3::Identity() / degree_rad, reversed = Vec3(1, 1, -1).asDiagonal(), exchanged;
+  exchanged << 0, 1, 0, 1, 0, 0, 0, 0, 1;
+  for (const Mat3& wrong : {degrees, reversed, exchanged, Mat3(degrees * reversed)}) {
+    Observation seen = rates_read_as(wrong);
+    EXPECT_GT(std::abs(cone_per_spin(seen) / (Top::ratio - 1.0) - 1.0), 0.5);
+    EXPECT_NE(repair_free_rates(seen, inertia), "");
+    EXPECT_NEAR(cone_per_spin(seen), Top::ratio - 1.0, 1e-9);
+  }
+}
+
+TEST(FreeRates, ThatAreRightOrSayNothingStayAsTheyAre) {
+  const Mat3 inertia = Vec3(1.0, 1.0, Top::ratio).asDiagonal();
+  Observation right = rates_read_as(Mat3::Identity());
+  EXPECT_EQ(repair_free_rates(right, inertia), "");
+  // Two axes reversed are the same motion seen from elsewhere.
+  Observation turned = rates_read_as(Vec3(-1, -1, 1).asDiagonal());
+  EXPECT_EQ(repair_free_rates(turned, inertia), "");
+  // Of a ball nothing follows, of other physics nothing that an axis could mend.
+  Observation mirrored = rates_read_as(Vec3(1, 1, -1).asDiagonal());
+  EXPECT_EQ(repair_free_rates(mirrored, Mat3::Identity()), "");
+  Observation driven = right;
+  for (size_t i = 0; i < driven.blocks(); ++i) {
+    const double t_s = driven.time_s[i];
+    driven.gyro_rad_s[i] = {std::sin(3.0 * t_s), std::sin(4.1 * t_s), std::cos(2.3 * t_s)};
+  }
+  EXPECT_EQ(repair_free_rates(driven, inertia), "");
 }
 
 }  // namespace

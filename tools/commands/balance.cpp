@@ -21,7 +21,12 @@ void print_balance(const Console& console, const BalanceRun& run, const BalanceR
     console.line(std::string("  ") + "xyz"[k] + "  " +
                  show(Estimate{result.offset_body_m[k], result.sigma_m[k]}, "m"));
   }
-  console.line("  chi² per sample of the fit " + show(result.fit.chi2_per_sample()));
+  console.line("  chi² per sample of the fit " + show(result.chi2_per_sample));
+  if (result.stretches > 1) {
+    console.line("  the recording is in " + std::to_string(result.stretches) +
+                 " stretches between gaps, each with a start of its own");
+  }
+  if (result.leaves_more_than_noise()) console.line("  WARNING: " + result.warning());
   console.heading("Moves of the masses");
   for (const Table& table : product.tables) {
     if (table.name != "moving_masses") continue;

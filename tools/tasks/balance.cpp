@@ -10,7 +10,9 @@ BalanceOutcome balance_of_experiment(const RunOptions& options,
   BalanceRun run = read_balance(experiment.settings(), recording);
   BalanceResult found = balance(run);
   Product product = balance_product(run, found);
-  RunResult result{std::move(product), experiment.provenance(0), {wall.elapsed_s(), {}}};
+  Provenance provenance = experiment.provenance(0);
+  if (found.leaves_more_than_noise()) provenance.warnings.push_back(found.warning());
+  RunResult result{std::move(product), std::move(provenance), {wall.elapsed_s(), {}}};
   return {std::move(run), std::move(found), std::move(result)};
 }
 

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/discrepancy.h"
+#include "attitude/noise/discrepancy.h"
 
 #include <algorithm>
 #include <cmath>
