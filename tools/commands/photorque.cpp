@@ -134,6 +134,9 @@ int run(int argc, char** argv, Interruption& interruption) {
       command->add_option("--shard", line.shard,
                           "K/N: only every Nth design, from the Kth; the run that finds all "
                           "designs done writes the table");
+      command->add_flag("--collect", line.collect,
+                        "Run nothing: the table of what all shards have done, also of those that "
+                        "did not come to an end");
     }
   }
   Manual manual;

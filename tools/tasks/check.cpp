@@ -1,4 +1,5 @@
 #include "tools/tasks/check.h"
+#include "tools/sweeps/plan.h"
 
 #include <algorithm>
 #include <functional>
@@ -14,7 +15,6 @@
 #include "tools/runs/attitude_run.h"
 #include "tools/tasks/fit_cell.h"
 #include "tools/tasks/light_sanity.h"
-#include "tools/tasks/sweep_design.h"
 
 namespace photorque {
 namespace {
