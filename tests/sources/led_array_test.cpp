@@ -155,6 +155,39 @@ TEST(LedArray, TotalPowerIsSharedEqually) {
   }
 }
 
+// Against the moments of the normal distribution, within five of their standard errors.
+TEST(LedArray, LedsDifferByTheStatedSpread) {
+  constexpr int64_t count = 10000;
+  constexpr double power_spread = 0.04, aim_deg = 0.5;
+  auto table = array_of("hexagonal", {{"count", {count}},
+                                      {"pitch_m", {0.03}},
+                                      {"total_power_W", {1e4}},
+                                      {"power_spread", {power_spread}},
+                                      {"aim_spread_deg", {aim_deg}}});
+  table.erase("power_W");
+  const auto beams = make_beams("led_array", table);
+  double sum = 0.0, squares = 0.0, across = 0.0, exitance = 0.0;
+  for (const Beam& beam : beams) {
+    const double off = beam.emitter->power_W() - 1.0;
+    sum += off;
+    squares += off * off;
+    exitance += beam.aperture->exitance_W_m2 * pi * std::pow(beam.aperture->radius_m, 2);
+    const double angle = std::acos(std::min(1.0, axis_of(beam).dot(-Vec3::UnitZ())));
+    across += angle * angle / 2.0;
+  }
+  const double n = static_cast<double>(count);
+  EXPECT_NEAR(sum / n, 0.0, 5.0 * power_spread / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n), power_spread, 5.0 * power_spread / std::sqrt(2.0 * n));
+  EXPECT_NEAR(std::sqrt(across / n), aim_deg * degree_rad,
+              5.0 * aim_deg * degree_rad / std::sqrt(4.0 * n));
+  EXPECT_NEAR(exitance, n + sum, 1e-6);  // direct light is gathered from the same powers
+  // The same LEDs on another panel; other LEDs by another seed.
+  table["pitch_m"] = {0.05};
+  EXPECT_EQ(make_beams("led_array", table)[77].emitter->power_W(), beams[77].emitter->power_W());
+  table["spread_seed"] = {int64_t{2}};
+  EXPECT_NE(make_beams("led_array", table)[77].emitter->power_W(), beams[77].emitter->power_W());
+}
+
 TEST(LedArray, SaysWhatIsWrong) {
   const SettingsNode::Table ring = {{"count", {int64_t{8}}}, {"ring_radius_m", {0.3}}};
   const auto refuses = [](SettingsNode::Table table, const std::string& words) {

@@ -9,7 +9,7 @@
 #include "core/provenance.h"
 #include "core/settings/settings.h"
 #include "core/text/numbers.h"
-#include "tools/commands/manual.h"
+#include "tools/manual/pages.h"
 #include "tools/commands/verb.h"
 #include "tools/guards/interruption.h"
 #include "tools/guards/memory.h"

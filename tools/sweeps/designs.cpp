@@ -112,7 +112,7 @@ std::vector<double> merits(const SweepPlan& plan, const Design& design) {
   std::vector<double> all;
   if (!design.feasible) return all;
   for (const Objective& objective : plan.objectives) {
-    const auto value = figure_of(design, objective.figure.column());
+    const auto value = figure_of(design, plan.judged_column(objective));
     if (!value || std::isnan(value->value)) return {};
     all.push_back(objective.maximise ? value->value : -value->value);
   }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/sweeps/outcome.h"
 #include "tools/sweeps/plan.h"
+#include "tools/sweeps/store/outcome.h"
 
 namespace photorque {
 
@@ -15,6 +15,21 @@ struct Design {
   std::vector<Quantity> figures;  // means and worsts over the runs; none where one failed
   std::string error = {};         // of the first run that failed, with its changes
   bool feasible = true;           // succeeded, and every run's mean keeps to the constraints
+};
+
+// A figure of the copies of a design, as built.
+struct BuiltFigure {
+  std::string column;
+  std::vector<double> values;  // of each copy; NaN where it failed
+};
+
+// What a sweep or a search found.
+struct SweepResult {
+  std::vector<Design> designs;
+  std::optional<Design> nominal = {};  // the experiment as it stands, where there is an objective
+  std::optional<size_t> best = {};
+  // Their copies as built, where those of the best are asked for.
+  std::vector<BuiltFigure> built_best = {}, built_nominal = {};
 };
 
 // What the runs of one design (SweepPlan::runs_of) gave together.

@@ -67,8 +67,12 @@ std::vector<Constraint> read_constraints(const Settings& sweep) {
 
 SweepAxis read_axis(const Settings& table, const SweepPlan& plan, uint64_t seed, size_t designs) {
   SweepAxis axis{table.text("key")};
-  axis.values =
-      plan.grid ? grid_values(table) : random_values(table, seed, plan.axes.size(), designs);
+  const bool range_alone =
+      plan.grid && !table.has("values") && !table.has("count") && table.has("from");
+  if (!range_alone) {
+    axis.values =
+        plan.grid ? grid_values(table) : random_values(table, seed, plan.axes.size(), designs);
+  }
   axis.name = table.text_or("name", "");
   if (table.has("from") && table.has("to")) {
     axis.low = std::min(table.number("from"), table.number("to"));
@@ -100,6 +104,52 @@ void read_within(const Settings& sweep, SweepPlan& plan) {
     throw sweep.error("worst_over", "nothing that says which is worse",
                       "maximise, minimise or a [[sweep.constraint]]");
   }
+}
+
+Tolerance read_tolerance(const Settings& table) {
+  Tolerance one{outside_sweep(table)};
+  const bool normal = table.has("sigma"), uniform = table.has("half_width");
+  const bool seed = table.flag_or("seed", false);
+  if (normal + uniform + seed != 1) {
+    throw table.error("sigma",
+                      std::to_string(normal + uniform + seed) +
+                          " of sigma, half_width, "
+                          "seed",
+                      "one of them");
+  }
+  if (seed) {
+    one.law = Tolerance::Law::seed;
+    return one;
+  }
+  one.law = normal ? Tolerance::Law::normal : Tolerance::Law::uniform;
+  one.width = table.number(normal ? "sigma" : "half_width", Range::positive());
+  one.relative = table.flag_or("relative", false);
+  return one;
+}
+
+BuiltCopies read_built(const Settings& sweep) {
+  BuiltCopies built;
+  for (const Settings& table : sweep.tables("tolerance")) {
+    built.tolerances.push_back(read_tolerance(table));
+  }
+  if (built.tolerances.empty()) return built;
+  constexpr int64_t usual_copies = 100, most_copies = 100000;
+  built.copies =
+      static_cast<size_t>(sweep.integer_or("built_copies", usual_copies, 2, most_copies));
+  built.fraction = sweep.number_or("built_fraction", built.fraction, {0.5, 1.0, false, true});
+  built.of_every = sweep.choice_or("built_of", {"best", "every"}, 0) == 1;
+  built.seed = static_cast<uint64_t>(
+      sweep.integer_or("built_seed", 1, 0, std::numeric_limits<int64_t>::max()));
+  return built;
+}
+
+SearchPlan read_search(const Settings& sweep) {
+  SearchPlan search;
+  constexpr int64_t usual = 100, most = 100000;
+  search.global = static_cast<size_t>(sweep.integer_or("global", usual, 0, most));
+  search.local = static_cast<size_t>(sweep.integer_or("local", usual, 0, most));
+  search.precision = sweep.number_or("precision", search.precision, {1e-8, 0.1});
+  return search;
 }
 
 }  // namespace
@@ -165,6 +215,17 @@ std::vector<Changes> SweepPlan::runs_of(const Changes& design) const {
   return all;
 }
 
+std::string SweepPlan::built_column(const SweepFigure& figure) const {
+  const double percent = 100.0 * built.fraction;
+  std::string text = toml_number(percent);
+  std::ranges::replace(text, '.', '_');
+  return "p" + text + "_" + figure.column();
+}
+
+std::string SweepPlan::judged_column(const Objective& objective) const {
+  return built.of_every ? built_column(objective.figure) : objective.figure.column();
+}
+
 SweepPlan read_sweep_plan(const Settings& sweep) {
   SweepPlan plan;
   plan.verb = sweep.text_or("verb", "power");
@@ -178,15 +239,22 @@ SweepPlan read_sweep_plan(const Settings& sweep) {
   for (const Settings& table : sweep.tables("axis")) {
     plan.axes.push_back(
         read_axis(table, plan, static_cast<uint64_t>(seed), static_cast<size_t>(random)));
-    if (plan.grid) runs *= static_cast<double>(plan.axes.back().values.size());
+    if (plan.grid) runs *= static_cast<double>(std::max<size_t>(1, plan.axes.back().values.size()));
   }
   if (plan.axes.empty()) throw sweep.error("axis", "none", "at least one [[sweep.axis]]");
   plan.objectives = read_objectives(sweep);
   plan.constraints = read_constraints(sweep);
   read_within(sweep, plan);
+  plan.built = read_built(sweep);
+  if (!plan.built.tolerances.empty() && plan.objectives.empty()) {
+    throw sweep.error("tolerance", "nothing that built copies are to be good at",
+                      "maximise or minimise");
+  }
+  plan.search = read_search(sweep);
   require_distinct_keys(sweep, plan);
   if (!plan.grid) runs = static_cast<double>(random);
   runs *= static_cast<double>(plan.mean_points() * plan.worst_points());
+  if (plan.built.of_every) runs *= static_cast<double>(plan.built.copies + 1);
   if (runs > static_cast<double>(max_designs)) {
     throw sweep.error("axis", toml_number(runs) + " runs",
                       "at most " + std::to_string(max_designs));

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/settings/settings.h"
-#include "tools/sweeps/outcome.h"
+#include "tools/sweeps/store/outcome.h"
 
 namespace photorque {
 
@@ -53,6 +53,31 @@ struct Constraint {
   double at_most = std::numeric_limits<double>::infinity();
 };
 
+// What is not built as it is drawn: a key, and how far it is off.
+struct Tolerance {
+  enum class Law { normal, uniform, seed };
+  std::string key;
+  Law law = Law::normal;
+  double width = 0.0;     // standard deviation, or half of the whole; in the key's unit
+  bool relative = false;  // of the value itself
+};
+
+// Copies of a design as they would be built. The n-th has the same draws in every design, so that
+// designs are compared by what they are and not by luck.
+struct BuiltCopies {
+  std::vector<Tolerance> tolerances;
+  size_t copies = 0;
+  double fraction = 0.95;  // that are to be at least as good as the stated figure
+  bool of_every = false;   // design; else of the best and of the experiment as it stands
+  uint64_t seed = 1;
+};
+
+// How a search for the best goes: see Optimiser.
+struct SearchPlan {
+  size_t global = 0, local = 0;  // evaluations
+  double precision = 1e-3;       // of each axis' range
+};
+
 struct SweepPlan {
   std::string verb;                  // the command that every design runs
   std::vector<std::string> figures;  // of its summary; empty: all
@@ -62,7 +87,10 @@ struct SweepPlan {
   std::vector<WorstOver> worst_over;
   std::vector<Objective> objectives;
   std::vector<Constraint> constraints;
+  BuiltCopies built;
+  SearchPlan search;
 
+  // None where an axis is a range without steps: for a search alone.
   size_t designs() const;
   // The value of an axis in a design. In a grid the last axis runs fastest.
   const std::string& value(size_t design, size_t axis) const;
@@ -75,6 +103,11 @@ struct SweepPlan {
   std::vector<Changes> runs_of(const Changes& design) const;
   // The weight of each point of mean_over in the mean.
   std::vector<double> mean_weights() const;
+
+  // The column by which designs are judged: that of the figure, or of what the stated fraction of
+  // built copies reaches, "p95_array_power_W".
+  std::string judged_column(const Objective& objective) const;
+  std::string built_column(const SweepFigure& figure) const;
 };
 
 // Reads the table [sweep]; every key in docs/experiment.md. Numbers are in the unit of the axis'

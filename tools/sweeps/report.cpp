@@ -6,6 +6,8 @@
 #include "core/errors.h"
 #include "core/settings/settings.h"
 #include "core/text/numbers.h"
+#include "tools/sweeps/pictures.h"
+#include "tools/sweeps/tolerances.h"
 
 namespace photorque {
 namespace {
@@ -50,30 +52,6 @@ const std::vector<Quantity>& first_figures(const SweepResult& result) {
   return first->figures;
 }
 
-// Against the last axis, a curve for every combination of the others; of random plans, points.
-Plot figure_plot(const SweepPlan& plan, const Table& table, const std::string& figure) {
-  const size_t axes = plan.axes.size();
-  const Table::Column& x = table.column(plan.axes.back().key);
-  const Table::Column& y = table.column(figure);
-  const Table::Column& error = table.column(figure + error_suffix);
-  Plot plot{"sweep_" + y.name, y.name + " over " + x.name, x.name, y.name, {}, false, false, {}};
-  const size_t along = plan.grid ? plan.axes.back().values.size() : plan.designs();
-  for (size_t begin = 0; begin < plan.designs(); begin += along) {
-    Plot::Curve curve;
-    for (size_t axis = 0; plan.grid && axis + 1 < axes; ++axis) {
-      curve.label += (axis > 0 ? ", " : "") + plan.axes[axis].key + " " + plan.value(begin, axis);
-    }
-    curve.markers = !plan.grid;
-    for (size_t d = begin; d < begin + along; ++d) {
-      curve.x.push_back(x.values[d]);
-      curve.y.push_back(y.values[d]);
-      curve.y_error.push_back(error.values[d]);
-    }
-    plot.curves.push_back(std::move(curve));
-  }
-  return plot;
-}
-
 // With as many digits as a bound of 1e-6 leaves where the error is less.
 std::string shown(Estimate value) {
   constexpr double finest = 1e-6;
@@ -81,6 +59,31 @@ std::string shown(Estimate value) {
   std::string text = show(value, "");
   while (text.ends_with(' ')) text.pop_back();
   return text;
+}
+
+// Of the copies of the best and of the experiment as it stands: what the stated fraction reaches,
+// mean and spread; and copy by copy.
+void append_built(Product& product, const SweepPlan& plan, const SweepResult& result) {
+  if (result.built_best.empty()) return;
+  Table table = Table::of("built",
+                          "Copies of the best design and of the experiment as it stands, "
+                          "as built",
+                          {"copy"});
+  for (size_t i = 0; i < plan.built.copies; ++i) {
+    table.row().set("copy", static_cast<double>(i + 1));
+  }
+  for (size_t k = 0; k < plan.objectives.size(); ++k) {
+    const Objective& objective = plan.objectives[k];
+    const auto add = [&](const std::string& whose, const BuiltFigure& figure) {
+      table.add(whose + figure.column, figure.values);
+      const auto reached = reached_by(plan.built.fraction, objective.maximise, figure.values);
+      if (!reached) return;
+      product.quantities.push_back({whose + plan.built_column(objective.figure), *reached});
+    };
+    add("best_", result.built_best[k]);
+    if (k < result.built_nominal.size()) add("nominal_", result.built_nominal[k]);
+  }
+  product.tables.push_back(std::move(table));
 }
 
 std::vector<double> flags(const std::vector<size_t>& chosen, size_t count) {
@@ -128,9 +131,12 @@ Table sweep_table(const SweepPlan& plan, const SweepResult& result) {
   Table table = Table::of("sweep", "What " + plan.verb + " gave, design by design", {"design"});
   for (size_t d = 0; d < designs.size(); ++d) table.row().set("design", static_cast<double>(d + 1));
   for (size_t axis = 0; axis < plan.axes.size(); ++axis) add_axis(table, plan, axis);
-  for (const std::string& name : figure_columns(plan, first_figures(result))) {
-    add_figure(table, designs, name);
+  std::vector<std::string> columns = figure_columns(plan, first_figures(result));
+  for (const Objective& objective : plan.objectives) {
+    const std::string judged = plan.judged_column(objective);
+    if (std::ranges::find(columns, judged) == columns.end()) columns.push_back(judged);
   }
+  for (const std::string& name : columns) add_figure(table, designs, name);
   if (!plan.constraints.empty()) {
     std::vector<double> feasible;
     for (const Design& design : designs) feasible.push_back(design.feasible ? 1.0 : 0.0);
@@ -149,56 +155,74 @@ Table sweep_table(const SweepPlan& plan, const SweepResult& result) {
 
 Product sweep_product(const SweepPlan& plan, const SweepResult& result) {
   Product product;
-  Table table = sweep_table(plan, result);
-  constexpr size_t max_curves = 12;
-  const size_t curves = plan.grid ? plan.designs() / plan.axes.back().values.size() : 1;
-  const bool plots = !plan.figures.empty() && curves <= max_curves &&
-                     !table.column(plan.axes.back().key).values.empty();
-  if (plots) {
-    for (const std::string& name : figure_columns(plan, first_figures(result))) {
-      product.plots.push_back(figure_plot(plan, table, name));
-    }
+  product.tables.push_back(sweep_table(plan, result));
+  std::vector<std::string> drawn = plan.figures;
+  for (const Objective& objective : plan.objectives) {
+    const std::string column = plan.judged_column(objective);
+    if (std::ranges::find(drawn, column) == drawn.end()) drawn.push_back(column);
   }
-  const size_t failed = static_cast<size_t>(
-      std::ranges::count_if(result.designs, [](const Design& d) { return !d.error.empty(); }));
+  add_pictures(product, plan, result, drawn);
   const auto count = [&product](const std::string& name, size_t value) {
     product.quantities.push_back({name, {static_cast<double>(value), 0.0}});
   };
+  const auto failed = static_cast<size_t>(
+      std::ranges::count_if(result.designs, [](const Design& d) { return !d.error.empty(); }));
   count("designs", result.designs.size());
   if (failed > 0) count("failed_designs", failed);
-  if (result.best) count("best_design", *result.best + 1);
+  if (!result.best) return product;
+  count("best_design", *result.best + 1);
+  const auto add = [&](const std::string& name, const Design& design, const std::string& column) {
+    const auto value = figure_of(design, column);
+    if (value && std::isfinite(value->value)) product.quantities.push_back({name, *value});
+  };
   for (const Objective& objective : plan.objectives) {
-    const std::string column = objective.figure.column();
-    if (!result.best) continue;
-    product.quantities.push_back(
-        {"best_" + column, *figure_of(result.designs[*result.best], column)});
-    if (!result.nominal || !result.nominal->error.empty()) continue;
-    product.quantities.push_back({"nominal_" + column, *figure_of(*result.nominal, column)});
+    std::vector<std::string> columns{objective.figure.column()};
+    if (plan.built.of_every) columns.push_back(plan.judged_column(objective));
+    for (const std::string& column : columns) {
+      add("best_" + column, result.designs[*result.best], column);
+      if (result.nominal) add("nominal_" + column, *result.nominal, column);
+    }
   }
-  product.tables.push_back(std::move(table));
+  append_built(product, plan, result);
   return product;
 }
 
 void print_best(const Console& console, const SweepPlan& plan, const SweepResult& result,
                 const Changes& changes) {
   if (!result.best) return;
-  const Design& best = result.designs[*result.best];
   console.heading("Best: design " + std::to_string(*result.best + 1) + " of " +
                   std::to_string(result.designs.size()));
   for (const std::string& change : changes) console.line("  " + change);
-  for (const Objective& objective : plan.objectives) {
-    const std::string column = objective.figure.column();
-    const Estimate value = *figure_of(best, column);
-    std::string text = "  " + column + "  " + shown(value);
-    if (result.nominal && result.nominal->error.empty()) {
-      const double nominal = figure_of(*result.nominal, column)->value;
-      text += ", of the experiment as it stands " + show(nominal);
-      if (nominal != 0.0) {
-        const double percent = 100.0 * (value.value / nominal - 1.0);
+  const auto row = [&](const std::string& what, const std::optional<Estimate>& best,
+                       const std::optional<Estimate>& nominal) {
+    if (!best) return;
+    std::string text = "  " + what + "  " + shown(*best);
+    if (nominal) {
+      text += ", of the experiment as it stands " + shown(*nominal);
+      const double percent = 100.0 * (best->value / nominal->value - 1.0);
+      if (std::isfinite(percent)) {
         text += " (" + std::string(percent < 0.0 ? "" : "+") + show(percent) + " %)";
       }
     }
     console.line(text);
+  };
+  for (size_t k = 0; k < plan.objectives.size(); ++k) {
+    const Objective& objective = plan.objectives[k];
+    const auto of = [&](const std::string& column) {
+      const std::optional<Estimate> none;
+      row(column, figure_of(result.designs[*result.best], column),
+          result.nominal ? figure_of(*result.nominal, column) : none);
+    };
+    of(objective.figure.column());
+    if (plan.built.of_every) of(plan.judged_column(objective));
+    if (k >= result.built_best.size()) continue;
+    const auto reached = [&](const std::vector<BuiltFigure>& built) {
+      return k < built.size() ? reached_by(plan.built.fraction, objective.maximise, built[k].values)
+                              : std::nullopt;
+    };
+    row("  " + show_percent(plan.built.fraction) + " of " + std::to_string(plan.built.copies) +
+            " built copies reach",
+        reached(result.built_best), reached(result.built_nominal));
   }
   if (result.nominal && !result.nominal->error.empty()) {
     console.line("  the experiment as it stands fails: " + result.nominal->error);

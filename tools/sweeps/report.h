@@ -12,13 +12,6 @@
 
 namespace photorque {
 
-// What a sweep found.
-struct SweepResult {
-  std::vector<Design> designs;
-  std::optional<Design> nominal;  // the experiment as it stands, where there is an objective
-  std::optional<size_t> best;
-};
-
 // The columns of figures: those named, else all, then those of objectives and constraints.
 // InputError for one that a design's figures do not have, with the nearest that they do.
 std::vector<std::string> figure_columns(const SweepPlan& plan,
@@ -28,7 +21,7 @@ std::vector<std::string> figure_columns(const SweepPlan& plan,
 // where asked for, `feasible` and `pareto` (1 or 0), and `error` where a design failed.
 Table sweep_table(const SweepPlan& plan, const SweepResult& result);
 
-// The table, plots of the figures, and the best as headline figures.
+// The table, pictures, and the best as headline figures.
 Product sweep_product(const SweepPlan& plan, const SweepResult& result);
 
 // The best design against the nominal one, for people.

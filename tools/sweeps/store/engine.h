@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/sweeps/claims.h"
-#include "tools/sweeps/database.h"
-#include "tools/sweeps/identity.h"
+#include "tools/sweeps/store/claims.h"
+#include "tools/sweeps/store/database.h"
+#include "tools/sweeps/store/identity.h"
 
 namespace photorque {
 

@@ -1,4 +1,4 @@
-#include "tools/sweeps/claims.h"
+#include "tools/sweeps/store/claims.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "tools/sweeps/database.h"
+#include "tools/sweeps/store/database.h"
 
 #include <sqlite3.h>
 

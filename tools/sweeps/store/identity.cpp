@@ -1,4 +1,4 @@
-#include "tools/sweeps/identity.h"
+#include "tools/sweeps/store/identity.h"
 
 #include <nlohmann/json.hpp>
 
@@ -146,6 +146,16 @@ std::string RunIdentity::content(const SettingsNode& node) {
 
 std::string RunIdentity::of(const Changes& changes) {
   return content_hash(command_ + '\n' + program_ + '\n' + content(changed(changes)));
+}
+
+SettingsNode RunIdentity::value(const Changes& changes, const std::string& key) const {
+  const SettingsNode root = changed(changes);
+  const SettingsNode* found = find_setting(root, key);
+  if (found == nullptr) {
+    throw InputError({options_.experiment.string()}, key, "nothing",
+                     "a value to start from, in the same unit");
+  }
+  return *found;
 }
 
 std::string RunIdentity::experiment(const Changes& changes, const std::string& head,

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/product.h"
-#include "tools/sweeps/outcome.h"
+#include "tools/sweeps/store/outcome.h"
 
 struct sqlite3;
 

@@ -7,7 +7,7 @@
 
 #include "core/settings/settings.h"
 #include "tools/runs/options.h"
-#include "tools/sweeps/outcome.h"
+#include "tools/sweeps/store/outcome.h"
 
 namespace photorque {
 
@@ -21,6 +21,9 @@ class RunIdentity {
   // Comments, order and the way numbers are written do not count. InputError for a change that
   // makes no sense.
   std::string of(const Changes& changes);
+
+  // The value of a key under these changes. InputError where there is none.
+  SettingsNode value(const Changes& changes, const std::string& key) const;
 
   // The experiment under these changes, without its plan, as a file for `folder`: files are named
   // from there.

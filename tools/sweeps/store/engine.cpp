@@ -1,4 +1,4 @@
-#include "tools/sweeps/engine.h"
+#include "tools/sweeps/store/engine.h"
 
 #include <algorithm>
 #include <chrono>
