@@ -16,7 +16,10 @@ import socket
 import struct
 import time
 import zlib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from types import TracebackType
+from typing import Protocol
 
 MAGIC = 0x51525450
 VERSION = 1
@@ -37,16 +40,16 @@ class Measurement:
     tick: int  # when it was read
     now_tick: int  # when it arrived
     t_s: float
-    attitude: tuple  # of the camera: w, x, y, z, lab from body
-    gyro_rad_s: tuple  # body axes
+    attitude: tuple[float, ...]  # of the camera: w, x, y, z, lab from body
+    gyro_rad_s: tuple[float, ...]  # body axes
     heading_rad: float
     battery_current_A: float
     array_power_W: float
-    command_body_N_m: tuple  # that acted until now
+    command_body_N_m: tuple[float, ...]  # that acted until now
     command_sequence: int  # of the last command that acts, 0: none yet
     command_sent_ns: int  # when that was sent, by this machine's monotonic clock
-    true_attitude: tuple  # zero unless serve.send_truth
-    true_rate_rad_s: tuple
+    true_attitude: tuple[float, ...]  # zero unless serve.send_truth
+    true_rate_rad_s: tuple[float, ...]
     step_s: float
     is_new: bool
     wants_answer: bool
@@ -57,14 +60,14 @@ class Measurement:
     sent_ns: int
 
 
-def seal(kind, sequence, tick, run, body=b""):
+def seal(kind: int, sequence: int, tick: int, run: int, body: bytes = b"") -> bytes:
     """A packet, its checksum filled in."""
     head = [MAGIC, VERSION, kind, _HEADER.size + len(body), 0, sequence, time.monotonic_ns(), tick, run]
     head[4] = zlib.crc32(_HEADER.pack(*head) + body)
     return _HEADER.pack(*head) + body
 
 
-def unseal(packet):
+def unseal(packet: bytes) -> tuple[int, Measurement] | None:
     """(run, Measurement) of a server's packet; None for anything else."""
     if len(packet) != _SIZE:
         return None
@@ -85,25 +88,31 @@ def unseal(packet):
         refused=v[26], sequence=sequence, sent_ns=sent_ns)
 
 
+class _Way(Protocol):
+    def send(self, packet: bytes) -> None: ...
+    def receive(self, timeout_s: float) -> bytes | None: ...
+    def close(self) -> None: ...
+
+
 class _Udp:
-    def __init__(self, address, port):
+    def __init__(self, address: str, port: int) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.connect((address, port))
 
-    def send(self, packet):
+    def send(self, packet: bytes) -> None:
         try:
             self.socket.send(packet)
         except ConnectionRefusedError:
             pass  # the server is not there, or not there any more
 
-    def receive(self, timeout_s):
+    def receive(self, timeout_s: float) -> bytes | None:
         self.socket.settimeout(timeout_s)
         try:
             return self.socket.recv(2048)
         except (TimeoutError, ConnectionRefusedError):
             return None
 
-    def close(self):
+    def close(self) -> None:
         self.socket.close()
 
 
@@ -113,7 +122,7 @@ class _SharedMemory:
     _measurement = 8
     _command = 8 + 8 + _SIZE
 
-    def __init__(self, name):
+    def __init__(self, name: str) -> None:
         descriptor = os.open("/dev/shm/" + name, os.O_RDWR)
         try:
             self.memory = mmap.mmap(descriptor, self._command + 8 + _HEADER.size + _COMMAND.size)
@@ -121,16 +130,17 @@ class _SharedMemory:
             os.close(descriptor)
         self.seen = 0
 
-    def _lock(self, at):
-        return struct.unpack_from("<Q", self.memory, at)[0]
+    def _lock(self, at: int) -> int:
+        lock: int = struct.unpack_from("<Q", self.memory, at)[0]
+        return lock
 
-    def send(self, packet):
+    def send(self, packet: bytes) -> None:
         before = self._lock(self._command) & ~1
         struct.pack_into("<Q", self.memory, self._command, before + 1)
         self.memory[self._command + 8:self._command + 8 + len(packet)] = packet
         struct.pack_into("<Q", self.memory, self._command, before + 2)
 
-    def receive(self, timeout_s):
+    def receive(self, timeout_s: float) -> bytes | None:
         end = time.monotonic() + timeout_s
         while True:
             lock = self._lock(self._measurement)
@@ -143,35 +153,48 @@ class _SharedMemory:
                 return None
             time.sleep(20e-6)
 
-    def close(self):
+    def close(self) -> None:
         self.memory.close()
 
 
 class Client:
     """Connects to a run; with `shared_memory` (a name) that way instead of UDP."""
 
-    def __init__(self, address="127.0.0.1", port=4160, shared_memory=None, timeout_s=10.0):
-        self._way = _SharedMemory(shared_memory) if shared_memory else _Udp(address, port)
+    def __init__(
+        self,
+        address: str = "127.0.0.1",
+        port: int = 4160,
+        shared_memory: str | None = None,
+        timeout_s: float = 10.0,
+    ) -> None:
+        self._way: _Way | None = (
+            _SharedMemory(shared_memory) if shared_memory else _Udp(address, port)
+        )
         self._timeout_s = timeout_s
         self._sequence = 0
         self._run = 0
         self._tick = 0
         self._last_sequence = 0
-        self._last_command = None
+        self._last_command: bytes | None = None
 
-    def _send(self, kind, body=b""):
+    def _open(self) -> _Way:
+        if self._way is None:
+            raise ValueError("the client is closed")
+        return self._way
+
+    def _send(self, kind: int, body: bytes = b"") -> bytes:
         self._sequence += 1
         packet = seal(kind, self._sequence, self._tick, self._run, body)
-        self._way.send(packet)
+        self._open().send(packet)
         return packet
 
-    def receive(self):
+    def receive(self) -> Measurement | None:
         """The next measurement; None after timeout_s without one. Says hello until the first."""
         end = time.monotonic() + self._timeout_s
         while time.monotonic() < end:
             if self._run == 0:
                 self._send(HELLO)
-            packet = self._way.receive(min(0.2, self._timeout_s))
+            packet = self._open().receive(min(0.2, self._timeout_s))
             found = unseal(packet) if packet else None
             if not found or (self._run and found[0] != self._run):
                 continue
@@ -179,7 +202,7 @@ class Client:
             if measurement.sequence <= self._last_sequence:
                 # Asked once more in lockstep, perhaps because the answer was lost.
                 if measurement.sequence == self._last_sequence and self._last_command:
-                    self._way.send(self._last_command)
+                    self._open().send(self._last_command)
                 continue
             self._last_sequence = measurement.sequence
             self._last_command = None
@@ -187,18 +210,18 @@ class Client:
             return measurement
         return None
 
-    def measurements(self):
+    def measurements(self) -> Iterator[Measurement]:
         """All that come until the run is over or silent for timeout_s."""
         while (measurement := self.receive()) is not None:
             if measurement.is_last:
                 return
             yield measurement
 
-    def command(self, torque_body_N_m):
+    def command(self, torque_body_N_m: Sequence[float]) -> None:
         """Torque about the body's axes from now on."""
         self._last_command = self._send(COMMAND, _COMMAND.pack(*torque_body_N_m))
 
-    def close(self):
+    def close(self) -> None:
         """Leaves the run, which goes on without commands."""
         if self._way is None:
             return
@@ -207,8 +230,13 @@ class Client:
         self._way.close()
         self._way = None
 
-    def __enter__(self):
+    def __enter__(self) -> "Client":
         return self
 
-    def __exit__(self, *_):
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         self.close()
