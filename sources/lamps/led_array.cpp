@@ -15,11 +15,13 @@
 //                                    # turned by the shortest rotation from +z to the direction
 //   aim = "parallel"                 # default: all look along `direction`, or from the centre
 //                                    #   at aim_m
-//   # aim = "converging"             # each looks at the point aim_m; `direction` may be left out
+//   # aim = "converging"             # each looks at the point aim_m; `direction` may be left out;
+//                                    #   or at the point focus_m along `direction` from the centre,
+//                                    #   which turns with the panel
 //   power_W = 2.0                    # of each LED, or total_power_W
 //   power_spread = 0.03              # LEDs differ: the relative standard deviation of their powers
 //   aim_spread_deg = 0.2             # and of their axes, about each of two directions across
-//   spread_seed = 1                  # which panel of all that could be built so
+//   spread_seed = 1                  # which panel of all that could be built so; 0: as drawn
 //   # aperture_diameter_m, profile, fwhm_deg, wavelength_nm, … as for "led"
 #include <algorithm>
 #include <cmath>
@@ -145,8 +147,14 @@ Placement read_placement(const Settings& settings) {
   std::optional<Vec3> aim_m;
   if (converging) {
     // Said here, because Settings would take the key `aim` for an `aim_m` without its unit.
-    if (!settings.has("aim_m")) throw settings.error("aim_m", "nothing", "a point to converge on");
-    aim_m = settings.vector3("aim_m");
+    if (settings.has("aim_m") == settings.has("focus_m")) {
+      throw settings.error("aim_m", settings.has("aim_m") ? "focus_m too" : "nothing",
+                           "a point to converge on, or focus_m");
+    }
+    aim_m = settings.has("aim_m")
+                ? settings.vector3("aim_m")
+                : Vec3(centre_m + settings.number("focus_m", Range::positive()) *
+                                      read_direction_vector(settings).normalized());
   }
   const Vec3 normal = converging && settings.has("direction") ? read_direction_vector(settings)
                                                               : read_direction(settings, centre_m);
@@ -202,6 +210,7 @@ class Spread {
         seed_(static_cast<uint64_t>(settings.integer_or("spread_seed", 1, 0, INT64_MAX))) {}
 
   void apply(size_t led, Beam& beam) const {
+    if (seed_ == 0) return;
     if (power_ > 0.0) {
       constexpr double least = 0.01;  // an LED that is on
       const double factor = std::max(least, 1.0 + power_ * normal(led, 0));

@@ -146,6 +146,20 @@ TEST(LedArray, ConvergingBeamsMeetAtTheAim) {
   }
 }
 
+TEST(LedArray, FocusTurnsWithThePanel) {
+  const Vec3 direction = Vec3(0.1, -0.2, -1.0).normalized();
+  auto table = array_of("ring", {{"count", {int64_t{8}}},
+                                 {"ring_radius_m", {0.3}},
+                                 {"aim", {"converging"}},
+                                 {"focus_m", {2.5}},
+                                 {"direction", vector_node(0.1, -0.2, -1.0)}});
+  for (const Beam& beam : make_beams("led_array", table)) {
+    const Vec3 to_focus_m = centre_m + 2.5 * direction - beam.lab_from_emitter.translation_m;
+    EXPECT_LT(to_focus_m.cross(axis_of(beam)).norm(), 1e-12);
+    EXPECT_NEAR(to_focus_m.norm(), std::hypot(2.5, 0.3), 1e-12);
+  }
+}
+
 TEST(LedArray, TotalPowerIsSharedEqually) {
   auto table = array_of(
       "ring", {{"count", {int64_t{8}}}, {"ring_radius_m", {0.3}}, {"total_power_W", {90.0}}});
@@ -186,6 +200,8 @@ TEST(LedArray, LedsDifferByTheStatedSpread) {
   EXPECT_EQ(make_beams("led_array", table)[77].emitter->power_W(), beams[77].emitter->power_W());
   table["spread_seed"] = {int64_t{2}};
   EXPECT_NE(make_beams("led_array", table)[77].emitter->power_W(), beams[77].emitter->power_W());
+  table["spread_seed"] = {int64_t{0}};
+  EXPECT_EQ(make_beams("led_array", table)[77].emitter->power_W(), 1.0);
 }
 
 TEST(LedArray, SaysWhatIsWrong) {

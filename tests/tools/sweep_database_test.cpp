@@ -40,6 +40,8 @@ class SweepDatabase : public SweepTest {
     return file_text(at("reference/sweep.csv"));
   }
   std::string database() const { return at("out/designs.sqlite"); }
+  // 0 where the database is not made yet.
+  int runs_so_far() const { return fs::exists(database()) ? count("SELECT count(*) FROM run") : 0; }
   int count(const std::string& sql) const {
     const auto rows = query(database(), sql);
     return rows.empty() ? -1 : std::atoi(rows[0][0].c_str());
@@ -54,14 +56,18 @@ class SweepDatabase : public SweepTest {
 TEST_F(SweepDatabase, LosesNothingByTwentyKills) {
   experiment(std::regex_replace(std::string(forty), std::regex("count = 40"), "count = 600"));
   const std::string whole = reference();
-  const auto begin = std::chrono::steady_clock::now();
-  EXPECT_THAT(sweep("", "reference").out, HasSubstr("0 run now, 601 kept"));
-  const auto without_runs = std::chrono::steady_clock::now() - begin;
   std::mt19937 moments(15);
   int runs = 0;
   for (int k = 0; k < 20; ++k) {
     const pid_t child = start("");
-    std::this_thread::sleep_for(without_runs / 2 + std::chrono::milliseconds(moments() % 150));
+    // At any moment of the start or, more often, after some more designs, at any moment of the
+    // next.
+    const int more = static_cast<int>(moments() % 12);
+    while (k % 4 != 0 && runs_so_far() < runs + more) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    std::this_thread::sleep_for(
+        std::chrono::microseconds(moments() % (k % 4 == 0 ? 150000 : 20000)));
     ::kill(child, SIGKILL);
     end_of(child);
     if (!fs::exists(database())) continue;
@@ -169,6 +175,27 @@ TEST_F(SweepDatabase, OfShardsGivesTheSameTableWhenOneWasKilled) {
   EXPECT_LT(missing, 41);
   const Outcome last = sweep("--shard 2/3");
   EXPECT_EQ(number_before(last.out, "run now"), missing);
+  EXPECT_EQ(file_text(at("out/sweep.csv")), whole);
+}
+
+// What Slurm sets for the tasks of an array; tests/slurm has a cluster.
+TEST_F(SweepDatabase, OfAnArrayOfTasksIsThatOfItsShards) {
+  const std::string whole = reference();
+  const auto task = [this](const std::string& variables) {
+    const std::string command = variables +
+                                " PHOTORQUE=" PHOTORQUE_BINARY_DIR
+                                "/photorque " PHOTORQUE_SOURCE_DIR "/tools/slurm/sweep " +
+                                at("e.toml") + " --out " + at("out") + " >" + at("said") + " 2>&1";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  EXPECT_NE(task("SLURM_ARRAY_TASK_MAX=2"), 0);
+  EXPECT_THAT(file_text(at("said")), HasSubstr("sbatch --array=1-N"));
+  EXPECT_EQ(task("SLURM_ARRAY_TASK_ID=0 SLURM_ARRAY_TASK_MAX=2"), 2);
+  EXPECT_FALSE(fs::exists(at("out")));
+  EXPECT_EQ(task("SLURM_ARRAY_TASK_ID=2 SLURM_ARRAY_TASK_MAX=2"), 0);
+  EXPECT_TRUE(fs::exists(at("out/shards/2-of-2.done.sqlite")));
+  EXPECT_EQ(task("SLURM_ARRAY_TASK_ID=1 SLURM_ARRAY_TASK_MAX=1 PHOTORQUE_SHARDS=2"), 0);
   EXPECT_EQ(file_text(at("out/sweep.csv")), whole);
 }
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/settings/settings.h"
-#include "core/text/display.h"
 #include "core/text/numbers.h"
+#include "tools/runs/console.h"
 
 namespace photorque {
 namespace {
@@ -33,7 +33,7 @@ std::string unit_for_people(const std::string& unit) {
 
 std::string AxisLabel::with(const std::string& value) const {
   const auto number = number_in(value);
-  return name + " " + (number ? readable_number(*number) : value) +
+  return name + " " + (number ? show(*number) : value) +
          (unit.empty() ? "" : " " + unit);
 }
 
@@ -66,6 +66,20 @@ AxisLabel label_of_figure(const std::string& column) {
   const KeyUnit unit = unit_of_key(rest);
   const std::string name = spaced(unit.stem);
   return {before + (absolute ? "|" + name + "|" : name), unit_for_people(unit.unit)};
+}
+
+std::string title_of_figure(const SweepPlan& plan, const std::string& column) {
+  std::string text = label_of_figure(column).name;
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  const auto name_of = [](const std::string& key) {
+    SweepAxis axis;
+    axis.key = key;
+    return label_of(axis).name;
+  };
+  for (const MeanOver& mean : plan.mean_over) text += ", mean over " + name_of(mean.key);
+  for (const WorstOver& worst : plan.worst_over) text += ", worst over " + name_of(worst.key);
+  return text;
 }
 
 }  // namespace photorque

@@ -76,7 +76,7 @@ Map pair_map(const SweepPlan& plan, const SweepResult& result, const std::string
   Map map;
   map.name = "sweep_" + column + "_" +
              (others ? std::to_string(i + 1) + "_" + std::to_string(j + 1) : "map");
-  map.title = figure.name + " over " + x_label.name + " and " + y_label.name +
+  map.title = title_of_figure(plan, column) + " over " + x_label.name + " and " + y_label.name +
               (others ? ": the best that the other axes allow" : "");
   map.unit = figure.unit;
   map.width = static_cast<int>(x.size());
@@ -115,7 +115,8 @@ Map pair_map(const SweepPlan& plan, const SweepResult& result, const std::string
 // Against the last axis, a curve for every combination of the others.
 Plot curves_over_last(const SweepPlan& plan, const SweepResult& result, const std::string& column) {
   const AxisLabel x = label_of(plan.axes.back()), y = label_of_figure(column);
-  Plot plot = empty_plot("sweep_" + column, y.name + " over " + x.name, x.text(), y.text());
+  Plot plot = empty_plot("sweep_" + column, title_of_figure(plan, column) + " over " + x.name,
+                         x.text(), y.text());
   const std::vector<double> along = axis_numbers(plan.axes.back());
   for (size_t begin = 0; begin < plan.designs(); begin += along.size()) {
     Plot::Curve curve;
@@ -180,7 +181,7 @@ Plot scatter(const SweepPlan& plan, const SweepResult& result, const std::string
              size_t axis) {
   const AxisLabel x = label_of(plan.axes[axis]), y = label_of_figure(column);
   Plot plot = empty_plot("sweep_" + column + "_over_" + std::to_string(axis + 1),
-                         y.name + " over " + x.name, x.text(), y.text());
+                         title_of_figure(plan, column) + " over " + x.name, x.text(), y.text());
   std::vector<double> values;
   for (const Design& design : result.designs) values.push_back(value_or_nothing(design, column));
   add_designs(plot, plan, result, axis_numbers(plan.axes[axis]), values);
@@ -192,7 +193,8 @@ Plot pareto_plot(const SweepPlan& plan, const SweepResult& result, size_t second
   const std::string second_column = plan.judged_column(plan.objectives[second]);
   const AxisLabel x = label_of_figure(first_column), y = label_of_figure(second_column);
   Plot plot =
-      empty_plot("pareto_" + second_column, y.name + " against " + x.name, x.text(), y.text());
+      empty_plot("pareto_" + second_column,
+                 title_of_figure(plan, second_column) + " against " + x.name, x.text(), y.text());
   Cloud inside, outside, front, nominal;
   for (const Design& d : result.designs) {
     (d.feasible ? inside : outside)
@@ -290,7 +292,8 @@ Plot search_plot(const SweepPlan& plan, const SweepResult& result) {
   const Objective& objective = plan.objectives.front();
   const std::string column = plan.judged_column(objective);
   const AxisLabel y = label_of_figure(column);
-  Plot plot = empty_plot("search", "The search for the best " + y.name, "evaluation", y.text());
+  Plot plot =
+      empty_plot("search", title_of_figure(plan, column) + ": the search", "evaluation", y.text());
   Cloud inside, outside, so_far;
   double best = nothing();
   for (size_t d = 0; d < result.designs.size(); ++d) {
