@@ -102,6 +102,11 @@ void Propagator::collect_jumps(double from_s) {
       jumps_.push_back({s.time_s, variable});
     }
   }
+  for (size_t k = 1; options_.tick_rate_Hz > 0.0; ++k) {
+    const double t_s = begin_s_ + static_cast<double>(k) / options_.tick_rate_Hz;
+    if (t_s >= end_s_) break;
+    jumps_.push_back({t_s, -1, true});
+  }
   std::stable_sort(jumps_.begin(), jumps_.end(),
                    [](const Jump& a, const Jump& b) { return a.time_s < b.time_s; });
 }
@@ -112,6 +117,8 @@ bool Propagator::advance() {
     step_.accept(step_end_s_);
     if (sensitivity_) sensitivity_->accept();
     cross_jumps();
+  } else {
+    take_command(step_.start_s(), true);
   }
   take_over();
   take_step();
@@ -230,6 +237,15 @@ double Propagator::propose_length(const CollocationStep::Outcome& outcome, doubl
   return (worth_it ? std::min(factor, 2.0) : 1.0) * h_s;
 }
 
+// What is commanded from now on.
+void Propagator::take_command(double now_s, bool is_tick) {
+  if (!commander_) {
+    held_ = dynamics_.model().schedule.at(now_s);
+  } else if (is_tick) {
+    held_ = commander_(now_s, step_.start());
+  }
+}
+
 // Switches to the values after the jumps at the start of the next step. Where the time of a jump is
 // a variable p, the derivative by it jumps by (f⁻ − f⁺) ∂t/∂p.
 void Propagator::cross_jumps() {
@@ -237,7 +253,9 @@ void Propagator::cross_jumps() {
   if (next_jump_ == jumps_.size() || jumps_[next_jump_].time_s > now_s) return;
   const std::vector<Lanes> y(step_.start().begin(), step_.start().end());
   std::vector<Lanes> before(y.size()), after(y.size());
+  bool is_tick = false;
   for (; next_jump_ < jumps_.size() && jumps_[next_jump_].time_s <= now_s; ++next_jump_) {
+    is_tick = is_tick || jumps_[next_jump_].is_tick;
     if (jumps_[next_jump_].variable < 0) continue;
     dynamics_.rates(std::nextafter(now_s, -1e300), held_, y.data(), before.data());
     dynamics_.rates(now_s, held_, y.data(), after.data());
@@ -245,7 +263,7 @@ void Propagator::cross_jumps() {
     for (size_t c = 0; c < y.size(); ++c) change.push_back(before[c][0] - after[c][0]);
     sensitivity_->add(static_cast<size_t>(jumps_[next_jump_].variable), change);
   }
-  held_ = dynamics_.model().schedule.at(now_s);
+  take_command(now_s, is_tick);
   step_.restart();
   if (sensitivity_) sensitivity_->restart();
 }

@@ -28,6 +28,9 @@ struct PropagationOptions {
   // Bound on the error that the iteration for the derivatives leaves, relative to the largest size
   // of each derivative within a step.
   double derivative_tolerance = 1e-16;
+  // Ticks: a step ends exactly at every initial time + k/tick_rate_Hz and the next begins afresh,
+  // as at a command that changes. 0: none.
+  double tick_rate_Hz = 0.0;
 };
 
 // A quantity whose zeros are looked for. Crossings closer together than an eighth of a step may be
@@ -67,6 +70,11 @@ class Propagator {
   void stop_at(double time_s) { stop_s_ = time_s; }
   void drive(double battery_current_A, const ContinuedTorque& light_body, double charge_drawn_C);
 
+  // Who says at every tick, the first at the initial time, what holds until the next; the model's
+  // schedule is not asked then. Called by advance() with the state at the tick.
+  using Commander = std::function<ZeroOrderHold(double time_s, std::span<const double> y)>;
+  void follow_commander(Commander commander) { commander_ = std::move(commander); }
+
   // Computes the next step; false when the run has ended. NumericalError when the step length falls
   // below what the time can resolve, or below what reaches the end in `max_steps`.
   bool advance();
@@ -99,8 +107,10 @@ class Propagator {
   struct Jump {
     double time_s;
     int variable;  // whose parameter this time is, −1 for none
+    bool is_tick = false;
   };
   void collect_jumps(double from_s);
+  void take_command(double now_s, bool is_tick);
   void check_pace() const;
   void take_step();
   double propose_length(const CollocationStep::Outcome& outcome, double h_s, bool cut) const;
@@ -131,6 +141,7 @@ class Propagator {
   };
   std::optional<Drive> drive_;
   bool drive_is_new_ = false;
+  Commander commander_;
   double h_s_ = 0.0;  // length to try next
   // Just below the last length that failed; rises slowly, so that it is tried again some day.
   double ceiling_s_ = std::numeric_limits<double>::infinity();

@@ -131,18 +131,11 @@ std::vector<Look> looks(const PropagationRun& run, double delay_s) {
   return all;
 }
 
-// The attitude so long before `state`, turning as it does there.
-Quat attitude_before(const PlatformState& state, double before_s) {
-  const Vec3 turn_rad = state.rate_body_rad_s * before_s;
-  const double angle_rad = turn_rad.norm();
-  if (!(angle_rad > 0.0)) return state.lab_from_body;
-  return state.lab_from_body * Quat(Eigen::AngleAxisd(-angle_rad, turn_rad / angle_rad));
-}
-
 // sample() with a companion: states are handed on when it knows what it did until then.
 void sample_beside(Propagator& propagator, size_t count,
                    const std::function<double(size_t)>& time_s, const Companion& companion,
-                   const std::function<void(const Samples&)>& sink) {
+                   const std::function<void(const Samples&)>& sink,
+                   const std::function<void()>& after_step) {
   std::deque<Samples> waiting;
   const auto hand_on = [&] {
     for (; !waiting.empty(); waiting.pop_front()) {
@@ -160,9 +153,22 @@ void sample_beside(Propagator& propagator, size_t count,
       },
       [&] {
         companion.follow(propagator);
+        if (after_step) after_step();
         hand_on();
       });
   for (const Samples& samples : waiting) sink(samples);
+}
+
+// Reads the instruments at a tick and asks the run's commander.
+Propagator::Commander live_commander(const PropagationRun& run, const Propagator& propagator,
+                                     LiveInstruments& instruments, const Companion* companion) {
+  return [&run, &propagator, &instruments, companion](double time_s, std::span<const double> y) {
+    std::optional<CompanionPower> power;
+    if (companion != nullptr) {
+      power = companion->at(std::min(time_s, companion->known_until_s()));
+    }
+    return run.commander(instruments.read(time_s, y, propagator.held(), power));
+  };
 }
 
 Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
@@ -242,6 +248,7 @@ PropagationRun read_propagation(const Settings& root) {
       settings.number_or("tolerance", run.options.tolerance, {1e-13, 1e-3, false, false});
   run.options.max_step_s =
       settings.number_or("longest_step_s", run.options.max_step_s, Range::positive());
+  run.options.tick_rate_Hz = settings.number_or("tick_rate_Hz", 0.0, {0.0, 1e6, false, false});
   run.model.schedule = read_schedule(settings);
   run.epoch = settings.text_or("epoch", "2000-01-01T00:00:00");
   if (!parse_epoch(run.epoch)) {
@@ -284,6 +291,13 @@ PropagationResult propagate(const PropagationRun& run, const std::function<void(
   Propagator propagator(dynamics, run.initial, end_s, run.options, {},
                         events_of(dynamics, companion != nullptr));
   std::vector<double> y(static_cast<size_t>(dynamics.size()));
+  std::optional<LiveInstruments> instruments;
+  if (run.commander) {
+    instruments.emplace(dynamics, run.initial, run.output_rate_Hz, delay_s, run.sensors, run.seed);
+    propagator.follow_commander(live_commander(run, propagator, *instruments, companion));
+  }
+  std::function<void()> after_step;
+  if (instruments) after_step = [&] { instruments->follow(propagator); };
   std::deque<Quat> on_the_way;  // seen by the camera, not yet reported
   const size_t thinning = (rows + run.history_rows - 1) / run.history_rows;
   const auto sink = [&](const Samples& samples) {
@@ -324,9 +338,9 @@ PropagationResult propagate(const PropagationRun& run, const std::function<void(
   };
   const auto time_at = [&](size_t i) { return times[i].time_s; };
   if (companion == nullptr) {
-    sample(propagator, times.size(), time_at, sink);
+    sample(propagator, times.size(), time_at, sink, after_step);
   } else {
-    sample_beside(propagator, times.size(), time_at, *companion, sink);
+    sample_beside(propagator, times.size(), time_at, *companion, sink, after_step);
   }
   result.recording = recorder.finish();
   result.events = propagator.events();

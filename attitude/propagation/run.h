@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "attitude/propagation/companion.h"
+#include "attitude/propagation/live.h"
 #include "attitude/propagation/propagator.h"
 #include "attitude/recordings/recording.h"
 #include "attitude/recordings/sensors.h"
@@ -26,6 +27,9 @@ struct PropagationRun {
   PropagationOptions options;
   uint64_t seed = 1;
   std::string epoch;  // calendar time of t = 0, ISO 8601, for files that need one
+  // Commands the run tick by tick, instead of the model's schedule. Needs options.tick_rate_Hz, and
+  // a recording at the same rate.
+  LiveCommander commander = {};
 };
 
 // The table `key` of an experiment with its own record of the keys read, so that finish() complains
@@ -47,6 +51,7 @@ NominalModel read_attitude_model(const Settings& root);
 // The same and [propagate], which may be absent:
 //   duration_s (default 600); output_rate_Hz (of the recording, default 10); history_rows (of the
 //     time history at most, default 20000); tolerance (default 1e-8); longest_step_s; seed (1);
+//   tick_rate_Hz (default 0, none): a step ends at every tick, as in a run in real time;
 //   initial_attitude = [w, x, y, z], or initial_tilt_deg and initial_heading_deg (default 0), see
 //     lab_from_body_at(); initial_rate_rad_s[3] (default 0); initial_charge_Ah (drawn, default 0);
 //   initial_time_s (default 0): the time of the first row;

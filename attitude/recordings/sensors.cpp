@@ -153,6 +153,13 @@ void Recorder::add(const Truth& truth) {
   recording_.time_s.push_back(truth.time_s);
 }
 
+double Recorder::last(std::string_view channel) const {
+  for (const Channel& one : recording_.channels) {
+    if (one.name == channel) return one.values.back();
+  }
+  return empty_cell;
+}
+
 Recording Recorder::finish() {
   recording_.report.rows_read = recording_.report.rows_kept =
       static_cast<int64_t>(recording_.rows());

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "attitude/disturbances/kind.h"
@@ -80,6 +81,8 @@ class Recorder {
 
   // Rows in order of time.
   void add(const Truth& truth);
+  // What the row that was added last holds in a channel; NaN without such a channel.
+  double last(std::string_view channel) const;
   // The recording so far; channels of commands and power that were zero throughout are left out.
   Recording finish();
 

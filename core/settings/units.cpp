@@ -14,6 +14,9 @@ struct Unit {
 // Longest suffix first where one ends in another ("_N_m" before "_m").
 constexpr Unit units[] = {
     {"kg_m2", "inertia", 1.0},
+    {"Wh_kg", "specific energy", 3600.0},
+    {"J_kg", "specific energy", 1.0},
+    {"S_m", "conductivity", 1.0},
     {"m_per_Ah", "shift per charge", 1.0 / 3600.0},
     {"kg_m3", "density", 1.0},
     {"N_m_s2", "drag by the square of the rate", 1.0},
@@ -67,6 +70,8 @@ constexpr Unit units[] = {
     {"K", "temperature", 1.0},
     {"Hz", "frequency", 1.0},
     {"kHz", "frequency", 1e3},
+    {"MHz", "frequency", 1e6},
+    {"GHz", "frequency", 1e9},
     {"ms", "time", 1e-3},
     {"us", "time", 1e-6},
     {"min", "time", 60.0},

@@ -232,4 +232,22 @@ void apply_override(SettingsNode& root, const std::string& assignment) {
   }
 }
 
+const SettingsNode* find_setting(const SettingsNode& root, const std::string& key) {
+  const std::vector<Step> steps = steps_of(key);
+  const SettingsNode* node = steps.empty() ? nullptr : &root;
+  for (const Step& step : steps) {
+    if (node == nullptr) return nullptr;
+    if (const auto* table = std::get_if<SettingsNode::Table>(&node->value)) {
+      if (step.name.empty() && step.index == 0) continue;
+      const auto at = step.name.empty() ? table->end() : table->find(step.name);
+      node = at == table->end() ? nullptr : &at->second;
+    } else {
+      const auto* items = std::get_if<SettingsNode::Array>(&node->value);
+      const bool there = items != nullptr && step.name.empty() && step.index < items->size();
+      node = there ? &(*items)[step.index] : nullptr;
+    }
+  }
+  return node;
+}
+
 }  // namespace photorque

@@ -23,4 +23,7 @@ SettingsNode read_toml(const std::filesystem::path& path);
 // value say "--set" instead of a file. Throws InputError when the assignment makes no sense.
 void apply_override(SettingsNode& root, const std::string& assignment);
 
+// The value under such a KEY; null where there is none, or KEY is no path.
+const SettingsNode* find_setting(const SettingsNode& root, const std::string& key);
+
 }  // namespace photorque

@@ -15,8 +15,13 @@
 //                                    # turned by the shortest rotation from +z to the direction
 //   aim = "parallel"                 # default: all look along `direction`, or from the centre
 //                                    #   at aim_m
-//   # aim = "converging"             # each looks at the point aim_m; `direction` may be left out
+//   # aim = "converging"             # each looks at the point aim_m; `direction` may be left out;
+//                                    #   or at the point focus_m along `direction` from the centre,
+//                                    #   which turns with the panel
 //   power_W = 2.0                    # of each LED, or total_power_W
+//   power_spread = 0.03              # LEDs differ: the relative standard deviation of their powers
+//   aim_spread_deg = 0.2             # and of their axes, about each of two directions across
+//   spread_seed = 1                  # which panel of all that could be built so; 0: as drawn
 //   # aperture_diameter_m, profile, fwhm_deg, wavelength_nm, … as for "led"
 #include <algorithm>
 #include <cmath>
@@ -25,6 +30,7 @@
 #include <string>
 
 #include "core/constants.h"
+#include "core/numerics/random.h"
 #include "sources/lamps/settings.h"
 
 namespace photorque {
@@ -141,8 +147,14 @@ Placement read_placement(const Settings& settings) {
   std::optional<Vec3> aim_m;
   if (converging) {
     // Said here, because Settings would take the key `aim` for an `aim_m` without its unit.
-    if (!settings.has("aim_m")) throw settings.error("aim_m", "nothing", "a point to converge on");
-    aim_m = settings.vector3("aim_m");
+    if (settings.has("aim_m") == settings.has("focus_m")) {
+      throw settings.error("aim_m", settings.has("aim_m") ? "focus_m too" : "nothing",
+                           "a point to converge on, or focus_m");
+    }
+    aim_m = settings.has("aim_m")
+                ? settings.vector3("aim_m")
+                : Vec3(centre_m + settings.number("focus_m", Range::positive()) *
+                                      read_direction_vector(settings).normalized());
   }
   const Vec3 normal = converging && settings.has("direction") ? read_direction_vector(settings)
                                                               : read_direction(settings, centre_m);
@@ -170,16 +182,76 @@ double read_power_of_each(const Settings& settings, size_t count) {
   return settings.number("total_power_W", Range::positive()) / static_cast<double>(count);
 }
 
+// An emitter that gives another power.
+class ScaledEmitter final : public Emitter {
+ public:
+  ScaledEmitter(std::shared_ptr<const Emitter> one, double factor)
+      : one_(std::move(one)), factor_(factor) {}
+  double power_W() const override { return factor_ * one_->power_W(); }
+  void emit(const SampleBlock& samples, RayBlock& rays) const override {
+    one_->emit(samples, rays);
+  }
+  double relative_intensity(double angle_rad) const override {
+    return one_->relative_intensity(angle_rad);
+  }
+
+ private:
+  std::shared_ptr<const Emitter> one_;
+  double factor_;
+};
+
+// How the LEDs of one panel differ from what they are said to be. Normal draws, by Box and Muller,
+// that belong to seed and LED: panels of different layouts are built from the same LEDs.
+class Spread {
+ public:
+  explicit Spread(const Settings& settings)
+      : power_(settings.number_or("power_spread", 0.0, {0.0, max_power_spread})),
+        aim_rad_(settings.number_or("aim_spread_deg", 0.0, {0.0, max_aim_spread_rad})),
+        seed_(static_cast<uint64_t>(settings.integer_or("spread_seed", 1, 0, INT64_MAX))) {}
+
+  void apply(size_t led, Beam& beam) const {
+    if (seed_ == 0) return;
+    if (power_ > 0.0) {
+      constexpr double least = 0.01;  // an LED that is on
+      const double factor = std::max(least, 1.0 + power_ * normal(led, 0));
+      beam.emitter = std::make_shared<ScaledEmitter>(beam.emitter, factor);
+      if (beam.aperture) beam.aperture->exitance_W_m2 *= factor;
+    }
+    if (aim_rad_ > 0.0) {
+      const Vec3 turn_rad(aim_rad_ * normal(led, 1), aim_rad_ * normal(led, 2), 0.0);
+      const double angle_rad = turn_rad.norm();
+      beam.lab_from_emitter.rotation =
+          beam.lab_from_emitter.rotation *
+          Quat(Eigen::AngleAxisd(
+              angle_rad, angle_rad > 0.0 ? Vec3(turn_rad / angle_rad) : Vec3(Vec3::UnitX())));
+    }
+  }
+
+ private:
+  static constexpr double max_power_spread = 0.5, max_aim_spread_rad = 0.5;
+
+  double normal(size_t led, uint64_t which) const {
+    const double u = unit_interval(hash_words(seed_, led, which, 0));
+    const double v = unit_interval(hash_words(seed_, led, which, 1));
+    return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * pi * v);
+  }
+
+  double power_, aim_rad_;
+  uint64_t seed_;
+};
+
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   const std::string name = settings.text_or("name", "led_array");
   const Placement placement = read_placement(settings);
   const double power_W = read_power_of_each(settings, placement.positions_m.size());
   const Lamp lamp = read_lamp(settings, context, name, power_W);
+  const Spread spread(settings);
   std::vector<Beam> beams;
   for (size_t i = 0; i < placement.positions_m.size(); ++i) {
     beams.push_back({name + "[" + std::to_string(i) + "]", lamp.emitter,
                      frame_looking_along(placement.directions[i], placement.positions_m[i]),
                      lamp.spectrum, lamp.aperture});
+    spread.apply(i, beams.back());
   }
   return beams;
 }

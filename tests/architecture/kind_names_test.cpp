@@ -34,6 +34,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     // learns where the Sun is.
     {"attitude/disturbances/fields/light_pressure.cpp", {"radiation_pressure"}},
     {"tools/coupling/couple.cpp", {"orbit", "power_balance", "radiation_pressure"}},
+    // The trade compares ways by the disturbances that they are.
+    {"tools/supply/onboard.cpp", {"battery_discharge", "tether"}},
     // A field of truth.json.
     {"tools/proof/files.cpp", {"gyro_bias"}},
 };

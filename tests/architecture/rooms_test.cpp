@@ -24,6 +24,8 @@ const std::vector<std::pair<std::string, std::string>> only_place = {
     {"pugixml", "sources/photometry"},
     {"pybind11", "python"},
     {"hdf5.h", "images/writers"},
+    {"sqlite3.h", "tools/sweeps/store"},
+    {"nlopt", "tools/sweeps"},
 };
 
 struct Include {

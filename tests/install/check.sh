@@ -47,6 +47,18 @@ export PKG_CONFIG_PATH
 [[ -f "$(pkg-config --variable=libdir photorque)/libphotorque.so" ]]
 pkg-config --modversion --cflags --libs-only-l photorque
 
+echo "== The C header of serve"
+cat >"$place/client.c" <<'C'
+#include <photorque_serve.h>
+int main(void) {
+  photorque_command_packet command = {0};
+  photorque_seal(&command.header, PHOTORQUE_COMMAND, sizeof command);
+  return command.header.size == 72 && sizeof(photorque_measurement_packet) == 256 ? 0 : 1;
+}
+C
+gcc -std=c99 -Wall -Wextra -Werror -pedantic -I "$prefix/include" -o "$place/client" "$place/client.c"
+"$place/client"
+
 echo "== Manual page and completions"
 verbs="$("$prefix/bin/photorque" --help | sed -n 's/^  \([a-z][a-z-]*\)  .*/\1/p')"
 for file in man/man1/photorque.1 bash-completion/completions/photorque zsh/vendor-completions/_photorque \

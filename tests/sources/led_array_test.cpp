@@ -146,6 +146,20 @@ TEST(LedArray, ConvergingBeamsMeetAtTheAim) {
   }
 }
 
+TEST(LedArray, FocusTurnsWithThePanel) {
+  const Vec3 direction = Vec3(0.1, -0.2, -1.0).normalized();
+  auto table = array_of("ring", {{"count", {int64_t{8}}},
+                                 {"ring_radius_m", {0.3}},
+                                 {"aim", {"converging"}},
+                                 {"focus_m", {2.5}},
+                                 {"direction", vector_node(0.1, -0.2, -1.0)}});
+  for (const Beam& beam : make_beams("led_array", table)) {
+    const Vec3 to_focus_m = centre_m + 2.5 * direction - beam.lab_from_emitter.translation_m;
+    EXPECT_LT(to_focus_m.cross(axis_of(beam)).norm(), 1e-12);
+    EXPECT_NEAR(to_focus_m.norm(), std::hypot(2.5, 0.3), 1e-12);
+  }
+}
+
 TEST(LedArray, TotalPowerIsSharedEqually) {
   auto table = array_of(
       "ring", {{"count", {int64_t{8}}}, {"ring_radius_m", {0.3}}, {"total_power_W", {90.0}}});
@@ -153,6 +167,41 @@ TEST(LedArray, TotalPowerIsSharedEqually) {
   for (const Beam& beam : make_beams("led_array", table)) {
     EXPECT_DOUBLE_EQ(beam.emitter->power_W(), 90.0 / 8.0);
   }
+}
+
+// Against the moments of the normal distribution, within five of their standard errors.
+TEST(LedArray, LedsDifferByTheStatedSpread) {
+  constexpr int64_t count = 10000;
+  constexpr double power_spread = 0.04, aim_deg = 0.5;
+  auto table = array_of("hexagonal", {{"count", {count}},
+                                      {"pitch_m", {0.03}},
+                                      {"total_power_W", {1e4}},
+                                      {"power_spread", {power_spread}},
+                                      {"aim_spread_deg", {aim_deg}}});
+  table.erase("power_W");
+  const auto beams = make_beams("led_array", table);
+  double sum = 0.0, squares = 0.0, across = 0.0, exitance = 0.0;
+  for (const Beam& beam : beams) {
+    const double off = beam.emitter->power_W() - 1.0;
+    sum += off;
+    squares += off * off;
+    exitance += beam.aperture->exitance_W_m2 * pi * std::pow(beam.aperture->radius_m, 2);
+    const double angle = std::acos(std::min(1.0, axis_of(beam).dot(-Vec3::UnitZ())));
+    across += angle * angle / 2.0;
+  }
+  const double n = static_cast<double>(count);
+  EXPECT_NEAR(sum / n, 0.0, 5.0 * power_spread / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n), power_spread, 5.0 * power_spread / std::sqrt(2.0 * n));
+  EXPECT_NEAR(std::sqrt(across / n), aim_deg * degree_rad,
+              5.0 * aim_deg * degree_rad / std::sqrt(4.0 * n));
+  EXPECT_NEAR(exitance, n + sum, 1e-6);  // direct light is gathered from the same powers
+  // The same LEDs on another panel; other LEDs by another seed.
+  table["pitch_m"] = {0.05};
+  EXPECT_EQ(make_beams("led_array", table)[77].emitter->power_W(), beams[77].emitter->power_W());
+  table["spread_seed"] = {int64_t{2}};
+  EXPECT_NE(make_beams("led_array", table)[77].emitter->power_W(), beams[77].emitter->power_W());
+  table["spread_seed"] = {int64_t{0}};
+  EXPECT_EQ(make_beams("led_array", table)[77].emitter->power_W(), 1.0);
 }
 
 TEST(LedArray, SaysWhatIsWrong) {

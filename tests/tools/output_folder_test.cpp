@@ -141,23 +141,5 @@ TEST_F(OutputFolders, HoldFilesOfTheLastRunAlone) {
   EXPECT_TRUE(fs::exists(at("o/mine.csv")));
 }
 
-TEST_F(OutputFolders, SayWhichDesignOfASweepIsDamaged) {
-  const std::string plan = write("plan.toml", file_text(stasis) +
-                                                  "\n[sweep]\nverb = \"trace\"\n[[sweep.axis]]\n"
-                                                  "key = \"attitude.tilt_deg\"\nvalues = [0, 5]\n");
-  fs::copy(fs::path(stasis).parent_path() / "stasis.gltf", at("stasis.gltf"));
-  const std::string sweep = "sweep " + plan + quick + " --out " + at("o");
-  const Outcome first = run(sweep);
-  ASSERT_EQ(first.status, 0) << first.err;
-  for (const std::string damage : {"", "{", "{}", "{\"a\": {\"value\": null}}"}) {
-    for (const auto& entry : fs::directory_iterator(at("o/designs"))) {
-      std::ofstream(entry.path() / "summary.json") << damage;
-    }
-    const Outcome got = run(sweep);
-    EXPECT_EQ(got.status, 2);
-    EXPECT_THAT(got.err, HasSubstr("summary.json: found a damaged summary of a design"));
-  }
-}
-
 }  // namespace
 }  // namespace photorque

@@ -11,7 +11,7 @@
 #include "images/writers/product.h"
 #include "images/writers/summary.h"
 #include "scenes/experiment/toml_reader.h"
-#include "tools/commands/child_process.h"
+#include "tools/guards/child_process.h"
 #include "tools/commands/terminal.h"
 #include "tools/proof/files.h"
 #include "tools/scoring/document.h"

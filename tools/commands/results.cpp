@@ -2,15 +2,13 @@
 
 #include <cstdio>
 
-#include "core/files.h"
-
 namespace photorque {
 
 void write_results(const CommandLine& line, const Console& console, const RunResult& result) {
   const auto folder = line.out_folder();
-  if (line.summary_only) {
+  if (line.take_result) {
     check_figures(result);
-    write_file_whole(folder / "summary.json", result.summary());
+    line.take_result(result);
     return;
   }
   const auto paths = write_run(result, folder, line.verb);

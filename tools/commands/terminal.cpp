@@ -43,7 +43,11 @@ void draw_bar(const std::string& what, double fraction) {
 Console terminal(const CommandLine& line) {
   if (line.quiet || line.json) return Console();
   ConsoleSinks sinks;
-  sinks.line = [](const std::string& text) { std::printf("%s\n", text.c_str()); };
+  // At once, also into a pipe: a program may wait for the line that says where a run listens.
+  sinks.line = [](const std::string& text) {
+    std::printf("%s\n", text.c_str());
+    std::fflush(stdout);
+  };
   if (::isatty(STDERR_FILENO) != 0) {
     const auto pace = std::make_shared<Pace>(std::chrono::milliseconds(100));
     sinks.progress = [pace](const std::string& what, double fraction) {

@@ -9,7 +9,7 @@ namespace {
 
 void run_trace(const CommandLine& line) {
   const Console console = terminal(line);
-  write_results(line, console, trace_experiment(line, console, !line.summary_only).result);
+  write_results(line, console, trace_experiment(line, console, !line.take_result).result);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 namespace photorque {
 
 class Interruption;  // tools/guards/interruption.h
+struct RunResult;    // tools/runs/result.h
 
 // The command line: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …
 struct CommandLine : RunOptions {
@@ -25,8 +26,10 @@ struct CommandLine : RunOptions {
   bool only_make = false;                         // --only-make: the cases, nothing more
   std::string shard;                              // --shard K/N, of a sweep
   std::optional<std::filesystem::path> scene;     // --scene, of a new experiment
-  bool summary_only = false;                      // of a design in a sweep: no other files
+  bool collect = false;                           // --collect, of a sweep
   Interruption* interruption = nullptr;           // the program's, when it is one
+  // Of a run in a sweep: takes what came out, and no file is written.
+  std::function<void(const RunResult&)> take_result = {};
 
   // --out, or out/EXPERIMENT/VERB below the current folder.
   std::filesystem::path out_folder() const;

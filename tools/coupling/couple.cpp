@@ -225,7 +225,8 @@ CoupledResult propagate_in_light(const RunOptions& options, const Console& conso
   constexpr double least_rad = 5.0 * degree_rad;
   const double limit_rad = result.light->max_angle_rad();
   double tilt_now_rad = limit_rad;
-  if (!result.light->sun_direction_lab()) {
+  // Who commands a run live cannot be asked again: its table is as wide as it may become.
+  if (!result.light->sun_direction_lab() && !run.commander) {
     tilt_now_rad = std::min(limit_rad, std::max(least_rad, 2.0 * tilt_rad(run.initial)));
   }
   for (;; tilt_now_rad = std::min(limit_rad, 2.0 * tilt_now_rad)) {

@@ -1,4 +1,5 @@
 #include "tools/tasks/check.h"
+#include "tools/sweeps/plan.h"
 
 #include <algorithm>
 #include <functional>
@@ -14,7 +15,6 @@
 #include "tools/runs/attitude_run.h"
 #include "tools/tasks/fit_cell.h"
 #include "tools/tasks/light_sanity.h"
-#include "tools/tasks/sweep_design.h"
 
 namespace photorque {
 namespace {
@@ -171,6 +171,10 @@ class Checker {
   void check_sweep() {
     attempt([&] {
       const SweepPlan plan = read_sweep_plan(file_->others("sweep").front());
+      if (plan.designs() == 0) {
+        add("optimise", "over " + counted(plan.axes.size(), "key") + " by " + plan.verb);
+        return;
+      }
       RunOptions first = options_;
       for (const std::string& one : plan.overrides(0)) first.overrides.push_back(one);
       read_experiment_text(first.experiment, first.experiment_text(), first.all_overrides());

@@ -88,14 +88,16 @@ void add_light(const Console& console, const CoupledResult& coupled, const Propa
 
 }  // namespace
 
-MotionRun propagate_experiment(const RunOptions& options, const Console& console,
-                               const FurtherTorques& further) {
+MotionRun propagate_experiment(
+    const RunOptions& options, const Console& console, const FurtherTorques& further,
+    const std::function<void(const Settings&, PropagationRun&)>& prepare) {
   const WallTime wall;
   const RunOptions full = with_orbit_overrides(options);
   const AttitudeExperiment experiment(full);
   const auto run = std::make_shared<PropagationRun>(read_propagation(experiment.settings()));
   if (options.seed) run->seed = *options.seed;
   for (const Disturbance& one : further.disturbances) run->model.disturbances.push_back(one);
+  if (prepare) prepare(experiment.settings(), *run);
   const auto coupled =
       std::make_shared<CoupledResult>(propagate_in_light(full, console, experiment.file(), *run));
   PropagationResult& motion = coupled->motion;

@@ -1,6 +1,7 @@
 // The platform through its disturbances, in the light of its scene where there is one.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -25,7 +26,9 @@ struct FurtherTorques {
   std::vector<std::pair<std::string, std::string>> inputs;  // name, hash
 };
 
-MotionRun propagate_experiment(const RunOptions& options, const Console& console,
-                               const FurtherTorques& further = {});
+// `prepare` may change the run that was read from the experiment's settings before it begins.
+MotionRun propagate_experiment(
+    const RunOptions& options, const Console& console, const FurtherTorques& further = {},
+    const std::function<void(const Settings& root, PropagationRun& run)>& prepare = {});
 
 }  // namespace photorque

@@ -9,7 +9,7 @@
 #include "core/provenance.h"
 #include "core/settings/settings.h"
 #include "core/text/numbers.h"
-#include "tools/commands/manual.h"
+#include "tools/manual/pages.h"
 #include "tools/commands/verb.h"
 #include "tools/guards/interruption.h"
 #include "tools/guards/memory.h"
@@ -134,6 +134,9 @@ int run(int argc, char** argv, Interruption& interruption) {
       command->add_option("--shard", line.shard,
                           "K/N: only every Nth design, from the Kth; the run that finds all "
                           "designs done writes the table");
+      command->add_flag("--collect", line.collect,
+                        "Run nothing: the table of what all shards have done, also of those that "
+                        "did not come to an end");
     }
   }
   Manual manual;

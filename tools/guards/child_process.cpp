@@ -1,4 +1,4 @@
-#include "tools/commands/child_process.h"
+#include "tools/guards/child_process.h"
 
 #include <fcntl.h>
 #include <signal.h>

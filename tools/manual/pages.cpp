@@ -1,4 +1,4 @@
-#include "tools/commands/manual.h"
+#include "tools/manual/pages.h"
 
 namespace photorque {
 namespace {

@@ -1,0 +1,89 @@
+#include "attitude/propagation/live.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace photorque {
+namespace {
+
+Vec3 first_lane(const Vec3Of<Lanes>& v) {
+  return {v[0][0], v[1][0], v[2][0]};
+}
+
+}  // namespace
+
+Quat attitude_before(const PlatformState& state, double before_s) {
+  const Vec3 turn_rad = state.rate_body_rad_s * before_s;
+  const double angle_rad = turn_rad.norm();
+  if (!(angle_rad > 0.0)) return state.lab_from_body;
+  return state.lab_from_body * Quat(Eigen::AngleAxisd(-angle_rad, turn_rad / angle_rad));
+}
+
+LiveInstruments::LiveInstruments(const Dynamics& dynamics, const PlatformState& initial,
+                                 double rate_Hz, double camera_delay_s, const Sensors& sensors,
+                                 uint64_t seed)
+    : dynamics_(dynamics),
+      initial_(to_state(initial.time_s, to_vector(initial))),
+      rate_Hz_(rate_Hz),
+      delay_s_(camera_delay_s),
+      recorder_(sensors, seed) {
+  while (delay_s_ > 0.0 && tick_s(next_look_) - delay_s_ <= initial_.time_s) ++next_look_;
+}
+
+double LiveInstruments::tick_s(size_t index) const {
+  return initial_.time_s + static_cast<double>(index) / rate_Hz_;
+}
+
+void LiveInstruments::follow(const Propagator& motion) {
+  if (!(delay_s_ > 0.0)) return;
+  std::vector<Lanes> y(static_cast<size_t>(dynamics_.size()));
+  std::vector<double> one(y.size());
+  for (; tick_s(next_look_) - delay_s_ < motion.step_end_s(); ++next_look_) {
+    const double look_s = tick_s(next_look_) - delay_s_;
+    motion.dense(look_s, y.data());
+    for (size_t c = 0; c < y.size(); ++c) one[c] = y[c][0];
+    on_the_way_.push_back(to_state(look_s, one).lab_from_body);
+  }
+}
+
+Quat LiveInstruments::seen(const PlatformState& now) {
+  if (!(delay_s_ > 0.0)) return now.lab_from_body;
+  const double wanted_s = now.time_s - delay_s_;
+  if (wanted_s <= initial_.time_s) return attitude_before(initial_, initial_.time_s - wanted_s);
+  const Quat first = on_the_way_.front();
+  on_the_way_.pop_front();
+  return first;
+}
+
+LiveRow LiveInstruments::read(double time_s, std::span<const double> y, const ZeroOrderHold& held,
+                              const std::optional<CompanionPower>& power) {
+  const std::vector<Lanes> lanes(y.begin(), y.end());
+  std::array<ZeroOrderHold, Lanes::count> each;
+  each.fill(held);
+  const Dynamics::Instants now = dynamics_.at(time_s, each, lanes.data());
+  LiveRow row;
+  row.index = next_++;
+  row.time_s = time_s;
+  row.truth = to_state(time_s, y);
+  row.command_body_N_m = first_lane(now.command_body_N_m);
+  row.battery_current_A = power ? power->battery_current_A : now.battery_current_A[0];
+  row.array_power_W = power ? power->array_power_W : now.array_power_W[0];
+  recorder_.add({.time_s = time_s,
+                 .lab_from_body_seen = seen(row.truth),
+                 .heading_rad = heading_rad(row.truth),
+                 .gyro_rad_s = first_lane(now.gyro_rad_s),
+                 .camera_error_rad = first_lane(now.camera_error_rad),
+                 .command_body_N_m = row.command_body_N_m,
+                 .battery_current_A = row.battery_current_A,
+                 .array_power_W = row.array_power_W});
+  const auto last = [&](const char* name) { return recorder_.last(name); };
+  row.lab_from_body_seen = {last("q_w"), last("q_x"), last("q_y"), last("q_z")};
+  row.gyro_rad_s = {last("gyro_x_rad_s"), last("gyro_y_rad_s"), last("gyro_z_rad_s")};
+  row.heading_rad = last("heading_rad");
+  row.battery_current_A = last("battery_current_A");
+  row.array_power_W = last("array_power_W");
+  return row;
+}
+
+}  // namespace photorque

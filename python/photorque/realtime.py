@@ -1,0 +1,242 @@
+"""A client of `photorque serve`: measurements in, commands out, over UDP or shared memory.
+
+Needs the standard library alone; the file may be used without the rest of the package. The layout is
+that of photorque_serve.h.
+
+    with Client() as client:                            # 127.0.0.1:4160
+        for measurement in client.measurements():
+            client.command([0.0, 0.0, -1e-4 * measurement.gyro_rad_s[2]])
+
+In lockstep every measurement with `wants_answer` has to be answered by one command.
+"""
+
+import mmap
+import os
+import socket
+import struct
+import time
+import zlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Protocol
+
+MAGIC = 0x51525450
+VERSION = 1
+HELLO, COMMAND, MEASUREMENT, GOODBYE = 1, 2, 3, 4
+NEW, ANSWER, LATE, LAST, TRUTH = 1, 2, 4, 8, 16
+
+_HEADER = struct.Struct("<IHHIIQQQQ")
+_COMMAND = struct.Struct("<3d")
+_MEASUREMENT = struct.Struct("<3Qd4d3d3d3d4d3dd2I")
+_SIZE = _HEADER.size + _MEASUREMENT.size
+_CHECKSUM_AT = 12
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One packet of the server; NaN where an instrument says nothing in this tick."""
+
+    tick: int  # when it was read
+    now_tick: int  # when it arrived
+    t_s: float
+    attitude: tuple[float, ...]  # of the camera: w, x, y, z, lab from body
+    gyro_rad_s: tuple[float, ...]  # body axes
+    heading_rad: float
+    battery_current_A: float
+    array_power_W: float
+    command_body_N_m: tuple[float, ...]  # that acted until now
+    command_sequence: int  # of the last command that acts, 0: none yet
+    command_sent_ns: int  # when that was sent, by this machine's monotonic clock
+    true_attitude: tuple[float, ...]  # zero unless serve.send_truth
+    true_rate_rad_s: tuple[float, ...]
+    step_s: float
+    is_new: bool
+    wants_answer: bool
+    is_late: bool
+    is_last: bool
+    refused: int  # packets of anybody that were refused so far
+    sequence: int
+    sent_ns: int
+
+
+def seal(kind: int, sequence: int, tick: int, run: int, body: bytes = b"") -> bytes:
+    """A packet, its checksum filled in."""
+    head = [MAGIC, VERSION, kind, _HEADER.size + len(body), 0, sequence, time.monotonic_ns(), tick, run]
+    head[4] = zlib.crc32(_HEADER.pack(*head) + body)
+    return _HEADER.pack(*head) + body
+
+
+def unseal(packet: bytes) -> tuple[int, Measurement] | None:
+    """(run, Measurement) of a server's packet; None for anything else."""
+    if len(packet) != _SIZE:
+        return None
+    magic, version, kind, size, checksum, sequence, sent_ns, tick, run = _HEADER.unpack_from(packet)
+    if (magic, version, kind, size) != (MAGIC, VERSION, MEASUREMENT, _SIZE):
+        return None
+    blank = packet[:_CHECKSUM_AT] + bytes(4) + packet[_CHECKSUM_AT + 4:]
+    if zlib.crc32(blank) != checksum:
+        return None
+    v = _MEASUREMENT.unpack_from(packet, _HEADER.size)
+    flags = v[25]
+    return run, Measurement(
+        tick=tick, now_tick=v[0], t_s=v[3], attitude=v[4:8], gyro_rad_s=v[8:11], heading_rad=v[11],
+        battery_current_A=v[12], array_power_W=v[13], command_body_N_m=v[14:17],
+        command_sequence=v[1], command_sent_ns=v[2], true_attitude=v[17:21],
+        true_rate_rad_s=v[21:24], step_s=v[24], is_new=bool(flags & NEW),
+        wants_answer=bool(flags & ANSWER), is_late=bool(flags & LATE), is_last=bool(flags & LAST),
+        refused=v[26], sequence=sequence, sent_ns=sent_ns)
+
+
+class _Way(Protocol):
+    def send(self, packet: bytes) -> None: ...
+    def receive(self, timeout_s: float) -> bytes | None: ...
+    def close(self) -> None: ...
+
+
+class _Udp:
+    def __init__(self, address: str, port: int) -> None:
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.connect((address, port))
+
+    def send(self, packet: bytes) -> None:
+        try:
+            self.socket.send(packet)
+        except ConnectionRefusedError:
+            pass  # the server is not there, or not there any more
+
+    def receive(self, timeout_s: float) -> bytes | None:
+        self.socket.settimeout(timeout_s)
+        try:
+            return self.socket.recv(2048)
+        except (TimeoutError, ConnectionRefusedError):
+            return None
+
+    def close(self) -> None:
+        self.socket.close()
+
+
+class _SharedMemory:
+    """The block of photorque_serve.h: magic and version, then lock and packet of either side."""
+
+    _measurement = 8
+    _command = 8 + 8 + _SIZE
+
+    def __init__(self, name: str) -> None:
+        descriptor = os.open("/dev/shm/" + name, os.O_RDWR)
+        try:
+            self.memory = mmap.mmap(descriptor, self._command + 8 + _HEADER.size + _COMMAND.size)
+        finally:
+            os.close(descriptor)
+        self.seen = 0
+
+    def _lock(self, at: int) -> int:
+        lock: int = struct.unpack_from("<Q", self.memory, at)[0]
+        return lock
+
+    def send(self, packet: bytes) -> None:
+        before = self._lock(self._command) & ~1
+        struct.pack_into("<Q", self.memory, self._command, before + 1)
+        self.memory[self._command + 8:self._command + 8 + len(packet)] = packet
+        struct.pack_into("<Q", self.memory, self._command, before + 2)
+
+    def receive(self, timeout_s: float) -> bytes | None:
+        end = time.monotonic() + timeout_s
+        while True:
+            lock = self._lock(self._measurement)
+            if lock != self.seen and lock % 2 == 0:
+                packet = self.memory[self._measurement + 8:self._measurement + 8 + _SIZE]
+                if self._lock(self._measurement) == lock:
+                    self.seen = lock
+                    return packet
+            if time.monotonic() > end:
+                return None
+            time.sleep(20e-6)
+
+    def close(self) -> None:
+        self.memory.close()
+
+
+class Client:
+    """Connects to a run; with `shared_memory` (a name) that way instead of UDP."""
+
+    def __init__(
+        self,
+        address: str = "127.0.0.1",
+        port: int = 4160,
+        shared_memory: str | None = None,
+        timeout_s: float = 10.0,
+    ) -> None:
+        self._way: _Way | None = (
+            _SharedMemory(shared_memory) if shared_memory else _Udp(address, port)
+        )
+        self._timeout_s = timeout_s
+        self._sequence = 0
+        self._run = 0
+        self._tick = 0
+        self._last_sequence = 0
+        self._last_command: bytes | None = None
+
+    def _open(self) -> _Way:
+        if self._way is None:
+            raise ValueError("the client is closed")
+        return self._way
+
+    def _send(self, kind: int, body: bytes = b"") -> bytes:
+        self._sequence += 1
+        packet = seal(kind, self._sequence, self._tick, self._run, body)
+        self._open().send(packet)
+        return packet
+
+    def receive(self) -> Measurement | None:
+        """The next measurement; None after timeout_s without one. Says hello until the first."""
+        end = time.monotonic() + self._timeout_s
+        while time.monotonic() < end:
+            if self._run == 0:
+                self._send(HELLO)
+            packet = self._open().receive(min(0.2, self._timeout_s))
+            found = unseal(packet) if packet else None
+            if not found or (self._run and found[0] != self._run):
+                continue
+            self._run, measurement = found
+            if measurement.sequence <= self._last_sequence:
+                # Asked once more in lockstep, perhaps because the answer was lost.
+                if measurement.sequence == self._last_sequence and self._last_command:
+                    self._open().send(self._last_command)
+                continue
+            self._last_sequence = measurement.sequence
+            self._last_command = None
+            self._tick = measurement.now_tick
+            return measurement
+        return None
+
+    def measurements(self) -> Iterator[Measurement]:
+        """All that come until the run is over or silent for timeout_s."""
+        while (measurement := self.receive()) is not None:
+            if measurement.is_last:
+                return
+            yield measurement
+
+    def command(self, torque_body_N_m: Sequence[float]) -> None:
+        """Torque about the body's axes from now on."""
+        self._last_command = self._send(COMMAND, _COMMAND.pack(*torque_body_N_m))
+
+    def close(self) -> None:
+        """Leaves the run, which goes on without commands."""
+        if self._way is None:
+            return
+        if self._run:
+            self._send(GOODBYE)
+        self._way.close()
+        self._way = None
+
+    def __enter__(self) -> "Client":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()

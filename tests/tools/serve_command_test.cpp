@@ -1,0 +1,270 @@
+// `serve` as its clients meet it: what it sends, when commands act, and that a run in lockstep is
+// the one that `propagate` computes.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/tools/serve_client.h"
+
+namespace photorque {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr const char* served_platform = R"([platform]
+topology = "tabletop"
+mass_kg = 8.0
+inertia_kg_m2 = [[0.11, 0, 0], [0, 0.12, 0], [0, 0, 0.19]]
+tilt_limit_deg = 30
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = [2e-6, -1e-6, -3e-5]
+[[disturbance]]
+kind = "floor_vibration"
+acceleration_m_s2 = [5e-4, 5e-4, 1e-3]
+frequency_Hz = 8
+[[disturbance]]
+kind = "mass_shift"
+time_s = 1.0031
+offset_m = [5e-7, 0, 0]
+[[disturbance]]
+kind = "bearing_drag"
+coefficient_N_m_s = 1.5e-5
+[sensors.camera]
+noise_arcsec = [37, 37, 12]
+rate_Hz = 80
+latency_s = 0.02
+[sensors.gyro]
+noise_rad_s = 2e-4
+bias_rad_s = [1e-4, 0, 0]
+bias_drift = 1e-5
+[propagate]
+duration_s = 4
+initial_tilt_deg = 3
+initial_rate_rad_s = [0.01, -0.005, 0.08]
+initial_time_s = 0.5
+)";
+
+// Not constant for long, and of the measurement.
+ClientTorque damping(const photorque_measurement_packet& packet) {
+  const double sign = packet.now_tick % 50 < 25 ? 1.0 : -1.0;
+  return {-0.01 * packet.gyro_rad_s[0], -0.01 * packet.gyro_rad_s[1], sign * 1e-4};
+}
+
+// A file without the lines that name the run.
+std::string content(const std::string& text) {
+  std::istringstream lines(text);
+  std::string kept;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("#") && !line.starts_with("COMMENT")) kept += line + "\n";
+  }
+  return kept;
+}
+
+std::vector<std::vector<double>> rows_of(const std::string& text) {
+  std::istringstream lines(content(text));
+  std::string line;
+  std::getline(lines, line);
+  std::vector<std::vector<double>> rows;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      rows.back().push_back(cell.empty() ? std::nan("") : std::stod(cell));
+    }
+  }
+  return rows;
+}
+
+class Lockstep : public ServeCommand {};
+
+TEST_F(Lockstep, IsTheRunThatPropagateComputesToTheBit) {
+  const std::string experiment = write("p.toml", served_platform);
+  const auto sent =
+      serve(experiment + " --set serve.mode=\\\"lockstep\\\" --out " + at("s"), damping);
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  const Outcome again = run("propagate " + experiment +
+                            " --set propagate.tick_rate_Hz=160 --set propagate.output_rate_Hz=160"
+                            " --set propagate.commands=\\\"" +
+                            at("s") + "/commands.csv\\\" --out " + at("p"));
+  ASSERT_EQ(again.status, 0) << again.err;
+  const auto served = files("s"), propagated = files("p");
+  for (const char* name : {"recording.csv", "time_history.csv", "attitude.aem"}) {
+    EXPECT_EQ(content(served.at(name)), content(propagated.at(name))) << name;
+  }
+  // And what the client was sent is what the recording holds: all columns but those of the command,
+  // which is not decided yet.
+  const auto rows = rows_of(served.at("recording.csv"));
+  ASSERT_EQ(sent.size() + 1, rows.size());
+  for (size_t i = 0; i < sent.size(); ++i) {
+    ASSERT_EQ(sent[i].header.tick, i);
+    EXPECT_EQ(sent[i].t_s, rows[i][0]);
+    for (size_t k = 0; k < 4; ++k) {
+      if (i % 2 == 1) {
+        EXPECT_TRUE(std::isnan(sent[i].attitude[k]));  // of a camera at half the rate
+      } else {
+        EXPECT_EQ(sent[i].attitude[k], rows[i][1 + k]) << i;
+      }
+    }
+    for (size_t k = 0; k < 3; ++k) EXPECT_EQ(sent[i].gyro_rad_s[k], rows[i][5 + k]) << i;
+    if (i == 0) continue;
+    for (size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(sent[i].command_body_N_m[k], rows[i - 1][8 + k]) << i;
+    }
+  }
+}
+
+// The same with everything else that a step may end at: switches, other tick rates, a start that is
+// no binary fraction.
+TEST_F(Lockstep, IsTheSameAtAnotherRate) {
+  const std::string experiment = write("p.toml", served_platform);
+  const std::string odd = " --set propagate.initial_time_s=0.1 --set propagate.duration_s=2";
+  serve(experiment + odd + " --set serve.rate_Hz=333 --set serve.mode=\\\"lockstep\\\" --out " +
+            at("s"),
+        damping);
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  ASSERT_EQ(run("propagate " + experiment + odd +
+                " --set propagate.tick_rate_Hz=333 --set propagate.output_rate_Hz=333"
+                " --set propagate.commands=\\\"" +
+                at("s") + "/commands.csv\\\" --out " + at("p"))
+                .status,
+            0);
+  EXPECT_EQ(content(files("s").at("recording.csv")), content(files("p").at("recording.csv")));
+}
+
+// Delays of 5 and 13 ms are one and three ticks of 6.25 ms: readings come a tick later, and a
+// command acts three ticks after the tick that it answers.
+TEST_F(Lockstep, LinksDelayByWholeTicks) {
+  const std::string experiment = write("p.toml", served_platform);
+  const auto law = [](const photorque_measurement_packet& packet) -> ClientTorque {
+    return {1e-6 * static_cast<double>(packet.now_tick + 1), 0, 0};
+  };
+  const auto sent = serve(experiment +
+                              " --set serve.to_client.delay_s=0.005 --set "
+                              "serve.from_client.delay_s=0.013 --set propagate.duration_s=1"
+                              " --set serve.mode=\\\"lockstep\\\" --out " +
+                              at("s"),
+                          law);
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  ASSERT_EQ(sent.size(), 160u);
+  EXPECT_EQ(sent[0].flags & PHOTORQUE_NEW, 0u);
+  for (size_t i = 1; i < sent.size(); ++i) {
+    EXPECT_EQ(sent[i].now_tick, i);
+    EXPECT_EQ(sent[i].header.tick + 1, i);
+    EXPECT_NE(sent[i].flags & PHOTORQUE_NEW, 0u);
+  }
+  const auto rows = rows_of(files("s").at("recording.csv"));
+  for (size_t i = 0; i + 1 < rows.size(); ++i) {
+    EXPECT_DOUBLE_EQ(rows[i][8], i < 3 ? 0.0 : 1e-6 * static_cast<double>(i - 2)) << i;
+  }
+}
+
+TEST_F(Lockstep, LosesTheSamePacketsAgain) {
+  const std::string experiment = write("p.toml", served_platform);
+  std::vector<std::string> recordings;
+  for (const std::string name : {"a", "b"}) {
+    serve(experiment +
+              " --set serve.to_client.loss=0.2 --set serve.from_client.loss=0.2 --set "
+              "serve.from_client.jitter_s=0.01 --set serve.mode=\\\"lockstep\\\" --out " +
+              at(name),
+          damping);
+    ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+    recordings.push_back(content(files(name).at("recording.csv")));
+    const json summary = json::parse(files(name).at("summary.json"));
+    // 640 packets, a fifth of them, within 4.5 standard deviations.
+    const double lost = summary.at("commands_lost_by_link").at("value").get<double>();
+    EXPECT_NEAR(lost, 128.0, 4.5 * std::sqrt(640 * 0.2 * 0.8));
+    EXPECT_GT(summary.at("commands_overtaken").at("value").get<double>(), 10.0);
+  }
+  EXPECT_EQ(recordings[0], recordings[1]);
+}
+
+class Paced : public ServeCommand {};
+
+TEST_F(Paced, KeepsTheClockAndTellsItsDeadlines) {
+  const std::string experiment = write("p.toml", served_platform);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto sent = serve(experiment + " --set propagate.duration_s=1 --out " + at("s"), damping);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  EXPECT_GT(took.count(), 1.0);
+  EXPECT_EQ(sent.size(), 160u);
+  // By the server's own clock no measurement left before it was due.
+  for (const auto& packet : sent) {
+    const double due_ns = 6.25e6 * static_cast<double>(packet.header.tick);
+    EXPECT_GE(static_cast<double>(packet.header.sent_ns - sent[0].header.sent_ns) + 1e6, due_ns);
+  }
+  const json summary = json::parse(files("s").at("summary.json"));
+  EXPECT_EQ(summary.at("ticks").at("value").get<double>(), 160.0);
+  for (const char* name : {"ticks_missed", "lateness_p50_us", "lateness_p99_us",
+                           "lateness_p99_99_us", "computing_p99_99_us"}) {
+    EXPECT_GE(summary.at(name).at("value").get<double>(), 0.0) << name;
+  }
+  EXPECT_TRUE(files("s").contains("deadlines.png"));
+}
+
+TEST_F(Paced, SharesMemory) {
+  const std::string experiment = write("p.toml", served_platform);
+  const std::string name = "photorque_test_" + std::to_string(::getpid());
+  const Outcome got =
+      run("serve " + experiment +
+          " --set serve.transport=\\\"shared_memory\\\" --set serve.shared_memory=\\\"" + name +
+          "\\\" --set serve.wait_for_client=false --set propagate.duration_s=0.2 --out " + at("s"));
+  EXPECT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("serving at /dev/shm/" + name));
+  EXPECT_FALSE(std::filesystem::exists("/dev/shm/" + name));
+}
+
+// A million packets of nonsense while the run goes on: none acts, all are counted that were read.
+TEST_F(Paced, IsNotMovedByNonsense) {
+  const std::string experiment = write("p.toml", served_platform);
+  uint64_t word = 88172645463325252ull;
+  const auto law = [&](const photorque_measurement_packet&) -> ClientTorque { return {0, 0, 0}; };
+  std::thread noise([&] {
+    const int port = port_when_known();
+    const ServeClient stranger(port);
+    std::array<uint64_t, 16> bytes{};
+    for (int i = 0; i < 20000; ++i) {
+      for (uint64_t& w : bytes) w = (word ^= word << 13, word ^= word >> 7, word ^= word << 17);
+      stranger.send_bytes(bytes.data(), word % sizeof bytes);
+    }
+  });
+  serve(experiment + " --set propagate.duration_s=1 --out " + at("s"), law);
+  noise.join();
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  const json summary = json::parse(files("s").at("summary.json"));
+  EXPECT_GT(summary.at("packets_refused").at("value").get<double>(), 0.0);
+  for (const auto& row : rows_of(files("s").at("commands.csv"))) {
+    EXPECT_EQ(row[1], 0.0);
+    EXPECT_EQ(row[3], 0.0);
+  }
+}
+
+TEST_F(Paced, WrongInputIsOneLineAndExitTwo) {
+  const std::string experiment = write("p.toml", served_platform);
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"serve.address=\\\"localhost\\\"", "expected an IPv4 address"},
+      {"serve.address=\\\"192.0.2.1\\\"", "expected an address of this machine"},
+      {"serve.port=70000", "serve.port"},
+      {"serve.shared_memory=\\\"../x\\\"", "letters, digits"},
+      {"serve.to_client.loss=1.5", "serve.to_client.loss"},
+      {"serve.to_client.trace=\\\"none.csv\\\"", "a file beside"},
+      {"serve.rate=100", "perhaps \"rate_Hz\""},
+      {"serve.on_miss=\\\"cry\\\"", "catch_up"},
+  };
+  for (const auto& [key, message] : cases) {
+    const Outcome got = run("serve " + experiment + " --set " + key + " --out " + at("o"));
+    EXPECT_EQ(got.status, 2) << key;
+    EXPECT_THAT(got.err, HasSubstr(message)) << key;
+    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+  }
+  const Outcome silent =
+      run("serve " + experiment + " --set serve.port=0 --set serve.client_timeout_s=0.1 --out " +
+          at("o"));
+  EXPECT_EQ(silent.status, 3);
+  EXPECT_THAT(silent.err, HasSubstr("no client came"));
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,179 @@
+// What a design is: means, worst cases, constraints, the best, failures. A black plate at a tilt θ
+// under the Sun takes P = E A cos θ; about a point h below it the light turns it with
+// E A h sin θ cos θ / c.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/constants.h"
+#include "tests/tools/sweep_test.h"
+
+namespace photorque {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+// Gathered light is integrated to 1e-5, and the Sun is a disc of half a degree.
+constexpr double near_fraction = 3e-5;
+
+class SweepDesigns : public SweepTest {
+ protected:
+  void SetUp() override {
+    SweepTest::SetUp();
+    write_plate();
+  }
+  static double power_W(double tilt_deg) {
+    return sun_W_m2 * edge_m * edge_m * std::cos(tilt_deg * degree_rad);
+  }
+  json summary() const { return json::parse(file_text(at("out/summary.json"))); }
+  double figure(const std::string& name) const { return summary()[name]["value"]; }
+};
+
+TEST_F(SweepDesigns, AverageOverAnIntervalIsItsIntegral) {
+  experiment(R"([sweep]
+verb = "trace"
+figures = ["power_on_plate_W"]
+[[sweep.axis]]
+key = "source[0].irradiance_W_m2"
+values = [1000, 500]
+[[sweep.mean_over]]
+key = "attitude.tilt_deg"
+from = 0
+to = 60
+count = 4
+)");
+  const Outcome got = sweep();
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("2 designs by `trace`, 4 runs each"));
+  const auto mean_W = csv_column(at("out/sweep.csv"), "power_on_plate_W");
+  ASSERT_EQ(mean_W.size(), 2u);
+  const double sixty = 60 * degree_rad, exact_W = power_W(0) * std::sin(sixty) / sixty;
+  EXPECT_NEAR(mean_W[0], exact_W, near_fraction * exact_W);
+  EXPECT_NEAR(mean_W[1], 0.5 * exact_W, near_fraction * exact_W);
+}
+
+TEST_F(SweepDesigns, WeightsOfAMeanAreThoseGiven) {
+  experiment(R"([sweep]
+verb = "trace"
+figures = ["power_on_plate_W"]
+[[sweep.axis]]
+key = "source[0].irradiance_W_m2"
+values = [1000]
+[[sweep.mean_over]]
+key = "attitude.tilt_deg"
+values = [0, 60]
+weights = [3, 1]
+)");
+  ASSERT_EQ(sweep().status, 0);
+  const double exact_W = 0.75 * power_W(0) + 0.25 * power_W(60);
+  EXPECT_NEAR(csv_column(at("out/sweep.csv"), "power_on_plate_W").at(0), exact_W,
+              near_fraction * exact_W);
+}
+
+TEST_F(SweepDesigns, TheWorstIsTheOneThatHurts) {
+  const std::string worst_over = "[[sweep.worst_over]]\nkey = \"attitude.tilt_deg\"\n";
+  const std::string axis = "[[sweep.axis]]\nkey = \"source[0].irradiance_W_m2\"\nvalues = [1000]\n";
+  experiment("[sweep]\nverb = \"trace\"\nmaximise = \"power_on_plate_W\"\n" + axis + worst_over +
+             "values = [0, 50, 20]\n");
+  ASSERT_EQ(sweep().status, 0);
+  EXPECT_NEAR(figure("best_power_on_plate_W"), power_W(50), near_fraction * power_W(0));
+  experiment("[sweep]\nverb = \"trace\"\nminimise = \"power_on_plate_W\"\n" + axis + worst_over +
+             "values = [0, 50, 20]\n");
+  ASSERT_EQ(sweep().status, 0);
+  EXPECT_NEAR(figure("best_power_on_plate_W"), power_W(0), near_fraction * power_W(0));
+}
+
+constexpr const char* two_objectives = R"([sweep]
+verb = "trace"
+maximise = ["power_on_plate_W", "|torque_y_body_body_N_m|"]
+[[sweep.axis]]
+key = "attitude.tilt_deg"
+values = [0, 20, 40, 60]
+)";
+
+TEST_F(SweepDesigns, NoneBeatsThoseOfTheParetoFront) {
+  experiment(two_objectives, 65536);
+  const Outcome got = sweep();
+  ASSERT_EQ(got.status, 0) << got.err;
+  // sin 2θ is 0, 0.64, 0.98, 0.87: more power and more torque at 40 than at 60.
+  EXPECT_EQ(csv_column(at("out/sweep.csv"), "pareto"), (std::vector<double>{1, 1, 1, 0}));
+  const auto torque_N_m = csv_column(at("out/sweep.csv"), "abs_torque_y_body_body_N_m");
+  for (size_t i = 0; i < 4; ++i) {
+    const double tilt = 20.0 * static_cast<double>(i) * degree_rad;
+    const double exact_N_m =
+        power_W(0) * height_m * std::sin(tilt) * std::cos(tilt) / speed_of_light_m_s;
+    EXPECT_NEAR(torque_N_m[i], exact_N_m, 2e-3 * power_W(0) * height_m / speed_of_light_m_s);
+  }
+}
+
+TEST_F(SweepDesigns, TheBestKeepsToTheConstraintsAndRunsAsItStands) {
+  experiment(std::string(two_objectives) +
+             "[[sweep.constraint]]\nfigure = \"power_on_plate_W\"\nat_most = " +
+             std::to_string(0.5 * (power_W(20) + power_W(40))) + "\n");
+  const Outcome got = sweep();
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_EQ(csv_column(at("out/sweep.csv"), "feasible"), (std::vector<double>{0, 0, 1, 1}));
+  EXPECT_THAT(got.out, HasSubstr("Best: design 3 of 4"));
+  EXPECT_EQ(figure("best_design"), 3.0);
+  EXPECT_NEAR(figure("nominal_power_on_plate_W"), power_W(10.5), near_fraction * power_W(0));
+  const Outcome again = run("trace " + at("out/best.toml") + " --out " + at("again"));
+  ASSERT_EQ(again.status, 0) << again.err;
+  const json one = json::parse(file_text(at("again/summary.json")));
+  EXPECT_EQ(one["power_on_plate_W"]["value"].get<double>(), figure("best_power_on_plate_W"));
+  EXPECT_EQ(query(at("out/designs.sqlite"),
+                  "SELECT \"attitude.tilt_deg\" FROM designs WHERE feasible = 1"),
+            (std::vector<std::vector<std::string>>{{"40.0"}, {"60.0"}}));
+}
+
+TEST_F(SweepDesigns, ThatFailAreNamedWithTheirError) {
+  experiment(
+      "[sweep]\nverb = \"trace\"\nmaximise = \"power_on_plate_W\"\n[[sweep.axis]]\n"
+      "key = \"source[0].irradiance_W_m2\"\nvalues = [1, -3, 2]\n");
+  const Outcome got = sweep();
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("WARNING: 1 of 3 designs failed"));
+  EXPECT_THAT(file_text(at("out/sweep.csv")), HasSubstr("source[0].irradiance_W_m2: found -3"));
+  EXPECT_THAT(std::string(summary()["warnings"][0]), HasSubstr("design 2: source[0]"));
+  EXPECT_EQ(figure("best_design"), 3.0);
+  // It may have been a full disk: the next run tries again what failed, and nothing else.
+  EXPECT_THAT(sweep().out, HasSubstr("1 run now, 3 kept from before"));
+}
+
+TEST_F(SweepDesigns, ThatAllFailLeaveNothing) {
+  experiment(
+      "[sweep]\nverb = \"trace\"\n[[sweep.axis]]\nkey = \"source[0].irradiance_W_m2\"\n"
+      "values = [-1, -3]\n");
+  const Outcome got = sweep();
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, HasSubstr("e.toml: design 1 of 2: source[0].irradiance_W_m2: found -1"));
+  EXPECT_FALSE(std::filesystem::exists(at("out")));
+}
+
+TEST_F(SweepDesigns, PlansThatMakeNoSenseAreOneLine) {
+  const std::string begin = "[sweep]\nverb = \"trace\"\n",
+                    axis = "[[sweep.axis]]\nkey = \"attitude.tilt_deg\"\nvalues = [1]\n";
+  const auto refuses = [&](const std::string& table, const std::string& words) {
+    experiment(table);
+    const Outcome got = sweep();
+    EXPECT_EQ(got.status, 2) << table;
+    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+    EXPECT_THAT(got.err, HasSubstr(words));
+  };
+  refuses(begin + axis + "[[sweep.worst_over]]\nkey = \"trace.seed\"\nvalues = [1, 2]\n", "worse");
+  refuses(begin + axis + "[[sweep.mean_over]]\nkey = \"attitude.tilt_deg\"\nvalues = [1, 2]\n",
+          "twice");
+  refuses(begin + axis +
+              "[[sweep.mean_over]]\nkey = \"trace.seed\"\nvalues = [1, 2]\nweights = "
+              "[1]\n",
+          "weights");
+  refuses(begin + axis + "[[sweep.constraint]]\nfigure = \"emitted_W\"\n", "at_least");
+  refuses(
+      begin + axis + "[[sweep.constraint]]\nfigure = \"emitted_W\"\nat_least = 2\nat_most = 1\n",
+      "at_most");
+  refuses(begin + "maximise = \"power_on_plat_W\"\n" + axis, "perhaps \"power_on_plate_W\"");
+  refuses(begin + "maximise = \"emitted_W\"\nminimise = \"emitted_W\"\n" + axis, "twice");
+}
+
+}  // namespace
+}  // namespace photorque

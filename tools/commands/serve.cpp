@@ -1,0 +1,23 @@
+// photorque serve: the platform in real time beside hardware and programs.
+#include "tools/realtime/serve.h"
+
+#include "tools/commands/results.h"
+#include "tools/commands/terminal.h"
+
+namespace photorque {
+namespace {
+
+void run_serve(const CommandLine& line) {
+  const Console console = terminal(line);
+  write_results(line, console, serve_experiment(line, console));
+}
+
+}  // namespace
+
+Verb serve_verb() {
+  return {"serve",
+          "The platform in real time: measurements out, commands in, over UDP or shared memory",
+          run_serve};
+}
+
+}  // namespace photorque

@@ -1,0 +1,67 @@
+// What comes from outside, looked at before anything is done with it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "tools/realtime/photorque_serve.h"
+
+namespace photorque {
+
+// Why a packet is refused; names in refusal_names.
+enum class Refusal {
+  size,        // not that of its kind
+  magic,       // something else altogether
+  version,     // of another layout
+  kind,        // nothing that clients send
+  checksum,    // damaged on its way
+  not_finite,  // NaN or infinity
+  too_large,   // beyond max_torque_N_m
+  run,         // for another run
+  stranger,    // from somebody who is not the client
+  old,         // sent before one that came already, or once more
+  count
+};
+inline constexpr std::array<const char*, static_cast<size_t>(Refusal::count)> refusal_names = {
+    "size",       "magic",     "version", "kind",     "checksum",
+    "not_finite", "too_large", "run",     "stranger", "old"};
+
+// A packet that says what it is: its kind, and what it commands.
+struct ClientPacket {
+  photorque_packet_kind kind = PHOTORQUE_HELLO;
+  photorque_command_packet command{};  // a hello and a goodbye have its header alone
+};
+
+// One client at a time: whoever said hello first, until it says goodbye or has been silent for
+// `takeover_ns`.
+class Gate {
+ public:
+  Gate(uint64_t run, double max_torque_N_m, int64_t takeover_ns);
+
+  // `bytes` as they came from `sender` (a number for its address). Never throws; nothing of a
+  // refused packet is used, and nobody is told.
+  std::optional<ClientPacket> admit(std::span<const std::byte> bytes, uint64_t sender,
+                                    int64_t now_ns);
+
+  std::optional<uint64_t> client() const { return client_; }
+  const std::array<uint64_t, refusal_names.size()>& refused() const { return refused_; }
+  uint64_t refused_in_all() const;
+
+ private:
+  std::optional<Refusal> fault_of(std::span<const std::byte> bytes, ClientPacket& packet) const;
+  std::optional<Refusal> stands_against(const ClientPacket& packet, uint64_t sender,
+                                        int64_t now_ns) const;
+
+  uint64_t run_;
+  double max_torque_N_m_;
+  int64_t takeover_ns_;
+  std::optional<uint64_t> client_;
+  uint64_t last_sequence_ = 0;
+  int64_t last_heard_ns_ = 0;
+  std::array<uint64_t, refusal_names.size()> refused_{};
+};
+
+}  // namespace photorque

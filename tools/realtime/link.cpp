@@ -1,0 +1,91 @@
+#include "tools/realtime/link.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "core/constants.h"
+#include "core/numerics/random.h"
+#include "core/text/columns.h"
+
+namespace photorque {
+namespace {
+
+enum LinkDraw : uint64_t { lost_alone, burst_changes, lost_in_burst, jitter_u, jitter_v };
+
+std::vector<double> read_trace(const Settings& settings) {
+  const std::string name = settings.text("trace");
+  const auto path = std::filesystem::path(settings.where().file).parent_path() / name;
+  if (!std::filesystem::is_regular_file(path)) {
+    throw settings.error("trace", "\"" + name + "\"", "a file beside the experiment");
+  }
+  const NumberColumns file = read_number_columns(path, {"delay_s"});
+  if (std::ranges::all_of(file.columns[0], [](double d) { return d < 0.0; })) {
+    throw settings.error("trace", "no packet that arrives", "delays in seconds, -1 where lost");
+  }
+  return file.columns[0];
+}
+
+}  // namespace
+
+bool LinkSettings::is_perfect() const {
+  return delay_s == 0.0 && jitter_s == 0.0 && loss == 0.0 && burst_begin == 0.0 && trace_s.empty();
+}
+
+LinkSettings read_link(const Settings& settings) {
+  LinkSettings link;
+  constexpr Range up_to_an_hour = {0.0, 3600.0};
+  link.delay_s = settings.number_or("delay_s", 0.0, up_to_an_hour);
+  link.jitter_s = settings.number_or("jitter_s", 0.0, up_to_an_hour);
+  link.jitter = static_cast<LinkSettings::Jitter>(
+      settings.choice_or("jitter", {"exponential", "uniform", "gaussian"}, 0));
+  link.loss = settings.number_or("loss", 0.0, Range::fraction());
+  link.burst_begin = settings.number_or("burst_begin", 0.0, Range::fraction());
+  link.burst_end = settings.number_or("burst_end", 1.0, {0.0, 1.0, true, false});
+  link.burst_loss = settings.number_or("burst_loss", 1.0, Range::fraction());
+  link.reorder = settings.flag_or("reorder", true);
+  if (settings.has("trace")) link.trace_s = read_trace(settings);
+  return link;
+}
+
+LinkFate::LinkFate(LinkSettings settings, uint64_t seed, uint64_t stream)
+    : settings_(std::move(settings)), seed_(seed), stream_(stream) {}
+
+double LinkFate::draw(uint64_t dimension) const {
+  return unit_interval(hash_words(seed_, stream_, sent_, dimension));
+}
+
+double LinkFate::jitter_s() const {
+  if (settings_.jitter_s == 0.0) return 0.0;
+  const double u = draw(jitter_u);
+  switch (settings_.jitter) {
+    case LinkSettings::Jitter::exponential:
+      return -settings_.jitter_s * std::log(u);
+    case LinkSettings::Jitter::uniform:
+      return settings_.jitter_s * u;
+    case LinkSettings::Jitter::gaussian:
+      // Box and Muller, Ann. Math. Stat. 29 (1958) 610.
+      return settings_.jitter_s *
+             std::abs(std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * pi * draw(jitter_v)));
+  }
+  return 0.0;
+}
+
+std::optional<double> LinkFate::next() {
+  std::optional<double> delay_s;
+  if (!settings_.trace_s.empty()) {
+    const double measured_s = settings_.trace_s[sent_ % settings_.trace_s.size()];
+    if (measured_s >= 0.0) delay_s = measured_s;
+  } else {
+    if (draw(burst_changes) < (in_burst_ ? settings_.burst_end : settings_.burst_begin)) {
+      in_burst_ = !in_burst_;
+    }
+    const bool is_lost = draw(lost_alone) < settings_.loss ||
+                         (in_burst_ && draw(lost_in_burst) < settings_.burst_loss);
+    if (!is_lost) delay_s = settings_.delay_s + jitter_s();
+  }
+  ++sent_;
+  if (!delay_s) ++lost_;
+  return delay_s;
+}
+
+}  // namespace photorque

@@ -1,0 +1,104 @@
+// A simulated wireless link: packets come late, in another order, in bursts or not at all.
+//
+// Every draw is a hash of the seed, the direction and the packet's number, so that the same packets
+// meet the same fate whatever the clock does.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+struct LinkSettings {
+  enum class Jitter { exponential, uniform, gaussian };
+  double delay_s = 0.0;  // the least that a packet takes
+  double jitter_s =
+      0.0;  // beyond: mean of an exponential, width of a uniform, scale of a half-normal
+  Jitter jitter = Jitter::exponential;
+  double loss = 0.0;  // fraction of packets, independent of each other
+  // Bursts (E. N. Gilbert, Bell Syst. Tech. J. 39 (1960) 1253; E. O. Elliott, ibid. 42 (1963)
+  // 1977): the probability per packet that one begins and that it ends, and that a packet is lost
+  // in it.
+  double burst_begin = 0.0, burst_end = 1.0, burst_loss = 1.0;
+  bool reorder = true;  // a packet may overtake another; else it waits for those before it
+  // Measured delays, taken in turn instead of the above; negative: the packet was lost.
+  std::vector<double> trace_s;
+
+  bool is_perfect() const;
+};
+
+// Reads a table with delay_s, jitter_s, jitter ("exponential", "uniform", "gaussian"), loss,
+// burst_begin, burst_end, burst_loss, reorder, trace: a CSV with a column delay_s, −1 where the
+// packet was lost.
+LinkSettings read_link(const Settings& settings);
+
+// What happens to one packet after the other.
+class LinkFate {
+ public:
+  LinkFate(LinkSettings settings, uint64_t seed, uint64_t stream);
+
+  // The delay of the next packet [s]; nothing: it is lost.
+  std::optional<double> next();
+
+  uint64_t sent() const { return sent_; }
+  uint64_t lost() const { return lost_; }
+
+ private:
+  double draw(uint64_t dimension) const;
+  double jitter_s() const;
+
+  LinkSettings settings_;
+  uint64_t seed_, stream_;
+  uint64_t sent_ = 0, lost_ = 0;
+  bool in_burst_ = false;
+};
+
+// Packets on their way. Times are the caller's, in seconds.
+template <class Packet>
+class SimulatedLink {
+ public:
+  SimulatedLink(LinkSettings settings, uint64_t seed, uint64_t stream)
+      : keeps_order_(!settings.reorder), fate_(std::move(settings), seed, stream) {}
+
+  void push(const Packet& packet, double now_s) {
+    const std::optional<double> delay_s = fate_.next();
+    if (!delay_s) return;
+    double due_s = now_s + *delay_s;
+    if (keeps_order_) due_s = std::max(due_s, last_due_s_);
+    last_due_s_ = due_s;
+    const auto later =
+        std::upper_bound(on_the_way_.begin(), on_the_way_.end(), due_s,
+                         [](double due, const OnTheWay& other) { return due < other.due_s; });
+    on_the_way_.insert(later, {due_s, packet});
+  }
+  // The next that has arrived by `now_s`, by time of arrival.
+  std::optional<Packet> pop(double now_s) {
+    if (on_the_way_.empty() || on_the_way_.front().due_s > now_s) return {};
+    const Packet first = on_the_way_.front().packet;
+    on_the_way_.erase(on_the_way_.begin());
+    return first;
+  }
+  // When the next arrives; infinity: nothing is on its way.
+  double next_due_s() const {
+    return on_the_way_.empty() ? std::numeric_limits<double>::infinity()
+                               : on_the_way_.front().due_s;
+  }
+  const LinkFate& fate() const { return fate_; }
+
+ private:
+  struct OnTheWay {
+    double due_s;
+    Packet packet;
+  };
+  bool keeps_order_;
+  LinkFate fate_;
+  double last_due_s_ = -std::numeric_limits<double>::infinity();
+  std::vector<OnTheWay> on_the_way_;  // by due_s
+};
+
+}  // namespace photorque

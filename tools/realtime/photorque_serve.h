@@ -1,0 +1,102 @@
+/* What `photorque serve` and its clients send each other: version 1. C99 and C++; no library
+ * needed.
+ *
+ * Over UDP one packet is one structure; in shared memory both stand in photorque_shared_memory.
+ * Every number is little-endian, every double IEEE 754; there is no padding. Times t are those of
+ * the simulation; *_ns are nanoseconds of the sender's CLOCK_MONOTONIC. Lab: x east, y north, z up.
+ * Quaternions are w, x, y, z (Hamilton) and turn body vectors into the lab. docs/realtime.md says
+ * when what is sent. Fill a command, then photorque_seal() it last. */
+#ifndef PHOTORQUE_SERVE_H
+#define PHOTORQUE_SERVE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define PHOTORQUE_MAGIC 0x51525450u /* "PTRQ" */
+#define PHOTORQUE_VERSION 1u
+#define PHOTORQUE_PORT 4160
+
+enum photorque_packet_kind {
+  PHOTORQUE_HELLO = 1,       /* client: begins; header alone. Answered by the first measurement */
+  PHOTORQUE_COMMAND = 2,     /* client: photorque_command_packet */
+  PHOTORQUE_MEASUREMENT = 3, /* server: photorque_measurement_packet */
+  PHOTORQUE_GOODBYE = 4      /* client: leaves; nothing is commanded any more. Header alone */
+};
+
+enum photorque_flag {
+  PHOTORQUE_NEW = 1,    /* the readings are new to the client; else only the tick went on */
+  PHOTORQUE_ANSWER = 2, /* lockstep: the run waits for a command whose `tick` is `now_tick` */
+  PHOTORQUE_LATE = 4,   /* left later than the deadline */
+  PHOTORQUE_LAST = 8,   /* the run is over */
+  PHOTORQUE_TRUTH = 16  /* true_attitude and true_rate_rad_s are filled in */
+};
+
+typedef struct {
+  uint32_t magic;
+  uint16_t version;
+  uint16_t kind;
+  uint32_t size;     /* of the whole packet in bytes */
+  uint32_t checksum; /* CRC-32 (IEEE 802.3, as zlib's) of the whole packet with zero here */
+  uint64_t sequence; /* of the sender: rises with every packet; older ones are refused */
+  uint64_t sent_ns;
+  uint64_t tick; /* measurement: when it was read; command: the `now_tick` that it answers */
+  uint64_t run;  /* the server's number of this run; a client repeats it, 0 in a hello */
+} photorque_header;
+
+typedef struct {
+  photorque_header header;
+  double torque_body_N_m[3]; /* holds from the tick at which it arrives until the next arrives */
+} photorque_command_packet;
+
+typedef struct {
+  photorque_header header;
+  uint64_t now_tick;          /* at which this packet arrives; header.tick unless a link delays */
+  uint64_t command_sequence;  /* of the last command that acts; 0: none yet */
+  uint64_t command_sent_ns;   /* its sent_ns, for the time there and back */
+  double t_s;                 /* of header.tick */
+  double attitude[4];         /* of the camera; NaN in ticks without a reading */
+  double gyro_rad_s[3];       /* body axes; NaN likewise */
+  double heading_rad;         /* of the encoder; NaN without one */
+  double battery_current_A;   /* until this tick */
+  double array_power_W;       /* likewise */
+  double command_body_N_m[3]; /* that acted until this tick */
+  double true_attitude[4];    /* zero without PHOTORQUE_TRUTH */
+  double true_rate_rad_s[3];  /* body axes */
+  double step_s;              /* from tick to tick */
+  uint32_t flags;             /* enum photorque_flag */
+  uint32_t refused;           /* packets of anybody that were refused so far */
+} photorque_measurement_packet;
+
+/* /dev/shm/NAME. A lock is odd while its packet is being written and rises by two with every
+ * packet: read the lock, the packet, the lock again, until both are equal and even. */
+typedef struct {
+  uint32_t magic;
+  uint32_t version;
+  uint64_t measurement_lock; /* written by the server */
+  photorque_measurement_packet measurement;
+  uint64_t command_lock; /* written by the client: hello, command and goodbye alike */
+  photorque_command_packet command;
+} photorque_shared_memory;
+
+/* CRC-32 of a packet, its own field taken as zero. */
+static inline uint32_t photorque_checksum(const void* packet, uint32_t size) {
+  const unsigned char* bytes = (const unsigned char*)packet;
+  const size_t own = offsetof(photorque_header, checksum);
+  uint32_t crc = 0xffffffffu;
+  for (uint32_t i = 0; i < size; ++i) {
+    crc ^= i >= own && i < own + 4 ? 0u : bytes[i];
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (0xedb88320u & (0u - (crc & 1u)));
+  }
+  return ~crc;
+}
+
+/* Fills in what every packet has, the checksum last. */
+static inline void photorque_seal(photorque_header* header, uint16_t kind, uint32_t size) {
+  header->magic = PHOTORQUE_MAGIC;
+  header->version = (uint16_t)PHOTORQUE_VERSION;
+  header->kind = kind;
+  header->size = size;
+  header->checksum = photorque_checksum(header, size);
+}
+
+#endif

@@ -1,0 +1,252 @@
+#include "tools/realtime/session.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/errors.h"
+#include "core/numerics/random.h"
+#include "core/text/numbers.h"
+
+namespace photorque {
+namespace {
+
+enum LinkStream : uint64_t { stream_to_client = 0x70, stream_from_client };
+
+constexpr int64_t never_ns = std::numeric_limits<int64_t>::max();
+
+int64_t in_ns(double seconds) {
+  return std::llround(1e9 * seconds);
+}
+
+// Another for every run, so that packets for one that is over are told apart. Not zero.
+uint64_t run_number() {
+  return hash_words(static_cast<uint64_t>(monotonic_ns()), static_cast<uint64_t>(::getpid())) | 1;
+}
+
+}  // namespace
+
+Session::Session(const ServeSettings& settings, Transport transport, uint64_t seed, double start_s)
+    : settings_(settings),
+      transport_(std::move(transport)),
+      start_s_(start_s),
+      run_(run_number()),
+      gate_(run_, settings.max_torque_N_m,
+            settings.mode == ServeSettings::Mode::paced ? in_ns(2.0) : never_ns),
+      clock_(1.0 / settings.rate_Hz, settings.deadline_s, settings.on_miss),
+      to_client_(settings.to_client, seed, stream_to_client),
+      from_client_(settings.from_client, seed, stream_from_client) {}
+
+// Seconds since the start: by the clock, or those of the tick.
+double Session::now_s() const {
+  return is_paced() ? clock_.run_s(monotonic_ns()) : tick_s_;
+}
+
+ZeroOrderHold Session::tick(const LiveRow& row) {
+  tick_ = row.index;
+  tick_s_ = row.time_s - start_s_;
+  if (tick_ == 0) meet_client();
+  const int64_t computing_ns = tick_ == 0 ? 0 : monotonic_ns() - returned_ns_;
+  bool is_late = false;
+  if (is_paced()) {
+    wait_until_due(tick_);
+    is_late =
+        1e-9 * static_cast<double>(monotonic_ns() - clock_.due_ns(tick_)) > settings_.deadline_s;
+  }
+  to_client_.push(packet_of(row), is_paced() ? std::max(now_s(), tick_s_) : tick_s_);
+  send_arrived(now_s(), is_late);
+  if (is_paced()) {
+    clock_.served(tick_, monotonic_ns(), computing_ns);
+    while (take_in(0)) {
+    }
+  } else {
+    await_answer();
+  }
+  command(now_s());
+  ZeroOrderHold held;
+  if (acting_.header.sequence != 0) {
+    held.command_body_N_m =
+        Vec3(acting_.torque_body_N_m[0], acting_.torque_body_N_m[1], acting_.torque_body_N_m[2]);
+  }
+  acted_.append(row.time_s, held);
+  returned_ns_ = monotonic_ns();
+  return held;
+}
+
+void Session::meet_client() {
+  const int64_t give_up_ns = monotonic_ns() + in_ns(settings_.client_timeout_s);
+  while ((settings_.wait_for_client || !is_paced()) && !gate_.client()) {
+    take_in(give_up_ns);
+    if (monotonic_ns() > give_up_ns) {
+      throw NumericalError("no client came to " + transport_.where + " within " +
+                           shortest(settings_.client_timeout_s) + " s (serve.client_timeout_s)");
+    }
+  }
+  clock_.start(monotonic_ns());
+}
+
+// Until the tick is due, but not idly: commands come in and delayed measurements go out.
+void Session::wait_until_due(size_t tick) {
+  const int64_t due_ns = clock_.due_ns(tick);
+  while (monotonic_ns() < due_ns) {
+    const double next_s = to_client_.next_due_s();
+    int64_t until_ns = due_ns;
+    if (std::isfinite(next_s)) {
+      until_ns = std::min(due_ns, monotonic_ns() + std::max<int64_t>(0, in_ns(next_s - now_s())));
+    }
+    take_in(until_ns);
+    send_arrived(now_s(), false);
+  }
+}
+
+// Measurements that have come through the link. In lockstep the last of them, or an empty one where
+// none has, asks for the answer.
+void Session::send_arrived(double now_s, bool is_late) {
+  const uint32_t late = is_late ? uint32_t{PHOTORQUE_LATE} : 0;
+  std::optional<photorque_measurement_packet> packet = to_client_.pop(now_s);
+  if (is_paced()) {
+    for (; packet; packet = to_client_.pop(now_s)) send(*packet, PHOTORQUE_NEW | late);
+    return;
+  }
+  if (!packet) {
+    photorque_measurement_packet empty = last_sent_;
+    send(empty, PHOTORQUE_ANSWER);
+    return;
+  }
+  while (const auto next = to_client_.pop(now_s)) {
+    send(*packet, PHOTORQUE_NEW);
+    packet = next;
+  }
+  send(*packet, PHOTORQUE_NEW | PHOTORQUE_ANSWER);
+}
+
+void Session::send(const photorque_measurement_packet& packet, uint32_t flags) {
+  last_sent_ = packet;
+  last_sent_.now_tick = tick_;
+  last_sent_.step_s = 1.0 / settings_.rate_Hz;
+  last_sent_.flags = flags | (settings_.send_truth ? uint32_t{PHOTORQUE_TRUTH} : 0);
+  last_sent_.refused = static_cast<uint32_t>(gate_.refused_in_all());
+  last_sent_.header.run = run_;
+  last_sent_.header.sequence = ++sequence_;
+  last_sent_.header.sent_ns = static_cast<uint64_t>(monotonic_ns());
+  photorque_seal(&last_sent_.header, PHOTORQUE_MEASUREMENT, sizeof last_sent_);
+  if (!gate_.client()) return;
+  transport_.send(last_sent_, *gate_.client());
+  ++sent_;
+}
+
+// Datagrams may be lost even on one machine: what was asked is asked again.
+void Session::await_answer() {
+  const int64_t give_up_ns = monotonic_ns() + in_ns(settings_.client_timeout_s);
+  constexpr int64_t again_ns = 200'000'000;
+  answered_ = false;
+  while (!answered_ && !client_left_) {
+    const int64_t until_ns = std::min(give_up_ns, monotonic_ns() + again_ns);
+    take_in(until_ns);
+    const int64_t now_ns = monotonic_ns();
+    if (now_ns >= give_up_ns && !answered_ && !client_left_) {
+      throw NumericalError("the client did not answer tick " + std::to_string(tick_) + " within " +
+                           shortest(settings_.client_timeout_s) + " s (serve.client_timeout_s)");
+    }
+    if (now_ns >= until_ns && !answered_ && gate_.client()) {
+      transport_.send(last_sent_, *gate_.client());
+    }
+  }
+}
+
+// Takes one packet in, waiting for it until `until_ns`; whether one was there.
+bool Session::take_in(int64_t until_ns) {
+  const std::optional<ReceivedBytes> got = transport_.receive(until_ns);
+  if (!got) return false;
+  const std::span<const std::byte> bytes(got->bytes.data(), std::min(got->size, got->bytes.size()));
+  const std::optional<ClientPacket> packet = gate_.admit(bytes, got->sender, monotonic_ns());
+  if (!packet) return true;
+  ++received_;
+  if (packet->kind == PHOTORQUE_HELLO) client_left_ = false;
+  if (packet->kind == PHOTORQUE_GOODBYE) {
+    client_left_ = true;
+    acting_ = {};
+  }
+  if (packet->kind != PHOTORQUE_COMMAND) return true;
+  if (is_paced()) {
+    from_client_.push(packet->command, now_s());
+  } else if (!answered_ && packet->command.header.tick == tick_) {
+    answered_ = true;
+    from_client_.push(packet->command, tick_s_);
+  } else {
+    ++unanswered_;
+  }
+  return true;
+}
+
+// The newest command that has come through the link acts from now on.
+void Session::command(double now_s) {
+  while (const auto arrived = from_client_.pop(now_s)) {
+    if (client_left_) continue;
+    if (arrived->header.sequence <= acting_.header.sequence) {
+      ++overtaken_;
+      continue;
+    }
+    acting_ = *arrived;
+    acting_since_s_ = now_s;
+  }
+  if (now_s - acting_since_s_ > settings_.hold_s) {
+    // Silence is no reason to take older commands.
+    std::ranges::fill(acting_.torque_body_N_m, 0.0);
+  }
+}
+
+photorque_measurement_packet Session::packet_of(const LiveRow& row) const {
+  photorque_measurement_packet packet{};
+  packet.header.tick = row.index;
+  packet.command_sequence = acting_.header.sequence;
+  packet.command_sent_ns = acting_.header.sent_ns;
+  packet.t_s = row.time_s;
+  const auto put = [](const Quat& q, double* to) {
+    to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
+  };
+  put(row.lab_from_body_seen, packet.attitude);
+  for (int i = 0; i < 3; ++i) {
+    packet.gyro_rad_s[i] = row.gyro_rad_s[i];
+    packet.command_body_N_m[i] = row.command_body_N_m[i];
+  }
+  packet.heading_rad = row.heading_rad;
+  packet.battery_current_A = row.battery_current_A;
+  packet.array_power_W = row.array_power_W;
+  if (settings_.send_truth) {
+    put(row.truth.lab_from_body, packet.true_attitude);
+    for (int i = 0; i < 3; ++i) packet.true_rate_rad_s[i] = row.truth.rate_body_rad_s[i];
+  }
+  return packet;
+}
+
+void Session::finish() {
+  send(last_sent_, PHOTORQUE_LAST);
+}
+
+Product Session::product() const {
+  Product product = is_paced() ? clock_.product() : Product{};
+  const auto put = [&](const std::string& name, uint64_t value) {
+    product.quantities.push_back({name, {static_cast<double>(value), 0.0}});
+  };
+  if (!is_paced()) put("ticks", tick_ + 1);
+  put("packets_sent", sent_);
+  put("packets_received", received_);
+  put("packets_refused", gate_.refused_in_all());
+  put("measurements_lost_by_link", to_client_.fate().lost());
+  put("commands_lost_by_link", from_client_.fate().lost());
+  put("commands_overtaken", overtaken_);
+  if (!is_paced()) put("answers_that_came_twice", unanswered_);
+  Table table = Table::of("refused", "Packets that were refused", {"reason", "packets"});
+  for (size_t i = 0; i < refusal_names.size(); ++i) {
+    table.row()
+        .set("reason", refusal_names[i])
+        .set("packets", static_cast<double>(gate_.refused()[i]));
+  }
+  product.tables.push_back(std::move(table));
+  return product;
+}
+
+}  // namespace photorque

@@ -1,0 +1,68 @@
+// A run in real time with its client: at every tick a measurement goes out and commands come in.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "attitude/propagation/live.h"
+#include "core/product.h"
+#include "tools/realtime/clock.h"
+#include "tools/realtime/gate.h"
+#include "tools/realtime/link.h"
+#include "tools/realtime/settings.h"
+#include "tools/realtime/transport.h"
+
+namespace photorque {
+
+class Session {
+ public:
+  // `seed` of the simulated links; `start_s` is the run's initial time.
+  Session(const ServeSettings& settings, Transport transport, uint64_t seed, double start_s);
+
+  // The run's LiveCommander. In order, at tick k:
+  //   paced: waits until start + k steps, taking in what comes meanwhile; sends the measurement;
+  //   lockstep: sends the measurement and waits for the answer to it;
+  // then gives the newest command that has come through the link. NumericalError where a client
+  // does not come or answer within client_timeout_s, or OnMiss::stop ends the run.
+  ZeroOrderHold tick(const LiveRow& row);
+
+  // Tells the client that the run is over.
+  void finish();
+
+  // What acted, for `propagate` to do the same again.
+  const Schedule& commands() const { return acted_; }
+  // Deadlines, packets and what was refused.
+  Product product() const;
+
+ private:
+  bool is_paced() const { return settings_.mode == ServeSettings::Mode::paced; }
+  double now_s() const;
+  void meet_client();
+  void wait_until_due(size_t tick);
+  void send_arrived(double now_s, bool is_late);
+  void send(const photorque_measurement_packet& packet, uint32_t flags);
+  void await_answer();
+  bool take_in(int64_t until_ns);
+  void command(double now_s);
+  photorque_measurement_packet packet_of(const LiveRow& row) const;
+
+  ServeSettings settings_;
+  Transport transport_;
+  double start_s_;
+  uint64_t run_;
+  Gate gate_;
+  TickClock clock_;
+  SimulatedLink<photorque_measurement_packet> to_client_;
+  SimulatedLink<photorque_command_packet> from_client_;
+  photorque_measurement_packet last_sent_{};
+  photorque_command_packet acting_{};  // sequence 0: nothing is commanded
+  double acting_since_s_ = 0.0;
+  uint64_t tick_ = 0;
+  double tick_s_ = 0.0;  // of the run, since its start
+  int64_t returned_ns_ = 0;
+  bool client_left_ = false, answered_ = false;
+  uint64_t sequence_ = 0, sent_ = 0, received_ = 0, overtaken_ = 0, unanswered_ = 0;
+  Schedule acted_;
+};
+
+}  // namespace photorque

@@ -1,0 +1,78 @@
+// Power by light: the experiment with lamps and array, traced at every tilt.
+#include <filesystem>
+
+#include "tools/runs/array_power.h"
+#include "tools/runs/optical_run.h"
+#include "tools/supply/options.h"
+
+namespace photorque {
+namespace {
+
+RunOptions options_of_beam(const Settings& s, const RunOptions& options) {
+  const std::string name = s.text("experiment");
+  RunOptions beam;
+  beam.experiment = std::filesystem::path(s.where().file).parent_path() / name;
+  if (!std::filesystem::is_regular_file(beam.experiment)) {
+    throw s.error("experiment", "\"" + name + "\"", "an experiment beside this one");
+  }
+  beam.threads = options.threads;
+  beam.seed = options.seed;
+  beam.max_memory_GB = options.max_memory_GB;
+  if (s.has("rays")) {
+    beam.overrides.push_back("trace.rays=" +
+                             std::to_string(s.integer("rays", 256, int64_t{1} << 40)));
+  }
+  return beam;
+}
+
+Estimate times(const Estimate& x, double factor) {
+  return {factor * x.value, factor * x.standard_error};
+}
+
+Estimate ratio(const Estimate& a, double b) {
+  return times(a, 1.0 / b);
+}
+
+}  // namespace
+
+SupplyOption beam_option(const Settings& s, const SupplyTask& task, const RunOptions& options,
+                         const Console& console) {
+  const std::string name = s.text("name");
+  const double lamp_efficiency = s.number_or("lamp_efficiency", 0.5, {0.0, 1.0, true, false});
+  const double converter = s.number_or("converter_efficiency", 0.97, {0.0, 1.0, true, false});
+  const double mass_kg = s.number_or("array_mass_kg", 0.25, Range::not_negative());
+  OpticalRun run(options_of_beam(s, options), Console());
+  const ArrayPower array = read_array_power(run);
+  SupplyOption option;
+  option.name = option.symbol = name;
+  for (char& c : option.symbol) c = c == ' ' || c == '-' || c == '.' ? '_' : c;
+  option.mass_kg = {mass_kg, 0.0};
+  const auto progress = console.progress("tracing " + name);
+  for (size_t t = 0; t < task.tilt_rad.size(); ++t) {
+    const OpticalResult light = run.run(lab_from_body_at(task.tilt_rad[t], 0.0), {});
+    const ArrayResult power = evaluate(array, run, light);
+    const WrenchEstimate wrench =
+        wrench_about(run.wrench().total(light.sums[run.wrench_index()]), Vec3::Zero());
+    option.curve.push_back({times(power.power_W, converter),
+                            {wrench.mean.torque_N_m.y(), wrench.torque_error_N_m().y()},
+                            {}});
+    const double emitted_W = light.power_balance.emitted_W;
+    if (t == 0) {
+      option.source_W = {emitted_W / lamp_efficiency, 0.0};
+      option.figures = {{"emitted_W", {emitted_W, 0.0}},
+                        {"light_on_cells_fraction", ratio(power.power_on_cells_W, emitted_W)},
+                        {"conversion_fraction", power.efficiency},
+                        {"array_W", power.power_W}};
+    }
+    if (t + 1 == task.tilt_rad.size()) {
+      option.figures.emplace_back("sum_of_cells_tilted_W", power.sum_of_cells_W);
+      option.figures.emplace_back("array_tilted_W", power.power_W);
+    }
+    if (progress) progress(static_cast<double>(t + 1) / static_cast<double>(task.tilt_rad.size()));
+  }
+  console.done();
+  option.remarks = {"as traced: " + s.text("experiment")};
+  return option;
+}
+
+}  // namespace photorque

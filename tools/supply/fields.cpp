@@ -1,0 +1,195 @@
+// Power through fields: the microwave beam and the coils.
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/supply/coil_link.h"
+#include "attitude/supply/eddy_sphere.h"
+#include "attitude/supply/microwave.h"
+#include "core/constants.h"
+#include "core/text/numbers.h"
+#include "core/transform.h"
+#include "tools/supply/options.h"
+
+namespace photorque {
+namespace {
+
+// Fraction of what arrives at the rectenna that its elements take, and of what misses them that is
+// mirrored.
+struct RectennaTakes {
+  double taken = 0.0, mirrored = 0.0;
+};
+
+RectennaTakes rectenna_takes(const MicrowaveBeam& beam, bool in_e_plane, double tilt_rad) {
+  const double arrives = aperture_transmission(beam, tilt_rad);
+  const double pattern = in_e_plane ? dipole_pattern_e(tilt_rad) : dipole_pattern_h(tilt_rad);
+  const double taken = arrives * element_capture(pattern, tilt_rad);
+  return {taken, arrives - taken};
+}
+
+std::string in_GHz(double frequency_Hz) {
+  return shortest(std::round(1e-7 * frequency_Hz) / 100.0);
+}
+
+}  // namespace
+
+SupplyOption microwave_option(const Settings& s, const SupplyTask& task) {
+  UncertainInputs in;
+  const double frequency_Hz = s.number("frequency_Hz", Range::positive());
+  const bool in_e_plane = s.choice_or("plane", {"E", "H"}, 0) == 0;
+  const size_t diameter = in.add(s, "transmitter_diameter_m", {0.4, 0.0}, Range::positive());
+  const size_t side = in.add(s, "rectenna_side_m", {0.322, 0.0}, Range::positive());
+  const size_t distance = in.add(s, "distance_m", {1.0, 0.0}, Range::positive());
+  const size_t height = in.add(s, "height_m", {0.0238, 0.0}, Range{});
+  const size_t rectifier = in.add(s, "rectifier_efficiency", {0.82, 0.0}, {0.0, 1.0, true, false});
+  const size_t source = in.add(s, "transmitter_efficiency", {0.6, 0.1}, {0.0, 1.0, true, false});
+  const size_t areal = in.add(s, "mass_kg_m2", {2.0, 0.5});
+  SupplyOption option = option_from(
+      in, task,
+      [&](const std::vector<double>& at) {
+        MicrowaveBeam beam;
+        beam.frequency_Hz = frequency_Hz;
+        beam.transmitter_area_m2 = 0.25 * pi * at[diameter] * at[diameter];
+        beam.rectenna_area_m2 = at[side] * at[side];
+        beam.distance_m = at[distance];
+        const double level = rectenna_takes(beam, in_e_plane, 0.0).taken;
+        const double beam_W = task.load_W / (level * at[rectifier]);
+        PlainOption plain;
+        plain.mass_kg = at[areal] * beam.rectenna_area_m2;
+        plain.source_W = beam_W / at[source];
+        for (const double tilt_rad : task.tilt_rad) {
+          const RectennaTakes takes = rectenna_takes(beam, in_e_plane, tilt_rad);
+          plain.delivered_W.push_back(beam_W * takes.taken * at[rectifier]);
+          plain.torque_N_m.push_back(
+              beam_pressure(beam_W * takes.taken, beam_W * takes.mirrored, tilt_rad, at[height])
+                  .torque_N_m);
+        }
+        plain.figures = {level, beam_W};
+        return plain;
+      },
+      {"transmission", "beam_W"});
+  option.name = "microwave " + in_GHz(frequency_Hz) + " GHz";
+  option.symbol = "microwave_" + in_GHz(frequency_Hz) + "_GHz";
+  std::ranges::replace(option.symbol, '.', '_');
+  option.remarks = {std::string("tilts in the ") + (in_e_plane ? "E" : "H") +
+                    " plane of its dipoles"};
+  return option;
+}
+
+namespace {
+
+SpiralCoil read_coil(const Settings& s, const SpiralCoil& usual) {
+  SpiralCoil coil = usual;
+  coil.inner_radius_m = s.number_or("inner_radius_m", usual.inner_radius_m, Range::positive());
+  coil.outer_radius_m = s.number_or("outer_radius_m", usual.outer_radius_m, Range::positive());
+  if (coil.outer_radius_m <= coil.inner_radius_m) {
+    throw s.error("outer_radius_m", shortest(coil.outer_radius_m), "more than inner_radius_m");
+  }
+  coil.turns = static_cast<int>(s.integer_or("turns", usual.turns, 1, 200));
+  coil.copper_area_m2 = s.number_or("copper_area_m2", usual.copper_area_m2, Range::positive());
+  coil.ac_factor = s.number_or("ac_factor", usual.ac_factor, {1.0, 1e3});
+  return coil;
+}
+
+// What tilting changes of the pair of coils.
+struct CoilPose {
+  double mutual_H = 0.0;
+  double torque_N_m_A2 = 0.0;  // on the platform, about the axis that tilts
+  Vec3 receiver_axis = Vec3::UnitZ();
+};
+
+std::vector<CoilPose> coil_poses(const SpiralCoil& transmitter, const SpiralCoil& receiver,
+                                 double transmitter_height_m, double receiver_height_m,
+                                 const SupplyTask& task) {
+  const auto fixed = turns_of(transmitter, {0.0, 0.0, transmitter_height_m}, Vec3::UnitZ());
+  std::vector<CoilPose> poses;
+  for (const double tilt_rad : task.tilt_rad) {
+    const Quat turn = lab_from_body_at(tilt_rad, 0.0).rotation;
+    const Vec3 axis = turn * Vec3::UnitZ();
+    const auto moving = turns_of(receiver, receiver_height_m * axis, axis);
+    poses.push_back({mutual_inductance_H(fixed, moving),
+                     coil_force(fixed, moving, Vec3::Zero()).torque_N_m_A2.y(), axis});
+  }
+  return poses;
+}
+
+double area_turns_m2(const SpiralCoil& coil) {
+  double sum_m2 = 0.0;
+  for (const CircularFilament& turn : turns_of(coil, Vec3::Zero(), Vec3::UnitZ())) {
+    sum_m2 += pi * turn.radius_m * turn.radius_m;
+  }
+  return sum_m2;
+}
+
+double field_on_ball_T_A(const SpiralCoil& coil, double height_m) {
+  Vec3 sum_T = Vec3::Zero();
+  for (const CircularFilament& turn : turns_of(coil, {0.0, 0.0, height_m}, Vec3::UnitZ())) {
+    sum_T += filament_field_T_A(turn, Vec3::Zero());
+  }
+  return sum_T.norm();
+}
+
+}  // namespace
+
+SupplyOption induction_option(const Settings& s, const SupplyTask& task) {
+  UncertainInputs in;
+  const SpiralCoil usual{0.06, 0.10, 12, 3e-6, 1.5};
+  const SpiralCoil transmitter =
+      s.has("transmitter") ? read_coil(s.table("transmitter"), usual) : usual;
+  const SpiralCoil receiver = s.has("receiver") ? read_coil(s.table("receiver"), usual) : usual;
+  const double transmitter_m = s.number_or("transmitter_height_m", -0.085);
+  const double receiver_m = s.number_or("receiver_height_m", -0.02);
+  const double omega = 2.0 * pi * s.number_or("frequency_Hz", 1e5, Range::positive());
+  const size_t detuning = in.add(s, "detuning", {0.0, 0.005}, Range{});
+  const size_t inverter = in.add(s, "inverter_efficiency", {0.93, 0.02}, {0.0, 1.0, true, false});
+  const size_t rectifier = in.add(s, "rectifier_efficiency", {0.95, 0.02}, {0.0, 1.0, true, false});
+  const double ball_m = s.number_or("ball_radius_m", 0.03175, Range::positive());
+  const double ball_S_m = s.number_or("ball_conductivity_S_m", 2.5e7, Range::positive());
+  const std::vector<CoilPose> poses =
+      coil_poses(transmitter, receiver, transmitter_m, receiver_m, task);
+  CoilCircuit level;
+  level.angular_frequency_rad_s = omega;
+  level.mutual_H = poses.front().mutual_H;
+  level.resistance_1_ohm = resistance_ohm(transmitter);
+  level.resistance_2_ohm = resistance_ohm(receiver);
+  const double load_ohm = best_load_ohm(level);
+  const double self_1_H = self_inductance_H(transmitter), self_2_H = self_inductance_H(receiver);
+  const Vec3 earth_T = task.model.environment.magnetic_field_lab_T;
+  SupplyOption option = option_from(
+      in, task,
+      [&](const std::vector<double>& at) {
+        PlainOption plain;
+        CoilCircuit circuit = level;
+        circuit.reactance_2_ohm = 2.0 * at[detuning] * omega * self_2_H;
+        const CoilCurrents now = currents_for(circuit, load_ohm, task.load_W / at[rectifier]);
+        plain.mass_kg = receiver.copper_mass_kg();
+        plain.source_W = task.load_W / (at[rectifier] * now.efficiency * at[inverter]);
+        for (const CoilPose& pose : poses) {
+          // The current in the first coil is held; the second's follows the mutual inductance.
+          const double ratio = pose.mutual_H / level.mutual_H;
+          plain.delivered_W.push_back(task.load_W * ratio * ratio);
+          plain.torque_N_m.push_back(ratio * now.mean_product_A2 * pose.torque_N_m_A2);
+          const double second_A = std::abs(ratio) * now.second_A;
+          plain.alternating_N_m.push_back(
+              0.5 * now.first_A * second_A * std::abs(pose.torque_N_m_A2) +
+              second_A * area_turns_m2(receiver) * pose.receiver_axis.cross(earth_T).norm());
+        }
+        const double on_ball_T = now.first_A * field_on_ball_T_A(transmitter, transmitter_m);
+        plain.figures = {now.efficiency,
+                         poses.front().mutual_H / std::sqrt(self_1_H * self_2_H),
+                         omega * self_1_H / level.resistance_1_ohm,
+                         omega * self_2_H / level.resistance_2_ohm,
+                         now.first_A,
+                         now.second_A,
+                         sphere_eddy_loss_W(ball_m, ball_S_m, omega, on_ball_T),
+                         best_link_efficiency({omega, poses.back().mutual_H, level.resistance_1_ohm,
+                                               level.resistance_2_ohm})};
+        return plain;
+      },
+      {"link_efficiency", "coupling", "quality_transmitter", "quality_receiver", "transmitter_A",
+       "receiver_A", "ball_eddy_loss_W", "best_link_efficiency_tilted"});
+  option.name = option.symbol = "induction";
+  option.remarks = {"the mean torque is nothing at resonance; its error is that of the tuning"};
+  return option;
+}
+
+}  // namespace photorque

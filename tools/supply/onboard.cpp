@@ -1,0 +1,120 @@
+// What needs nothing in the air: the battery, and the cable that the others are to replace.
+#include <cmath>
+
+#include "attitude/disturbances/mass/battery.h"
+#include "attitude/supply/cable.h"
+#include "tools/supply/options.h"
+
+namespace photorque {
+namespace {
+
+struct BatteryInputs {
+  UncertainInputs inputs;
+  size_t specific_energy_J_kg = 0, usable = 0, electrodes_m = 0;
+};
+
+BatteryInputs read_battery(const Settings& s) {
+  BatteryInputs battery;
+  UncertainInputs& in = battery.inputs;
+  battery.specific_energy_J_kg =
+      in.add(s, "specific_energy_Wh_kg", {150.0 * 3600.0, 50.0 * 3600.0}, Range::positive());
+  battery.usable = in.add(s, "usable_fraction", {0.9, 0.0}, {0.0, 1.0, true, false});
+  battery.electrodes_m = in.add(s, "electrodes_m", {3.2e-4, 0.0}, Range{});
+  return battery;
+}
+
+double drawn_C(const SupplyTask& task, double fraction) {
+  return fraction * task.load_W * task.duration_s / task.model.platform.battery_voltage_V;
+}
+
+double lithium_torque_N_m(const SupplyTask& task, double electrodes_m, double charge_C,
+                          double tilt_rad) {
+  const BatteryCell cell{Vec3::Zero(), Vec3(electrodes_m, 0.0, 0.0), 1.0};
+  const double shift_m_C = com_shift_m_C({&cell, 1}, task.model.platform.mass_kg).x();
+  // The disturbance's key counts per ampere-hour.
+  return disturbance_torque_N_m(task, "battery_discharge",
+                                {{"shift_m_per_Ah", {3600.0 * shift_m_C, 0.0, 0.0}}}, tilt_rad,
+                                charge_C);
+}
+
+}  // namespace
+
+SupplyOption battery_option(const Settings& settings, const SupplyTask& task) {
+  const BatteryInputs battery = read_battery(settings);
+  const LoadPhase phase{task.duration_s, task.load_W};
+  SupplyOption option =
+      option_from(battery.inputs, task,
+                  [&](const std::vector<double>& at) {
+                    PlainOption plain;
+                    const double stored_J = energy_J({&phase, 1}) / at[battery.usable];
+                    plain.mass_kg = battery_mass_kg(stored_J, at[battery.specific_energy_J_kg]);
+                    for (const double tilt_rad : task.tilt_rad) {
+                      plain.delivered_W.push_back(task.load_W);
+                      plain.torque_N_m.push_back(lithium_torque_N_m(task, at[battery.electrodes_m],
+                                                                    drawn_C(task, 1.0), tilt_rad));
+                    }
+                    plain.figures = {energy_J({&phase, 1}) / 3600.0, stored_J / 3600.0};
+                    return plain;
+                  },
+                  {"energy_Wh", "capacity_Wh"});
+  option.name = option.symbol = "battery";
+  option.remarks = {"carried; the torque is that of its lithium when it is empty"};
+  return option;
+}
+
+double battery_torque_N_m(const Settings& settings, const SupplyTask& task, double fraction) {
+  const BatteryInputs battery = read_battery(settings);
+  return battery.inputs
+      .evaluate([&](const std::vector<double>& at) {
+        return std::vector{
+            lithium_torque_N_m(task, at[battery.electrodes_m], drawn_C(task, fraction), 0.0)};
+      })[0]
+      .value;
+}
+
+SupplyOption cable_option(const Settings& s, const SupplyTask& task) {
+  UncertainInputs in;
+  PowerCable fixed;
+  fixed.strands = static_cast<int>(s.integer_or("strands", fixed.strands, 1, 10000));
+  const size_t volts = in.add(s, "voltage_V", {24.0, 0.0}, Range::positive());
+  const size_t length = in.add(s, "length_m", {fixed.length_m, 0.0}, Range::positive());
+  const size_t strand =
+      in.add(s, "strand_diameter_m", {fixed.strand_diameter_m, 0.0}, Range::positive());
+  const size_t outer =
+      in.add(s, "insulation_diameter_m", {fixed.insulation_diameter_m, 0.0}, Range::positive());
+  const size_t modulus = in.add(s, "insulation_modulus_Pa",
+                                {fixed.insulation_modulus_Pa, 0.3 * fixed.insulation_modulus_Pa});
+  const size_t below = in.add(s, "attached_below_m", {0.0, 0.005}, Range{});
+  SupplyOption option = option_from(
+      in, task,
+      [&](const std::vector<double>& at) {
+        PowerCable cable = fixed;
+        cable.length_m = at[length];
+        cable.strand_diameter_m = at[strand];
+        cable.insulation_diameter_m = at[outer];
+        cable.insulation_modulus_Pa = at[modulus];
+        PlainOption plain;
+        plain.mass_kg = 0.5 * cable_mass_kg(cable);
+        const double current_A = task.load_W / at[volts];
+        plain.source_W = task.load_W + current_A * current_A * loop_resistance_ohm(cable);
+        const double bending = bending_stiffness_N_m_rad(cable);
+        // Half of it hangs on the platform, half on its other end.
+        const double hanging_N =
+            0.5 * cable_mass_kg(cable) * task.model.environment.gravity_lab_m_s2.norm();
+        for (const double tilt_rad : task.tilt_rad) {
+          plain.delivered_W.push_back(task.load_W);
+          plain.torque_N_m.push_back(disturbance_torque_N_m(task, "tether",
+                                                            {{"stiffness_N_m_per_rad", {bending}}},
+                                                            tilt_rad) -
+                                     hanging_N * at[below] * std::sin(tilt_rad));
+        }
+        plain.figures = {bending, twisting_stiffness_N_m_rad(cable), cable_mass_kg(cable)};
+        return plain;
+      },
+      {"bending_N_m_per_rad", "twisting_N_m_per_rad", "cable_kg"});
+  option.name = option.symbol = "cable";
+  option.remarks = {"tethered: pulls back as it tilts and winds up as it turns"};
+  return option;
+}
+
+}  // namespace photorque

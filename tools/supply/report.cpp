@@ -1,0 +1,194 @@
+#include "tools/supply/report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+#include "tools/runs/attitude_run.h"
+
+namespace photorque {
+namespace {
+
+Table ways_table(const SupplyTrade& trade) {
+  Table table =
+      Table::of("supply", "Ways to supply the load",
+                {"way", "mass_kg", "mass_error_kg", "source_W", "source_error_W",
+                 "delivered_level_W", "delivered_tilted_W", "delivered_tilted_error_W",
+                 "torque_N_m", "torque_error_N_m", "torque_N_m_per_W", "torque_error_N_m_per_W",
+                 "angle_deg_per_W", "angle_error_deg_per_W", "alternating_N_m"});
+  for (const SupplyOption& option : trade.options) {
+    const SupplyDisturbance worst = disturbance_of(option, trade.task);
+    table.row()
+        .set("way", option.name)
+        .set("mass_kg", option.mass_kg.value)
+        .set("mass_error_kg", option.mass_kg.standard_error)
+        .set("source_W", option.source_W.value)
+        .set("source_error_W", option.source_W.standard_error)
+        .set("delivered_level_W", option.curve.front().delivered_W.value)
+        .set("delivered_tilted_W", option.curve.back().delivered_W.value)
+        .set("delivered_tilted_error_W", option.curve.back().delivered_W.standard_error)
+        .set("torque_N_m", worst.torque_N_m.value)
+        .set("torque_error_N_m", worst.torque_N_m.standard_error)
+        .set("torque_N_m_per_W", worst.torque_N_m_W.value)
+        .set("torque_error_N_m_per_W", worst.torque_N_m_W.standard_error)
+        .set("angle_deg_per_W", worst.angle_rad_W.value / degree_rad)
+        .set("angle_error_deg_per_W", worst.angle_rad_W.standard_error / degree_rad)
+        .set("alternating_N_m", worst.alternating_N_m);
+  }
+  return table;
+}
+
+Table tilt_table(const SupplyTrade& trade) {
+  Table table = Table::of("supply_by_tilt", "Every way over the tilt",
+                          {"way", "tilt_deg", "delivered_W", "delivered_error_W", "torque_N_m",
+                           "torque_error_N_m", "alternating_N_m"});
+  for (const SupplyOption& option : trade.options) {
+    for (size_t t = 0; t < option.curve.size(); ++t) {
+      const SupplyPoint& point = option.curve[t];
+      table.row()
+          .set("way", option.name)
+          .set("tilt_deg", trade.task.tilt_rad[t] / degree_rad)
+          .set("delivered_W", point.delivered_W.value)
+          .set("delivered_error_W", point.delivered_W.standard_error)
+          .set("torque_N_m", point.torque_N_m.value)
+          .set("torque_error_N_m", point.torque_N_m.standard_error)
+          .set("alternating_N_m", point.alternating_N_m.value);
+    }
+  }
+  return table;
+}
+
+Table figures_of_ways(const SupplyTrade& trade) {
+  Table table =
+      Table::of("supply_figures", "Figures of single ways", {"way", "figure", "value", "error"});
+  for (const SupplyOption& option : trade.options) {
+    for (const auto& [name, estimate] : option.figures) {
+      table.row()
+          .set("way", option.name)
+          .set("figure", name)
+          .set("value", estimate.value)
+          .set("error", estimate.standard_error);
+    }
+  }
+  return table;
+}
+
+// Below it is no torque worth a decade of the picture.
+constexpr double least_torque_N_m = 1e-13;
+// Level, light does not turn: what is left is the noise of the trace.
+constexpr double level_torque_N_m = 1e-10;
+
+Plot tilt_plot(const SupplyTrade& trade) {
+  Plot plot;
+  plot.name = "supply_over_tilt";
+  plot.title = "Power to the load and disturbance torque over the tilt";
+  plot.x_label = "tilt [deg]";
+  plot.y_label = "delivered [W]";
+  Plot::Panel torque;
+  torque.y_label = "|torque| [N m]";
+  torque.y_log = true;
+  for (const SupplyOption& option : trade.options) {
+    Plot::Curve delivered, pushes;
+    delivered.label = pushes.label = option.name;
+    // Battery and cable deliver the same.
+    delivered.dashed = pushes.dashed = option.symbol == "cable";
+    for (size_t t = 0; t < option.curve.size(); ++t) {
+      const double tilt_deg = trade.task.tilt_rad[t] / degree_rad;
+      const SupplyPoint& point = option.curve[t];
+      delivered.x.push_back(tilt_deg);
+      delivered.y.push_back(point.delivered_W.value);
+      // Nothing on average, but not exactly: as large as its error.
+      const double size =
+          std::max(std::abs(point.torque_N_m.value), point.torque_N_m.standard_error);
+      if (size < least_torque_N_m || (t == 0 && size < level_torque_N_m)) continue;
+      pushes.x.push_back(tilt_deg);
+      pushes.y.push_back(size);
+    }
+    plot.curves.push_back(std::move(delivered));
+    if (!pushes.x.empty()) torque.curves.push_back(std::move(pushes));
+  }
+  plot.below.push_back(std::move(torque));
+  return plot;
+}
+
+Plot charge_plot(const SupplyTrade& trade) {
+  Plot plot;
+  plot.name = "battery_torque_by_charge";
+  plot.title = "Torque of the battery's lithium by the charge drawn, at zero tilt";
+  plot.x_label = "charge drawn [% of what the task draws]";
+  plot.y_label = "torque [N m]";
+  Plot::Curve curve;
+  for (const double fraction : trade.charge_fraction) curve.x.push_back(100.0 * fraction);
+  curve.y = trade.battery_torque_N_m;
+  plot.curves.push_back(std::move(curve));
+  return plot;
+}
+
+void add_quantities(const SupplyTrade& trade, Product& product) {
+  for (const SupplyOption& option : trade.options) {
+    const SupplyDisturbance worst = disturbance_of(option, trade.task);
+    const auto put = [&](const std::string& name, const Estimate& value) {
+      product.quantities.push_back({option.symbol + "_" + name, value});
+    };
+    put("mass_kg", option.mass_kg);
+    put("source_W", option.source_W);
+    put("delivered_level_W", option.curve.front().delivered_W);
+    put("delivered_tilted_W", option.curve.back().delivered_W);
+    put("torque_N_m", worst.torque_N_m);
+    put("torque_N_m_per_W", worst.torque_N_m_W);
+    put("angle_deg_per_W",
+        {worst.angle_rad_W.value / degree_rad, worst.angle_rad_W.standard_error / degree_rad});
+    put("alternating_N_m", {worst.alternating_N_m, 0.0});
+  }
+}
+
+const Table& table_called(const Product& product, const std::string& name) {
+  return *std::ranges::find(product.tables, name, &Table::name);
+}
+
+}  // namespace
+
+Product supply_product(const SupplyTrade& trade) {
+  Product product;
+  product.tables = {ways_table(trade), tilt_table(trade), figures_of_ways(trade),
+                    paper_supply_table(trade)};
+  product.plots = {tilt_plot(trade), charge_plot(trade)};
+  add_quantities(trade, product);
+  return product;
+}
+
+void print_supply(const Console& console, const Product& product, const SupplyTrade& trade) {
+  const SupplyTask& task = trade.task;
+  console.line(show(task.load_W) + " W for " + show(task.duration_s / 3600.0) + " h, tilts up to " +
+               show(task.tilt_rad.back() / degree_rad) + " deg");
+  console.heading(
+      "Ways; torques are the largest over the tilts, angles what they turn in that time");
+  print_table(console, table_called(product, "supply"),
+              {{"way", "way"},
+               {"aboard [kg]", "mass_kg"},
+               {"±", "mass_error_kg"},
+               {"source [W]", "source_W"},
+               {"±", "source_error_W"},
+               {"level [W]", "delivered_level_W"},
+               {"tilted [W]", "delivered_tilted_W"},
+               {"torque [N m]", "torque_N_m"},
+               {"±", "torque_error_N_m"},
+               {"per W [N m]", "torque_N_m_per_W"},
+               {"per W [deg]", "angle_deg_per_W"},
+               {"±", "angle_error_deg_per_W"},
+               {"alternating [N m]", "alternating_N_m"}});
+  for (const SupplyOption& option : trade.options) {
+    for (const std::string& remark : option.remarks) {
+      console.line("  " + option.name + ": " + remark);
+    }
+  }
+  console.heading("Section III.B of the paper beside ours");
+  const Table& paper = table_called(product, "paper_supply");
+  print_table(console, paper, {{"quantity", "quantity"}, {"paper", "published"}, {"ours", "ours"}});
+  console.heading("Why");
+  const auto& quantity = paper.column("quantity").texts;
+  const auto& why = paper.column("why").texts;
+  for (size_t i = 0; i < quantity.size(); ++i) console.line("  " + quantity[i] + ": " + why[i]);
+}
+
+}  // namespace photorque

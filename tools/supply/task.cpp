@@ -1,0 +1,65 @@
+#include "tools/supply/task.h"
+
+#include "attitude/propagation/run.h"
+#include "core/constants.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/supply/options.h"
+
+namespace photorque {
+namespace {
+
+SupplyTask read_task(const Settings& root, const Settings& s) {
+  SupplyTask task;
+  task.model = read_attitude_model(root).model;
+  task.model.disturbances.clear();
+  task.load_W = s.number_or("load_W", task.load_W, Range::positive());
+  task.duration_s = s.number_or("duration_s", task.duration_s, Range::positive());
+  const double usual_rad = task.model.platform.tilt_limit_rad.value_or(30.0 * degree_rad);
+  const double most_rad =
+      s.number_or("tilt_max_deg", usual_rad, {0.0, 80.0 * degree_rad, true, false});
+  const int64_t tilts = s.integer_or("tilts", 7, 2, 181);
+  for (int64_t i = 0; i < tilts; ++i) {
+    task.tilt_rad.push_back(most_rad * static_cast<double>(i) / static_cast<double>(tilts - 1));
+  }
+  return task;
+}
+
+// A table that may be absent, with its own defaults.
+Settings table_or_empty(const Settings& s, const std::string& key) {
+  if (s.has(key)) return s.table(key);
+  return Settings(std::make_shared<const SettingsNode>(), s.name() + "." + key);
+}
+
+}  // namespace
+
+SupplyRun supply_of_experiment(const RunOptions& options, const Console& console) {
+  const WallTime wall;
+  AttitudeExperiment experiment(options);
+  const Settings s = own_table(experiment.settings(), "supply_trade", true);
+  SupplyTrade trade;
+  trade.task = read_task(experiment.settings(), s);
+  const Settings battery = table_or_empty(s, "battery");
+  trade.options.push_back(battery_option(battery, trade.task));
+  constexpr int steps = 20;
+  for (int i = 0; i <= steps; ++i) {
+    trade.charge_fraction.push_back(static_cast<double>(i) / steps);
+    trade.battery_torque_N_m.push_back(
+        battery_torque_N_m(battery, trade.task, trade.charge_fraction.back()));
+  }
+  trade.options.push_back(cable_option(table_or_empty(s, "cable"), trade.task));
+  for (const Settings& one : s.tables("microwave")) {
+    trade.options.push_back(microwave_option(one, trade.task));
+  }
+  trade.options.push_back(induction_option(table_or_empty(s, "induction"), trade.task));
+  for (const Settings& one : s.tables("beam")) {
+    trade.options.push_back(beam_option(one, trade.task, options, console));
+  }
+  s.finish();
+  Product product = supply_product(trade);
+  print_supply(console, product, trade);
+  RunResult result{
+      std::move(product), experiment.provenance(options.seed.value_or(0)), {wall.elapsed_s(), {}}};
+  return {std::move(trade), std::move(result)};
+}
+
+}  // namespace photorque

@@ -1,0 +1,180 @@
+#include "tools/sweeps/designs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photorque {
+namespace {
+
+const Quantity* find_figure(const std::vector<Quantity>& figures, const std::string& name) {
+  const auto at = std::ranges::find(figures, name, &Quantity::name);
+  return at == figures.end() ? nullptr : &*at;
+}
+
+// With the absolute values that the plan asks for.
+std::vector<Quantity> with_absolutes(const SweepPlan& plan, std::vector<Quantity> figures) {
+  const auto add = [&figures](const SweepFigure& wanted) {
+    const Quantity* plain = find_figure(figures, wanted.name);
+    if (!wanted.absolute || plain == nullptr || find_figure(figures, wanted.column()) != nullptr) {
+      return;
+    }
+    const Estimate size{std::abs(plain->estimate.value), plain->estimate.standard_error};
+    figures.push_back({wanted.column(), size});
+  };
+  for (const Objective& objective : plan.objectives) add(objective.figure);
+  for (const Constraint& constraint : plan.constraints) add(constraint.figure);
+  return figures;
+}
+
+std::vector<Quantity> mean_of(const SweepPlan& plan, std::span<const RunOutcome> runs,
+                              const std::vector<double>& weights) {
+  std::vector<Quantity> mean = with_absolutes(plan, runs.front().figures);
+  for (Quantity& q : mean) q.estimate = {0.0, 0.0};
+  for (size_t i = 0; i < runs.size(); ++i) {
+    const std::vector<Quantity> figures = with_absolutes(plan, runs[i].figures);
+    for (Quantity& q : mean) {
+      const Quantity* one = find_figure(figures, q.name);
+      const double nan = std::numeric_limits<double>::quiet_NaN();
+      const Estimate value = one == nullptr ? Estimate{nan, nan} : one->estimate;
+      q.estimate.value += weights[i] * value.value;
+      q.estimate.standard_error += weights[i] * value.standard_error;
+    }
+  }
+  return mean;
+}
+
+// How far a figure is inside of its limits; negative: outside.
+double margin(const Constraint& constraint, double value) {
+  return std::min(value - constraint.at_least, constraint.at_most - value);
+}
+
+bool keeps_to(const SweepPlan& plan, const std::vector<Quantity>& figures) {
+  return std::ranges::all_of(plan.constraints, [&](const Constraint& constraint) {
+    const Quantity* q = find_figure(figures, constraint.figure.column());
+    return q != nullptr && margin(constraint, q->estimate.value) >= 0.0;
+  });
+}
+
+// The point where `goodness` of the figure is least.
+template <typename Goodness>
+size_t worst_point(const std::vector<std::vector<Quantity>>& points, const std::string& name,
+                   const Goodness& goodness) {
+  size_t worst = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Quantity* q = find_figure(points[i], name);
+    const double good = q == nullptr ? least : goodness(q->estimate.value);
+    if (good < least) {
+      least = good;
+      worst = i;
+    }
+  }
+  return worst;
+}
+
+std::vector<Quantity> worst_of(const SweepPlan& plan,
+                               const std::vector<std::vector<Quantity>>& points) {
+  if (points.size() == 1) return points.front();
+  struct Lead {
+    std::string name;
+    size_t point;
+  };
+  std::vector<Lead> leads;
+  for (const Objective& objective : plan.objectives) {
+    const double sign = objective.maximise ? 1.0 : -1.0;
+    const std::string name = objective.figure.column();
+    leads.push_back({name, worst_point(points, name, [&](double v) { return sign * v; })});
+  }
+  for (const Constraint& constraint : plan.constraints) {
+    const std::string name = constraint.figure.column();
+    if (std::ranges::find(leads, name, &Lead::name) != leads.end()) continue;
+    leads.push_back(
+        {name, worst_point(points, name, [&](double v) { return margin(constraint, v); })});
+  }
+  std::vector<Quantity> worst = points[leads.front().point];
+  for (const Lead& lead : leads) {
+    const Quantity* q = find_figure(points[lead.point], lead.name);
+    if (q == nullptr) continue;
+    std::ranges::find(worst, lead.name, &Quantity::name)->estimate = q->estimate;
+  }
+  return worst;
+}
+
+std::string where_it_failed(const SweepPlan& plan, size_t run) {
+  std::string where;
+  const std::vector<Changes> runs = plan.runs_of({});
+  for (const std::string& change : runs[run]) where += (where.empty() ? "" : ", ") + change;
+  return where.empty() ? "" : " (" + where + ")";
+}
+
+// Larger is better in all of them; empty where the design has no say.
+std::vector<double> merits(const SweepPlan& plan, const Design& design) {
+  std::vector<double> all;
+  if (!design.feasible) return all;
+  for (const Objective& objective : plan.objectives) {
+    const auto value = figure_of(design, plan.judged_column(objective));
+    if (!value || std::isnan(value->value)) return {};
+    all.push_back(objective.maximise ? value->value : -value->value);
+  }
+  return all;
+}
+
+bool dominates(const std::vector<double>& a, const std::vector<double>& b) {
+  bool better = false;
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (a[i] < b[i]) return false;
+    better = better || a[i] > b[i];
+  }
+  return better;
+}
+
+}  // namespace
+
+Design combine(const SweepPlan& plan, std::span<const RunOutcome> runs) {
+  for (size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].failed()) return {{}, runs[i].error + where_it_failed(plan, i), false};
+  }
+  const std::vector<double> weights = plan.mean_weights();
+  std::vector<std::vector<Quantity>> points;
+  bool feasible = true;
+  for (size_t begin = 0; begin < runs.size(); begin += weights.size()) {
+    points.push_back(mean_of(plan, runs.subspan(begin, weights.size()), weights));
+    feasible = feasible && keeps_to(plan, points.back());
+  }
+  return {worst_of(plan, points), "", feasible};
+}
+
+std::optional<Estimate> figure_of(const Design& design, const std::string& column) {
+  const Quantity* q = find_figure(design.figures, column);
+  return q == nullptr ? std::nullopt : std::optional(q->estimate);
+}
+
+std::optional<size_t> best_design(const SweepPlan& plan, std::span<const Design> designs) {
+  std::optional<size_t> best;
+  double most = -std::numeric_limits<double>::infinity();
+  for (size_t d = 0; d < designs.size(); ++d) {
+    const std::vector<double> own = merits(plan, designs[d]);
+    if (own.empty() || !(own.front() > most)) continue;
+    most = own.front();
+    best = d;
+  }
+  return best;
+}
+
+std::vector<size_t> pareto_designs(const SweepPlan& plan, std::span<const Design> designs) {
+  std::vector<std::pair<size_t, std::vector<double>>> front;
+  for (size_t d = 0; d < designs.size(); ++d) {
+    std::vector<double> own = merits(plan, designs[d]);
+    if (own.empty()) continue;
+    if (std::ranges::any_of(front, [&](const auto& f) { return dominates(f.second, own); })) {
+      continue;
+    }
+    std::erase_if(front, [&](const auto& f) { return dominates(own, f.second); });
+    front.emplace_back(d, std::move(own));
+  }
+  std::vector<size_t> all;
+  for (const auto& [d, unused] : front) all.push_back(d);
+  return all;
+}
+
+}  // namespace photorque

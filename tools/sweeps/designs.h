@@ -1,0 +1,52 @@
+// Designs: what their runs gave together, which keep to the constraints, which are best.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/sweeps/plan.h"
+#include "tools/sweeps/store/outcome.h"
+
+namespace photorque {
+
+struct Design {
+  std::vector<Quantity> figures;  // means and worsts over the runs; none where one failed
+  std::string error = {};         // of the first run that failed, with its changes
+  bool feasible = true;           // succeeded, and every run's mean keeps to the constraints
+};
+
+// A figure of the copies of a design, as built.
+struct BuiltFigure {
+  std::string column;
+  std::vector<double> values;  // of each copy; NaN where it failed
+};
+
+// What a sweep or a search found.
+struct SweepResult {
+  std::vector<Design> designs;
+  std::optional<Design> nominal = {};  // the experiment as it stands, where there is an objective
+  std::optional<size_t> best = {};
+  // Their copies as built, where those of the best are asked for.
+  std::vector<BuiltFigure> built_best = {}, built_nominal = {};
+};
+
+// What the runs of one design (SweepPlan::runs_of) gave together.
+//
+// Means: Σ w v, with the standard error Σ w σ, a bound whatever the runs have in common (they share
+// a seed). Over worst_over an objective or a constrained figure takes its worst value (of a figure
+// that must be between two limits, the one nearer to breaking its own); any other figure that
+// where the first objective, or else the first constrained figure, is worst.
+Design combine(const SweepPlan& plan, std::span<const RunOutcome> runs);
+
+// Nothing where a design does not have the figure.
+std::optional<Estimate> figure_of(const Design& design, const std::string& column);
+
+// The feasible design that is best in the first objective; nothing without any.
+std::optional<size_t> best_design(const SweepPlan& plan, std::span<const Design> designs);
+
+// The feasible designs than which no other is as good in every objective and better in one.
+std::vector<size_t> pareto_designs(const SweepPlan& plan, std::span<const Design> designs);
+
+}  // namespace photorque

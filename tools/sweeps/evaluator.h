@@ -1,0 +1,43 @@
+// From the changes of a design to what it is worth: its runs, those of its built copies, together.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tools/sweeps/designs.h"
+#include "tools/sweeps/plan.h"
+#include "tools/sweeps/store/engine.h"
+#include "tools/sweeps/tolerances.h"
+
+namespace photorque {
+
+class DesignEvaluator {
+ public:
+  // `plan` and `engine` outlive it.
+  DesignEvaluator(const SweepPlan& plan, RunEngine& engine);
+
+  // Every run that these designs need, those of copies where every design has some.
+  std::vector<Changes> runs_of(std::span<const Changes> designs) const;
+  // The designs of such runs, which stand in the same order.
+  std::vector<Design> designs_of(std::span<const RunOutcome> outcomes) const;
+
+  // Both, with what is missing run now.
+  std::vector<Design> evaluate(std::span<const Changes> designs,
+                               const std::function<void(double)>& progress = {});
+  // The copies of one design, objective by objective.
+  std::vector<BuiltFigure> build(const Changes& design,
+                                 const std::function<void(double)>& progress = {});
+
+ private:
+  std::vector<Changes> copies_of(const Changes& design) const;
+  size_t runs_each() const;
+  Design with_built(Design design, std::span<const Design> copies) const;
+
+  const SweepPlan& plan_;
+  RunEngine& engine_;
+  std::unique_ptr<Tolerances> tolerances_;  // null without any
+};
+
+}  // namespace photorque

@@ -1,0 +1,35 @@
+// The best of a figure over continuous keys. The only place for NLopt.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace photorque {
+
+// What a search asks: how good a point is (the larger, the better) and how far inside of each
+// constraint it lies (negative: outside).
+struct PointValue {
+  bool failed = false;
+  double merit = 0.0;
+  std::vector<double> margins = {};
+};
+
+struct SearchBox {
+  std::vector<double> low, high;
+  std::vector<double> start;  // within the box
+};
+
+// First over the whole box: dividing rectangles (D. R. Jones, C. D. Perttunen, B. E. Stuckman, J.
+// Optim. Theory Appl. 79, 157 (1993); locally biased, J. M. Gablonsky and C. T. Kelley, J. Global
+// Optim. 21, 27 (2001)). Then from the better of its best and `start`: quadratic models (M. J. D.
+// Powell, BOBYQA, DAMTP 2009/NA06), with constraints linear ones (Powell, COBYLA, 1994), until
+// steps are below `precision` of the box or the evaluations are used up. No derivatives. Nothing is
+// random: equal answers lead over equal points, so a search that was stopped goes over what it
+// has asked for again.
+//
+// `value` is asked for points of the box, in its units.
+void search_box(const SearchBox& box, size_t global, size_t local, double precision,
+                const std::function<PointValue(std::span<const double>)>& value);
+
+}  // namespace photorque

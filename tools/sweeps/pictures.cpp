@@ -1,0 +1,327 @@
+#include "tools/sweeps/pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/text/display.h"
+#include "core/text/numbers.h"
+#include "tools/sweeps/labels.h"
+
+namespace photorque {
+namespace {
+
+double nothing() {
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double value_or_nothing(const Design& design, const std::string& column) {
+  const auto value = figure_of(design, column);
+  return value ? value->value : nothing();
+}
+
+Plot empty_plot(std::string name, std::string title, std::string x_label, std::string y_label) {
+  Plot plot;
+  plot.name = std::move(name);
+  plot.title = std::move(title);
+  plot.x_label = std::move(x_label);
+  plot.y_label = std::move(y_label);
+  return plot;
+}
+
+// The numbers of an axis' values; empty where one is none.
+std::vector<double> axis_numbers(const SweepAxis& axis) {
+  std::vector<double> all;
+  for (const std::string& text : axis.values) {
+    const auto number = number_in(text);
+    if (!number) return {};
+    all.push_back(*number);
+  }
+  return all;
+}
+
+// At least three, in equal steps: what a map can show.
+bool is_even(const std::vector<double>& values) {
+  if (values.size() < 3) return false;
+  const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double even = values.front() + step * static_cast<double>(i);
+    if (std::abs(values[i] - even) > 1e-6 * std::abs(step)) return false;
+  }
+  return step > 0.0;
+}
+
+size_t place_on(const SweepPlan& plan, size_t design, size_t axis) {
+  size_t below = 1;
+  for (size_t i = axis + 1; i < plan.axes.size(); ++i) below *= plan.axes[i].values.size();
+  return design / below % plan.axes[axis].values.size();
+}
+
+// Whether a figure is one of the objectives, and which way.
+const Objective* objective_of(const SweepPlan& plan, const std::string& column) {
+  const auto at = std::ranges::find_if(plan.objectives, [&](const Objective& o) {
+    return o.figure.column() == column || plan.judged_column(o) == column;
+  });
+  return at == plan.objectives.end() ? nullptr : &*at;
+}
+
+// Over two axes of a grid: where there are more, the best that the others allow.
+Map pair_map(const SweepPlan& plan, const SweepResult& result, const std::string& column, size_t i,
+             size_t j) {
+  const std::vector<double> x = axis_numbers(plan.axes[i]), y = axis_numbers(plan.axes[j]);
+  const AxisLabel figure = label_of_figure(column);
+  const AxisLabel x_label = label_of(plan.axes[i]), y_label = label_of(plan.axes[j]);
+  const bool others = plan.axes.size() > 2;
+  Map map;
+  map.name = "sweep_" + column + "_" +
+             (others ? std::to_string(i + 1) + "_" + std::to_string(j + 1) : "map");
+  map.title = title_of_figure(plan, column) + " over " + x_label.name + " and " + y_label.name +
+              (others ? ": the best that the other axes allow" : "");
+  map.unit = figure.unit;
+  map.width = static_cast<int>(x.size());
+  map.height = static_cast<int>(y.size());
+  const auto edges = [](const std::vector<double>& v, double& low, double& high) {
+    const double half = 0.5 * (v[1] - v[0]);
+    low = v.front() - half;
+    high = v.back() + half;
+  };
+  edges(x, map.x_low, map.x_high);
+  edges(y, map.y_low, map.y_high);
+  map.x_label = x_label.text();
+  map.y_label = y_label.text();
+  map.equal_scale = false;
+  map.value.assign(x.size() * y.size(), nothing());
+  map.standard_error.assign(map.value.size(), 0.0);
+  const Objective* objective = objective_of(plan, column);
+  for (size_t d = 0; d < result.designs.size(); ++d) {
+    const Design& design = result.designs[d];
+    const auto value = figure_of(design, column);
+    if (!value || (others && !design.feasible)) continue;
+    const size_t cell = place_on(plan, d, j) * x.size() + place_on(plan, d, i);
+    const double before = map.value[cell];
+    const bool better =
+        std::isnan(before) || (objective != nullptr && objective->maximise ? value->value > before
+                                                                           : value->value < before);
+    if (!better) continue;
+    map.value[cell] = value->value;
+    map.standard_error[cell] = value->standard_error;
+  }
+  map.smooth = std::ranges::none_of(map.value, [](double v) { return std::isnan(v); });
+  map.signed_values = *std::ranges::min_element(map.value) < 0.0;
+  return map;
+}
+
+// Against the last axis, a curve for every combination of the others.
+Plot curves_over_last(const SweepPlan& plan, const SweepResult& result, const std::string& column) {
+  const AxisLabel x = label_of(plan.axes.back()), y = label_of_figure(column);
+  Plot plot = empty_plot("sweep_" + column, title_of_figure(plan, column) + " over " + x.name,
+                         x.text(), y.text());
+  const std::vector<double> along = axis_numbers(plan.axes.back());
+  for (size_t begin = 0; begin < plan.designs(); begin += along.size()) {
+    Plot::Curve curve;
+    for (size_t axis = 0; axis + 1 < plan.axes.size(); ++axis) {
+      curve.label +=
+          (axis > 0 ? ", " : "") + label_of(plan.axes[axis]).with(plan.value(begin, axis));
+    }
+    for (size_t k = 0; k < along.size(); ++k) {
+      const auto value = figure_of(result.designs[begin + k], column);
+      curve.x.push_back(along[k]);
+      curve.y.push_back(value ? value->value : nothing());
+      curve.y_error.push_back(value ? value->standard_error : nothing());
+    }
+    plot.curves.push_back(std::move(curve));
+  }
+  return plot;
+}
+
+// A curve of points; empty ones are left out.
+void add_points(Plot& plot, const std::string& label, std::vector<double> x, std::vector<double> y,
+                Plot::Colour colour, bool dots) {
+  if (x.empty()) return;
+  Plot::Curve curve;
+  curve.label = label;
+  curve.x = std::move(x);
+  curve.y = std::move(y);
+  curve.dots = dots;
+  curve.markers = !dots;
+  curve.colour = colour;
+  if (dots) curve.width = 2.2;
+  plot.curves.push_back(std::move(curve));
+}
+
+struct Cloud {
+  std::vector<double> x, y;
+  void add(double at_x, double at_y) {
+    if (std::isnan(at_x) || std::isnan(at_y)) return;
+    x.push_back(at_x);
+    y.push_back(at_y);
+  }
+};
+
+// The value of every design, its constraints kept or not, and the best.
+void add_designs(Plot& plot, const SweepPlan& plan, const SweepResult& result,
+                 const std::vector<double>& x, const std::vector<double>& y) {
+  Cloud inside, outside, best;
+  for (size_t d = 0; d < result.designs.size(); ++d) {
+    (result.designs[d].feasible ? inside : outside).add(x[d], y[d]);
+  }
+  if (result.best) best.add(x[*result.best], y[*result.best]);
+  add_points(plot, "outside the constraints", outside.x, outside.y, Plot::Colour::grey, true);
+  const bool named = !outside.x.empty() || !best.x.empty();
+  add_points(plot,
+             !named                     ? ""
+             : plan.constraints.empty() ? "designs"
+                                        : "within the constraints",
+             inside.x, inside.y, Plot::Colour::blue, true);
+  add_points(plot, "best", best.x, best.y, Plot::Colour::vermilion, false);
+}
+
+Plot scatter(const SweepPlan& plan, const SweepResult& result, const std::string& column,
+             size_t axis) {
+  const AxisLabel x = label_of(plan.axes[axis]), y = label_of_figure(column);
+  Plot plot = empty_plot("sweep_" + column + "_over_" + std::to_string(axis + 1),
+                         title_of_figure(plan, column) + " over " + x.name, x.text(), y.text());
+  std::vector<double> values;
+  for (const Design& design : result.designs) values.push_back(value_or_nothing(design, column));
+  add_designs(plot, plan, result, axis_numbers(plan.axes[axis]), values);
+  return plot;
+}
+
+Plot pareto_plot(const SweepPlan& plan, const SweepResult& result, size_t second) {
+  const std::string first_column = plan.judged_column(plan.objectives.front());
+  const std::string second_column = plan.judged_column(plan.objectives[second]);
+  const AxisLabel x = label_of_figure(first_column), y = label_of_figure(second_column);
+  Plot plot =
+      empty_plot("pareto_" + second_column,
+                 title_of_figure(plan, second_column) + " against " + x.name, x.text(), y.text());
+  Cloud inside, outside, front, nominal;
+  for (const Design& d : result.designs) {
+    (d.feasible ? inside : outside)
+        .add(value_or_nothing(d, first_column), value_or_nothing(d, second_column));
+  }
+  std::vector<size_t> best = pareto_designs(plan, result.designs);
+  std::ranges::sort(best, {},
+                    [&](size_t d) { return value_or_nothing(result.designs[d], first_column); });
+  for (const size_t d : best) {
+    front.add(value_or_nothing(result.designs[d], first_column),
+              value_or_nothing(result.designs[d], second_column));
+  }
+  if (result.nominal) {
+    nominal.add(value_or_nothing(*result.nominal, first_column),
+                value_or_nothing(*result.nominal, second_column));
+  }
+  add_points(plot, "outside the constraints", outside.x, outside.y, Plot::Colour::grey, true);
+  add_points(plot, "designs", inside.x, inside.y, Plot::Colour::blue, true);
+  add_points(plot, "none is better in all", front.x, front.y, Plot::Colour::vermilion, false);
+  add_points(plot, "the experiment as it stands", nominal.x, nominal.y, Plot::Colour::green, false);
+  return plot;
+}
+
+// What share of the copies is at least so good.
+Plot::Curve reached_curve(const std::string& label, const BuiltFigure& figure, bool maximise,
+                          Plot::Colour colour) {
+  std::vector<double> values;
+  for (const double v : figure.values) {
+    if (!std::isnan(v)) values.push_back(v);
+  }
+  std::ranges::sort(values);
+  if (!maximise) std::ranges::reverse(values);
+  Plot::Curve curve;
+  curve.label = label;
+  const double n = static_cast<double>(figure.values.size());
+  const double failed = n - static_cast<double>(values.size());
+  for (size_t i = 0; i < values.size(); ++i) {
+    curve.x.push_back(values[i]);
+    curve.y.push_back(100.0 * (n - failed - static_cast<double>(i)) / n);
+  }
+  curve.colour = colour;
+  return curve;
+}
+
+void add_built(Product& product, const SweepPlan& plan, const SweepResult& result) {
+  for (size_t k = 0; k < result.built_best.size(); ++k) {
+    const Objective& objective = plan.objectives[k];
+    const AxisLabel x = label_of_figure(result.built_best[k].column);
+    Plot plot = empty_plot("built_" + result.built_best[k].column,
+                           "What share of built copies is at least so good", x.text(),
+                           "copies at least so good [%]");
+    if (k < result.built_nominal.size()) {
+      plot.curves.push_back(reached_curve("the experiment as it stands", result.built_nominal[k],
+                                          objective.maximise, Plot::Colour::green));
+    }
+    plot.curves.push_back(reached_curve("the best design", result.built_best[k], objective.maximise,
+                                        Plot::Colour::vermilion));
+    plot.levels = {100.0 * plan.built.fraction};
+    product.plots.push_back(std::move(plot));
+  }
+}
+
+}  // namespace
+
+void add_pictures(Product& product, const SweepPlan& plan, const SweepResult& result,
+                  const std::vector<std::string>& figures) {
+  const size_t axes = plan.axes.size();
+  const bool numbers = std::ranges::none_of(
+      plan.axes, [](const SweepAxis& axis) { return axis_numbers(axis).empty(); });
+  const bool even = plan.grid && axes >= 2 && std::ranges::all_of(plan.axes, [](const auto& axis) {
+                      return is_even(axis_numbers(axis));
+                    });
+  constexpr size_t most_curves = 12;
+  const bool over_last = plan.grid && !axis_numbers(plan.axes.back()).empty() &&
+                         plan.designs() / plan.axes.back().values.size() <= most_curves;
+  for (const std::string& column : figures) {
+    for (size_t axis = 0; !plan.grid && numbers && axis < axes; ++axis) {
+      product.plots.push_back(scatter(plan, result, column, axis));
+    }
+    const bool maps = even && (axes == 2 || objective_of(plan, column) != nullptr);
+    for (size_t i = 0; maps && i < axes; ++i) {
+      for (size_t j = i + 1; j < axes; ++j) {
+        product.maps.push_back(pair_map(plan, result, column, i, j));
+      }
+    }
+    if (over_last) product.plots.push_back(curves_over_last(plan, result, column));
+  }
+  for (size_t k = 1; k < plan.objectives.size(); ++k) {
+    product.plots.push_back(pareto_plot(plan, result, k));
+  }
+  add_built(product, plan, result);
+}
+
+Plot search_plot(const SweepPlan& plan, const SweepResult& result) {
+  const Objective& objective = plan.objectives.front();
+  const std::string column = plan.judged_column(objective);
+  const AxisLabel y = label_of_figure(column);
+  Plot plot =
+      empty_plot("search", title_of_figure(plan, column) + ": the search", "evaluation", y.text());
+  Cloud inside, outside, so_far;
+  double best = nothing();
+  for (size_t d = 0; d < result.designs.size(); ++d) {
+    const double value = value_or_nothing(result.designs[d], column);
+    const double at = static_cast<double>(d + 1);
+    const bool feasible = result.designs[d].feasible;
+    (feasible ? inside : outside).add(at, value);
+    if (feasible && (std::isnan(best) || (objective.maximise ? value > best : value < best))) {
+      best = value;
+    }
+    so_far.add(at, best);
+  }
+  add_points(plot, "outside the constraints", outside.x, outside.y, Plot::Colour::grey, true);
+  add_points(plot, "evaluations", inside.x, inside.y, Plot::Colour::blue, true);
+  if (!so_far.x.empty()) {
+    Plot::Curve line;
+    line.label = "best so far";
+    line.x = so_far.x;
+    line.y = so_far.y;
+    line.colour = Plot::Colour::vermilion;
+    plot.curves.push_back(std::move(line));
+  }
+  const double edge = static_cast<double>(plan.search.global) + 1.5;
+  if (plan.search.local > 0 && edge < static_cast<double>(result.designs.size())) {
+    plot.shaded = {{edge, static_cast<double>(result.designs.size()) + 0.5}};
+    plot.shaded_label = "local";
+  }
+  return plot;
+}
+
+}  // namespace photorque

@@ -1,0 +1,266 @@
+#include "tools/sweeps/plan.h"
+
+#include <algorithm>
+
+#include "tools/sweeps/values.h"
+
+namespace photorque {
+namespace {
+
+std::string outside_sweep(const Settings& axis) {
+  std::string key = axis.text("key");
+  if (key.starts_with("sweep")) throw axis.error("key", key, "a key outside [sweep]");
+  return key;
+}
+
+SweepFigure read_figure(const Settings& table, std::string_view key, const std::string& text) {
+  const bool absolute = text.starts_with('|') && text.ends_with('|') && text.size() > 2;
+  SweepFigure figure{absolute ? text.substr(1, text.size() - 2) : text, absolute};
+  if (figure.name.empty() || figure.name.find('|') != std::string::npos) {
+    throw table.error(key, '"' + text + '"', "the name of a figure, or |NAME|");
+  }
+  return figure;
+}
+
+// One text or several.
+std::vector<std::string> texts_or_text(const Settings& table, std::string_view key) {
+  if (!table.has(key)) return {};
+  if (table.raw(key).is_array()) return table.texts(key);
+  return {table.text(key)};
+}
+
+std::vector<Objective> read_objectives(const Settings& sweep) {
+  std::vector<Objective> all;
+  for (const bool maximise : {true, false}) {
+    const char* const key = maximise ? "maximise" : "minimise";
+    for (const std::string& text : texts_or_text(sweep, key)) {
+      all.push_back({read_figure(sweep, key, text), maximise});
+    }
+  }
+  for (size_t i = 0; i < all.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      if (all[i].figure.column() != all[k].figure.column()) continue;
+      throw sweep.error("minimise", '"' + all[i].figure.name + "\" twice", "every figure once");
+    }
+  }
+  return all;
+}
+
+std::vector<Constraint> read_constraints(const Settings& sweep) {
+  std::vector<Constraint> all;
+  for (const Settings& table : sweep.tables("constraint")) {
+    Constraint one{read_figure(table, "figure", table.text("figure"))};
+    // As they stand: a figure's unit is in its name.
+    if (!table.has("at_least") && !table.has("at_most")) {
+      throw table.error("at_least", "neither at_least nor at_most", "one of them, or both");
+    }
+    one.at_least = table.number_or("at_least", one.at_least);
+    one.at_most = table.number_or("at_most", one.at_most);
+    if (one.at_least > one.at_most) {
+      throw table.error("at_most", toml_number(one.at_most),
+                        "at least at_least, " + toml_number(one.at_least));
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+SweepAxis read_axis(const Settings& table, const SweepPlan& plan, uint64_t seed, size_t designs) {
+  SweepAxis axis{table.text("key")};
+  const bool range_alone =
+      plan.grid && !table.has("values") && !table.has("count") && table.has("from");
+  if (!range_alone) {
+    axis.values =
+        plan.grid ? grid_values(table) : random_values(table, seed, plan.axes.size(), designs);
+  }
+  axis.name = table.text_or("name", "");
+  if (table.has("from") && table.has("to")) {
+    axis.low = std::min(table.number("from"), table.number("to"));
+    axis.high = std::max(table.number("from"), table.number("to"));
+  }
+  outside_sweep(table);
+  return axis;
+}
+
+void require_distinct_keys(const Settings& sweep, const SweepPlan& plan) {
+  std::vector<std::string> keys;
+  for (const SweepAxis& axis : plan.axes) keys.push_back(axis.key);
+  for (const MeanOver& mean : plan.mean_over) keys.push_back(mean.key);
+  for (const WorstOver& worst : plan.worst_over) keys.push_back(worst.key);
+  std::ranges::sort(keys);
+  const auto twice = std::ranges::adjacent_find(keys);
+  if (twice != keys.end()) throw sweep.error("axis", '"' + *twice + "\" twice", "every key once");
+}
+
+void read_within(const Settings& sweep, SweepPlan& plan) {
+  for (const Settings& table : sweep.tables("mean_over")) {
+    WeightedValues all = mean_values(table);
+    plan.mean_over.push_back({outside_sweep(table), std::move(all.values), std::move(all.weights)});
+  }
+  for (const Settings& table : sweep.tables("worst_over")) {
+    plan.worst_over.push_back({outside_sweep(table), grid_values(table)});
+  }
+  if (!plan.worst_over.empty() && plan.objectives.empty() && plan.constraints.empty()) {
+    throw sweep.error("worst_over", "nothing that says which is worse",
+                      "maximise, minimise or a [[sweep.constraint]]");
+  }
+}
+
+Tolerance read_tolerance(const Settings& table) {
+  Tolerance one{outside_sweep(table)};
+  const bool normal = table.has("sigma"), uniform = table.has("half_width");
+  const bool seed = table.flag_or("seed", false);
+  if (normal + uniform + seed != 1) {
+    throw table.error("sigma",
+                      std::to_string(normal + uniform + seed) +
+                          " of sigma, half_width, "
+                          "seed",
+                      "one of them");
+  }
+  if (seed) {
+    one.law = Tolerance::Law::seed;
+    return one;
+  }
+  one.law = normal ? Tolerance::Law::normal : Tolerance::Law::uniform;
+  one.width = table.number(normal ? "sigma" : "half_width", Range::positive());
+  one.relative = table.flag_or("relative", false);
+  return one;
+}
+
+BuiltCopies read_built(const Settings& sweep) {
+  BuiltCopies built;
+  for (const Settings& table : sweep.tables("tolerance")) {
+    built.tolerances.push_back(read_tolerance(table));
+  }
+  if (built.tolerances.empty()) return built;
+  constexpr int64_t usual_copies = 100, most_copies = 100000;
+  built.copies =
+      static_cast<size_t>(sweep.integer_or("built_copies", usual_copies, 2, most_copies));
+  built.fraction = sweep.number_or("built_fraction", built.fraction, {0.5, 1.0, false, true});
+  built.of_every = sweep.choice_or("built_of", {"best", "every"}, 0) == 1;
+  built.seed = static_cast<uint64_t>(
+      sweep.integer_or("built_seed", 1, 0, std::numeric_limits<int64_t>::max()));
+  return built;
+}
+
+SearchPlan read_search(const Settings& sweep) {
+  SearchPlan search;
+  constexpr int64_t usual = 100, most = 100000;
+  search.global = static_cast<size_t>(sweep.integer_or("global", usual, 0, most));
+  search.local = static_cast<size_t>(sweep.integer_or("local", usual, 0, most));
+  search.precision = sweep.number_or("precision", search.precision, {1e-8, 0.1});
+  return search;
+}
+
+}  // namespace
+
+size_t SweepPlan::designs() const {
+  if (!grid) return axes.front().values.size();
+  size_t count = 1;
+  for (const SweepAxis& axis : axes) count *= axis.values.size();
+  return count;
+}
+
+const std::string& SweepPlan::value(size_t design, size_t axis) const {
+  if (!grid) return axes[axis].values[design];
+  size_t below = 1;
+  for (size_t i = axis + 1; i < axes.size(); ++i) below *= axes[i].values.size();
+  return axes[axis].values[design / below % axes[axis].values.size()];
+}
+
+Changes SweepPlan::overrides(size_t design) const {
+  Changes all;
+  for (size_t i = 0; i < axes.size(); ++i) all.push_back(axes[i].key + "=" + value(design, i));
+  return all;
+}
+
+size_t SweepPlan::mean_points() const {
+  size_t count = 1;
+  for (const MeanOver& mean : mean_over) count *= mean.values.size();
+  return count;
+}
+
+size_t SweepPlan::worst_points() const {
+  size_t count = 1;
+  for (const WorstOver& worst : worst_over) count *= worst.values.size();
+  return count;
+}
+
+std::vector<double> SweepPlan::mean_weights() const {
+  std::vector<double> all{1.0};
+  for (const MeanOver& mean : mean_over) {
+    std::vector<double> finer;
+    for (const double outer : all) {
+      for (const double weight : mean.weights) finer.push_back(outer * weight);
+    }
+    all = std::move(finer);
+  }
+  return all;
+}
+
+std::vector<Changes> SweepPlan::runs_of(const Changes& design) const {
+  std::vector<Changes> all{design};
+  const auto spread = [&all](const std::string& key, const std::vector<std::string>& values) {
+    std::vector<Changes> finer;
+    for (const Changes& outer : all) {
+      for (const std::string& value : values) {
+        finer.push_back(outer);
+        finer.back().push_back(key + "=" + value);
+      }
+    }
+    all = std::move(finer);
+  };
+  for (const WorstOver& worst : worst_over) spread(worst.key, worst.values);
+  for (const MeanOver& mean : mean_over) spread(mean.key, mean.values);
+  return all;
+}
+
+std::string SweepPlan::built_column(const SweepFigure& figure) const {
+  const double percent = 100.0 * built.fraction;
+  std::string text = toml_number(percent);
+  std::ranges::replace(text, '.', '_');
+  return "p" + text + "_" + figure.column();
+}
+
+std::string SweepPlan::judged_column(const Objective& objective) const {
+  return built.of_every ? built_column(objective.figure) : objective.figure.column();
+}
+
+SweepPlan read_sweep_plan(const Settings& sweep) {
+  SweepPlan plan;
+  plan.verb = sweep.text_or("verb", "power");
+  if (sweep.has("figures")) plan.figures = sweep.texts("figures");
+  plan.grid = !sweep.has("designs");
+  const auto random =
+      plan.grid ? 0 : sweep.integer("designs", 2, static_cast<int64_t>(max_designs));
+  const auto seed =
+      plan.grid ? 0 : sweep.integer_or("seed", 1, 0, std::numeric_limits<int64_t>::max());
+  double runs = 1.0;
+  for (const Settings& table : sweep.tables("axis")) {
+    plan.axes.push_back(
+        read_axis(table, plan, static_cast<uint64_t>(seed), static_cast<size_t>(random)));
+    if (plan.grid) runs *= static_cast<double>(std::max<size_t>(1, plan.axes.back().values.size()));
+  }
+  if (plan.axes.empty()) throw sweep.error("axis", "none", "at least one [[sweep.axis]]");
+  plan.objectives = read_objectives(sweep);
+  plan.constraints = read_constraints(sweep);
+  read_within(sweep, plan);
+  plan.built = read_built(sweep);
+  if (!plan.built.tolerances.empty() && plan.objectives.empty()) {
+    throw sweep.error("tolerance", "nothing that built copies are to be good at",
+                      "maximise or minimise");
+  }
+  plan.search = read_search(sweep);
+  require_distinct_keys(sweep, plan);
+  if (!plan.grid) runs = static_cast<double>(random);
+  runs *= static_cast<double>(plan.mean_points() * plan.worst_points());
+  if (plan.built.of_every) runs *= static_cast<double>(plan.built.copies + 1);
+  if (runs > static_cast<double>(max_designs)) {
+    throw sweep.error("axis", toml_number(runs) + " runs",
+                      "at most " + std::to_string(max_designs));
+  }
+  sweep.finish();
+  return plan;
+}
+
+}  // namespace photorque

@@ -1,0 +1,248 @@
+#include "tools/sweeps/report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.h"
+#include "core/settings/settings.h"
+#include "core/text/numbers.h"
+#include "tools/sweeps/pictures.h"
+#include "tools/sweeps/tolerances.h"
+
+namespace photorque {
+namespace {
+
+constexpr const char* error_suffix = "_standard_error";
+
+double not_a_number() {
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+// The value of an axis as a column: numbers where all are numbers.
+void add_axis(Table& table, const SweepPlan& plan, size_t axis) {
+  std::vector<double> numbers;
+  std::vector<std::string> texts;
+  for (size_t d = 0; d < plan.designs(); ++d) {
+    const std::string& text = plan.value(d, axis);
+    if (const auto number = number_in(text)) numbers.push_back(*number);
+    texts.push_back(text);
+  }
+  if (numbers.size() == texts.size()) {
+    table.add(plan.axes[axis].key, numbers);
+  } else {
+    table.add(plan.axes[axis].key, texts);
+  }
+}
+
+void add_figure(Table& table, const std::vector<Design>& designs, const std::string& name) {
+  std::vector<double> values, errors;
+  for (const Design& design : designs) {
+    const Estimate none{not_a_number(), not_a_number()};
+    const Estimate estimate = figure_of(design, name).value_or(none);
+    values.push_back(estimate.value);
+    errors.push_back(estimate.standard_error);
+  }
+  table.add(name, values).add(name + error_suffix, errors);
+}
+
+const std::vector<Quantity>& first_figures(const SweepResult& result) {
+  const auto first =
+      std::ranges::find_if(result.designs, [](const Design& d) { return d.error.empty(); });
+  if (first == result.designs.end()) throw NumericalError("no design of the sweep succeeded");
+  return first->figures;
+}
+
+// With as many digits as a bound of 1e-6 leaves where the error is less.
+std::string shown(Estimate value) {
+  constexpr double finest = 1e-6;
+  if (value.standard_error < finest * std::abs(value.value)) return show(value.value);
+  std::string text = show(value, "");
+  while (text.ends_with(' ')) text.pop_back();
+  return text;
+}
+
+// Of the copies of the best and of the experiment as it stands: what the stated fraction reaches,
+// mean and spread; and copy by copy.
+void append_built(Product& product, const SweepPlan& plan, const SweepResult& result) {
+  if (result.built_best.empty()) return;
+  Table table = Table::of("built",
+                          "Copies of the best design and of the experiment as it stands, "
+                          "as built",
+                          {"copy"});
+  for (size_t i = 0; i < plan.built.copies; ++i) {
+    table.row().set("copy", static_cast<double>(i + 1));
+  }
+  for (size_t k = 0; k < plan.objectives.size(); ++k) {
+    const Objective& objective = plan.objectives[k];
+    const auto add = [&](const std::string& whose, const BuiltFigure& figure) {
+      table.add(whose + figure.column, figure.values);
+      const auto reached = reached_by(plan.built.fraction, objective.maximise, figure.values);
+      if (!reached) return;
+      product.quantities.push_back({whose + plan.built_column(objective.figure), *reached});
+    };
+    add("best_", result.built_best[k]);
+    if (k < result.built_nominal.size()) add("nominal_", result.built_nominal[k]);
+  }
+  product.tables.push_back(std::move(table));
+}
+
+std::vector<double> flags(const std::vector<size_t>& chosen, size_t count) {
+  std::vector<double> all(count, 0.0);
+  for (const size_t d : chosen) all[d] = 1.0;
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> figure_columns(const SweepPlan& plan,
+                                        const std::vector<Quantity>& figures) {
+  std::vector<std::string> names;
+  for (const Quantity& q : figures) names.push_back(q.name);
+  const auto require = [&names](const std::string& key, const std::string& name) {
+    if (std::ranges::find(names, name) != names.end()) return;
+    const std::string suggestion = nearest(name, {names.begin(), names.end()});
+    throw InputError({}, key, '"' + name + '"',
+                     suggestion.empty() ? "a figure of the command's summary.json"
+                                        : "a figure of the summary, perhaps \"" + suggestion + '"');
+  };
+  for (const std::string& name : plan.figures) {
+    if (std::ranges::count(plan.figures, name) > 1) {
+      throw InputError({}, "sweep.figures", '"' + name + "\" twice", "every figure once");
+    }
+    require("sweep.figures", name);
+  }
+  std::vector<std::string> columns = plan.figures.empty() ? names : plan.figures;
+  const auto add = [&](const std::string& key, const SweepFigure& figure) {
+    require(key, figure.name);
+    const std::string column = figure.column();
+    if (std::ranges::find(columns, column) == columns.end()) columns.push_back(column);
+  };
+  for (const Objective& objective : plan.objectives) {
+    add(objective.maximise ? "sweep.maximise" : "sweep.minimise", objective.figure);
+  }
+  for (const Constraint& constraint : plan.constraints) {
+    add("sweep.constraint.figure", constraint.figure);
+  }
+  return columns;
+}
+
+Table sweep_table(const SweepPlan& plan, const SweepResult& result) {
+  const std::vector<Design>& designs = result.designs;
+  Table table = Table::of("sweep", "What " + plan.verb + " gave, design by design", {"design"});
+  for (size_t d = 0; d < designs.size(); ++d) table.row().set("design", static_cast<double>(d + 1));
+  for (size_t axis = 0; axis < plan.axes.size(); ++axis) add_axis(table, plan, axis);
+  std::vector<std::string> columns = figure_columns(plan, first_figures(result));
+  for (const Objective& objective : plan.objectives) {
+    const std::string judged = plan.judged_column(objective);
+    if (std::ranges::find(columns, judged) == columns.end()) columns.push_back(judged);
+  }
+  for (const std::string& name : columns) add_figure(table, designs, name);
+  if (!plan.constraints.empty()) {
+    std::vector<double> feasible;
+    for (const Design& design : designs) feasible.push_back(design.feasible ? 1.0 : 0.0);
+    table.add("feasible", feasible);
+  }
+  if (plan.objectives.size() > 1) {
+    table.add("pareto", flags(pareto_designs(plan, designs), designs.size()));
+  }
+  if (std::ranges::any_of(designs, [](const Design& d) { return !d.error.empty(); })) {
+    std::vector<std::string> errors;
+    for (const Design& design : designs) errors.push_back(design.error);
+    table.add("error", errors);
+  }
+  return table;
+}
+
+Product sweep_product(const SweepPlan& plan, const SweepResult& result) {
+  Product product;
+  product.tables.push_back(sweep_table(plan, result));
+  std::vector<std::string> drawn = plan.figures;
+  for (const Objective& objective : plan.objectives) {
+    const std::string column = plan.judged_column(objective);
+    if (std::ranges::find(drawn, column) == drawn.end()) drawn.push_back(column);
+  }
+  add_pictures(product, plan, result, drawn);
+  const auto count = [&product](const std::string& name, size_t value) {
+    product.quantities.push_back({name, {static_cast<double>(value), 0.0}});
+  };
+  const auto failed = static_cast<size_t>(
+      std::ranges::count_if(result.designs, [](const Design& d) { return !d.error.empty(); }));
+  count("designs", result.designs.size());
+  if (failed > 0) count("failed_designs", failed);
+  if (!result.best) return product;
+  count("best_design", *result.best + 1);
+  const auto add = [&](const std::string& name, const Design& design, const std::string& column) {
+    const auto value = figure_of(design, column);
+    if (value && std::isfinite(value->value)) product.quantities.push_back({name, *value});
+  };
+  for (const Objective& objective : plan.objectives) {
+    std::vector<std::string> columns{objective.figure.column()};
+    if (plan.built.of_every) columns.push_back(plan.judged_column(objective));
+    for (const std::string& column : columns) {
+      add("best_" + column, result.designs[*result.best], column);
+      if (result.nominal) add("nominal_" + column, *result.nominal, column);
+    }
+  }
+  append_built(product, plan, result);
+  return product;
+}
+
+void print_best(const Console& console, const SweepPlan& plan, const SweepResult& result,
+                const Changes& changes) {
+  if (!result.best) return;
+  console.heading("Best: design " + std::to_string(*result.best + 1) + " of " +
+                  std::to_string(result.designs.size()));
+  for (const std::string& change : changes) console.line("  " + change);
+  const auto row = [&](const std::string& what, const std::optional<Estimate>& best,
+                       const std::optional<Estimate>& nominal) {
+    if (!best) return;
+    std::string text = "  " + what + "  " + shown(*best);
+    if (nominal) {
+      text += ", of the experiment as it stands " + shown(*nominal);
+      const double percent = 100.0 * (best->value / nominal->value - 1.0);
+      if (std::isfinite(percent)) {
+        text += " (" + std::string(percent < 0.0 ? "" : "+") + show(percent) + " %)";
+      }
+    }
+    console.line(text);
+  };
+  for (size_t k = 0; k < plan.objectives.size(); ++k) {
+    const Objective& objective = plan.objectives[k];
+    const auto of = [&](const std::string& column) {
+      const std::optional<Estimate> none;
+      row(column, figure_of(result.designs[*result.best], column),
+          result.nominal ? figure_of(*result.nominal, column) : none);
+    };
+    of(objective.figure.column());
+    if (plan.built.of_every) of(plan.judged_column(objective));
+    if (k >= result.built_best.size()) continue;
+    const auto reached = [&](const std::vector<BuiltFigure>& built) {
+      return k < built.size() ? reached_by(plan.built.fraction, objective.maximise, built[k].values)
+                              : std::nullopt;
+    };
+    row("  " + show_percent(plan.built.fraction) + " of " + std::to_string(plan.built.copies) +
+            " built copies reach",
+        reached(result.built_best), reached(result.built_nominal));
+  }
+  if (result.nominal && !result.nominal->error.empty()) {
+    console.line("  the experiment as it stands fails: " + result.nominal->error);
+  }
+}
+
+std::vector<std::string> sweep_warnings(const SweepPlan& plan, const SweepResult& result) {
+  std::vector<std::string> lines;
+  const auto has_failed = [](const Design& d) { return !d.error.empty(); };
+  const auto failed = std::ranges::count_if(result.designs, has_failed);
+  if (failed > 0) {
+    const auto first = std::ranges::find_if(result.designs, has_failed);
+    lines.push_back(std::to_string(failed) + " of " + std::to_string(result.designs.size()) +
+                    " designs failed; the first is design " +
+                    std::to_string(first - result.designs.begin() + 1) + ": " + first->error);
+  }
+  if (!plan.objectives.empty() && !result.best) {
+    lines.emplace_back("no design keeps to the constraints");
+  }
+  return lines;
+}
+
+}  // namespace photorque

@@ -1,0 +1,46 @@
+// Which run is whose, among processes that work on one database.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace photorque {
+
+// Claims on names, as locks on bytes of a file: the system lets go of them when a process ends,
+// however it ends. Two names share a byte once in 10^18 pairs; the second then waits. (File systems
+// without locks: everybody gets every claim.)
+class Claims {
+ public:
+  // One claim, held while it lives.
+  class Claim {
+   public:
+    Claim(Claim&& other) noexcept;
+    ~Claim();
+    Claim(const Claim&) = delete;
+    Claim& operator=(const Claim&) = delete;
+    Claim& operator=(Claim&& other) noexcept;
+
+   private:
+    friend class Claims;
+    Claim(int descriptor, int64_t byte) : descriptor_(descriptor), byte_(byte) {}
+    int descriptor_;
+    int64_t byte_;
+  };
+
+  // The file is made if absent.
+  explicit Claims(const std::filesystem::path& path);
+  ~Claims();
+  Claims(const Claims&) = delete;
+  Claims& operator=(const Claims&) = delete;
+
+  // Nothing when another process has it.
+  std::optional<Claim> take(const std::string& name) const;
+  // When the others are done with it.
+  Claim wait_for(const std::string& name) const;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace photorque

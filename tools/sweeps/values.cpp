@@ -1,0 +1,140 @@
+#include "tools/sweeps/values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <numeric>
+
+#include "core/numerics/quadrature.h"
+#include "core/numerics/root.h"
+#include "core/numerics/sobol.h"
+
+namespace photorque {
+namespace {
+
+std::vector<std::string> listed_values(const Settings& axis) {
+  const auto* items = std::get_if<SettingsNode::Array>(&axis.raw("values").value);
+  if (items == nullptr || items->empty()) {
+    throw axis.error("values", describe(axis.raw("values")), "an array of at least one value");
+  }
+  std::vector<std::string> values;
+  for (const SettingsNode& item : *items) {
+    if (item.is_table()) throw axis.error("values", describe(item), "a number, a text, an array");
+    values.push_back(toml_text(item));
+  }
+  return values;
+}
+
+std::vector<std::string> stepped_values(const Settings& axis) {
+  const double from = axis.number("from"), to = axis.number("to");
+  const auto count = axis.integer("count", 2, static_cast<int64_t>(max_designs));
+  const bool logarithmic = axis.choice_or("spacing", {"linear", "logarithmic"}, 0) == 1;
+  if (logarithmic && !(from > 0.0 && to > 0.0)) {
+    throw axis.error("spacing",
+                     "\"logarithmic\" from " + toml_number(from) + " to " + toml_number(to),
+                     "ends above zero");
+  }
+  std::vector<std::string> values;
+  for (int64_t i = 0; i < count; ++i) {
+    const double fraction = static_cast<double>(i) / static_cast<double>(count - 1);
+    values.push_back(toml_number(logarithmic ? from * std::pow(to / from, fraction)
+                                             : from + fraction * (to - from)));
+  }
+  return values;
+}
+
+WeightedValues weighted_list(const Settings& axis) {
+  WeightedValues all{listed_values(axis), {}};
+  if (axis.has("weights")) {
+    all.weights = axis.numbers("weights", Range::not_negative());
+  } else {
+    all.weights.assign(all.values.size(), 1.0);
+  }
+  const double sum = std::accumulate(all.weights.begin(), all.weights.end(), 0.0);
+  if (all.weights.size() != all.values.size() || !(sum > 0.0)) {
+    throw axis.error(
+        "weights", std::to_string(all.weights.size()) + " numbers of sum " + toml_number(sum),
+        "a number for each of " + std::to_string(all.values.size()) + " values, not all zero");
+  }
+  for (double& weight : all.weights) weight /= sum;
+  return all;
+}
+
+}  // namespace
+
+std::string toml_number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.15g", value);
+  return text;
+}
+
+std::string toml_text(const SettingsNode& node) {
+  if (const auto* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
+  if (const auto* whole = std::get_if<int64_t>(&node.value)) return std::to_string(*whole);
+  if (const auto* real = std::get_if<double>(&node.value)) return toml_number(*real);
+  if (const auto* text = std::get_if<std::string>(&node.value)) {
+    std::string quoted = "\"";
+    for (const char c : *text) {
+      if (c == '"' || c == '\\') quoted += '\\';
+      quoted += c;
+    }
+    return quoted + '"';
+  }
+  std::string items;
+  if (const auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (const SettingsNode& item : *array) items += (items.empty() ? "" : ", ") + toml_text(item);
+  }
+  return "[" + items + "]";
+}
+
+std::vector<std::string> grid_values(const Settings& axis) {
+  return axis.has("values") ? listed_values(axis) : stepped_values(axis);
+}
+
+// By bisection, to rounding.
+double normal_quantile(double fraction) {
+  const auto too_low = [&](double x) {
+    return 0.5 * std::erfc(-x / std::numbers::sqrt2) < fraction;
+  };
+  return bisect(-10.0, 10.0, too_low, {60}).middle();
+}
+
+std::vector<double> sobol_column(uint64_t seed, size_t dimension, size_t count) {
+  const SobolSequence sequence({seed, 0, static_cast<uint32_t>(dimension / sobol_dimensions)});
+  std::vector<double> column;
+  for (size_t i = 0; i < count; ++i) {
+    column.push_back(sequence.point(static_cast<uint32_t>(i))[dimension % sobol_dimensions]);
+  }
+  return column;
+}
+
+std::vector<std::string> random_values(const Settings& axis, uint64_t seed, size_t number,
+                                       size_t designs) {
+  const std::vector<double> fractions = sobol_column(seed, number, designs);
+  std::vector<std::string> values;
+  if (axis.has("mean")) {
+    const double mean = axis.number("mean"), sigma = axis.number("sigma", Range::positive());
+    for (const double u : fractions) {
+      values.push_back(toml_number(mean + sigma * normal_quantile(u)));
+    }
+  } else {
+    const double from = axis.number("from"), to = axis.number("to");
+    for (const double u : fractions) values.push_back(toml_number(from + u * (to - from)));
+  }
+  return values;
+}
+
+WeightedValues mean_values(const Settings& axis) {
+  if (axis.has("values")) return weighted_list(axis);
+  const double from = axis.number("from"), to = axis.number("to");
+  const auto count = axis.integer("count", 1, static_cast<int64_t>(max_gauss_nodes));
+  WeightedValues all;
+  for (const QuadratureNode& node : gauss_legendre(static_cast<size_t>(count))) {
+    all.values.push_back(toml_number(0.5 * (from + to) + 0.5 * (to - from) * node.x));
+    all.weights.push_back(0.5 * node.weight);
+  }
+  return all;
+}
+
+}  // namespace photorque

@@ -1,0 +1,39 @@
+// The values that a key takes in a sweep, as TOML text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+inline constexpr size_t max_designs = 1000000;
+
+// 15 digits: what a decimal file says, without the rest of its binary form.
+std::string toml_number(double value);
+
+// A value as TOML text; tables are not values of a sweep.
+std::string toml_text(const SettingsNode& node);
+
+// `values = […]`, or `from`, `to`, `count` (and `spacing`), both ends included.
+std::vector<std::string> grid_values(const Settings& axis);
+
+// Of every design of a random plan: `from` and `to`, or `mean` and `sigma`. Owen-scrambled Sobol
+// points; every `axis` has a dimension of its own.
+std::vector<std::string> random_values(const Settings& axis, uint64_t seed, size_t number,
+                                       size_t designs);
+
+// Sobol points of one dimension in (0, 1), and where the standard normal distribution reaches them.
+std::vector<double> sobol_column(uint64_t seed, size_t dimension, size_t count);
+double normal_quantile(double fraction);
+
+// Values with weights that sum to one: `values` with `weights` (equal ones by default), or the
+// nodes of the Gauss–Legendre rule of `count` nodes between `from` and `to`.
+struct WeightedValues {
+  std::vector<std::string> values;
+  std::vector<double> weights;
+};
+WeightedValues mean_values(const Settings& axis);
+
+}  // namespace photorque
