@@ -2,8 +2,8 @@
 #include <set>
 
 #include "attitude/estimation/nominal_model.h"
-#include "diagnosis/attitude/answer.h"
 #include "attitude/noise/discrepancy.h"
+#include "diagnosis/attitude/answer.h"
 #include "diagnosis/attitude/holdout.h"
 
 namespace photorque {
@@ -73,7 +73,7 @@ bool has_names(const Answer& a, bool found, const Thresholds& limits) {
   }
   if (decision.finding == inference::Finding::named) return true;
   if (decision.chosen == decision.best_named) {
-    return !found && *named_held < limits.decision.max_unforetold_fraction * *nominal_held &&
+    return !found && *named_held < limits.decision.max_uncovered_fraction * *nominal_held &&
            predicts_best(a.trials, named);
   }
   return chosen.candidates.size() > named.candidates.size() &&

@@ -6,8 +6,8 @@
 
 #include "attitude/estimation/columns.h"
 #include "attitude/estimation/conventions.h"
-#include "attitude/estimation/segments.h"
 #include "attitude/noise/reading_level.h"
+#include "attitude/stretches/segments.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/holdout.h"
 

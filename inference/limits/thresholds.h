@@ -182,8 +182,8 @@ struct Thresholds {
     // χ² of what was held out over that of the nominal model, below which names are said beside
     // something that stays unexplained.
     double max_held_out_fraction = 0.5;
-    // The same where the predictive distribution did not foretell what was held out.
-    double max_unforetold_fraction = 0.25;
+    // The same where the predictive distribution did not cover what was held out.
+    double max_uncovered_fraction = 0.25;
     // Distance of a nominal value from what was stated of it [sigma], to be doubted and to be
     // contradicted.
     double doubtful_belief_sigma = 3.0, contradicted_belief_sigma = 5.0;

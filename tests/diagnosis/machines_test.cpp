@@ -6,13 +6,13 @@
 #include <random>
 
 #include "attitude/estimation/columns.h"
-#include "attitude/estimation/segments.h"
+#include "attitude/noise/discrepancy.h"
 #include "attitude/noise/reading_level.h"
 #include "attitude/propagation/run.h"
+#include "attitude/stretches/segments.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
-#include "attitude/noise/discrepancy.h"
 #include "scenes/experiment/toml_reader.h"
 
 namespace photorque {
@@ -257,7 +257,8 @@ TEST(Machines, WhatFollowsOneLawIsNotCut) {
   axle.topology = Topology::one_axis;
   std::mt19937_64 random(17);
   std::normal_distribution<double> noise(0.0, 0.003);
-  Channel stops{"gyro_z_rad_s", {}}, swings = stops, commanded = stops, command{"command_z_N_m", {}};
+  Channel stops{"gyro_z_rad_s", {}}, swings = stops, commanded = stops,
+                                     command{"command_z_N_m", {}};
   for (int i = 0; i < 1500; ++i) {
     const double t = 0.25 * i;
     stops.values.push_back(std::max(0.0, 30.0 - 0.15 * t) + noise(random));  // dry friction alone

@@ -1,10 +1,10 @@
-#include "attitude/estimation/segments.h"
+#include "attitude/stretches/segments.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "attitude/estimation/columns.h"
-#include "attitude/estimation/law_breaks.h"
+#include "attitude/stretches/law_breaks.h"
 #include "core/errors.h"
 
 namespace photorque {

@@ -1,4 +1,4 @@
-#include "attitude/estimation/law_breaks.h"
+#include "attitude/stretches/law_breaks.h"
 
 #include <algorithm>
 #include <array>
