@@ -89,6 +89,11 @@ class Rounds {
                        [&](size_t c) { return domain_.candidates()[c].is_empirical; });
   }
 
+  static bool has_empirical(const Subset& s, const LinearProblem& problem) {
+    return std::any_of(s.groups.begin(), s.groups.end(),
+                       [&](size_t g) { return problem.groups[g].is_empirical; });
+  }
+
   // The best that is left when one candidate after the other is left out; keeps all that it tries.
   Trial without_each(Trial at) {
     const Runs averages = slow_runs(domain_, at, set_);
@@ -149,7 +154,7 @@ class Rounds {
     const std::vector<Subset> subsets = best_subsets(problem, max_effects_ - kept, limits_);
     if (subsets.empty()) return {};
     std::vector<Members<typename D::Start>> chosen;
-    size_t sets = 0;
+    size_t sets = 0, known_sets = 0;
     const double of_trial = forecast_of_trial(subsets, problem, own);
     const double least = std::max(subsets.front().log_evidence - limits_.search.forecast_within,
                                   of_trial - limits_.decision.min_log_odds);
@@ -157,13 +162,17 @@ class Rounds {
       const bool is_single =
           first && s.groups.size() == 1 && s.gain > least_gain(s, problem, subsets);
       const bool is_leader = s.log_evidence > least && sets < limits_.search.max_fits_of_round;
-      if (!is_leader && !is_single) continue;
+      // A law without a name bends to anything; what is known may need all of its parts at once.
+      const bool is_known = has_empirical(at) && !has_empirical(s, problem) &&
+                            known_sets < limits_.search.max_known_fits_of_round;
+      if (!is_leader && !is_single && !is_known) continue;
       Members<typename D::Start> members = members_of(s, problem, terms, is_kept);
       if (members.empty()) continue;
       // More names than the trial has must promise something.
       if (s.log_evidence < of_trial && is_enlarged(candidates_of(members), at)) continue;
       if (was_tried(members, at.log_evidence + s.log_evidence - of_trial)) continue;
       if (is_leader) ++sets;
+      if (is_known) ++known_sets;
       chosen.push_back(std::move(members));
     }
     return fitted(at, chosen, averages);

@@ -102,6 +102,11 @@ class Forecast {
     });
   }
 
+  bool has_empirical(const std::vector<size_t>& groups) const {
+    return std::any_of(groups.begin(), groups.end(),
+                       [&](size_t g) { return problem_.groups[g].is_empirical; });
+  }
+
   // No reading tells one of its parameters.
   bool is_silent(size_t group) const {
     const StrengthGroup& g = problem_.groups[group];
@@ -159,6 +164,20 @@ std::vector<std::vector<size_t>> larger(const Forecast& forecast, const LinearPr
   return result;
 }
 
+// The first `count` of all and, of those without an empirical law, as many: laws that bend to
+// anything would crowd out the parts of an explanation that only together are one.
+std::vector<std::vector<size_t>> kept_of(const Forecast& forecast,
+                                         std::vector<std::vector<size_t>> ranked, size_t count) {
+  std::vector<std::vector<size_t>> kept;
+  size_t known = 0;
+  for (size_t i = 0; i < ranked.size(); ++i) {
+    const bool is_known = !forecast.has_empirical(ranked[i]);
+    if (i < count || (is_known && known < count)) kept.push_back(std::move(ranked[i]));
+    known += is_known ? 1 : 0;
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::vector<Subset> best_subsets(const LinearProblem& problem, size_t max_size,
@@ -169,12 +188,9 @@ std::vector<Subset> best_subsets(const LinearProblem& problem, size_t max_size,
   for (size_t size = 1; size <= max_size; ++size) {
     std::vector<std::vector<size_t>> sets = larger(forecast, problem, beam, limits);
     // Single candidates are all kept: any two may hide each other.
-    const size_t kept = size == 1 ? sets.size() : std::min(limits.search.beam, sets.size());
-    sets.resize(kept);
-    for (size_t i = 0; i < std::min(limits.search.beam, kept); ++i) {
-      found.push_back(forecast.subset(sets[i]));
-    }
-    beam = std::move(sets);
+    std::vector<std::vector<size_t>> kept = kept_of(forecast, sets, limits.search.beam);
+    for (const std::vector<size_t>& set : kept) found.push_back(forecast.subset(set));
+    beam = size == 1 ? std::move(sets) : std::move(kept);
   }
   std::erase_if(found, [&](const Subset& s) {
     return forecast.is_forbidden(s.groups) || !std::isfinite(s.log_evidence);

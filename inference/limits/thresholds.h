@@ -113,6 +113,8 @@ struct Thresholds {
     // the best forecast within which a set is worth that.
     int max_rounds = 6;
     size_t max_fits_of_round = 6;
+    // Of sets without an empirical law, whatever is predicted of them, where the best has one.
+    size_t max_known_fits_of_round = 3;
     double forecast_within = 12.0;
   } search;
 
