@@ -32,6 +32,10 @@ std::filesystem::path beside_experiment(const Settings& settings, const std::str
 
 Schedule read_schedule(const Settings& settings) {
   if (settings.has("commands")) {
+    // An empty list takes those of the file away.
+    if (settings.has("command") && !settings.tables("command").empty()) {
+      throw settings.error("command", "[[propagate.command]] beside commands", "one of the two");
+    }
     const std::string name = settings.text("commands");
     const std::filesystem::path path = beside_experiment(settings, name);
     if (!std::filesystem::is_regular_file(path)) {

@@ -11,8 +11,10 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tools/coupling/couple.h"
+#include "tools/realtime/settings.h"
 #include "tools/runs/array_power.h"
 #include "tools/runs/attitude_run.h"
+#include "tools/supply/task.h"
 #include "tools/tasks/fit_cell.h"
 #include "tools/tasks/light_sanity.h"
 
@@ -131,6 +133,14 @@ class Checker {
     const Settings& settings = experiment->settings();
     if (!attempt([&] { read_attitude_model(settings); })) return;
     attempt([&] { say_propagation(read_propagation(settings)); });
+    attempt([&] {
+      const ServeSettings serve = read_serve(settings);
+      add("serve", show(serve.rate_Hz) + " Hz " +
+                       (serve.by_shared_memory ? "in shared memory" : "at " + serve.address));
+    });
+    if (settings.has("supply_trade")) {
+      attempt([&] { add("supply", supply_in_words(full)); });
+    }
     attempt([&] {
       const Budget budget = read_budget(settings);
       add("budget", counted(budget.entries.size(), "torque"));
