@@ -327,6 +327,7 @@ PropagationResult propagate(const PropagationRun& run, const std::function<void(
       }
       recorder.add({.time_s = state.time_s,
                     .lab_from_body_seen = seen,
+                    .rate_body_rad_s = state.rate_body_rad_s,
                     .heading_rad = heading_rad(state),
                     .gyro_rad_s = in_lane(now.gyro_rad_s, i),
                     .camera_error_rad = in_lane(now.camera_error_rad, i),
