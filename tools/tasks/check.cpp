@@ -37,7 +37,9 @@ class Checker {
     });
     if (!file_) return std::move(report_);
     const bool fits = file_->settings.has("fit"), proves = file_->settings.has("prove");
-    if (file_->scene_file) check_light();
+    // A scene without lamps beside a platform is for the camera alone.
+    const bool unlit = file_->sources.empty() && file_->settings.has("platform");
+    if (file_->scene_file && !unlit) check_light();
     if (file_->settings.has("platform")) check_motion();
     if (fits) check_fit();
     if (file_->settings.has("sweep")) check_sweep();
