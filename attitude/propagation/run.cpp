@@ -32,6 +32,10 @@ std::filesystem::path beside_experiment(const Settings& settings, const std::str
 
 Schedule read_schedule(const Settings& settings) {
   if (settings.has("commands")) {
+    // An empty list takes those of the file away.
+    if (settings.has("command") && !settings.tables("command").empty()) {
+      throw settings.error("command", "[[propagate.command]] beside commands", "one of the two");
+    }
     const std::string name = settings.text("commands");
     const std::filesystem::path path = beside_experiment(settings, name);
     if (!std::filesystem::is_regular_file(path)) {
@@ -323,6 +327,7 @@ PropagationResult propagate(const PropagationRun& run, const std::function<void(
       }
       recorder.add({.time_s = state.time_s,
                     .lab_from_body_seen = seen,
+                    .rate_body_rad_s = state.rate_body_rad_s,
                     .heading_rad = heading_rad(state),
                     .gyro_rad_s = in_lane(now.gyro_rad_s, i),
                     .camera_error_rad = in_lane(now.camera_error_rad, i),

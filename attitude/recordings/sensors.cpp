@@ -1,5 +1,6 @@
 #include "attitude/recordings/sensors.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -32,7 +33,44 @@ void read_errors(const Settings& settings, const DisturbanceContext& context,
   }
 }
 
+void read_camera_noise(const Settings& s, Sensors::Camera& camera) {
+  camera.geometry = read_tracking_camera(s);
+  if (!camera.geometry) {
+    camera.noise_rad = s.vector3_or("noise_arcsec", camera.noise_rad);
+    if ((camera.noise_rad.array() < 0.0).any()) {
+      throw s.error("noise_arcsec", "a negative number", "numbers >= 0");
+    }
+    return;
+  }
+  if (s.has("noise_arcsec")) {
+    throw s.error("noise_arcsec", "a noise beside markers_m", "one of them");
+  }
+  const auto covariance = attitude_covariance_lab_rad2(*camera.geometry, {});
+  if (!covariance) {
+    throw s.error("markers_m", "markers that do not fix the attitude at zero tilt",
+                  "markers away from the centre and from each other");
+  }
+  camera.noise_rad = covariance->diagonal().cwiseSqrt();
+}
+
+// What wrong marker positions turn the reading by.
+Quat marker_bias(const TrackingCamera& geometry, const Pose& pose) {
+  if (geometry.marker_error_body_m.empty()) return Quat::Identity();
+  return turn(marker_bias_lab_rad(geometry, pose).value_or(Vec3::Zero()));
+}
+
+Pose pose_of(const Quat& lab_from_body, const Vec3& rate_body_rad_s) {
+  return {lab_from_body, lab_from_body * rate_body_rad_s, Vec3::Zero()};
+}
+
 }  // namespace
+
+std::optional<Mat3> camera_covariance_lab_rad2(const Sensors::Camera& camera,
+                                               const Quat& lab_from_body,
+                                               const Vec3& rate_body_rad_s) {
+  if (!camera.geometry) return camera.noise_rad.cwiseAbs2().asDiagonal().toDenseMatrix();
+  return attitude_covariance_lab_rad2(*camera.geometry, pose_of(lab_from_body, rate_body_rad_s));
+}
 
 double gaussian(uint64_t seed, uint64_t stream, uint64_t index, uint64_t dimension) {
   // Box and Muller, Ann. Math. Stat. 29 (1958) 610.
@@ -54,10 +92,7 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
   if (settings.has("camera")) {
     const Settings s = settings.table("camera");
     Sensors::Camera& camera = sensors.camera.emplace();
-    camera.noise_rad = s.vector3_or("noise_arcsec", camera.noise_rad);
-    if ((camera.noise_rad.array() < 0.0).any()) {
-      throw s.error("noise_arcsec", "a negative number", "numbers >= 0");
-    }
+    read_camera_noise(s, camera);
     camera.rate_Hz = s.number_or("rate_Hz", 0.0, not_negative);
     read_errors(s, context, "camera", sensors.errors);
   }
@@ -105,10 +140,22 @@ bool Recorder::is_due(double rate_Hz, double time_s) const {
 void Recorder::add_camera(const Truth& truth) {
   const uint64_t row = recording_.rows();
   Quat seen = Quat(empty_cell, empty_cell, empty_cell, empty_cell);
-  if (is_due(sensors_.camera->rate_Hz, truth.time_s)) {
-    const Vec3 noise_rad =
-        sensors_.camera->noise_rad.cwiseProduct(gaussian_vector(seed_, camera_noise, row));
+  const Sensors::Camera& camera = *sensors_.camera;
+  const bool due = is_due(camera.rate_Hz, truth.time_s);
+  const Vec3 draw = gaussian_vector(seed_, camera_noise, row);
+  if (due && !camera.geometry) {
+    const Vec3 noise_rad = camera.noise_rad.cwiseProduct(draw);
     seen = turn(noise_rad) * truth.lab_from_body_seen * turn(truth.camera_error_rad);
+  } else if (due) {
+    const Pose pose = pose_of(truth.lab_from_body_seen, truth.rate_body_rad_s);
+    // Without enough markers in sight there is no reading.
+    if (const auto covariance = attitude_covariance_lab_rad2(*camera.geometry, pose)) {
+      const Vec3 noise_rad = Eigen::LLT<Mat3>(*covariance).matrixL() * draw;
+      seen = turn(noise_rad) * marker_bias(*camera.geometry, pose) * truth.lab_from_body_seen *
+             turn(truth.camera_error_rad);
+    }
+  }
+  if (std::isfinite(seen.w())) {
     // Trackers report one half of the sphere.
     if (seen.w() < 0.0) seen.coeffs() = -seen.coeffs();
   }

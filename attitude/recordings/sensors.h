@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "attitude/camera/accuracy.h"
 #include "attitude/disturbances/kind.h"
 #include "attitude/model/dynamics.h"
 #include "attitude/recordings/recording.h"
@@ -24,6 +25,9 @@ struct Sensors {
   struct Camera {
     Vec3 noise_rad = Vec3(37, 37, 12) * arcsecond_rad;  // about lab x, y, z; one standard deviation
     double rate_Hz = 0.0;                               // 0: in every row
+    // Where it is given, the noise follows from it at every attitude and rate; noise_rad is then
+    // that at zero tilt.
+    std::optional<TrackingCamera> geometry = {};
   };
   struct Gyro {
     double noise_rad_s = 0.0;           // per reading and axis
@@ -49,7 +53,8 @@ struct Sensors {
 };
 
 // Reads [sensors]:
-//   camera: noise_arcsec[3], rate_Hz, latency_s, misalignment_rad[3];
+//   camera: noise_arcsec[3] or the keys of read_tracking_camera(), rate_Hz, latency_s,
+//     misalignment_rad[3];
 //   gyro: noise_rad_s, bias_rad_s[3], bias_drift (rad/s per √s), scale[3], misalignment_rad[3],
 //     rate_Hz;
 //   encoder: resolution_arcsec;
@@ -59,6 +64,12 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
 // A camera and a gyro without errors: what is recorded when nothing is said.
 Sensors perfect_sensors();
 
+// Covariance of one attitude reading, of its error as a rotation vector about lab axes [rad²];
+// nothing where a camera with geometry sees too few markers.
+std::optional<Mat3> camera_covariance_lab_rad2(const Sensors::Camera& camera,
+                                               const Quat& lab_from_body,
+                                               const Vec3& rate_body_rad_s);
+
 // A standard normal number that belongs to these counters.
 double gaussian(uint64_t seed, uint64_t stream, uint64_t index, uint64_t dimension);
 
@@ -66,6 +77,7 @@ double gaussian(uint64_t seed, uint64_t stream, uint64_t index, uint64_t dimensi
 struct Truth {
   double time_s = 0.0;
   Quat lab_from_body_seen = Quat::Identity();  // at time − camera delay
+  Vec3 rate_body_rad_s = Vec3::Zero();
   double heading_rad = 0.0;
   Vec3 gyro_rad_s = Vec3::Zero();  // Dynamics::Instants, for this row
   Vec3 camera_error_rad = Vec3::Zero();

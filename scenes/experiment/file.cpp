@@ -12,10 +12,10 @@ namespace photorque {
 namespace {
 
 // Tables that optical runs accept as they are; the programs that use them check them.
-constexpr const char* tables_of_others[] = {"array",       "sweep",   "platform",    "environment",
-                                            "disturbance", "sensors", "recording",   "published",
-                                            "propagate",   "budget",  "balance",     "light",
-                                            "effect",      "serve",   "supply_trade"};
+constexpr const char* tables_of_others[] = {
+    "array",     "sweep",     "platform",     "environment",  "disturbance", "sensors",
+    "recording", "published", "propagate",    "budget",       "balance",     "light",
+    "effect",    "serve",     "supply_trade", "camera_study", "estimate"};
 
 void require_ascending(const Settings& settings, std::string_view key,
                        const std::vector<double>& values) {

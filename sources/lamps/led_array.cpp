@@ -12,7 +12,8 @@
 //   # layout = "positions"           #   positions: positions_m, in the lab frame
 //   position_m = [0, 0, 1.5]         # centre of the array, lab frame (not for "positions")
 //   direction = [0, 0, -1]           # normal of the array's plane; its x and y axes are the lab's,
-//                                    # turned by the shortest rotation from +z to the direction
+//                                    # turned by the shortest rotation from the vertical (up or
+//                                    # down, whichever is nearer) to the direction
 //   aim = "parallel"                 # default: all look along `direction`, or from the centre
 //                                    #   at aim_m
 //   # aim = "converging"             # each looks at the point aim_m; `direction` may be left out;
@@ -122,6 +123,14 @@ std::vector<Vec3> read_layout(const Settings& settings, Layout layout) {
   return hexagonal(count, settings.number("pitch_m", Range::positive()));
 }
 
+// Straight down it is the half turn about x. Near there the axes follow the direction evenly, as
+// they do near straight up: a panel that is a little off does not turn about its own axis.
+RigidTransform panel_frame(const Vec3& normal, const Vec3& centre_m) {
+  if (!(normal.z() < 0.0)) return frame_looking_along(normal, centre_m);
+  const Quat half_turn(0.0, 1.0, 0.0, 0.0);
+  return {Quat::FromTwoVectors(-Vec3::UnitZ(), normal) * half_turn, centre_m};
+}
+
 struct Placement {
   std::vector<Vec3> positions_m;  // lab frame
   std::vector<Vec3> directions;   // lab frame
@@ -159,7 +168,7 @@ Placement read_placement(const Settings& settings) {
   const Vec3 normal = converging && settings.has("direction") ? read_direction_vector(settings)
                                                               : read_direction(settings, centre_m);
   if (layout != Layout::positions) {
-    const RigidTransform lab_from_array = frame_looking_along(normal, centre_m);
+    const RigidTransform lab_from_array = panel_frame(normal, centre_m);
     // Every layout is its own mirror image, so LEDs are counted as the lab sees them: rows by
     // rising y, rings counter-clockwise, also where the array looks down.
     const double up = lab_from_array.direction(Vec3::UnitY()).y() < 0.0 ? -1.0 : 1.0;

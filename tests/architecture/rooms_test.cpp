@@ -22,6 +22,7 @@ const std::vector<std::pair<std::string, std::string>> only_place = {
     {"CLI/", "tools"},
     {"zlib.h", "attitude/recordings"},
     {"pugixml", "sources/photometry"},
+    {"ceres/tiny_solver.h", "attitude/camera"},
     {"pybind11", "python"},
     {"hdf5.h", "images/writers"},
     {"sqlite3.h", "tools/sweeps/store"},

@@ -146,6 +146,30 @@ TEST(LedArray, ConvergingBeamsMeetAtTheAim) {
   }
 }
 
+// In any direction: a tenth of a degree off moves no LED by more than that times its distance.
+TEST(LedArray, APanelThatIsALittleOffDoesNotTurnAboutItsAxis) {
+  const auto at = [](const Vec3& direction) {
+    return make_beams(
+        "led_array",
+        array_of("grid",
+                 {{"count", {SettingsNode::Array{{int64_t{5}}, {int64_t{3}}}}},
+                  {"pitch_m", {0.03}},
+                  {"direction", vector_node(direction.x(), direction.y(), direction.z())}}));
+  };
+  for (const double vertical : {-1.0, 1.0}) {
+    const auto straight = at({0.0, 0.0, vertical});
+    for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 15) {
+      const double a = azimuth_deg * degree_rad, off = 0.1 * degree_rad;
+      const auto turned = at({off * std::cos(a), off * std::sin(a), vertical});
+      for (size_t i = 0; i < straight.size(); ++i) {
+        const Vec3 moved_m =
+            turned[i].lab_from_emitter.translation_m - straight[i].lab_from_emitter.translation_m;
+        EXPECT_LE(moved_m.norm(), 1.01 * off * 0.07) << azimuth_deg;
+      }
+    }
+  }
+}
+
 TEST(LedArray, FocusTurnsWithThePanel) {
   const Vec3 direction = Vec3(0.1, -0.2, -1.0).normalized();
   auto table = array_of("ring", {{"count", {int64_t{8}}},

@@ -180,6 +180,25 @@ TEST_F(Lockstep, LosesTheSamePacketsAgain) {
   EXPECT_EQ(recordings[0], recordings[1]);
 }
 
+// A trace of 5 ms and a loss in turn: of the commands every second acts, a tick late.
+TEST_F(Lockstep, LinksFollowAMeasuredTrace) {
+  const std::string experiment = write("p.toml", served_platform);
+  write("trace.csv", "delay_s\n0.005\n-1\n");
+  const auto law = [](const photorque_measurement_packet& packet) -> ClientTorque {
+    return {1e-6 * static_cast<double>(packet.now_tick + 1), 0, 0};
+  };
+  serve(experiment +
+            " --set serve.from_client.trace=\\\"trace.csv\\\" --set propagate.duration_s=1"
+            " --set serve.mode=\\\"lockstep\\\" --out " +
+            at("s"),
+        law);
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  const auto rows = rows_of(files("s").at("recording.csv"));
+  for (size_t i = 1; i + 1 < rows.size(); ++i) {
+    EXPECT_DOUBLE_EQ(rows[i][8], 1e-6 * static_cast<double>((i - 1) / 2 * 2 + 1)) << i;
+  }
+}
+
 class Paced : public ServeCommand {};
 
 TEST_F(Paced, KeepsTheClockAndTellsItsDeadlines) {

@@ -88,6 +88,29 @@ TEST_F(SupplyCommand, WaysDeliverTheLoadWhenLevelAndLessWhenTilted) {
             0.0);
 }
 
+// The light of a way is that of `power`, whose figures pass through the converter and the lamps'
+// efficiency.
+TEST_F(SupplyCommand, LightIsThatOfPower) {
+  const std::string stasis = std::string(PHOTORQUE_SOURCE_DIR) + "/scenes/stasis/nominal.toml";
+  const std::string beam = "[[supply_trade.beam]]\nname = \"LED beaming\"\nexperiment = \"" +
+                           stasis +
+                           "\"\nrays = 65536\nlamp_efficiency = 0.5\nconverter_efficiency = 0.9\n";
+  const Outcome fed = run("supply " + write("s.toml", fed_platform + beam) +
+                          " --set supply_trade.tilts=2 --json --out " + at("o"));
+  ASSERT_EQ(fed.status, 0) << fed.err;
+  const json all = json::parse(fed.out);
+  for (const auto& [tilt, name] : std::vector<std::pair<std::string, std::string>>{
+           {"0", "delivered_level_W"}, {"30", "delivered_tilted_W"}}) {
+    const Outcome lit =
+        run("power " + stasis + " --set trace.rays=65536 --set attitude.tilt_deg=" + tilt +
+            " --json --out " + at("p"));
+    ASSERT_EQ(lit.status, 0) << lit.err;
+    EXPECT_NEAR(of(all, "LED_beaming_" + name), 0.9 * of(json::parse(lit.out), "array_power_W"),
+                1e-9);
+  }
+  EXPECT_NEAR(of(all, "LED_beaming_source_W"), 88.0 / 0.5, 1e-9);
+}
+
 TEST_F(SupplyCommand, WritesTablesAndPictures) {
   const Outcome got = run("supply " + write("s.toml", fed_platform) + " --out " + at("o"));
   ASSERT_EQ(got.status, 0) << got.err;
@@ -107,6 +130,7 @@ TEST_F(SupplyCommand, WrongInputIsOneLineAndExitTwo) {
            {"supply_trade.tilt_max_deg=90", "supply_trade.tilt_max_deg"},
            {"supply_trade.batery.usable_fraction=1", "perhaps \"battery\""},
            {"supply_trade.induction.receiver.outer_radius_m=0.01", "more than inner_radius_m"},
+           {"supply_trade.induction.transmitter_height_m=-0.05", "room for the receiver to tilt"},
            {"supply_trade.battery.usable_fraction=1.5", "usable_fraction"}}) {
     const Outcome got = run("supply " + experiment + " --set " + key + " --out " + at("o"));
     EXPECT_EQ(got.status, 2) << key;

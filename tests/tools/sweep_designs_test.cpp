@@ -126,6 +126,58 @@ TEST_F(SweepDesigns, TheBestKeepsToTheConstraintsAndRunsAsItStands) {
             (std::vector<std::vector<std::string>>{{"40.0"}, {"60.0"}}));
 }
 
+TEST_F(SweepDesigns, ArePicturedWithNamesAndUnitsOfTheirAxes) {
+  experiment(R"([sweep]
+verb = "trace"
+maximise = "power_on_plate_W"
+minimise = "|torque_y_body_body_N_m|"
+[[sweep.axis]]
+key = "attitude.tilt_deg"
+name = "lean"
+from = 0
+to = 40
+count = 3
+[[sweep.axis]]
+key = "source[0].irradiance_W_m2"
+from = 500
+to = 1000
+count = 3
+)");
+  ASSERT_EQ(sweep().status, 0);
+  const auto has_picture = [this](const std::string& name) {
+    return std::filesystem::exists(at("out/" + name + ".png"));
+  };
+  EXPECT_TRUE(has_picture("sweep_power_on_plate_W_map"));
+  EXPECT_TRUE(has_picture("pareto_abs_torque_y_body_body_N_m"));
+  // Letters are drawn as outlines; the title and the map's columns are text.
+  EXPECT_THAT(file_text(at("out/sweep_power_on_plate_W.svg")),
+              HasSubstr("<title>Power on plate over irradiance</title>"));
+  EXPECT_EQ(
+      csv_rows(at("out/sweep_power_on_plate_W_map.csv")).at(0),
+      (std::vector<std::string>{"lean_deg", "irradiance_W_m2", "value_W", "standard_error_W"}));
+  // The map's values are those of the table, the first axis along x.
+  const auto table = csv_column(at("out/sweep.csv"), "power_on_plate_W");
+  const auto map = csv_column(at("out/sweep_power_on_plate_W_map.csv"), "value_W");
+  ASSERT_EQ(map.size(), 9u);
+  for (size_t i = 0; i < 9; ++i) EXPECT_EQ(map[i], table[i % 3 * 3 + i / 3]);
+  experiment(R"([sweep]
+verb = "trace"
+maximise = "power_on_plate_W"
+designs = 8
+[[sweep.axis]]
+key = "attitude.tilt_deg"
+from = 0
+to = 40
+[[sweep.axis]]
+key = "source[0].irradiance_W_m2"
+from = 500
+to = 1000
+)");
+  ASSERT_EQ(sweep().status, 0);
+  EXPECT_TRUE(has_picture("sweep_power_on_plate_W_over_1"));
+  EXPECT_TRUE(has_picture("sweep_power_on_plate_W_over_2"));
+}
+
 TEST_F(SweepDesigns, ThatFailAreNamedWithTheirError) {
   experiment(
       "[sweep]\nverb = \"trace\"\nmaximise = \"power_on_plate_W\"\n[[sweep.axis]]\n"

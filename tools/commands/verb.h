@@ -22,6 +22,7 @@ struct CommandLine : RunOptions {
   bool json = false;                              // the summary as JSON on standard output
   std::vector<std::filesystem::path> recordings;  // --recording, of commands that take some
   std::vector<std::filesystem::path> holdouts;    // --holdout, recordings held out from a fit
+  std::optional<std::filesystem::path> truth;     // --truth, what is known of a recording's motion
   std::optional<std::filesystem::path> cases;     // --cases, a folder of injected cases
   bool only_make = false;                         // --only-make: the cases, nothing more
   std::string shard;                              // --shard K/N, of a sweep
@@ -43,6 +44,7 @@ struct Verb {
   bool traces_light = false;  // --target-error, --max-time
   bool takes_recordings = false;
   bool takes_holdouts = false;
+  bool takes_truth = false;
   bool takes_cases = false;
   bool takes_shard = false;
   bool takes_scene = false;

@@ -123,6 +123,11 @@ int run(int argc, char** argv, Interruption& interruption) {
                        "A recording held out: never fitted, it judges the finding; as above")
           ->allow_extra_args(false);
     }
+    if (verb.takes_truth) {
+      command->add_option("--truth", line.truth,
+                          "What is true of the recording's motion (CSV with q_w ..., such as "
+                          "time_history.csv of propagate), to compare with");
+    }
     if (verb.takes_cases) {
       command->add_option("--cases", line.cases, "Score this folder of cases instead of new ones");
       command->add_flag("--only-make", line.only_make, "Make the cases, diagnose nothing");

@@ -12,9 +12,9 @@ namespace {
 
 enum LinkDraw : uint64_t { lost_alone, burst_changes, lost_in_burst, jitter_u, jitter_v };
 
-std::vector<double> read_trace(const Settings& settings) {
+std::vector<double> read_trace(const Settings& settings, const std::filesystem::path& folder) {
   const std::string name = settings.text("trace");
-  const auto path = std::filesystem::path(settings.where().file).parent_path() / name;
+  const std::filesystem::path path = folder / name;
   if (!std::filesystem::is_regular_file(path)) {
     throw settings.error("trace", "\"" + name + "\"", "a file beside the experiment");
   }
@@ -31,7 +31,7 @@ bool LinkSettings::is_perfect() const {
   return delay_s == 0.0 && jitter_s == 0.0 && loss == 0.0 && burst_begin == 0.0 && trace_s.empty();
 }
 
-LinkSettings read_link(const Settings& settings) {
+LinkSettings read_link(const Settings& settings, const std::filesystem::path& folder) {
   LinkSettings link;
   constexpr Range up_to_an_hour = {0.0, 3600.0};
   link.delay_s = settings.number_or("delay_s", 0.0, up_to_an_hour);
@@ -43,7 +43,7 @@ LinkSettings read_link(const Settings& settings) {
   link.burst_end = settings.number_or("burst_end", 1.0, {0.0, 1.0, true, false});
   link.burst_loss = settings.number_or("burst_loss", 1.0, Range::fraction());
   link.reorder = settings.flag_or("reorder", true);
-  if (settings.has("trace")) link.trace_s = read_trace(settings);
+  if (settings.has("trace")) link.trace_s = read_trace(settings, folder);
   return link;
 }
 

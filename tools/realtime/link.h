@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -33,9 +34,9 @@ struct LinkSettings {
 };
 
 // Reads a table with delay_s, jitter_s, jitter ("exponential", "uniform", "gaussian"), loss,
-// burst_begin, burst_end, burst_loss, reorder, trace: a CSV with a column delay_s, −1 where the
-// packet was lost.
-LinkSettings read_link(const Settings& settings);
+// burst_begin, burst_end, burst_loss, reorder, trace: a CSV in `folder` with a column delay_s, −1
+// where the packet was lost.
+LinkSettings read_link(const Settings& settings, const std::filesystem::path& folder);
 
 // What happens to one packet after the other.
 class LinkFate {

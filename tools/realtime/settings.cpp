@@ -43,8 +43,9 @@ ServeSettings read_serve(const Settings& root) {
   serve.spin_s = s.number_or("spin_s", serve.spin_s, {0.0, 1.0});
   serve.realtime_priority = static_cast<int>(s.integer_or("realtime_priority", 0, 0, 99));
   serve.send_truth = s.flag_or("send_truth", false);
-  if (s.has("to_client")) serve.to_client = read_link(s.table("to_client"));
-  if (s.has("from_client")) serve.from_client = read_link(s.table("from_client"));
+  const auto folder = std::filesystem::path(root.where().file).parent_path();
+  if (s.has("to_client")) serve.to_client = read_link(s.table("to_client"), folder);
+  if (s.has("from_client")) serve.from_client = read_link(s.table("from_client"), folder);
   s.finish();
   return serve;
 }

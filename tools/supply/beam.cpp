@@ -11,7 +11,7 @@ namespace {
 RunOptions options_of_beam(const Settings& s, const RunOptions& options) {
   const std::string name = s.text("experiment");
   RunOptions beam;
-  beam.experiment = std::filesystem::path(s.where().file).parent_path() / name;
+  beam.experiment = options.experiment.parent_path() / name;
   if (!std::filesystem::is_regular_file(beam.experiment)) {
     throw s.error("experiment", "\"" + name + "\"", "an experiment beside this one");
   }
@@ -35,30 +35,38 @@ Estimate ratio(const Estimate& a, double b) {
 
 }  // namespace
 
-SupplyOption beam_option(const Settings& s, const SupplyTask& task, const RunOptions& options,
-                         const Console& console) {
-  const std::string name = s.text("name");
-  const double lamp_efficiency = s.number_or("lamp_efficiency", 0.5, {0.0, 1.0, true, false});
-  const double converter = s.number_or("converter_efficiency", 0.97, {0.0, 1.0, true, false});
-  const double mass_kg = s.number_or("array_mass_kg", 0.25, Range::not_negative());
-  OpticalRun run(options_of_beam(s, options), Console());
+BeamSettings read_beam(const Settings& s, const RunOptions& options) {
+  const Range fraction = {0.0, 1.0, true, false};
+  BeamSettings beam;
+  beam.name = s.text("name");
+  beam.experiment = s.text("experiment");
+  beam.run = options_of_beam(s, options);
+  beam.lamp_efficiency = s.number_or("lamp_efficiency", beam.lamp_efficiency, fraction);
+  beam.converter_efficiency =
+      s.number_or("converter_efficiency", beam.converter_efficiency, fraction);
+  beam.array_mass_kg = s.number_or("array_mass_kg", beam.array_mass_kg, Range::not_negative());
+  return beam;
+}
+
+SupplyOption beam_option(const BeamSettings& beam, const SupplyTask& task, const Console& console) {
+  OpticalRun run(beam.run, Console());
   const ArrayPower array = read_array_power(run);
   SupplyOption option;
-  option.name = option.symbol = name;
+  option.name = option.symbol = beam.name;
   for (char& c : option.symbol) c = c == ' ' || c == '-' || c == '.' ? '_' : c;
-  option.mass_kg = {mass_kg, 0.0};
-  const auto progress = console.progress("tracing " + name);
+  option.mass_kg = {beam.array_mass_kg, 0.0};
+  const auto progress = console.progress("tracing " + beam.name);
   for (size_t t = 0; t < task.tilt_rad.size(); ++t) {
     const OpticalResult light = run.run(lab_from_body_at(task.tilt_rad[t], 0.0), {});
     const ArrayResult power = evaluate(array, run, light);
     const WrenchEstimate wrench =
         wrench_about(run.wrench().total(light.sums[run.wrench_index()]), Vec3::Zero());
-    option.curve.push_back({times(power.power_W, converter),
+    option.curve.push_back({times(power.power_W, beam.converter_efficiency),
                             {wrench.mean.torque_N_m.y(), wrench.torque_error_N_m().y()},
                             {}});
     const double emitted_W = light.power_balance.emitted_W;
     if (t == 0) {
-      option.source_W = {emitted_W / lamp_efficiency, 0.0};
+      option.source_W = {emitted_W / beam.lamp_efficiency, 0.0};
       option.figures = {{"emitted_W", {emitted_W, 0.0}},
                         {"light_on_cells_fraction", ratio(power.power_on_cells_W, emitted_W)},
                         {"conversion_fraction", power.efficiency},
@@ -71,7 +79,7 @@ SupplyOption beam_option(const Settings& s, const SupplyTask& task, const RunOpt
     if (progress) progress(static_cast<double>(t + 1) / static_cast<double>(task.tilt_rad.size()));
   }
   console.done();
-  option.remarks = {"as traced: " + s.text("experiment")};
+  option.remarks = {"as traced: " + beam.experiment};
   return option;
 }
 

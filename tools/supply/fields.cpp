@@ -1,6 +1,7 @@
 // Power through fields: the microwave beam and the coils.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "attitude/supply/coil_link.h"
 #include "attitude/supply/eddy_sphere.h"
@@ -112,6 +113,33 @@ std::vector<CoilPose> coil_poses(const SpiralCoil& transmitter, const SpiralCoil
   return poses;
 }
 
+// The least distance of the moving coil's turns from the ring that the fixed coil fills, over the
+// tilts; nothing where it would have to pass through.
+std::optional<double> coil_clearance_m(const SpiralCoil& transmitter, const SpiralCoil& receiver,
+                                       double transmitter_height_m, double receiver_height_m,
+                                       const SupplyTask& task) {
+  constexpr int points = 180;
+  const double side = receiver_height_m > transmitter_height_m ? 1.0 : -1.0;
+  double least_m = 1e300;
+  for (const double tilt_rad : task.tilt_rad) {
+    const Quat turn = lab_from_body_at(tilt_rad, 0.0).rotation;
+    for (int i = 0; i < points; ++i) {
+      const double angle = 2.0 * pi * i / points;
+      for (const double radius_m : {receiver.inner_radius_m, receiver.outer_radius_m}) {
+        const Vec3 at_m =
+            turn * Vec3(radius_m * std::cos(angle), radius_m * std::sin(angle), receiver_height_m);
+        const double above_m = side * (at_m.z() - transmitter_height_m);
+        const double distance_m = std::hypot(at_m.x(), at_m.y());
+        const double beside_m = std::max({0.0, transmitter.inner_radius_m - distance_m,
+                                          distance_m - transmitter.outer_radius_m});
+        if (beside_m == 0.0 && above_m <= 0.0) return {};
+        least_m = std::min(least_m, std::hypot(above_m, beside_m));
+      }
+    }
+  }
+  return least_m;
+}
+
 double area_turns_m2(const SpiralCoil& coil) {
   double sum_m2 = 0.0;
   for (const CircularFilament& turn : turns_of(coil, Vec3::Zero(), Vec3::UnitZ())) {
@@ -138,6 +166,13 @@ SupplyOption induction_option(const Settings& s, const SupplyTask& task) {
   const SpiralCoil receiver = s.has("receiver") ? read_coil(s.table("receiver"), usual) : usual;
   const double transmitter_m = s.number_or("transmitter_height_m", -0.085);
   const double receiver_m = s.number_or("receiver_height_m", -0.02);
+  const std::optional<double> clearance_m =
+      coil_clearance_m(transmitter, receiver, transmitter_m, receiver_m, task);
+  if (!clearance_m) {
+    throw s.error(
+        "transmitter_height_m", shortest(transmitter_m),
+        "room for the receiver to tilt by " + shortest(task.tilt_rad.back() / degree_rad) + " deg");
+  }
   const double omega = 2.0 * pi * s.number_or("frequency_Hz", 1e5, Range::positive());
   const size_t detuning = in.add(s, "detuning", {0.0, 0.005}, Range{});
   const size_t inverter = in.add(s, "inverter_efficiency", {0.93, 0.02}, {0.0, 1.0, true, false});
@@ -182,11 +217,12 @@ SupplyOption induction_option(const Settings& s, const SupplyTask& task) {
                          now.second_A,
                          sphere_eddy_loss_W(ball_m, ball_S_m, omega, on_ball_T),
                          best_link_efficiency({omega, poses.back().mutual_H, level.resistance_1_ohm,
-                                               level.resistance_2_ohm})};
+                                               level.resistance_2_ohm}),
+                         *clearance_m};
         return plain;
       },
       {"link_efficiency", "coupling", "quality_transmitter", "quality_receiver", "transmitter_A",
-       "receiver_A", "ball_eddy_loss_W", "best_link_efficiency_tilted"});
+       "receiver_A", "ball_eddy_loss_W", "best_link_efficiency_tilted", "clearance_m"});
   option.name = option.symbol = "induction";
   option.remarks = {"the mean torque is nothing at resonance; its error is that of the tuning"};
   return option;

@@ -33,7 +33,12 @@ SupplyOption induction_option(const Settings& settings, const SupplyTask& task);
 
 // [[supply_trade.beam]]: name, experiment (beside this one), lamp_efficiency, converter_efficiency,
 // array_mass_kg. Traces that experiment at every tilt and evaluates its array.
-SupplyOption beam_option(const Settings& settings, const SupplyTask& task,
-                         const RunOptions& options, const Console& console);
+struct BeamSettings {
+  std::string name, experiment;
+  RunOptions run;
+  double lamp_efficiency = 0.5, converter_efficiency = 0.97, array_mass_kg = 0.25;
+};
+BeamSettings read_beam(const Settings& settings, const RunOptions& options);
+SupplyOption beam_option(const BeamSettings& beam, const SupplyTask& task, const Console& console);
 
 }  // namespace photorque

@@ -2,7 +2,8 @@
 #include <limits>
 
 #include "core/constants.h"
-#include "core/numerics/quadrature.h"
+#include "photovoltaics/cell/cell.h"
+#include "photovoltaics/cell/model.h"
 #include "tools/supply/report.h"
 
 namespace photorque {
@@ -31,6 +32,16 @@ const SupplyOption* first_beam(const SupplyTrade& trade) {
     if (!std::isnan(figure(&option, "emitted_W"))) return &option;
   }
   return nullptr;
+}
+
+// Of one of the array's named cells, 1 cm2 in sunlight of 1000 W/m2 with so much current.
+double in_sunlight(const char* cell, double short_circuit_A) {
+  for (const NamedCell& known : known_cells()) {
+    if (known.name != cell) continue;
+    const CellCurve curve(known.model.reference);
+    return curve.maximum_power(curve.photocurrent_A(short_circuit_A)).power_W() / 0.1;
+  }
+  return none;
 }
 
 double efficiency(const SupplyOption* option, const SupplyTask& task) {
@@ -94,6 +105,10 @@ Table paper_supply_table(const SupplyTrade& trade) {
       "the paper: most efficient when parallel");
   row("induction_link_tilted", none, figure(coils, "best_link_efficiency_tilted"),
       "at the largest tilt: coils about the centre of rotation stay coupled, the loss is small");
+  row("silicon_in_sunlight_usual", 0.15, in_sunlight("silicon_back_surface_field", 37e-3),
+      "the plainest of the program's named cells, bare; modules on the market lose a sixth of it");
+  row("silicon_in_sunlight_best", 0.25, in_sunlight("silicon_heterojunction", 41e-3),
+      "the best of them, at 41 mA/cm2 and 0.750 V");
   constexpr double gallium_arsenide_J = 1.424 * elementary_charge_C;
   row("laser_858_nm", 0.689, radiative_limit(858e-9, 11.4e4, gallium_arsenide_J, 298.15),
       "ours is the limit of one junction without any loss but radiation at 858 nm, 11.4 W/cm2, 25 "

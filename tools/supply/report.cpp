@@ -73,6 +73,17 @@ Table figures_of_ways(const SupplyTrade& trade) {
   return table;
 }
 
+Table charge_table(const SupplyTrade& trade) {
+  Table table = Table::of("battery_by_charge", "Torque of the battery's lithium at zero tilt",
+                          {"charge_fraction", "torque_N_m"});
+  for (size_t i = 0; i < trade.charge_fraction.size(); ++i) {
+    table.row()
+        .set("charge_fraction", trade.charge_fraction[i])
+        .set("torque_N_m", trade.battery_torque_N_m[i]);
+  }
+  return table;
+}
+
 // Below it is no torque worth a decade of the picture.
 constexpr double least_torque_N_m = 1e-13;
 // Level, light does not turn: what is left is the noise of the trace.
@@ -151,7 +162,7 @@ const Table& table_called(const Product& product, const std::string& name) {
 Product supply_product(const SupplyTrade& trade) {
   Product product;
   product.tables = {ways_table(trade), tilt_table(trade), figures_of_ways(trade),
-                    paper_supply_table(trade)};
+                    charge_table(trade), paper_supply_table(trade)};
   product.plots = {tilt_plot(trade), charge_plot(trade)};
   add_quantities(trade, product);
   return product;

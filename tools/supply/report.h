@@ -14,8 +14,8 @@ struct SupplyTrade {
   std::vector<double> charge_fraction, battery_torque_N_m;
 };
 
-// Tables "supply" (a row per way), "supply_by_tilt", "supply_figures" and "paper_supply"; plots
-// "supply_over_tilt" and "battery_torque_by_charge"; quantities NAME_….
+// Tables "supply" (a row per way), "supply_by_tilt", "supply_figures", "battery_by_charge" and
+// "paper_supply"; plots "supply_over_tilt" and "battery_torque_by_charge"; quantities NAME_….
 Product supply_product(const SupplyTrade& trade);
 void print_supply(const Console& console, const Product& product, const SupplyTrade& trade);
 

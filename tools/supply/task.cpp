@@ -30,14 +30,17 @@ Settings table_or_empty(const Settings& s, const std::string& key) {
   return Settings(std::make_shared<const SettingsNode>(), s.name() + "." + key);
 }
 
-}  // namespace
-
-SupplyRun supply_of_experiment(const RunOptions& options, const Console& console) {
-  const WallTime wall;
-  AttitudeExperiment experiment(options);
-  const Settings s = own_table(experiment.settings(), "supply_trade", true);
+// The ways but for those by light, whose tables are handed on.
+struct TradeWithoutLight {
   SupplyTrade trade;
-  trade.task = read_task(experiment.settings(), s);
+  std::vector<Settings> beams;
+};
+
+TradeWithoutLight read_trade(const Settings& root, const Settings& s) {
+  TradeWithoutLight read;
+  read.beams = s.tables("beam");
+  read.trade.task = read_task(root, s);
+  SupplyTrade& trade = read.trade;
   const Settings battery = table_or_empty(s, "battery");
   trade.options.push_back(battery_option(battery, trade.task));
   constexpr int steps = 20;
@@ -51,10 +54,34 @@ SupplyRun supply_of_experiment(const RunOptions& options, const Console& console
     trade.options.push_back(microwave_option(one, trade.task));
   }
   trade.options.push_back(induction_option(table_or_empty(s, "induction"), trade.task));
-  for (const Settings& one : s.tables("beam")) {
-    trade.options.push_back(beam_option(one, trade.task, options, console));
-  }
+  return read;
+}
+
+}  // namespace
+
+std::string supply_in_words(const RunOptions& options) {
+  const AttitudeExperiment experiment(options);
+  const Settings s = own_table(experiment.settings(), "supply_trade", true);
+  const TradeWithoutLight read = read_trade(experiment.settings(), s);
+  std::string words;
+  for (const SupplyOption& option : read.trade.options) words += option.name + ", ";
+  for (const Settings& beam : read.beams) words += read_beam(beam, options).name + ", ";
   s.finish();
+  return words + "for " + show(read.trade.task.load_W) + " W";
+}
+
+SupplyRun supply_of_experiment(const RunOptions& options, const Console& console) {
+  const WallTime wall;
+  const AttitudeExperiment experiment(options);
+  const Settings s = own_table(experiment.settings(), "supply_trade", true);
+  TradeWithoutLight read = read_trade(experiment.settings(), s);
+  SupplyTrade trade = std::move(read.trade);
+  std::vector<BeamSettings> beams;
+  for (const Settings& beam : read.beams) beams.push_back(read_beam(beam, options));
+  s.finish();
+  for (const BeamSettings& beam : beams) {
+    trade.options.push_back(beam_option(beam, trade.task, console));
+  }
   Product product = supply_product(trade);
   print_supply(console, product, trade);
   RunResult result{

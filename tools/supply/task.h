@@ -17,4 +17,8 @@ struct SupplyRun {
 // light where a table names them.
 SupplyRun supply_of_experiment(const RunOptions& options, const Console& console);
 
+// Reads and computes the same but for the light, which is not traced; what would be compared, in
+// words.
+std::string supply_in_words(const RunOptions& options);
+
 }  // namespace photorque

@@ -33,8 +33,7 @@ std::string unit_for_people(const std::string& unit) {
 
 std::string AxisLabel::with(const std::string& value) const {
   const auto number = number_in(value);
-  return name + " " + (number ? show(*number) : value) +
-         (unit.empty() ? "" : " " + unit);
+  return name + " " + (number ? show(*number) : value) + (unit.empty() ? "" : " " + unit);
 }
 
 AxisLabel label_of(const SweepAxis& axis) {
@@ -77,9 +76,10 @@ std::string title_of_figure(const SweepPlan& plan, const std::string& column) {
     axis.key = key;
     return label_of(axis).name;
   };
-  for (const MeanOver& mean : plan.mean_over) text += ", mean over " + name_of(mean.key);
-  for (const WorstOver& worst : plan.worst_over) text += ", worst over " + name_of(worst.key);
-  return text;
+  std::string within;
+  for (const MeanOver& mean : plan.mean_over) within += ", mean over " + name_of(mean.key);
+  for (const WorstOver& worst : plan.worst_over) within += ", worst over " + name_of(worst.key);
+  return within.empty() ? text : text + " (" + within.substr(2) + ")";
 }
 
 }  // namespace photorque

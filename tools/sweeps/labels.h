@@ -23,7 +23,7 @@ AxisLabel label_of(const SweepAxis& axis);
 // "array power [W]" of array_power_W; |…| of an absolute value, "95 % of built copies reach …".
 AxisLabel label_of_figure(const std::string& column);
 
-// As a title: "Array power, mean over tilt".
+// As a title: "Array power (mean over tilt)".
 std::string title_of_figure(const SweepPlan& plan, const std::string& column);
 
 }  // namespace photorque

@@ -11,8 +11,10 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tools/coupling/couple.h"
+#include "tools/realtime/settings.h"
 #include "tools/runs/array_power.h"
 #include "tools/runs/attitude_run.h"
+#include "tools/supply/task.h"
 #include "tools/tasks/fit_cell.h"
 #include "tools/tasks/light_sanity.h"
 
@@ -35,7 +37,9 @@ class Checker {
     });
     if (!file_) return std::move(report_);
     const bool fits = file_->settings.has("fit"), proves = file_->settings.has("prove");
-    if (file_->scene_file) check_light();
+    // A scene without lamps beside a platform is for the camera alone.
+    const bool unlit = file_->sources.empty() && file_->settings.has("platform");
+    if (file_->scene_file && !unlit) check_light();
     if (file_->settings.has("platform")) check_motion();
     if (fits) check_fit();
     if (file_->settings.has("sweep")) check_sweep();
@@ -131,6 +135,14 @@ class Checker {
     const Settings& settings = experiment->settings();
     if (!attempt([&] { read_attitude_model(settings); })) return;
     attempt([&] { say_propagation(read_propagation(settings)); });
+    attempt([&] {
+      const ServeSettings serve = read_serve(settings);
+      add("serve", show(serve.rate_Hz) + " Hz " +
+                       (serve.by_shared_memory ? "in shared memory" : "at " + serve.address));
+    });
+    if (settings.has("supply_trade")) {
+      attempt([&] { add("supply", supply_in_words(full)); });
+    }
     attempt([&] {
       const Budget budget = read_budget(settings);
       add("budget", counted(budget.entries.size(), "torque"));

@@ -5,6 +5,7 @@
 #include "attitude/ccsds/aem.h"
 #include "core/constants.h"
 #include "tools/coupling/report.h"
+#include "tools/runs/camera_sight.h"
 #include "tools/runs/optical_run.h"
 
 namespace photorque {
@@ -97,6 +98,7 @@ MotionRun propagate_experiment(
   const auto run = std::make_shared<PropagationRun>(read_propagation(experiment.settings()));
   if (options.seed) run->seed = *options.seed;
   for (const Disturbance& one : further.disturbances) run->model.disturbances.push_back(one);
+  const auto seen = look_through_scene(experiment.file(), run->sensors);
   if (prepare) prepare(experiment.settings(), *run);
   const auto coupled =
       std::make_shared<CoupledResult>(propagate_in_light(full, console, experiment.file(), *run));
@@ -104,6 +106,7 @@ MotionRun propagate_experiment(
   RunResult result;
   result.provenance = experiment.provenance(run->seed);
   if (coupled->light) add_inputs(result.provenance, coupled->light->inputs());
+  add_inputs(result.provenance, seen);
   add_inputs(result.provenance, further.inputs);
   print_run(console, *run, motion);
   result.product = std::move(motion.product);

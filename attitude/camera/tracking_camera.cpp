@@ -1,0 +1,158 @@
+#include "attitude/camera/tracking_camera.h"
+
+#include <cmath>
+
+#include "attitude/camera/spot.h"
+#include "core/constants.h"
+#include "core/rotations/small_turns.h"
+
+namespace photorque {
+namespace {
+
+// Cosine-power law with the given half angle: cosᵐ ε.
+double emission(double cosine, double half_angle_rad) {
+  return std::pow(cosine, std::log(0.5) / std::log(std::cos(half_angle_rad)));
+}
+
+void read_markers(const Settings& s, TrackingCamera& camera) {
+  const Vec3 normal = s.vector3_or("marker_normal", Vec3::UnitZ());
+  if (!(normal.norm() > 0.0)) throw s.error("marker_normal", "no direction", "a direction");
+  for (const Vec3& position_m : s.vectors3("markers_m")) {
+    camera.markers.push_back({position_m, normal.normalized(), true});
+  }
+  if (s.has("marker_error_m")) camera.marker_error_body_m = s.vectors3("marker_error_m");
+  if (!camera.marker_error_body_m.empty() &&
+      camera.marker_error_body_m.size() != camera.markers.size()) {
+    throw s.error("marker_error_m", std::to_string(camera.marker_error_body_m.size()) + " errors",
+                  "one for each of the " + std::to_string(camera.markers.size()) + " markers");
+  }
+  camera.radiant_intensity_W_sr = s.number("intensity_W_sr", Range::positive());
+  camera.half_angle_rad =
+      s.number_or("half_angle_deg", camera.half_angle_rad, {0.0, 0.5 * pi, true, true});
+  camera.wavelength_m = s.number_or("wavelength_nm", camera.wavelength_m, {1e-7, 2e-6});
+}
+
+void read_sensor(const Settings& s, TrackingCamera& camera) {
+  camera.pixel_m = s.number("pixel_um", {1e-7, 1e-3});
+  const std::vector<double> size = s.numbers("resolution", {8.0, 65536.0});
+  if (size.size() != 2) {
+    throw s.error("resolution", std::to_string(size.size()) + " numbers", "[columns, rows]");
+  }
+  camera.width = static_cast<int>(size[0]);
+  camera.height = static_cast<int>(size[1]);
+  camera.exposure_s = s.number("exposure_s", Range::positive());
+  camera.line_time_s = s.number_or("line_time_s", 0.0, Range::not_negative());
+  camera.quantum_efficiency =
+      s.number_or("quantum_efficiency", camera.quantum_efficiency, {0.0, 1.0, true, false});
+  camera.read_noise_electrons =
+      s.number_or("read_noise_electrons", camera.read_noise_electrons, Range::positive());
+  camera.background_electrons =
+      s.number_or("background_electrons", camera.background_electrons, Range::not_negative());
+  camera.full_well_electrons =
+      s.number_or("full_well_electrons", camera.full_well_electrons, Range::positive());
+}
+
+void read_place(const Settings& s, TrackingCamera& camera) {
+  const Vec3 position_m = s.vector3("position_m");
+  const Vec3 direction = s.vector3_or("aim_m", Vec3::Zero()) - position_m;
+  if (!(direction.norm() > 0.0)) throw s.error("aim_m", "position_m", "another point");
+  camera.lab_from_camera = frame_looking_along(direction, position_m);
+  camera.knows_centre = s.choice_or("pose", {"about_centre", "free"}, 0) == 0;
+}
+
+// What the signal and the number of markers must be for a pose at zero tilt.
+void check_view(const Settings& s, const TrackingCamera& camera) {
+  const size_t least = camera.knows_centre ? 2 : 4;
+  size_t seen = 0;
+  for (size_t i = 0; i < camera.markers.size(); ++i) {
+    const auto view = view_of(camera, i, {});
+    if (!view) continue;
+    ++seen;
+    const double peak = brightest_pixel(spot_of(camera, *view)) + camera.background_electrons;
+    if (peak > camera.full_well_electrons) {
+      throw s.error("exposure_s",
+                    "a spot of " + std::to_string(std::lround(peak)) + " electrons in a pixel",
+                    "at most full_well_electrons");
+    }
+  }
+  if (seen < least) {
+    throw s.error("markers_m",
+                  std::to_string(seen) + " in the image at zero tilt, of " +
+                      std::to_string(camera.markers.size()),
+                  "at least " + std::to_string(least));
+  }
+}
+
+}  // namespace
+
+std::optional<TrackingCamera> read_tracking_camera(const Settings& settings) {
+  if (!settings.has("markers_m")) return {};
+  TrackingCamera camera;
+  read_markers(settings, camera);
+  camera.focal_length_m = settings.number("focal_length_mm", Range::positive());
+  camera.f_number = settings.number_or("f_number", camera.f_number, {0.5, 1000.0});
+  camera.transmittance =
+      settings.number_or("transmittance", camera.transmittance, {0.0, 1.0, true, false});
+  camera.spot_px = settings.number_or("spot_px", camera.spot_px, {0.3, 50.0});
+  read_sensor(settings, camera);
+  read_place(settings, camera);
+  check_view(settings, camera);
+  return camera;
+}
+
+std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t index, const Pose& pose,
+                                  bool in_truth) {
+  const Marker& marker = camera.markers[index];
+  if (!marker.is_lit) return {};
+  Vec3 place_body_m = marker.position_body_m;
+  if (in_truth && !camera.marker_error_body_m.empty()) {
+    place_body_m += camera.marker_error_body_m[index];
+  }
+  const Quat camera_from_lab = camera.lab_from_camera.rotation.conjugate();
+  const double scale = camera.focal_length_m / camera.pixel_m;
+  const Vec3 arm_lab_m = pose.lab_from_body * place_body_m;
+  MarkerView view;
+  view.marker = index;
+  Vec3 arm_m = arm_lab_m, seen_m;
+  // The row that the marker falls on says when it is exposed: two rounds, because the second moves
+  // it by less than the rate times the line time squared.
+  for (int round = 0; round < (camera.line_time_s > 0.0 ? 3 : 1); ++round) {
+    const double late_s = camera.line_time_s * view.pixel.y();
+    arm_m = turn_by(late_s * pose.rate_lab_rad_s) * arm_lab_m;
+    seen_m = camera_from_lab * (arm_m + pose.centre_m - camera.lab_from_camera.translation_m);
+    if (!(seen_m.z() > camera.focal_length_m)) return {};
+    view.pixel = scale * seen_m.head<2>() / seen_m.z();
+  }
+  // The whole spot must fall onto the sensor.
+  const double margin_px = 4.5 * spot_sigma_px(camera) + 1.0;
+  if (std::abs(view.pixel.x()) > 0.5 * camera.width - margin_px ||
+      std::abs(view.pixel.y()) > 0.5 * camera.height - margin_px) {
+    return {};
+  }
+  const double distance_m = seen_m.norm();
+  const Vec3 to_camera_lab = -(camera.lab_from_camera.rotation * seen_m) / distance_m;
+  const double cosine = to_camera_lab.dot(pose.lab_from_body * marker.normal_body);
+  if (!(cosine > 0.0) || (camera.is_hidden && camera.is_hidden(index, pose.lab_from_body))) {
+    return {};
+  }
+  const double opening_m2 =
+      0.25 * pi * std::pow(camera.focal_length_m / camera.f_number, 2) * seen_m.z() / distance_m;
+  const double photon_J = planck_J_s * speed_of_light_m_s / camera.wavelength_m;
+  view.electrons = camera.radiant_intensity_W_sr * emission(cosine, camera.half_angle_rad) *
+                   opening_m2 / (distance_m * distance_m) * camera.transmittance *
+                   camera.exposure_s * camera.quantum_efficiency / photon_J;
+  Eigen::Matrix<double, 2, 3> by_place;
+  by_place << 1.0, 0.0, -seen_m.x() / seen_m.z(), 0.0, 1.0, -seen_m.y() / seen_m.z();
+  by_place *= scale / seen_m.z();
+  const Eigen::Matrix<double, 2, 3> by_shift = by_place * camera_from_lab.toRotationMatrix();
+  view.derivative << -by_shift * skew(arm_m), by_shift;
+  view.smear_px = by_shift * pose.rate_lab_rad_s.cross(arm_m) * camera.exposure_s;
+  return view;
+}
+
+double spot_sigma_px(const TrackingCamera& camera) {
+  const double diffraction_px = 0.42 * camera.wavelength_m * camera.f_number / camera.pixel_m;
+  return std::hypot(camera.spot_px, diffraction_px);
+}
+
+}  // namespace photorque

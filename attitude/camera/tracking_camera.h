@@ -1,0 +1,92 @@
+// A camera that reads the platform's attitude from light-emitting diodes on it, from its geometry.
+//
+// Pinhole model (R. Hartley, A. Zisserman, Multiple View Geometry, 2nd ed., eq. 6.2) without
+// distortion, which is taken as calibrated; what calibration leaves is calibration_error() of
+// attitude/camera/accuracy.h. Camera axes: z along the optical axis, image x (columns) along camera
+// x, image y (rows) along camera y, the origin of the image in its middle.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core/settings/settings.h"
+#include "core/transform.h"
+
+namespace photorque {
+
+// Small light sources on the platform.
+struct Marker {
+  Vec3 position_body_m = Vec3::Zero();
+  Vec3 normal_body = Vec3::UnitZ();  // unit: shines to this side
+  bool is_lit = true;
+};
+
+struct TrackingCamera {
+  std::vector<Marker> markers;
+  // Where the markers are in truth, beside where the pose takes them to be; one each, or empty.
+  std::vector<Vec3> marker_error_body_m;
+  double radiant_intensity_W_sr = 1e-4;  // of a marker along its normal
+  double half_angle_rad = 1.0471975512;  // at which it has fallen to half: 60 deg is Lambert's law
+  double wavelength_m = 630e-9;
+
+  double focal_length_m = 8e-3;
+  double f_number = 4.0;        // focal length over the diameter of the opening
+  double transmittance = 0.85;  // of lens and filter
+  double spot_px = 0.6;         // standard deviation of the spot besides diffraction and motion
+
+  double pixel_m = 4.8e-6;
+  int width = 1280, height = 1024;
+  double exposure_s = 1e-4;
+  double line_time_s = 0.0;  // rolling shutter: a row begins so much later than the one above it
+  double quantum_efficiency = 0.5;
+  double read_noise_electrons = 10.0;  // per pixel, one standard deviation
+  double background_electrons = 0.0;   // per pixel and exposure, known in the mean
+  double full_well_electrons = 10000.0;
+
+  RigidTransform lab_from_camera;
+  // The pose turns about the centre of the bearing, whose place is known; else position and
+  // attitude are both found.
+  bool knows_centre = true;
+  // Whether the platform stands between a marker and the camera; empty: it never does.
+  std::function<bool(size_t marker, const Quat& lab_from_body)> is_hidden;
+};
+
+// Reads the geometry of [sensors.camera]; nothing where there are no `markers_m`. Keys: markers_m
+// (body axes), marker_normal ([0, 0, 1]), marker_error_m, intensity_W_sr, half_angle_deg (60),
+// wavelength_nm (630), focal_length_mm, f_number (4), transmittance (0.85), spot_px (0.6),
+// pixel_um, resolution, exposure_s, line_time_s (0), quantum_efficiency (0.5),
+// read_noise_electrons (10), background_electrons (0), full_well_electrons (10000), position_m
+// (lab), aim_m ([0, 0, 0]), pose ("about_centre", "free").
+// InputError for what cannot be: fewer markers than the pose needs, a spot that fills its pixels.
+std::optional<TrackingCamera> read_tracking_camera(const Settings& settings);
+
+// One marker as the camera sees it at an instant.
+struct MarkerView {
+  size_t marker = 0;
+  Vec2 pixel = Vec2::Zero();  // from the middle of the image
+  double electrons = 0.0;     // of the whole spot
+  // By a small rotation of the platform about lab axes and by a shift of its centre in the lab.
+  Eigen::Matrix<double, 2, 6> derivative = Eigen::Matrix<double, 2, 6>::Zero();
+  Vec2 smear_px = Vec2::Zero();  // displacement during the exposure
+};
+
+// How the platform stands and turns while an image is taken: the attitude is that at which the
+// image's middle row is exposed.
+struct Pose {
+  Quat lab_from_body = Quat::Identity();
+  Vec3 rate_lab_rad_s = Vec3::Zero();
+  Vec3 centre_m = Vec3::Zero();  // of rotation, in the lab
+};
+
+// Of a marker, where the pose takes it to be or, `in_truth`, where it is; nothing where it is dark,
+// hidden, turned away or outside the image.
+std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t marker, const Pose& pose,
+                                  bool in_truth = false);
+
+// Standard deviation [pixels] of a spot at rest: spot_px with diffraction, whose Airy disc is taken
+// as a Gaussian of 0.42 λN (B. Zhang, J. Zerubia, J.-C. Olivo-Marin, Appl. Opt. 46 (2007) 1819,
+// table 1: 0.21 λ/NA with NA = 1/(2N)).
+double spot_sigma_px(const TrackingCamera& camera);
+
+}  // namespace photorque

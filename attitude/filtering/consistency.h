@@ -1,0 +1,80 @@
+// Whether a filter's errors are as large as it says.
+//
+// Source: Y. Bar-Shalom, X. Li, T. Kirubarajan, Estimation with Applications to Tracking and
+// Navigation (2001), sec. 5.4: normalised errors squared (NEES) and innovations squared (NIS).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "attitude/filtering/kalman.h"
+
+namespace photorque {
+
+// What is known to be true at the rows; nothing where it is not.
+struct TruthAtRow {
+  Quat lab_from_body = Quat::Identity();
+  std::optional<Vec3> rate_body_rad_s;
+};
+using TruthTrack = std::vector<std::optional<TruthAtRow>>;
+
+// e P⁻¹ e over the attitude and, where it is known, the rate; expected `numbers` in the mean.
+struct NormalisedError {
+  double chi2 = 0.0;
+  int numbers = 0;
+};
+NormalisedError normalised_error(const AttitudeEstimate& estimate, const TruthAtRow& truth);
+// Angle between them.
+double attitude_error_rad(const AttitudeEstimate& estimate, const TruthAtRow& truth);
+
+// Where 95 % of a chi-square variable of so many degrees of freedom lie, between its 2.5 % and
+// 97.5 % quantiles, by E. Wilson and M. Hilferty (PNAS 17 (1931) 684): to 1 % from two on.
+struct Band {
+  double low = 0.0, high = 0.0;
+  bool holds(double x) const { return low <= x && x <= high; }
+};
+Band chi2_band_95(double freedom);
+
+// One run against its truth.
+struct RunErrors {
+  double rms_attitude_rad = 0.0, rms_rate_rad_s = 0.0;
+  double mean_nees = 0.0;     // per number
+  double part_in_band = 0.0;  // of the rows, 0.95 expected
+  size_t rows = 0;
+};
+// Rows from `from` on.
+RunErrors run_errors(const std::vector<AttitudeEstimate>& estimates, const TruthTrack& truth,
+                     size_t from = 0);
+
+// Many runs of the same length, row by row.
+class RunEnsemble {
+ public:
+  void add(const Estimation& estimation, const TruthTrack& truth);
+
+  int runs() const { return runs_; }
+  // Mean over the runs of the normalised error squared of the filter, and of the smoother.
+  std::vector<double> nees_filtered() const { return mean_of(chi2_filtered_); }
+  std::vector<double> nees_smoothed() const { return mean_of(chi2_smoothed_); }
+  // Where 95 % of such means lie.
+  Band band() const;
+  // The part of the rows from `from` on whose mean lies in the band.
+  double part_in_band(const std::vector<double>& nees, size_t from) const;
+  // Root-mean-square attitude errors over the runs [rad].
+  std::vector<double> rms_filtered_rad() const;
+  std::vector<double> rms_smoothed_rad() const;
+  const InnovationSum& attitude() const { return attitude_; }
+  const InnovationSum& gyro() const { return gyro_; }
+
+ private:
+  std::vector<double> mean_of(const std::vector<double>& sums) const;
+
+  int runs_ = 0;
+  int numbers_ = 6;
+  std::vector<double> chi2_filtered_, chi2_smoothed_, square_filtered_, square_smoothed_;
+  InnovationSum attitude_, gyro_;
+};
+
+// Mean of a sum of squares per number, with the band of its 95 %.
+Band innovation_band(const InnovationSum& sum);
+
+}  // namespace photorque

@@ -1,0 +1,235 @@
+#include "attitude/filtering/kalman.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/constants.h"
+
+namespace photorque {
+
+double AttitudeEstimate::attitude_sigma_rad() const {
+  return std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+}
+
+double AttitudeEstimate::rate_sigma_rad_s() const {
+  return std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+}
+
+namespace {
+
+// x with a covariance's inverse applied, in units in which its diagonal is one; directions without
+// any variance stay out.
+MatX solved_by(const MatX& covariance, const MatX& right) {
+  VecX scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  for (double& s : scale) s = s > 0.0 ? 1.0 / s : 0.0;
+  MatX even = scale.asDiagonal() * covariance * scale.asDiagonal();
+  for (Eigen::Index i = 0; i < even.rows(); ++i) {
+    if (scale[i] == 0.0) even(i, i) = 1.0;
+  }
+  return scale.asDiagonal() * even.ldlt().solve(scale.asDiagonal() * right);
+}
+
+void update(const MotionModel& model, FilterState& state, const Measurement& read,
+            InnovationSum& innovations, double& log_likelihood) {
+  const MatX cross = state.covariance * read.derivative.transpose();
+  const MatX innovation = read.derivative * cross + read.noise;
+  const Eigen::LLT<MatX> factor(innovation);
+  const VecX weighted = factor.solve(read.residual);
+  const double chi2 = read.residual.dot(weighted);
+  innovations.chi2 += chi2;
+  innovations.numbers += static_cast<double>(read.residual.size());
+  const VecX diagonal = MatX(factor.matrixL()).diagonal();
+  log_likelihood -= 0.5 * chi2 + diagonal.array().log().sum() +
+                    0.5 * static_cast<double>(read.residual.size()) * std::log(2.0 * pi);
+  const MatX gain = factor.solve(cross.transpose()).transpose();
+  const MatX rest =
+      MatX::Identity(state.covariance.rows(), state.covariance.cols()) - gain * read.derivative;
+  state.covariance =
+      rest * state.covariance * rest.transpose() + gain * read.noise * gain.transpose();
+  state.covariance = 0.5 * (state.covariance + state.covariance.transpose()).eval();
+  model.add(state, gain * read.residual);
+}
+
+AttitudeEstimate estimate_of(const MotionModel& model, const FilterState& state) {
+  return {state.mean.time_s, state.mean.lab_from_body, state.mean.rate_body_rad_s,
+          model.inertial_rate_rad_s(state), state.covariance.topLeftCorner<6, 6>()};
+}
+
+// What the smoother needs of one reading.
+struct Passed {
+  FilterState after;      // the reading
+  FilterState predicted;  // at this reading, before it
+  MatX phi;               // to here
+  bool begins_anew = false;
+};
+
+class FilterRun {
+ public:
+  FilterRun(const MotionModel& model, const Readings& readings, const EstimationOptions& options)
+      : model_(model), readings_(readings), options_(options) {
+    last_ = std::min(options.max_readings, readings.all.size());
+    for (first_ = 0; first_ < last_; ++first_) {
+      if (readings.all[first_].lab_from_body) break;
+    }
+    if (first_ == last_) first_ = 0;
+  }
+
+  Estimation run() {
+    out_.filtered.resize(readings_.rows);
+    FilterState state = begin();
+    std::vector<FilterState> checkpoints;
+    for (size_t i = first_; i < last_; ++i) {
+      if (options_.smooths && (i - first_) % stretch == 0) checkpoints.push_back(state);
+      pass(state, i, nullptr, true);
+      put(out_.filtered, i, state);
+      if (options_.progress && i % stretch == 0) {
+        const double part = static_cast<double>(i) / static_cast<double>(last_);
+        options_.progress(options_.smooths ? 0.4 * part : part);
+      }
+    }
+    fill_before_first(out_.filtered);
+    out_.parameter_names = model_.parameter_names();
+    out_.prior_mean = model_.prior_mean();
+    out_.prior_sigma = model_.prior_sigma();
+    out_.parameters = state.parameters;
+    out_.sigma = state.covariance.diagonal().tail(state.parameters.size()).cwiseSqrt();
+    if (options_.smooths) smooth(state, checkpoints);
+    return std::move(out_);
+  }
+
+ private:
+  static constexpr size_t stretch = 256;
+
+  FilterState begin() const {
+    const Reading& first = readings_.all[first_];
+    if (!first.lab_from_body) {
+      return model_.start(first.time_s, Quat::Identity(), options_.unread_attitude_rad2);
+    }
+    const Quat attitude = *first.lab_from_body;
+    // Wider than any camera's noise: the first reading itself is an update like the others.
+    constexpr double wide_rad = 0.05;
+    return model_.start(first.time_s, attitude, Mat3::Identity() * wide_rad * wide_rad);
+  }
+
+  // One reading, whose likelihood counts in the first pass over it.
+  void pass(FilterState& state, size_t i, Passed* passed, bool counts) {
+    const Reading& reading = readings_.all[i];
+    const FilterSettings& settings = model_.settings();
+    const Transition way = model_.advance(state, reading.time_s, reading.gyro_rad_s);
+    if (reading.begins_anew) model_.begin_anew(state);
+    if (passed != nullptr) {
+      passed->predicted = state;
+      passed->phi = way.phi;
+      passed->begins_anew = reading.begins_anew;
+    }
+    InnovationSum unused;
+    double unused_likelihood = 0.0;
+    double& likelihood = counts ? out_.log_likelihood : unused_likelihood;
+    const auto sum = [&](InnovationSum& own) -> InnovationSum& { return counts ? own : unused; };
+    if (reading.lab_from_body && i == first_) {
+      // Says where the platform is, which nothing was known of: no innovation.
+      update(model_, state, model_.of_attitude(state, *reading.lab_from_body, readings_.sees_axis),
+             unused, unused_likelihood);
+    } else if (reading.lab_from_body && settings.uses_attitude) {
+      update(model_, state, model_.of_attitude(state, *reading.lab_from_body, readings_.sees_axis),
+             sum(out_.attitude), likelihood);
+    }
+    const bool drove =
+        settings.motion == Motion::gyro_drives && reading.gyro_rad_s.allFinite() && i != first_;
+    if (settings.uses_gyro && reading.has_gyro() && !drove) {
+      // Nor is the first rate one.
+      update(model_, state, model_.of_gyro(state, reading.gyro_rad_s),
+             i == first_ ? unused : sum(out_.gyro), i == first_ ? unused_likelihood : likelihood);
+    }
+    if (settings.uses_attitude && std::isfinite(reading.heading_rad)) {
+      update(model_, state, model_.of_heading(state, reading.heading_rad), sum(out_.heading),
+             likelihood);
+    }
+    if (passed != nullptr) passed->after = state;
+  }
+
+  void put(std::vector<AttitudeEstimate>& rows, size_t i, const FilterState& state) const {
+    if (const auto row = readings_.all[i].row) rows[*row] = estimate_of(model_, state);
+  }
+
+  void fill_before_first(std::vector<AttitudeEstimate>& rows) const {
+    const auto row = std::find_if(readings_.all.begin() + static_cast<std::ptrdiff_t>(first_),
+                                  readings_.all.end(), [](const Reading& r) { return r.row; });
+    for (size_t i = 0; row != readings_.all.end() && i < *row->row; ++i) rows[i] = rows[*row->row];
+  }
+
+  void smooth(FilterState later, const std::vector<FilterState>& checkpoints) {
+    out_.smoothed.resize(readings_.rows);
+    put(out_.smoothed, last_ - 1, later);
+    // `later` is the smoothed estimate at `next`, whose prediction and way stand in `ahead`.
+    std::optional<Passed> ahead;
+    for (size_t c = checkpoints.size(); c-- > 0;) {
+      const size_t from = first_ + c * stretch, to = std::min(last_, from + stretch);
+      std::vector<Passed> passed(to - from);
+      FilterState state = checkpoints[c];
+      for (size_t i = from; i < to; ++i) pass(state, i, &passed[i - from], false);
+      for (size_t i = to; i-- > from;) {
+        Passed& here = passed[i - from];
+        if (ahead) later = smoothed_at(here.after, *ahead, later);
+        put(out_.smoothed, i, later);
+        ahead = std::move(here);
+      }
+      if (options_.progress) {
+        options_.progress(1.0 - 0.6 * static_cast<double>(from) / static_cast<double>(last_));
+      }
+    }
+    fill_before_first(out_.smoothed);
+  }
+
+  FilterState smoothed_at(const FilterState& here, const Passed& ahead,
+                          const FilterState& later) const {
+    // Nothing of what is after a kick tells of what was before it but the parameters; those few
+    // are left to the filter.
+    if (ahead.begins_anew) return here;
+    const MatX gain =
+        solved_by(ahead.predicted.covariance, ahead.phi * here.covariance).transpose();
+    FilterState smoothed = here;
+    model_.add(smoothed, gain * model_.difference(later, ahead.predicted));
+    smoothed.covariance =
+        here.covariance + gain * (later.covariance - ahead.predicted.covariance) * gain.transpose();
+    smoothed.covariance = 0.5 * (smoothed.covariance + smoothed.covariance.transpose()).eval();
+    return smoothed;
+  }
+
+  const MotionModel& model_;
+  const Readings& readings_;
+  const EstimationOptions& options_;
+  size_t first_ = 0, last_ = 0;
+  Estimation out_;
+};
+
+}  // namespace
+
+Estimation estimate_attitude(const MotionModel& model, const Readings& readings,
+                             const EstimationOptions& options) {
+  return FilterRun(model, readings, options).run();
+}
+
+double likeliest_rate_walk(const AttitudeModel& model, const Sensors& sensors,
+                           FilterSettings settings, const Readings& readings, size_t max_readings) {
+  double best = 0.0, most = -std::numeric_limits<double>::infinity();
+  EstimationOptions options;
+  options.smooths = false;
+  options.max_readings = max_readings;
+  for (int half = -28; half <= 4; ++half) {
+    settings.rate_walk_rad_s_rts = std::pow(10.0, 0.5 * half);
+    const MotionModel motion(model, sensors, settings, readings.schedule);
+    const double likelihood = estimate_attitude(motion, readings, options).log_likelihood;
+    // Where the readings do not tell, the quieter motion.
+    constexpr double tells = 0.5;
+    if (std::isfinite(likelihood) && likelihood > most + tells) {
+      most = likelihood;
+      best = settings.rate_walk_rad_s_rts;
+    }
+  }
+  return best;
+}
+
+}  // namespace photorque

@@ -1,0 +1,466 @@
+#include "attitude/filtering/motion_model.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/disturbances/kind.h"
+#include "core/rotations/small_turns.h"
+
+namespace photorque {
+namespace {
+
+// A gyro's bias where the experiment does not say how large it may be.
+constexpr double usual_bias_rad_s = 5e-3;
+// Steps as short as this are always good enough: for what swings several times in a second.
+constexpr double short_step_s = 0.05;
+
+bool is_of_gyro(const Disturbance& disturbance) {
+  const DisturbanceKind* kind = find_kind(disturbance.kind);
+  return kind != nullptr && kind->instrument == "gyro";
+}
+
+// Only instruments, and what the gyro senses beside the platform's rate.
+bool is_of_instruments(const Disturbance& disturbance) {
+  const DisturbanceKind* kind = find_kind(disturbance.kind);
+  return disturbance.stage == Stage::measurement || disturbance.kind == "earth_rotation" ||
+         (kind != nullptr && !kind->instrument.empty());
+}
+
+std::array<ZeroOrderHold, Lanes::count> in_all_lanes(const ZeroOrderHold& held) {
+  std::array<ZeroOrderHold, Lanes::count> all;
+  all.fill(held);
+  return all;
+}
+
+std::vector<Lanes> in_lanes(const std::vector<double>& y) {
+  return {y.begin(), y.end()};
+}
+
+// ∂q/∂θ for q ⊗ exp(θ): components w, x, y, z.
+Eigen::Matrix<double, 4, 3> quaternion_by_turn(const Quat& q) {
+  Eigen::Matrix<double, 4, 3> g;
+  g << -q.x(), -q.y(), -q.z(), q.w(), -q.z(), q.y(), q.z(), q.w(), -q.x(), -q.y(), q.x(), q.w();
+  return 0.5 * g;
+}
+
+}  // namespace
+
+// By the error state: of the rates (ω̇, extras), of the readings (gyro, camera error, delay).
+struct MotionModel::Derivatives {
+  MatX rates;     // rows as Dynamics' components
+  MatX readings;  // Dynamics::reading_count rows
+};
+
+struct MotionModel::Prediction {
+  Vec3 gyro_rad_s;
+  Vec3 camera_error_rad;
+  double camera_delay_s;
+  MatX derivative;  // Dynamics::reading_count rows
+};
+
+MotionModel::MotionModel(const AttitudeModel& model, const Sensors& sensors,
+                         const FilterSettings& settings, const Schedule& schedule)
+    : model_(model), sensors_(sensors), settings_(settings) {
+  model_.schedule = schedule;
+  if (settings.motion != Motion::disturbances) {
+    std::erase_if(model_.disturbances, [](const Disturbance& d) { return !is_of_instruments(d); });
+  }
+  const auto has_bias = std::ranges::any_of(
+      model_.disturbances, [](const Disturbance& d) { return d.kind == "gyro_bias"; });
+  if (settings.uses_gyro && !has_bias) {
+    model_.disturbances.push_back(make_disturbance_of("gyro_bias", {{"bias_rad_s", {0, 0, 0}}},
+                                                      {model_.platform, model_.environment}));
+    for (Parameter& p : model_.disturbances.back().parameters) {
+      const bool turns = !model_.platform.turns_about_one_axis() ||
+                         std::abs(model_.platform.axis[p.component]) > 0.5;
+      p.sigma = turns ? usual_bias_rad_s : 0.0;
+    }
+  }
+  const double drift = sensors.gyro ? sensors.gyro->bias_drift_rad_s_1_s : 0.0;
+  std::vector<double> mean, sigma;
+  for (size_t d = 0; d < model_.disturbances.size(); ++d) {
+    const Disturbance& disturbance = model_.disturbances[d];
+    extras_ += static_cast<int>(disturbance.states.size());
+    const bool drifts = disturbance.kind == "gyro_bias" && drift > 0.0;
+    if (!settings.uses_gyro && is_of_gyro(disturbance)) continue;
+    for (size_t p = 0; p < disturbance.parameters.size(); ++p) {
+      const Parameter& parameter = disturbance.parameters[p];
+      if (!(parameter.sigma > 0.0) && !drifts) continue;
+      places_.push_back({d, p, drifts ? drift : 0.0});
+      std::string name = disturbance.kind + "." + parameter.key;
+      if (parameter.component >= 0) name += "[" + std::to_string(parameter.component) + "]";
+      names_.push_back(name);
+      mean.push_back(parameter.value);
+      sigma.push_back(parameter.sigma);
+    }
+  }
+  prior_mean_ = Eigen::Map<VecX>(mean.data(), static_cast<Eigen::Index>(mean.size()));
+  prior_sigma_ = Eigen::Map<VecX>(sigma.data(), static_cast<Eigen::Index>(sigma.size()));
+  size_ = extra + extras_ + static_cast<int>(places_.size());
+}
+
+std::shared_ptr<const Dynamics> MotionModel::dynamics_with(const VecX& parameters) const {
+  AttitudeModel model = model_;
+  for (size_t i = 0; i < places_.size(); ++i) {
+    model.disturbances[places_[i].disturbance].parameters[places_[i].parameter].value =
+        parameters[static_cast<Eigen::Index>(i)];
+  }
+  return std::make_shared<const Dynamics>(std::move(model));
+}
+
+FilterState MotionModel::start(double time_s, const Quat& lab_from_body,
+                               const Mat3& attitude_lab_rad2) const {
+  FilterState state;
+  state.parameters = state.reference = prior_mean_;
+  state.dynamics = dynamics_with(prior_mean_);
+  state.mean = state.dynamics->initial_state();
+  state.mean.time_s = time_s;
+  state.mean.lab_from_body = lab_from_body;
+  state.covariance = MatX::Zero(size_, size_);
+  const Mat3 c = lab_from_body.toRotationMatrix();
+  state.covariance.topLeftCorner<3, 3>() = c.transpose() * attitude_lab_rad2 * c;
+  const double rate_rad2_s2 = std::pow(settings_.rate_sigma_rad_s, 2);
+  for (int k = 0; k < 3; ++k) state.covariance(rate + k, rate + k) = rate_rad2_s2;
+  if (model_.platform.turns_about_one_axis()) {
+    const Mat3 along = model_.platform.axis * model_.platform.axis.transpose();
+    state.covariance.block<3, 3>(rate, rate) = rate_rad2_s2 * along;
+    const double about_rad2 = model_.platform.axis.dot(attitude_lab_rad2 * model_.platform.axis);
+    state.covariance.topLeftCorner<3, 3>() = about_rad2 * along;
+  }
+  // Extra states begin as the model says: at rest with the platform.
+  for (Eigen::Index i = 0; i < prior_sigma_.size(); ++i) {
+    const Eigen::Index at = first_parameter() + i;
+    state.covariance(at, at) = std::pow(prior_sigma_[i], 2);
+  }
+  return state;
+}
+
+void MotionModel::begin_anew(FilterState& state) const {
+  Mat3 about = Mat3::Identity();
+  if (model_.platform.turns_about_one_axis()) {
+    about = model_.platform.axis * model_.platform.axis.transpose();
+  }
+  state.covariance.topRows(rate + 3).setZero();
+  state.covariance.leftCols(rate + 3).setZero();
+  state.covariance.topLeftCorner<3, 3>() = about;
+  state.covariance.block<3, 3>(rate, rate) = std::pow(settings_.rate_sigma_rad_s, 2) * about;
+}
+
+void MotionModel::refresh(FilterState& state) const {
+  // The laws hold the parameters to this fraction of what is known of them.
+  constexpr double near = 0.05;
+  for (Eigen::Index i = 0; i < state.parameters.size(); ++i) {
+    const Eigen::Index at = first_parameter() + i;
+    const double sigma = std::sqrt(state.covariance(at, at));
+    if (std::abs(state.parameters[i] - state.reference[i]) > near * sigma) {
+      state.dynamics = dynamics_with(state.parameters);
+      state.reference = state.parameters;
+      return;
+    }
+  }
+}
+
+MotionModel::Derivatives MotionModel::derivatives_of(const FilterState& state,
+                                                     bool of_readings) const {
+  const Dynamics& dynamics = *state.dynamics;
+  const std::vector<Lanes> y = in_lanes(to_vector(state.mean));
+  const ZeroOrderHold held = model_.schedule.at(state.mean.time_s);
+  const int components = dynamics.size();
+  const int rows = of_readings ? Dynamics::reading_count : components;
+  // Attitude and rate, extra states, parameters.
+  const int variables = component::charge + extras_ + static_cast<int>(places_.size());
+  MatX by_variable(rows, variables);
+  std::vector<Lanes> out(static_cast<size_t>(rows) * DualLanes::block);
+  for (int first = 0; first < variables; first += DualLanes::block) {
+    Dynamics::Block block;
+    block.state.fill(-1);
+    block.parameter.fill(-1);
+    const int count = std::min(DualLanes::block, variables - first);
+    for (int k = 0; k < count; ++k) {
+      const auto lane = static_cast<size_t>(k);
+      const int v = first + k, own = v - component::charge;
+      if (own < 0) {
+        block.state[lane] = v;
+      } else if (own < extras_) {
+        block.state[lane] = component::extra + own;
+      } else {
+        const Place& place = places_[static_cast<size_t>(own - extras_)];
+        block.parameter[lane] =
+            dynamics.first_parameter(place.disturbance) + static_cast<int>(place.parameter);
+      }
+    }
+    if (of_readings) {
+      dynamics.reading_derivatives(state.mean.time_s, in_all_lanes(held), y.data(), block,
+                                   out.data());
+    } else {
+      dynamics.derivatives(state.mean.time_s, held, y.data(), block, out.data());
+    }
+    for (int r = 0; r < rows; ++r) {
+      for (int k = 0; k < count; ++k) {
+        by_variable(r, first + k) = out[static_cast<size_t>(r * DualLanes::block + k)][0];
+      }
+    }
+  }
+  MatX by_error(rows, size_);
+  by_error.leftCols<3>() = by_variable.leftCols<4>() * quaternion_by_turn(state.mean.lab_from_body);
+  by_error.rightCols(size_ - 3) = by_variable.rightCols(size_ - 3);
+  if (of_readings) return {{}, by_error};
+  return {by_error, {}};
+}
+
+// The derivative of the error state's rate by the error state.
+MatX MotionModel::rate_matrix(const FilterState& state) const {
+  MatX a = MatX::Zero(size_, size_);
+  a.topLeftCorner<3, 3>() = -skew(state.mean.rate_body_rad_s);
+  a.block<3, 3>(attitude, rate).setIdentity();
+  if (settings_.motion != Motion::disturbances) return a;
+  const MatX rates = derivatives_of(state, false).rates;
+  a.middleRows<3>(rate) = rates.middleRows<3>(component::rate);
+  a.middleRows(extra, extras_) = rates.middleRows(component::extra, extras_);
+  return a;
+}
+
+VecX MotionModel::right_hand_side(const FilterState& state, const VecX& y, double time_s) const {
+  std::vector<Lanes> lanes, rates(static_cast<size_t>(y.size()));
+  for (const double x : y) lanes.emplace_back(x);
+  state.dynamics->rates(time_s, model_.schedule.at(time_s), lanes.data(), rates.data());
+  VecX out(y.size());
+  for (Eigen::Index i = 0; i < y.size(); ++i) out[i] = rates[static_cast<size_t>(i)][0];
+  return out;
+}
+
+// A fraction of the time in which the platform turns, swings or slows down by one.
+double MotionModel::step_length_s(const FilterState& state, double wanted_s) const {
+  if (wanted_s <= short_step_s || extras_ > 0) return short_step_s;
+  constexpr double part = 0.1;
+  double fastest_1_s = state.mean.rate_body_rad_s.norm();
+  if (settings_.motion == Motion::disturbances) {
+    const MatX a = rate_matrix(state);
+    fastest_1_s = std::max({fastest_1_s, std::sqrt(a.block<3, 3>(rate, attitude).norm()),
+                            a.block<3, 3>(rate, rate).norm()});
+    // What depends on time alone is not known from here.
+    constexpr double longest_s = 60.0;
+    wanted_s = std::min(wanted_s, longest_s);
+  }
+  return std::max(short_step_s, std::min(wanted_s, part / std::max(fastest_1_s, 1e-12)));
+}
+
+// One step of the mean: by the laws (Runge and Kutta, fourth order) or at a constant rate.
+void MotionModel::step(FilterState& state, double length_s) const {
+  PlatformState& mean = state.mean;
+  if (settings_.motion != Motion::disturbances) {
+    mean.lab_from_body =
+        (mean.lab_from_body * turn_by(length_s * mean.rate_body_rad_s)).normalized();
+    mean.time_s += length_s;
+    return;
+  }
+  const std::vector<double> start = to_vector(mean);
+  const VecX y = Eigen::Map<const VecX>(start.data(), static_cast<Eigen::Index>(start.size()));
+  const double t_s = mean.time_s, h = length_s;
+  const VecX k1 = right_hand_side(state, y, t_s);
+  const VecX k2 = right_hand_side(state, y + 0.5 * h * k1, t_s + 0.5 * h);
+  const VecX k3 = right_hand_side(state, y + 0.5 * h * k2, t_s + 0.5 * h);
+  const VecX k4 = right_hand_side(state, y + h * k3, t_s + h);
+  const VecX end = y + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  mean = to_state(t_s + h, {end.data(), static_cast<size_t>(end.size())});
+}
+
+void MotionModel::add_noise(MatX& covariance, double length_s) const {
+  Mat3 about = Mat3::Identity();
+  if (model_.platform.turns_about_one_axis()) {
+    about = model_.platform.axis * model_.platform.axis.transpose();
+  }
+  const double q = std::pow(settings_.rate_walk_rad_s_rts, 2), h = length_s;
+  covariance.topLeftCorner<3, 3>() += q * h * h * h / 3.0 * about;
+  covariance.block<3, 3>(attitude, rate) += 0.5 * q * h * h * about;
+  covariance.block<3, 3>(rate, attitude) += 0.5 * q * h * h * about;
+  covariance.block<3, 3>(rate, rate) += q * h * about;
+  for (size_t i = 0; i < places_.size(); ++i) {
+    const Eigen::Index at = first_parameter() + static_cast<Eigen::Index>(i);
+    covariance(at, at) += std::pow(places_[i].walk_rts, 2) * h;
+  }
+}
+
+// The attitude turns by the mean of the rates before and after, the latter as the gyro reads it.
+void MotionModel::drive(FilterState& state, double length_s, const Vec3& gyro_rad_s,
+                        Transition& whole) const {
+  const double h = length_s;
+  FilterState end = state;
+  end.mean.time_s += h;
+  // Readings depend on the attitude by the Earth's rotation alone, so that a first guess will do.
+  end.mean.lab_from_body =
+      (state.mean.lab_from_body * turn_by(h * state.mean.rate_body_rad_s)).normalized();
+  const Prediction reading = predicted_readings(end);
+  const Mat3 by_rate = reading.derivative.block<3, 3>(0, rate);
+  const Mat3 inverse = by_rate.inverse();
+  end.mean.rate_body_rad_s += inverse * (gyro_rad_s - reading.gyro_rad_s);
+  const Vec3 turn_rad = 0.5 * h * (state.mean.rate_body_rad_s + end.mean.rate_body_rad_s);
+  end.mean.lab_from_body = (state.mean.lab_from_body * turn_by(turn_rad)).normalized();
+  // Errors of the new rate come from the parameters' and from the gyro's noise alone.
+  MatX by_before = MatX::Identity(size_, size_), noise = MatX::Zero(size_, size_);
+  const Mat3 back = turn_by(-turn_rad).toRotationMatrix();
+  MatX new_rate = MatX::Zero(3, size_);
+  const Eigen::Index own = size_ - first_parameter();
+  new_rate.rightCols(own) = -inverse * reading.derivative.topRightCorner(3, own);
+  by_before.topLeftCorner<3, 3>() = back;
+  // How the attitude after the turn answers to either rate.
+  const Mat3 by_rates = 0.5 * h * turn_jacobian(-turn_rad);
+  by_before.block<3, 3>(attitude, rate) = by_rates;
+  by_before.topRightCorner(3, own) = by_rates * new_rate.rightCols(own);
+  by_before.middleRows<3>(rate) = new_rate;
+  MatX enters = MatX::Zero(size_, 3);
+  enters.topRows<3>() = by_rates * inverse;
+  enters.middleRows<3>(rate) = inverse;
+  const double gyro_noise_rad_s = sensors_.gyro ? sensors_.gyro->noise_rad_s : 0.0;
+  noise = std::pow(gyro_noise_rad_s, 2) * enters * enters.transpose();
+  for (size_t i = 0; i < places_.size(); ++i) {
+    const Eigen::Index at = first_parameter() + static_cast<Eigen::Index>(i);
+    noise(at, at) += std::pow(places_[i].walk_rts, 2) * h;
+  }
+  state = std::move(end);
+  whole.covariance = by_before * whole.covariance * by_before.transpose() + noise;
+  whole.phi = by_before * whole.phi;
+}
+
+Transition MotionModel::advance(FilterState& state, double time_s, const Vec3& gyro_rad_s) const {
+  Transition whole{MatX::Identity(size_, size_), MatX::Zero(size_, size_)};
+  const double length_s = time_s - state.mean.time_s;
+  if (!(length_s > 0.0)) return whole;
+  if (settings_.motion == Motion::gyro_drives && gyro_rad_s.allFinite()) {
+    drive(state, length_s, gyro_rad_s, whole);
+  } else {
+    const int steps = static_cast<int>(std::ceil(length_s / step_length_s(state, length_s) - 1e-9));
+    const double h = length_s / std::max(1, steps);
+    for (int i = 0; i < std::max(1, steps); ++i) {
+      // The derivatives at the middle of the step: of second order, as the covariance needs.
+      FilterState middle = state;
+      step(middle, 0.5 * h);
+      const MatX a = h * rate_matrix(middle);
+      MatX phi = MatX::Identity(size_, size_);
+      for (int order = 4; order >= 1; --order) {
+        phi = MatX::Identity(size_, size_) + a * phi / order;
+      }
+      step(state, h);
+      whole.phi = phi * whole.phi;
+      whole.covariance = phi * whole.covariance * phi.transpose();
+      add_noise(whole.covariance, h);
+    }
+  }
+  state.mean.time_s = time_s;
+  state.covariance = whole.phi * state.covariance * whole.phi.transpose() + whole.covariance;
+  state.covariance = 0.5 * (state.covariance + state.covariance.transpose()).eval();
+  return whole;
+}
+
+MotionModel::Prediction MotionModel::predicted_readings(const FilterState& state) const {
+  const std::vector<Lanes> y = in_lanes(to_vector(state.mean));
+  const auto held = in_all_lanes(model_.schedule.at(state.mean.time_s));
+  const Dynamics::Instants now = state.dynamics->at(state.mean.time_s, held, y.data());
+  Prediction prediction;
+  for (int k = 0; k < 3; ++k) {
+    prediction.gyro_rad_s[k] = now.gyro_rad_s[k][0];
+    prediction.camera_error_rad[k] = now.camera_error_rad[k][0];
+  }
+  prediction.camera_delay_s = now.camera_delay_s[0];
+  prediction.derivative = derivatives_of(state, true).readings;
+  const VecX moved = prediction.derivative.rightCols(state.parameters.size()) *
+                     (state.parameters - state.reference);
+  prediction.gyro_rad_s += moved.segment<3>(0);
+  prediction.camera_error_rad += moved.segment<3>(3);
+  return prediction;
+}
+
+Measurement MotionModel::of_attitude(const FilterState& state, const Quat& lab_from_body,
+                                     const std::array<bool, 3>& sees_axis) const {
+  const Prediction reading = predicted_readings(state);
+  const Quat mean = state.mean.lab_from_body;
+  const Quat error = turn_by(reading.camera_error_rad);
+  // In lab axes, in which the noise is stated and axes are seen or not.
+  const Vec3 residual_rad = mean * turn_vector((mean * error).conjugate() * lab_from_body);
+  MatX derivative = MatX::Zero(3, size_);
+  derivative.leftCols<3>() = error.conjugate().toRotationMatrix();
+  derivative += reading.derivative.middleRows<3>(3);
+  // A later reading shows where the platform was still earlier.
+  derivative -= state.mean.rate_body_rad_s * reading.derivative.row(6);
+  derivative = mean.toRotationMatrix() * derivative;
+  Sensors::Camera camera;
+  if (sensors_.camera) camera = *sensors_.camera;
+  const auto noise = camera_covariance_lab_rad2(camera, mean, state.mean.rate_body_rad_s);
+  Measurement all{residual_rad, derivative,
+                  noise ? *noise : Mat3(camera.noise_rad.cwiseAbs2().asDiagonal())};
+  std::vector<int> axes;
+  for (int k = 0; k < 3; ++k) {
+    if (sees_axis[static_cast<size_t>(k)]) axes.push_back(k);
+  }
+  return {all.residual(axes), all.derivative(axes, Eigen::all), all.noise(axes, axes)};
+}
+
+Measurement MotionModel::of_gyro(const FilterState& state, const Vec3& gyro_rad_s) const {
+  const Prediction reading = predicted_readings(state);
+  std::vector<int> axes;
+  for (int k = 0; k < 3; ++k) {
+    if (std::isfinite(gyro_rad_s[k])) axes.push_back(k);
+  }
+  const VecX residual = gyro_rad_s - reading.gyro_rad_s;
+  const MatX derivative = reading.derivative.topRows<3>();
+  const double noise_rad_s = sensors_.gyro ? sensors_.gyro->noise_rad_s : 0.0;
+  const auto count = static_cast<Eigen::Index>(axes.size());
+  return {residual(axes), derivative(axes, Eigen::all),
+          std::pow(noise_rad_s, 2) * MatX::Identity(count, count)};
+}
+
+Measurement MotionModel::of_heading(const FilterState& state, double heading) const {
+  const Vec3 ahead = state.mean.lab_from_body * Vec3::UnitX();
+  const Mat3 by_turn = -state.mean.lab_from_body.toRotationMatrix() * skew(Vec3::UnitX());
+  MatX derivative = MatX::Zero(1, size_);
+  derivative.leftCols<3>() =
+      (ahead.x() * by_turn.row(1) - ahead.y() * by_turn.row(0)) / ahead.head<2>().squaredNorm();
+  const double difference_rad = std::remainder(heading - heading_rad(state.mean), 2.0 * pi);
+  const double step_rad = sensors_.encoder ? sensors_.encoder->resolution_rad : 1e-4;
+  // Even within a step.
+  return {VecX::Constant(1, difference_rad), derivative,
+          MatX::Constant(1, 1, step_rad * step_rad / 12.0)};
+}
+
+void MotionModel::add(FilterState& state, const VecX& error) const {
+  PlatformState& mean = state.mean;
+  mean.lab_from_body = (mean.lab_from_body * turn_by(error.segment<3>(attitude))).normalized();
+  mean.rate_body_rad_s += error.segment<3>(rate);
+  for (int i = 0; i < extras_; ++i) mean.extra[static_cast<size_t>(i)] += error[extra + i];
+  state.parameters += error.tail(state.parameters.size());
+  refresh(state);
+}
+
+VecX MotionModel::difference(const FilterState& to, const FilterState& from) const {
+  VecX error(size_);
+  error.segment<3>(attitude) =
+      turn_vector(from.mean.lab_from_body.conjugate() * to.mean.lab_from_body);
+  error.segment<3>(rate) = to.mean.rate_body_rad_s - from.mean.rate_body_rad_s;
+  for (int i = 0; i < extras_; ++i) {
+    const auto at = static_cast<size_t>(i);
+    error[extra + i] = to.mean.extra[at] - from.mean.extra[at];
+  }
+  error.tail(to.parameters.size()) = to.parameters - from.parameters;
+  return error;
+}
+
+Vec3 MotionModel::inertial_rate_rad_s(const FilterState& state) const {
+  AttitudeModel model = state.dynamics->model();
+  std::erase_if(model.disturbances,
+                [](const Disturbance& d) { return d.stage == Stage::measurement; });
+  const Dynamics dynamics(model);
+  PlatformState mean = state.mean;
+  mean.extra.resize(static_cast<size_t>(dynamics.size() - component::extra));
+  const std::vector<Lanes> y = in_lanes(to_vector(mean));
+  const auto held = in_all_lanes(model_.schedule.at(mean.time_s));
+  const Dynamics::Instants now = dynamics.at(mean.time_s, held, y.data());
+  return {now.gyro_rad_s[0][0], now.gyro_rad_s[1][0], now.gyro_rad_s[2][0]};
+}
+
+double MotionModel::camera_delay_s() const {
+  const FilterState state = start(0.0, Quat::Identity(), Mat3::Identity());
+  return predicted_readings(state).camera_delay_s;
+}
+
+}  // namespace photorque

@@ -1,0 +1,124 @@
+// What a filter knows of the motion between readings and of the instruments.
+//
+// The error state: rotation vector of the true against the estimated attitude in body axes, rate,
+// extra states of the disturbances, and every parameter that has a sigma. All derivatives are the
+// exact ones of the disturbances' laws (Dynamics).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "attitude/filtering/readings.h"
+#include "attitude/model/dynamics.h"
+
+namespace photorque {
+
+using MatX = Eigen::MatrixXd;
+using VecX = Eigen::VectorXd;
+
+// How the platform turns from one reading to the next.
+enum class Motion {
+  gyro_drives,   // as the gyro says; between its readings the rate walks
+  rate_walks,    // the rate does a random walk
+  disturbances,  // by Euler's equations under the modelled torques, beside which an unknown torque
+                 // lets the rate walk
+};
+
+struct FilterSettings {
+  Motion motion = Motion::disturbances;
+  // Of the rate's random walk, body axes: grows with the root of time.
+  double rate_walk_rad_s_rts = 1e-4;
+  double rate_sigma_rad_s = 1.0;  // of the rate before the first reading
+  bool uses_attitude = true;      // beyond the first
+  bool uses_gyro = true;
+};
+
+struct FilterState {
+  PlatformState mean;
+  VecX parameters;  // of the model, those with a sigma
+  MatX covariance;
+  // The dynamics with the parameters at which it was made.
+  std::shared_ptr<const Dynamics> dynamics;
+  VecX reference;
+};
+
+struct Transition {
+  MatX phi;         // of the error state
+  MatX covariance;  // of the noise that came in
+};
+
+// A measurement: residual = reading − prediction, its derivative by the error state, its noise.
+struct Measurement {
+  VecX residual;
+  MatX derivative;
+  MatX noise;
+};
+
+class MotionModel {
+ public:
+  // Without the torques unless `settings` says that the disturbances move the platform. A gyro
+  // without a bias in the model gets one. The schedule is the recording's.
+  MotionModel(const AttitudeModel& model, const Sensors& sensors, const FilterSettings& settings,
+              const Schedule& schedule);
+
+  static constexpr int attitude = 0, rate = 3, extra = 6;
+  int size() const { return size_; }
+  int first_parameter() const { return extra + extras_; }
+  // Names of the parameters: "gyro_bias.bias_rad_s[0]".
+  const std::vector<std::string>& parameter_names() const { return names_; }
+  const VecX& prior_mean() const { return prior_mean_; }
+  const VecX& prior_sigma() const { return prior_sigma_; }
+  const FilterSettings& settings() const { return settings_; }
+
+  // Before any reading but an attitude, with `attitude_lab_rad2` the covariance of that.
+  FilterState start(double time_s, const Quat& lab_from_body, const Mat3& attitude_lab_rad2) const;
+  // The motion has changed by an unknown kick: rate and attitude are uncertain again.
+  void begin_anew(FilterState& state) const;
+
+  // To a later time; `gyro_rad_s` is read there and drives where the motion says so and all three
+  // axes were read.
+  Transition advance(FilterState& state, double time_s, const Vec3& gyro_rad_s) const;
+
+  Measurement of_attitude(const FilterState& state, const Quat& lab_from_body,
+                          const std::array<bool, 3>& sees_axis) const;
+  Measurement of_gyro(const FilterState& state, const Vec3& gyro_rad_s) const;
+  Measurement of_heading(const FilterState& state, double heading_rad) const;
+  // Adds an error to an estimate; the dynamics are made anew where parameters have moved far.
+  void add(FilterState& state, const VecX& error) const;
+  // What add() would have to add to `from` to give `to`.
+  VecX difference(const FilterState& to, const FilterState& from) const;
+
+  // Rate against the inertial frame, body axes: what a perfect gyro reads.
+  Vec3 inertial_rate_rad_s(const FilterState& state) const;
+  double camera_delay_s() const;
+
+ private:
+  struct Derivatives;
+  struct Prediction;
+  Derivatives derivatives_of(const FilterState& state, bool of_readings) const;
+  Prediction predicted_readings(const FilterState& state) const;
+  MatX rate_matrix(const FilterState& state) const;
+  double step_length_s(const FilterState& state, double wanted_s) const;
+  void step(FilterState& state, double length_s) const;
+  void add_noise(MatX& covariance, double length_s) const;
+  void drive(FilterState& state, double length_s, const Vec3& gyro_rad_s, Transition& whole) const;
+  VecX right_hand_side(const FilterState& state, const VecX& y, double time_s) const;
+  void refresh(FilterState& state) const;
+  std::shared_ptr<const Dynamics> dynamics_with(const VecX& parameters) const;
+
+  AttitudeModel model_;
+  Sensors sensors_;
+  FilterSettings settings_;
+  int extras_ = 0, size_ = 0;
+  struct Place {
+    size_t disturbance;
+    size_t parameter;
+    double walk_rts = 0.0;  // random walk of the parameter
+  };
+  std::vector<Place> places_;
+  std::vector<std::string> names_;
+  VecX prior_mean_, prior_sigma_;
+};
+
+}  // namespace photorque

@@ -1,0 +1,64 @@
+#include "attitude/filtering/readings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/estimation/columns.h"
+#include "core/errors.h"
+
+namespace photorque {
+
+Readings readings_of(const Recording& recording, const std::string& name, const Platform& platform,
+                     double camera_delay_s) {
+  if (recording.rows() < 2) {
+    throw InputError({name, 0}, "rows", std::to_string(recording.rows()), "at least 2");
+  }
+  const MotionColumns columns(recording, platform, name);
+  Readings readings;
+  readings.name = name;
+  readings.rows = recording.rows();
+  readings.schedule = recording.schedule();
+  readings.sees_axis = columns.sees_axis();
+  readings.unused = columns.unused();
+  readings.first_s = recording.time_s.front();
+  readings.last_s = recording.time_s.back();
+  // About one axis the heading is the attitude.
+  const Channel* heading =
+      platform.turns_about_one_axis() ? nullptr : recording.find("heading_rad");
+  double before_s = readings.first_s;
+  for (size_t row = 0; row < recording.rows(); ++row) {
+    Reading reading;
+    reading.time_s = recording.time_s[row];
+    reading.row = row;
+    for (size_t k = 0; k < 3; ++k) {
+      reading.gyro_rad_s[static_cast<Eigen::Index>(k)] = columns.rate_rad_s(k, row);
+    }
+    readings.has_gyro = readings.has_gyro || reading.has_gyro();
+    if (heading != nullptr) reading.heading_rad = heading->values[row];
+    readings.has_heading = readings.has_heading || std::isfinite(reading.heading_rad);
+    reading.begins_anew = columns.has_event(row);
+    const Quat attitude =
+        columns.has_attitude() ? columns.attitude(row) : Quat(empty_cell, 0, 0, 0);
+    if (std::isfinite(attitude.coeffs().sum())) {
+      readings.longest_gap_s = std::max(readings.longest_gap_s, reading.time_s - before_s);
+      before_s = reading.time_s;
+      if (camera_delay_s == 0.0) {
+        reading.lab_from_body = attitude;
+      } else {
+        Reading late;
+        late.time_s = reading.time_s - camera_delay_s;
+        late.lab_from_body = attitude;
+        readings.all.push_back(late);
+      }
+    }
+    readings.all.push_back(reading);
+  }
+  std::ranges::stable_sort(readings.all, {}, &Reading::time_s);
+  // What the camera saw before the first row was read belongs to the start.
+  for (Reading& reading : readings.all) {
+    reading.time_s = std::max(reading.time_s, readings.first_s);
+  }
+  return readings;
+}
+
+}  // namespace photorque

@@ -1,0 +1,22 @@
+// The tables and plots of `estimate`.
+#pragma once
+
+#include "attitude/filtering/study.h"
+
+namespace photorque {
+
+double in_arcsec(double rad);
+// Root of the mean square of the predicted attitude errors.
+double rms_sigma_rad(const std::vector<AttitudeEstimate>& estimates);
+// Errors count from this row: before, a filter knows little but the first attitude.
+size_t settled_row(size_t rows);
+// Every so many rows make a few thousand.
+size_t thinning(size_t rows);
+
+Table ways_table(const std::vector<Ingredients>& ways, const TruthTrack& truth);
+// Errors over time, against the truth or, without it, as predicted.
+Plot ways_plot(const std::vector<Ingredients>& ways, const TruthTrack& truth);
+Table parameter_table(const Estimation& estimation);
+Table estimate_table(const Estimation& estimation);
+
+}  // namespace photorque

@@ -1,0 +1,233 @@
+#include "attitude/filtering/study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "attitude/estimation/observation.h"
+#include "attitude/filtering/report.h"
+#include "attitude/noise/reading_level.h"
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+// The ways that channels allow, the simplest first.
+std::vector<Ingredients> ways_for(const EstimateStudy& study, const Readings& readings) {
+  struct Way {
+    const char* name;
+    Motion motion;
+    bool attitude, gyro;
+  };
+  const Way all[] = {{"gyro alone", Motion::gyro_drives, false, true},
+                     {"camera alone", Motion::rate_walks, true, false},
+                     {"camera, disturbances", Motion::disturbances, true, false},
+                     {"camera and gyro, gyro drives", Motion::gyro_drives, true, true},
+                     {"camera and gyro, rate walks", Motion::rate_walks, true, true},
+                     {"camera and gyro, disturbances", Motion::disturbances, true, true},
+                     {"gyro, disturbances", Motion::disturbances, false, true}};
+  const bool sees = readings.sees_attitude() || readings.has_heading;
+  const bool whole_gyro =
+      std::ranges::any_of(readings.all, [](const Reading& r) { return r.gyro_rad_s.allFinite(); });
+  std::vector<Ingredients> ways;
+  for (const Way& way : all) {
+    if ((way.attitude && !sees) || (way.gyro && !readings.has_gyro)) continue;
+    if (way.motion == Motion::gyro_drives && !whole_gyro) continue;
+    if (way.motion == Motion::disturbances && !way.attitude && sees) continue;
+    FilterSettings settings = study.filter;
+    settings.motion = way.motion;
+    settings.uses_attitude = way.attitude;
+    settings.uses_gyro = way.gyro;
+    ways.push_back({way.name, settings, {}});
+  }
+  return ways;
+}
+
+// The fullest way of the motion that was asked for.
+size_t choose(const std::vector<Ingredients>& ways, Motion motion) {
+  size_t best = ways.size() - 1;
+  for (size_t i = 0; i < ways.size(); ++i) {
+    const FilterSettings& s = ways[i].settings;
+    if (s.motion == motion && (s.uses_attitude || s.uses_gyro)) best = i;
+  }
+  return best;
+}
+
+void set_walk(const EstimateStudy& study, const Readings& readings, FilterSettings& settings) {
+  const bool by_torques = settings.motion == Motion::disturbances;
+  const auto& stated = by_torques ? study.disturbed_rate_walk : study.rate_walk;
+  // A gyro that drives needs it in its gaps alone.
+  FilterSettings searched = settings;
+  if (settings.motion == Motion::gyro_drives) {
+    searched.motion = Motion::rate_walks;
+    searched.uses_attitude = true;
+  }
+  settings.rate_walk_rad_s_rts =
+      stated ? *stated
+             : likeliest_rate_walk(study.nominal.model, study.nominal.sensors, searched, readings,
+                                   study.search_readings);
+}
+
+std::vector<std::string> unseen_by(const Platform& platform, const Readings& readings,
+                                   const Estimation& e) {
+  std::vector<std::string> lines;
+  if (!readings.sees_attitude() && !readings.has_heading) {
+    lines.push_back("no attitude was read: it counts from the start, and its error grows");
+  } else if (!platform.turns_about_one_axis() &&
+             !(readings.sees_axis[0] && readings.sees_axis[1] && readings.sees_axis[2])) {
+    std::string axes;
+    for (size_t k = 0; k < 3; ++k) {
+      if (!readings.sees_axis[k]) axes += std::string(axes.empty() ? "" : ", ") + "xyz"[k];
+    }
+    lines.push_back("the attitude about lab " + axes + " was not read");
+  }
+  if (!readings.has_gyro) lines.push_back("no gyro: rates follow from attitudes and the model");
+  if (readings.has_gyro && !platform.turns_about_one_axis()) {
+    Vec3 seen = Vec3::Zero();
+    for (const Reading& r : readings.all) {
+      for (int k = 0; k < 3; ++k) seen[k] += std::isfinite(r.gyro_rad_s[k]) ? 1.0 : 0.0;
+    }
+    for (int k = 0; k < 3; ++k) {
+      if (seen[k] == 0.0) lines.push_back(std::string("no gyro about body ") + "xyz"[k]);
+    }
+  }
+  const Table parameters = parameter_table(e);
+  for (size_t i = 0; i < parameters.columns[0].texts.size(); ++i) {
+    const std::string& how = parameters.column("seen").texts[i];
+    if (how != "yes") {
+      lines.push_back(parameters.columns[0].texts[i] +
+                      (how == "no" ? " does not show in the readings"
+                                   : " shows in part: its error is still more than 0.3 of before"));
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
+void require_noise(const Sensors& sensors) {
+  if (sensors.camera && !(sensors.camera->noise_rad.minCoeff() > 0.0)) {
+    throw InputError({}, "sensors.camera.noise_arcsec", "no noise",
+                     "numbers > 0: a filter weighs by noise");
+  }
+  if (sensors.gyro && !(sensors.gyro->noise_rad_s > 0.0)) {
+    throw InputError({}, "sensors.gyro.noise_rad_s", "no noise",
+                     "a number > 0: a filter weighs by noise");
+  }
+}
+
+RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
+                             const std::string& name, const Platform& platform) {
+  RecordingNoise result{sensors, {}};
+  const bool knows_camera = states_camera_noise(sensors), knows_gyro = states_gyro_noise(sensors);
+  if (knows_camera && knows_gyro) return result;
+  const std::vector<Observation> seen = {observe(recording, name, platform)};
+  const NoiseLevels usual;
+  char line[120];
+  if (!knows_camera && seen[0].sees_some_attitude()) {
+    if (!result.sensors.camera) result.sensors.camera.emplace();
+    Vec3& noise_rad = result.sensors.camera->noise_rad;
+    for (int k = 0; k < 3; ++k) {
+      const bool sees = seen[0].sees_axis[static_cast<size_t>(k)];
+      noise_rad[k] = sees ? reading_level(seen, k).value_or(usual.camera_rad[k]) : noise_rad[k];
+      if (!(noise_rad[k] > 0.0)) noise_rad[k] = usual.camera_rad[k];
+    }
+    std::snprintf(line, sizeof line, "noise of attitudes, from neighbours: %.3g, %.3g, %.3g arcsec",
+                  in_arcsec(noise_rad[0]), in_arcsec(noise_rad[1]), in_arcsec(noise_rad[2]));
+    result.found.emplace_back(line);
+  }
+  if (!knows_gyro && seen[0].has_gyro) {
+    double square = 0.0, axes = 0.0;
+    for (int k = 3; k < 6; ++k) {
+      const std::optional<double> level = reading_level(seen, k);
+      square += level ? *level * *level : 0.0;
+      axes += level ? 1.0 : 0.0;
+    }
+    if (!result.sensors.gyro) result.sensors.gyro.emplace();
+    result.sensors.gyro->noise_rad_s =
+        axes > 0.0 ? std::sqrt(square / axes) : usual.gyro_rad_s.maxCoeff();
+    std::snprintf(line, sizeof line, "noise of rates, from neighbours: %.3g rad/s",
+                  result.sensors.gyro->noise_rad_s);
+    result.found.emplace_back(line);
+  }
+  return result;
+}
+
+EstimateStudy read_estimate(const Settings& root) {
+  EstimateStudy study;
+  study.nominal = read_attitude_model(root);
+  const Settings own = own_table(root, "estimate", false);
+  constexpr Motion motions[] = {Motion::disturbances, Motion::gyro_drives, Motion::rate_walks};
+  study.filter.motion = motions[own.choice_or("model", {"disturbances", "gyro", "walk"}, 0)];
+  if (own.has("rate_walk")) study.rate_walk = own.number("rate_walk", Range::positive());
+  if (own.has("disturbed_rate_walk")) {
+    study.disturbed_rate_walk = own.number("disturbed_rate_walk", Range::positive());
+  }
+  study.filter.rate_sigma_rad_s =
+      own.number_or("rate_sigma_rad_s", study.filter.rate_sigma_rad_s, Range::positive());
+  study.search_readings =
+      static_cast<size_t>(own.integer_or("search_readings", 2000, 50, 100'000'000));
+  study.runs = static_cast<int>(own.integer_or("runs", study.runs, 0, 100'000));
+  own.finish();
+  return study;
+}
+
+EstimateResult estimate_ways(const EstimateStudy& study, const Readings& readings,
+                             const TruthTrack& truth, const std::function<void(double)>& progress) {
+  EstimateResult result;
+  result.ways = ways_for(study, readings);
+  result.chosen = choose(result.ways, study.filter.motion);
+  const auto count = static_cast<double>(result.ways.size());
+  for (size_t i = 0; i < result.ways.size(); ++i) {
+    Ingredients& way = result.ways[i];
+    set_walk(study, readings, way.settings);
+    const MotionModel model(study.nominal.model, study.nominal.sensors, way.settings,
+                            readings.schedule);
+    EstimationOptions options;
+    if (progress) {
+      options.progress = [&](double part) { progress((static_cast<double>(i) + part) / count); };
+    }
+    way.estimation = estimate_attitude(model, readings, options);
+  }
+  const Estimation& chosen = result.ways[result.chosen].estimation;
+  Product& product = result.product;
+  product.tables = {ways_table(result.ways, truth), parameter_table(chosen),
+                    estimate_table(chosen)};
+  product.plots = {ways_plot(result.ways, truth)};
+  result.unseen = unseen_by(study.nominal.model.platform, readings, chosen);
+  const auto exact = [&](const std::string& name, double value) {
+    if (std::isfinite(value)) product.quantities.push_back({name, {value, 0.0}});
+  };
+  exact("predicted_filter_error_arcsec", in_arcsec(rms_sigma_rad(chosen.filtered)));
+  exact("predicted_smoother_error_arcsec", in_arcsec(rms_sigma_rad(chosen.smoothed)));
+  if (!truth.empty()) {
+    const size_t from = settled_row(truth.size());
+    exact("filter_error_arcsec",
+          in_arcsec(run_errors(chosen.filtered, truth, from).rms_attitude_rad));
+    exact("smoother_error_arcsec",
+          in_arcsec(run_errors(chosen.smoothed, truth, from).rms_attitude_rad));
+  }
+  return result;
+}
+
+Recording recording_of(const std::vector<AttitudeEstimate>& estimates, const Recording& source) {
+  Recording out;
+  out.time_s = source.time_s;
+  const char* names[] = {"q_w",          "q_x",          "q_y",         "q_z",
+                         "gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"};
+  std::vector<Channel> own;
+  for (const char* name : names) own.push_back({name, {}});
+  for (const AttitudeEstimate& e : estimates) {
+    const Quat& q = e.lab_from_body;
+    const Vec3& w = e.inertial_rate_rad_s;
+    const double row[] = {q.w(), q.x(), q.y(), q.z(), w.x(), w.y(), w.z()};
+    for (size_t k = 0; k < own.size(); ++k) own[k].values.push_back(row[k]);
+  }
+  out.channels = std::move(own);
+  for (const Channel& channel : source.channels) {
+    if (out.find(channel.name) == nullptr) out.channels.push_back(channel);
+  }
+  return out;
+}
+
+}  // namespace photorque

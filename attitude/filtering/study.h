@@ -1,0 +1,87 @@
+// `estimate`: what each ingredient brings to the attitude of a recording or of simulated runs.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "attitude/filtering/consistency.h"
+#include "attitude/propagation/run.h"
+#include "core/product.h"
+
+namespace photorque {
+
+struct EstimateStudy {
+  NominalModel nominal;
+  FilterSettings filter;  // of the estimate that is written; its random walk: see below
+  // Rate's random walk of filters without the torques, and beside the modelled ones [rad/s per √s];
+  // nothing: the likeliest.
+  std::optional<double> rate_walk, disturbed_rate_walk;
+  size_t search_readings = 2000;  // over which the likeliest is looked for
+  int runs = 20;                  // simulated, where there is no recording
+  int threads = 0;
+};
+
+// [estimate], which may be absent: model ("disturbances", "gyro", "walk"), rate_walk,
+// disturbed_rate_walk (rad/s per √s), rate_sigma_rad_s (1), search_readings (2000), runs (20).
+EstimateStudy read_estimate(const Settings& root);
+
+// InputError where an instrument of the model has no noise: a filter weighs by it.
+void require_noise(const Sensors& sensors);
+// The instruments with the noise that a recording shows (attitude/noise/reading_level.h) where the
+// experiment states none, and a line about each that was found.
+struct RecordingNoise {
+  Sensors sensors;
+  std::vector<std::string> found;
+};
+RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
+                         const std::string& name, const Platform& platform);
+
+// One way to estimate.
+struct Ingredients {
+  std::string name;  // for people: "camera and gyro, disturbances"
+  FilterSettings settings;
+  Estimation estimation;
+};
+
+struct EstimateResult {
+  std::vector<Ingredients> ways;
+  size_t chosen = 0;  // among them: the one that is written
+  Product product;
+  // A line each about what the recording cannot say.
+  std::vector<std::string> unseen;
+};
+
+// Every way that the channels allow. `truth` may be empty.
+EstimateResult estimate_ways(const EstimateStudy& study, const Readings& readings,
+                             const TruthTrack& truth,
+                             const std::function<void(double)>& progress = {});
+
+// The recording with attitude and gyro replaced by an estimate: the gyro reads the inertial rate,
+// without bias, scale and noise; commands, currents and others stay as they are.
+Recording recording_of(const std::vector<AttitudeEstimate>& estimates, const Recording& source);
+
+// A run whose uncertain parameters are drawn from their sigmas, and what is true in it.
+struct SimulatedRun {
+  Recording recording;
+  TruthTrack truth;
+};
+SimulatedRun simulate_run(const PropagationRun& nominal, uint64_t seed);
+// The attitudes and rates of a recording (q_w …, rate_x_rad_s …) at the rows of another: where one
+// of its rows lies within a thousandth of a second.
+TruthTrack truth_from(const Recording& known, const Recording& rows);
+
+// The chosen way over many simulated runs: tables and plot "consistency".
+struct ConsistencyResult {
+  RunEnsemble ensemble;
+  double part_filtered = 0.0, part_smoothed = 0.0;  // of rows in the 95 % band
+  double worst_gain = 0.0;  // largest ratio of smoothed to filtered rms error, of all rows
+  Product product;
+};
+ConsistencyResult consistency_of(const EstimateStudy& study, const PropagationRun& run,
+                                 const FilterSettings& settings,
+                                 const std::function<void(double)>& progress = {});
+
+}  // namespace photorque

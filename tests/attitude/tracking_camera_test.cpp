@@ -1,0 +1,291 @@
+#include "attitude/camera/tracking_camera.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "attitude/camera/accuracy.h"
+#include "attitude/recordings/sensors.h"
+#include "core/constants.h"
+#include "core/rotations/small_turns.h"
+#include "tests/attitude/settings_bench.h"
+
+namespace photorque {
+namespace {
+
+// The cross of five markers of scenes/stasis/camera.toml, seen from above.
+TrackingCamera cross_camera() {
+  TrackingCamera camera;
+  const double a = 0.08075, z = 0.0255;
+  for (const Vec3& p :
+       {Vec3(0, 0, z), Vec3(a, 0, z), Vec3(0, a, z), Vec3(-a, 0, z), Vec3(0, -a, z)})
+    camera.markers.push_back({p, Vec3::UnitZ(), true});
+  camera.radiant_intensity_W_sr = 1.7e-5;
+  camera.exposure_s = 45e-6;
+  camera.lab_from_camera = frame_looking_along({0, 0, -1}, {0, 0, 1});
+  return camera;
+}
+
+Pose leaning_by(double tilt_deg, double heading_deg) {
+  return {lab_from_body_at(tilt_deg * degree_rad, heading_deg * degree_rad).rotation, Vec3::Zero(),
+          Vec3::Zero()};
+}
+
+// Poisson noise alone: σ²/N for a spot wide against its pixels (R. Thompson, D. Larson, W. Webb,
+// Biophys. J. 82 (2002) 2775, eq. 9); pixels add a twelfth of a pixel² to σ².
+TEST(SpotCentre, IsAsGoodAsItsPhotons) {
+  const Spot spot{{20.3, 17.8}, 2e6, 3.0, Vec2::Zero()};
+  const Mat2 covariance = centre_covariance_px2(spot, {0.0, 1e-3, 1e300});
+  const double expected = (9.0 + 1.0 / 12.0) / 2e6;
+  EXPECT_NEAR(covariance(0, 0) / expected, 1.0, 5e-3);
+  EXPECT_NEAR(covariance(1, 1) / expected, 1.0, 5e-3);
+  EXPECT_NEAR(covariance(0, 1) / expected, 0.0, 1e-3);
+}
+
+// A background b per pixel alone: 8πσ⁴ b/N², what a fitted Gaussian reaches (the same, eq. 14).
+TEST(SpotCentre, UnderABackgroundIsAsGoodAsAFittedGaussian) {
+  const Spot spot{{20.0, 20.0}, 1e4, 3.0, Vec2::Zero()};
+  const double b = 1e7;
+  const Mat2 covariance = centre_covariance_px2(spot, {b, 1e-3, 1e300});
+  const double expected = 8.0 * pi * std::pow(9.0 + 1.0 / 12.0, 2) * b / 1e8;
+  EXPECT_NEAR(covariance(0, 0) / expected, 1.0, 0.01);
+}
+
+// A long even line of light along x, where only its ends tell: along the line the centre is less
+// certain than across it.
+TEST(SpotCentre, SuffersFromMotionAlongItAlone) {
+  const Spot still{{20.0, 20.0}, 1e5, 1.0, Vec2::Zero()};
+  Spot moved = still;
+  moved.smear_px = {6.0, 0.0};
+  const PixelNoise noise{0.0, 1.0, 1e300};
+  const Mat2 before = centre_covariance_px2(still, noise),
+             after = centre_covariance_px2(moved, noise);
+  EXPECT_GT(after(0, 0), 2.0 * before(0, 0));
+  EXPECT_NEAR(after(1, 1) / before(1, 1), 1.0, 0.1);
+}
+
+// Far away the image is a parallel projection: a turn about the optical axis moves a marker at a
+// distance r from it by r, one across it moves a marker at a height z by z, so that with equal
+// errors s of all images the attitude's are s/√Σr² and s/√Σz².
+TEST(AttitudeCovariance, OfADistantBoardHasItsClosedForm) {
+  TrackingCamera camera = cross_camera();
+  camera.focal_length_m = 4.0;
+  camera.radiant_intensity_W_sr = 1e-3;
+  camera.f_number = 4.0;
+  const double distance_m = 400.0;
+  camera.lab_from_camera = frame_looking_along({0, 0, -1}, {0, 0, distance_m});
+  const auto view = view_of(camera, 0, {});
+  ASSERT_TRUE(view);
+  const Mat2 centre = centre_covariance_px2(spot_of(camera, *view), pixel_noise(camera));
+  const double s_m = std::sqrt(centre(0, 0)) * camera.pixel_m * distance_m / camera.focal_length_m;
+  const auto covariance = attitude_covariance_lab_rad2(camera, {});
+  ASSERT_TRUE(covariance);
+  const PlaneErrors errors = plane_errors(camera, *covariance);
+  EXPECT_NEAR(errors.in_plane_rad / (s_m / (2.0 * 0.08075)), 1.0, 3e-3);
+  EXPECT_NEAR(errors.out_of_plane_rad / (s_m / (std::sqrt(5.0) * 0.0255)), 1.0, 3e-3);
+}
+
+TEST(AttitudeCovariance, OfTheStatedBoardAndLensIsThePapers) {
+  const TrackingCamera camera = cross_camera();
+  const PlaneErrors errors = plane_errors(camera, *attitude_covariance_lab_rad2(camera, {}));
+  EXPECT_NEAR(errors.in_plane_rad / arcsecond_rad, 12.0, 1.0);
+  EXPECT_NEAR(errors.across_rad[0] / arcsecond_rad, 37.0, 2.0);
+  EXPECT_NEAR(errors.across_rad[1] / arcsecond_rad, 37.0, 2.0);
+}
+
+// Errors alike in all images along both axes: J⁺ J⁺ᵀ s². With one error for all that is the same
+// formula as for noise of that size.
+TEST(AttitudeCovariance, GrowsWithTheErrorOfCalibrationInProportion) {
+  const TrackingCamera camera = cross_camera();
+  const Pose pose = leaning_by(12, 40);
+  const Mat3 one = *calibration_error_lab_rad2(camera, pose, 0.1);
+  const Mat3 two = *calibration_error_lab_rad2(camera, pose, 0.2);
+  EXPECT_LT((two - 4.0 * one).norm(), 1e-12 * two.norm());
+  // With the centre known a shifted image is a tilt: of all images by 0.1 px, that of the board's
+  // middle and of the perspective between.
+  const Mat3 shifted = *principal_point_error_lab_rad2(camera, {}, 0.1);
+  EXPECT_GT(plane_errors(camera, shifted).out_of_plane_rad,
+            2.0 * plane_errors(camera, one).out_of_plane_rad);
+}
+
+TEST(ViewOfAMarker, HasExactDerivatives) {
+  const TrackingCamera camera = cross_camera();
+  const Pose pose = leaning_by(17, 130);
+  constexpr double step = 1e-6;
+  for (size_t i = 0; i < camera.markers.size(); ++i) {
+    const auto view = view_of(camera, i, pose);
+    ASSERT_TRUE(view);
+    for (int k = 0; k < 6; ++k) {
+      Pose up = pose, down = pose;
+      if (k < 3) {
+        up.lab_from_body = turn_by(step * Vec3::Unit(k)) * pose.lab_from_body;
+        down.lab_from_body = turn_by(-step * Vec3::Unit(k)) * pose.lab_from_body;
+      } else {
+        up.centre_m += step * Vec3::Unit(k - 3);
+        down.centre_m -= step * Vec3::Unit(k - 3);
+      }
+      const Vec2 slope =
+          (view_of(camera, i, up)->pixel - view_of(camera, i, down)->pixel) / (2.0 * step);
+      EXPECT_LT((slope - view->derivative.col(k)).norm(), 1e-5 * (1.0 + slope.norm())) << i << k;
+    }
+  }
+}
+
+TEST(ViewOfAMarker, IsGoneWhereNoLightComes) {
+  TrackingCamera camera = cross_camera();
+  EXPECT_TRUE(view_of(camera, 1, {}));
+  camera.markers[1].is_lit = false;
+  EXPECT_FALSE(view_of(camera, 1, {}));
+  EXPECT_FALSE(view_of(camera, 2, leaning_by(120, 0)));  // turned away
+  camera.is_hidden = [](size_t marker, const Quat&) { return marker == 3; };
+  EXPECT_FALSE(view_of(camera, 3, {}));
+  camera.width = 200;  // outside of the sensor
+  camera.is_hidden = nullptr;
+  EXPECT_FALSE(view_of(camera, 3, {}));
+}
+
+// Without noise the pose is exact from a start that is degrees off, about the centre and free.
+TEST(PoseOfMarkers, IsExactWithoutNoise) {
+  for (const bool knows_centre : {true, false}) {
+    TrackingCamera camera = cross_camera();
+    camera.knows_centre = knows_centre;
+    Pose truth = leaning_by(14, 70);
+    if (!knows_centre) truth.centre_m = {1e-3, -2e-3, 3e-3};
+    std::vector<MarkerReading> readings;
+    for (size_t i = 0; i < camera.markers.size(); ++i) {
+      readings.push_back({i, view_of(camera, i, truth)->pixel, 1e-4 * Mat2::Identity()});
+    }
+    const auto found = find_pose(camera, readings, leaning_by(11, 65));
+    ASSERT_TRUE(found);
+    EXPECT_LT(found->pose.lab_from_body.angularDistance(truth.lab_from_body), 1e-9);
+    EXPECT_LT((found->pose.centre_m - truth.centre_m).norm(), 1e-9);
+    EXPECT_EQ(found->readings, 10);
+  }
+}
+
+// A board that is turned on its plate against the drawing turns every attitude by as much.
+TEST(PoseOfMarkers, TakesOverATurnedBoard) {
+  TrackingCamera camera = cross_camera();
+  const Vec3 turn_rad(2e-4, -1e-4, 5e-4);
+  for (const Marker& marker : camera.markers) {
+    camera.marker_error_body_m.emplace_back(turn_by(turn_rad) * marker.position_body_m -
+                                            marker.position_body_m);
+  }
+  const Pose pose = leaning_by(9, -30);
+  const auto bias = marker_bias_lab_rad(camera, pose);
+  ASSERT_TRUE(bias);
+  EXPECT_LT((*bias - pose.lab_from_body * turn_rad).norm(), 1e-9);
+}
+
+// Rows exposed one after the other: with the rate known the pose is exact, without it the board's
+// height in the image turns into an error of the rate times the time between its rows.
+TEST(PoseOfMarkers, KnowsThatARollingShutterIsLate) {
+  TrackingCamera camera = cross_camera();
+  camera.line_time_s = 1e-5;
+  Pose truth = leaning_by(5, 20);
+  truth.rate_lab_rad_s = {0.05, 0.02, 0.5};
+  std::vector<MarkerReading> readings;
+  for (size_t i = 0; i < camera.markers.size(); ++i) {
+    readings.push_back({i, view_of(camera, i, truth)->pixel, 1e-4 * Mat2::Identity()});
+  }
+  const auto knowing = find_pose(camera, readings, truth);
+  Pose at_rest = truth;
+  at_rest.rate_lab_rad_s.setZero();
+  const auto not_knowing = find_pose(camera, readings, at_rest);
+  ASSERT_TRUE(knowing && not_knowing);
+  EXPECT_LT(knowing->pose.lab_from_body.angularDistance(truth.lab_from_body), 1e-8);
+  EXPECT_GT(not_knowing->pose.lab_from_body.angularDistance(truth.lab_from_body), 1e-5);
+}
+
+// Simulated images against the predicted covariance: χ² of 3 × 4000 numbers, whose standard error
+// is √(2/12000) = 1.3 %.
+double chi2_of_images(const TrackingCamera& camera, const TrackingCamera& predicting) {
+  double sum = 0.0;
+  const std::pair<double, double> attitudes[] = {{0, 0}, {10, 30}, {20, 200}, {30, 90}};
+  uint64_t seed = 7;
+  for (const auto& [tilt, heading] : attitudes) {
+    const Pose pose = leaning_by(tilt, heading);
+    const Mat3 predicted = *attitude_covariance_lab_rad2(predicting, pose);
+    const ImageStatistics seen = take_images(camera, pose, 1000, ++seed, predicted);
+    EXPECT_EQ(seen.failed, 0);
+    EXPECT_NEAR(seen.chi2_fit, 1.0, 4.0 * std::sqrt(2.0 / 7000.0));
+    sum += 0.25 * seen.chi2;
+  }
+  return sum;
+}
+
+TEST(SimulatedImages, ErrAsPredicted) {
+  const TrackingCamera camera = cross_camera();
+  EXPECT_NEAR(chi2_of_images(camera, camera), 1.0, 0.03);
+}
+
+// The mutant: a prediction that leaves out the read noise.
+TEST(SimulatedImages, DoNotErrAsPredictedWithoutReadNoise) {
+  const TrackingCamera camera = cross_camera();
+  TrackingCamera predicting = camera;
+  predicting.read_noise_electrons = 1.0;
+  EXPECT_GT(chi2_of_images(camera, predicting), 1.1);
+}
+
+TEST(SimulatedImages, AreReadFasterThanTheCameraTakesThem) {
+  const TrackingCamera camera = cross_camera();
+  const auto start = std::chrono::steady_clock::now();
+  for (uint64_t i = 0; i < 320; ++i) ASSERT_TRUE(take_image(camera, {}, {}, 1, i));
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  EXPECT_GT(320.0 / wall.count(), 160.0);
+}
+
+// What propagate records scatters as the geometry says, at a tilt where x, y and z differ from
+// zero tilt.
+TEST(CameraWithGeometry, MakesTheNoiseOfARecording) {
+  Sensors sensors;
+  sensors.camera.emplace().geometry = cross_camera();
+  Recorder recorder(sensors, 5);
+  const Pose pose = leaning_by(25, 60);
+  constexpr int rows = 2000;
+  for (int i = 0; i < rows; ++i) {
+    Truth truth;
+    truth.time_s = 0.1 * i;
+    truth.lab_from_body_seen = pose.lab_from_body;
+    recorder.add(truth);
+  }
+  const Recording recording = recorder.finish();
+  const Mat3 weight = attitude_covariance_lab_rad2(*sensors.camera->geometry, pose)->inverse();
+  double chi2 = 0.0;
+  for (size_t i = 0; i < rows; ++i) {
+    const auto cell = [&](const char* name) { return recording.find(name)->values[i]; };
+    const Quat seen(cell("q_w"), cell("q_x"), cell("q_y"), cell("q_z"));
+    const Vec3 error_rad = turn_vector(seen * pose.lab_from_body.conjugate());
+    chi2 += error_rad.dot(weight * error_rad) / (3.0 * rows);
+  }
+  EXPECT_NEAR(chi2, 1.0, 4.0 * std::sqrt(2.0 / (3.0 * rows)));
+}
+
+TEST(CameraSettings, RefuseWhatCannotBe) {
+  const auto camera = [](std::vector<std::pair<std::string, SettingsNode>> changed) {
+    std::vector<std::pair<std::string, SettingsNode>> entries = {
+        {"markers_m", list({numbers({0, 0, 0.03}), numbers({0.1, 0, 0.03}), numbers({0, 0.1, 0.03}),
+                            numbers({-0.1, 0, 0.03})})},
+        {"intensity_W_sr", node(1.7e-5)},
+        {"focal_length_mm", node(8)},
+        {"pixel_um", node(4.8)},
+        {"resolution", numbers({1280, 1024})},
+        {"exposure_s", node(45e-6)},
+        {"position_m", numbers({0, 0, 1})}};
+    for (const auto& one : changed) {
+      std::erase_if(entries, [&](const auto& e) { return e.first == one.first; });
+      entries.push_back(one);
+    }
+    return read_tracking_camera(settings_of(table(entries)));
+  };
+  EXPECT_TRUE(camera({}));
+  EXPECT_THROW(camera({{"exposure_s", node(1.0)}}), InputError);      // saturated
+  EXPECT_THROW(camera({{"aim_m", numbers({0, 0, 2})}}), InputError);  // looks away
+  EXPECT_THROW(camera({{"resolution", numbers({100})}}), InputError);
+  EXPECT_THROW(camera({{"marker_error_m", list({numbers({0, 0, 0})})}}), InputError);
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,77 @@
+// The commands camera and estimate as a user meets them.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/command_test.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+const fs::path source = PHOTORQUE_SOURCE_DIR;
+const std::string tracked = (source / "scenes/stasis/camera.toml").string();
+
+class TrackingCommands : public CommandTest {};
+
+double figure(const json& summary, const std::string& name) {
+  return summary.at(name).at("value").get<double>();
+}
+
+TEST_F(TrackingCommands, TheStatedBoardAndLensGiveThePapersErrors) {
+  const Outcome got =
+      run("camera " + tracked +
+          " --set camera_study.images=100 --set camera_study.grid=5 --json --out " + at("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const json summary = json::parse(got.out);
+  EXPECT_NEAR(figure(summary, "in_plane_error_arcsec"), 12.0, 1.0);
+  EXPECT_NEAR(figure(summary, "out_of_plane_error_arcsec"), 37.0, 2.0);
+  const auto all = files("o");
+  for (const char* name : {"design.png", "error_over_tilt.svg", "out_of_plane_error.png",
+                           "degradation.csv", "images.csv", "markers.csv"}) {
+    EXPECT_TRUE(all.contains(name)) << name;
+  }
+}
+
+TEST_F(TrackingCommands, ACameraWithoutMarkersIsNoneToStudy) {
+  const Outcome got =
+      run("camera " + (source / "scenes/stasis/attitude.toml").string() + " --out " + at("o"));
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, HasSubstr("sensors.camera.markers_m"));
+}
+
+// The platform's own plate stands between a camera below it and the markers above.
+TEST_F(TrackingCommands, ThePlatformHidesItsMarkers) {
+  const Outcome got = run("propagate " + tracked +
+                          " --set propagate.duration_s=1 --set propagate.initial_tilt_deg=0 --set "
+                          "'sensors.camera.position_m=[0.9,0,-0.35]' --set "
+                          "'sensors.camera.marker_normal=[1,0,0]' --set "
+                          "sensors.camera.exposure_us=5 --out " +
+                          at("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(file_text(at("o/recording.csv")), HasSubstr("0.5,,,,,"));
+}
+
+TEST_F(TrackingCommands, EstimatesAreRecordingsThatOthersRead) {
+  const std::string brief =
+      " --set propagate.duration_s=60 --set propagate.output_rate_Hz=5 --set estimate.runs=2 ";
+  const Outcome simulated = run("estimate " + tracked + brief + "--out " + at("s"));
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  EXPECT_THAT(simulated.out, HasSubstr("95 % band"));
+  ASSERT_EQ(run("propagate " + tracked + brief + "--out " + at("p")).status, 0);
+  const Outcome got = run("estimate " + tracked + " --recording " + at("p/recording.csv") +
+                          " --truth " + at("p/time_history.csv") + " --json --out " + at("e"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const json summary = json::parse(got.out);
+  EXPECT_LT(figure(summary, "smoother_error_arcsec"), figure(summary, "filter_error_arcsec"));
+  EXPECT_LT(figure(summary, "filter_error_arcsec"), 40.0);
+  const Outcome balanced =
+      run("balance " + tracked + " --set balance.moving_mass_kg=0.25 --set " +
+          "balance.lead_mm=2 --recording " + at("e/smoothed.csv") + " --out " + at("b"));
+  EXPECT_EQ(balanced.status, 0) << balanced.err;
+}
+
+}  // namespace
+}  // namespace photorque
