@@ -218,16 +218,22 @@ double likeliest_rate_walk(const AttitudeModel& model, const Sensors& sensors,
   EstimationOptions options;
   options.smooths = false;
   options.max_readings = max_readings;
-  for (int half = -28; half <= 4; ++half) {
-    settings.rate_walk_rad_s_rts = std::pow(10.0, 0.5 * half);
+  const auto look = [&](double walk, double tells) {
+    settings.rate_walk_rad_s_rts = walk;
     const MotionModel motion(model, sensors, settings, readings.schedule);
     const double likelihood = estimate_attitude(motion, readings, options).log_likelihood;
-    // Where the readings do not tell, the quieter motion.
-    constexpr double tells = 0.5;
-    if (std::isfinite(likelihood) && likelihood > most + tells) {
-      most = likelihood;
-      best = settings.rate_walk_rad_s_rts;
-    }
+    if (!std::isfinite(likelihood) || likelihood <= most + tells) return;
+    most = likelihood;
+    best = walk;
+  };
+  // Where the readings do not tell, the quieter motion.
+  constexpr double tells = 0.5;
+  constexpr int lowest = -28, highest = 4;
+  for (int half = lowest; half <= highest; ++half) look(std::pow(10.0, 0.5 * half), tells);
+  if (best == std::pow(10.0, 0.5 * lowest)) return best;
+  for (const double exponent : {0.25, 0.125}) {
+    const double middle = best;
+    for (const double side : {-exponent, exponent}) look(middle * std::pow(10.0, side), 0.0);
   }
   return best;
 }

@@ -280,6 +280,34 @@ TEST(Estimates, BridgeGaps) {
   EXPECT_LT(errors.rms_attitude_rad, 5.0 * e.smoothed[120].attitude_sigma_rad());
 }
 
+// An encoder instead of a camera, on a level table: its steps of 20 arcsec hold the heading, which
+// the gyro alone loses by its bias.
+TEST(Estimates, TakeTheHeadingOfAnEncoder) {
+  PropagationRun run = drawn_run();
+  std::erase_if(run.model.disturbances,
+                [](const Disturbance& d) { return d.kind == "static_unbalance"; });
+  run.initial = Dynamics(run.model).initial_state({0.0, 0.0, 0.1});
+  run.sensors.camera.reset();
+  run.sensors.encoder.emplace().resolution_rad = 20 * arcsecond_rad;
+  const SimulatedRun simulated = simulate_run(run, 6);
+  FilterSettings settings;
+  settings.motion = Motion::gyro_drives;
+  const auto heading_error_rad = [&](bool uses_encoder) {
+    settings.uses_attitude = uses_encoder;
+    const Readings readings = readings_of(simulated.recording, "run", run.model.platform, 0.0);
+    EXPECT_TRUE(readings.has_heading);
+    EXPECT_FALSE(readings.sees_attitude());
+    const MotionModel model(run.model, run.sensors, settings, readings.schedule);
+    EstimationOptions options;
+    options.unread_attitude_rad2 = Vec3(1e-8, 1e-8, 1e-2).asDiagonal();
+    const AttitudeEstimate end = estimate_attitude(model, readings, options).filtered.back();
+    return std::abs(
+        turn_vector(end.lab_from_body * simulated.truth.back()->lab_from_body.conjugate()).z());
+  };
+  EXPECT_LT(heading_error_rad(true), 20 * arcsecond_rad);
+  EXPECT_GT(heading_error_rad(false), 200 * arcsecond_rad);
+}
+
 // A camera that reports the past: dated back, the filter is as good as with one that does not.
 TEST(Estimates, DateLateAttitudesBack) {
   PropagationRun run = drawn_run();
