@@ -51,7 +51,7 @@ Quat LiveInstruments::seen(const PlatformState& now) {
   if (!(delay_s_ > 0.0)) return now.lab_from_body;
   const double wanted_s = now.time_s - delay_s_;
   if (wanted_s <= initial_.time_s) return attitude_before(initial_, initial_.time_s - wanted_s);
-  const Quat first = on_the_way_.front();
+  Quat first = on_the_way_.front();
   on_the_way_.pop_front();
   return first;
 }
