@@ -308,6 +308,38 @@ TEST(Estimates, TakeTheHeadingOfAnEncoder) {
   EXPECT_GT(heading_error_rad(false), 200 * arcsecond_rad);
 }
 
+// Turning about all three axes the scale of the gyro is found; about an axis that does not turn it
+// is not, and the estimate says so.
+TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
+  PropagationRun run;
+  run.model.platform.inertia_kg_m2 = 0.1 * Mat3::Identity();
+  run.model = with(run.model, "gyro_scale", {{"scale", numbers({0, 0, 0})}});
+  for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 0.01;
+  // Constant rates tell scale from bias by what is known of the bias alone.
+  run.model = with(run.model, "gyro_bias", {{"bias_rad_s", numbers({0, 0, 0})}});
+  for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 1e-5;
+  run.sensors = instruments(1e-4, 2e-4, 0.0);
+  run.initial = Dynamics(run.model).initial_state({0.3, -0.2, 0.0});
+  run.duration_s = 30.0;
+  const SimulatedRun simulated = simulate_run(run, 21);
+  const EstimateStudy study = study_of(run, 0);
+  const Readings readings = readings_of(simulated.recording, "run", run.model.platform, 0.0);
+  const EstimateResult result = estimate_ways(study, readings, simulated.truth);
+  const Estimation& e = result.ways[result.chosen].estimation;
+  ASSERT_EQ(e.parameter_names[0], "gyro_scale.scale[0]");
+  for (int axis = 0; axis < 3; ++axis) {
+    // As simulate_run() draws them: the seed, its stream, one number each.
+    const double truth = 0.01 * gaussian(21, 1000, static_cast<uint64_t>(axis), 0);
+    EXPECT_LT(std::abs(e.parameters[axis] - truth), 4.0 * e.sigma[axis]);
+    EXPECT_LT(e.sigma[axis], axis < 2 ? 0.003 : 0.011);
+  }
+  EXPECT_GT(e.sigma[2], 0.009);
+  EXPECT_THAT(result.unseen,
+              testing::Contains("gyro_scale.scale[2] does not show in the readings"));
+  EXPECT_THAT(result.unseen,
+              testing::Not(testing::Contains(testing::StartsWith("gyro_scale.scale[0]"))));
+}
+
 // A camera that reports the past: dated back, the filter is as good as with one that does not.
 TEST(Estimates, DateLateAttitudesBack) {
   PropagationRun run = drawn_run();
