@@ -52,6 +52,32 @@ void update(const MotionModel& model, FilterState& state, const Measurement& rea
   model.add(state, gain * read.residual);
 }
 
+// A rate that was hardly known before: how the gyro answers to its scale, and the Earth, is only
+// known with the rate, so that the update is made again at what it gave (A. Jazwinski, Stochastic
+// Processes and Filtering Theory, 1970, theorem 8.2). Else errors of scale seem to be seen when the
+// derivative changes between the first reading and the second.
+void update_by_gyro(const MotionModel& model, FilterState& state, const Vec3& gyro_rad_s,
+                    InnovationSum& innovations, double& log_likelihood) {
+  const double sigma_rad_s =
+      std::sqrt(state.covariance.block<3, 3>(MotionModel::rate, MotionModel::rate).trace());
+  constexpr double known_rad_s = 1e-3;
+  const int rounds = sigma_rad_s > known_rad_s ? 4 : 1;
+  const FilterState before = state;
+  FilterState at = state;
+  for (int round = 1; round <= rounds; ++round) {
+    Measurement read = model.of_gyro(at, gyro_rad_s);
+    read.residual -= read.derivative * model.difference(before, at);
+    state = before;
+    InnovationSum sum = innovations;
+    double likelihood = log_likelihood;
+    update(model, state, read, sum, likelihood);
+    at = state;
+    if (round < rounds) continue;
+    innovations = sum;
+    log_likelihood = likelihood;
+  }
+}
+
 AttitudeEstimate estimate_of(const MotionModel& model, const FilterState& state) {
   return {state.mean.time_s, state.mean.lab_from_body, state.mean.rate_body_rad_s,
           model.inertial_rate_rad_s(state), state.covariance.topLeftCorner<6, 6>()};
@@ -140,8 +166,8 @@ class FilterRun {
         settings.motion == Motion::gyro_drives && reading.gyro_rad_s.allFinite() && i != first_;
     if (settings.uses_gyro && reading.has_gyro() && !drove) {
       // Nor is the first rate one.
-      update(model_, state, model_.of_gyro(state, reading.gyro_rad_s),
-             i == first_ ? unused : sum(out_.gyro), i == first_ ? unused_likelihood : likelihood);
+      update_by_gyro(model_, state, reading.gyro_rad_s, i == first_ ? unused : sum(out_.gyro),
+                     i == first_ ? unused_likelihood : likelihood);
     }
     if (settings.uses_attitude && std::isfinite(reading.heading_rad)) {
       update(model_, state, model_.of_heading(state, reading.heading_rad), sum(out_.heading),
@@ -218,16 +244,22 @@ double likeliest_rate_walk(const AttitudeModel& model, const Sensors& sensors,
   EstimationOptions options;
   options.smooths = false;
   options.max_readings = max_readings;
-  for (int half = -28; half <= 4; ++half) {
-    settings.rate_walk_rad_s_rts = std::pow(10.0, 0.5 * half);
+  const auto look = [&](double walk, double tells) {
+    settings.rate_walk_rad_s_rts = walk;
     const MotionModel motion(model, sensors, settings, readings.schedule);
     const double likelihood = estimate_attitude(motion, readings, options).log_likelihood;
-    // Where the readings do not tell, the quieter motion.
-    constexpr double tells = 0.5;
-    if (std::isfinite(likelihood) && likelihood > most + tells) {
-      most = likelihood;
-      best = settings.rate_walk_rad_s_rts;
-    }
+    if (!std::isfinite(likelihood) || likelihood <= most + tells) return;
+    most = likelihood;
+    best = walk;
+  };
+  // Where the readings do not tell, the quieter motion.
+  constexpr double tells = 0.5;
+  constexpr int lowest = -28, highest = 4;
+  for (int half = lowest; half <= highest; ++half) look(std::pow(10.0, 0.5 * half), tells);
+  if (best == std::pow(10.0, 0.5 * lowest)) return best;
+  for (const double exponent : {0.25, 0.125}) {
+    const double middle = best;
+    for (const double side : {-exponent, exponent}) look(middle * std::pow(10.0, side), 0.0);
   }
   return best;
 }

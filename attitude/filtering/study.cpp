@@ -7,10 +7,14 @@
 #include "attitude/estimation/observation.h"
 #include "attitude/filtering/report.h"
 #include "attitude/noise/reading_level.h"
+#include "core/constants.h"
 #include "core/errors.h"
 
 namespace photorque {
 namespace {
+
+// Where an encoder alone tells of the attitude the table begins level to a hundredth.
+constexpr double level_rad2 = 1e-4;
 
 // The ways that channels allow, the simplest first.
 std::vector<Ingredients> ways_for(const EstimateStudy& study, const Readings& readings) {
@@ -73,6 +77,8 @@ std::vector<std::string> unseen_by(const Platform& platform, const Readings& rea
   std::vector<std::string> lines;
   if (!readings.sees_attitude() && !readings.has_heading) {
     lines.push_back("no attitude was read: it counts from the start, and its error grows");
+  } else if (!readings.sees_attitude()) {
+    lines.push_back("of the attitude the heading alone was read: level to 0.01 rad at the start");
   } else if (!platform.turns_about_one_axis() &&
              !(readings.sees_axis[0] && readings.sees_axis[1] && readings.sees_axis[2])) {
     std::string axes;
@@ -91,9 +97,28 @@ std::vector<std::string> unseen_by(const Platform& platform, const Readings& rea
       if (seen[k] == 0.0) lines.push_back(std::string("no gyro about body ") + "xyz"[k]);
     }
   }
+  // Bands of six standard deviations: recordings are long.
+  const auto odd = [](const InnovationSum& sum) {
+    return sum.numbers > 0.0 &&
+           std::abs(sum.per_number() - 1.0) > 6.0 * std::sqrt(2.0 / sum.numbers);
+  };
+  if (odd(e.attitude) || odd(e.gyro)) {
+    lines.push_back(
+        "innovations are not as large as predicted: noise or physics is not as stated "
+        "(diagnose says which)");
+  }
   const Table parameters = parameter_table(e);
   for (size_t i = 0; i < parameters.columns[0].texts.size(); ++i) {
     const std::string& how = parameters.column("seen").texts[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    const double moved = std::abs(e.parameters[at] - e.prior_mean[at]) / e.prior_sigma[at];
+    constexpr double far = 3.0;
+    if (moved > far) {
+      char line[80];
+      std::snprintf(line, sizeof line, " has moved by %.1f of its sigmas: not to be trusted",
+                    moved);
+      lines.push_back(parameters.columns[0].texts[i] + line);
+    }
     if (how != "yes") {
       lines.push_back(parameters.columns[0].texts[i] +
                       (how == "no" ? " does not show in the readings"
@@ -184,6 +209,9 @@ EstimateResult estimate_ways(const EstimateStudy& study, const Readings& reading
     const MotionModel model(study.nominal.model, study.nominal.sensors, way.settings,
                             readings.schedule);
     EstimationOptions options;
+    if (!readings.sees_attitude() && readings.has_heading) {
+      options.unread_attitude_rad2 = Vec3(level_rad2, level_rad2, pi * pi).asDiagonal();
+    }
     if (progress) {
       options.progress = [&](double part) { progress((static_cast<double>(i) + part) / count); };
     }

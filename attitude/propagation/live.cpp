@@ -51,7 +51,7 @@ Quat LiveInstruments::seen(const PlatformState& now) {
   if (!(delay_s_ > 0.0)) return now.lab_from_body;
   const double wanted_s = now.time_s - delay_s_;
   if (wanted_s <= initial_.time_s) return attitude_before(initial_, initial_.time_s - wanted_s);
-  const Quat first = on_the_way_.front();
+  Quat first = on_the_way_.front();
   on_the_way_.pop_front();
   return first;
 }
@@ -71,6 +71,7 @@ LiveRow LiveInstruments::read(double time_s, std::span<const double> y, const Ze
   row.array_power_W = power ? power->array_power_W : now.array_power_W[0];
   recorder_.add({.time_s = time_s,
                  .lab_from_body_seen = seen(row.truth),
+                 .rate_body_rad_s = row.truth.rate_body_rad_s,
                  .heading_rad = heading_rad(row.truth),
                  .gyro_rad_s = first_lane(now.gyro_rad_s),
                  .camera_error_rad = first_lane(now.camera_error_rad),

@@ -13,7 +13,8 @@
 namespace photorque {
 
 // What is known at a tick before its command is. The readings are those of the recording's row of
-// the same index, to the bit; NaN where an instrument is absent or says nothing in this row.
+// the same index, to the bit (of a camera with geometry to 1e-13); NaN where an instrument is
+// absent or says nothing in this row.
 struct LiveRow {
   size_t index = 0;
   double time_s = 0.0;

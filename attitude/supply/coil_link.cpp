@@ -34,6 +34,7 @@ double SpiralCoil::copper_mass_kg() const {
 std::vector<CircularFilament> turns_of(const SpiralCoil& coil, const Vec3& centre_m,
                                        const Vec3& normal) {
   std::vector<CircularFilament> all;
+  all.reserve(static_cast<size_t>(coil.turns));
   for (int i = 0; i < coil.turns; ++i) all.push_back({centre_m, normal, turn_radius_m(coil, i)});
   return all;
 }

@@ -280,6 +280,66 @@ TEST(Estimates, BridgeGaps) {
   EXPECT_LT(errors.rms_attitude_rad, 5.0 * e.smoothed[120].attitude_sigma_rad());
 }
 
+// An encoder instead of a camera, on a level table: its steps of 20 arcsec hold the heading, which
+// the gyro alone loses by its bias.
+TEST(Estimates, TakeTheHeadingOfAnEncoder) {
+  PropagationRun run = drawn_run();
+  std::erase_if(run.model.disturbances,
+                [](const Disturbance& d) { return d.kind == "static_unbalance"; });
+  run.initial = Dynamics(run.model).initial_state({0.0, 0.0, 0.1});
+  run.sensors.camera.reset();
+  run.sensors.encoder.emplace().resolution_rad = 20 * arcsecond_rad;
+  const SimulatedRun simulated = simulate_run(run, 6);
+  FilterSettings settings;
+  settings.motion = Motion::gyro_drives;
+  const auto heading_error_rad = [&](bool uses_encoder) {
+    settings.uses_attitude = uses_encoder;
+    const Readings readings = readings_of(simulated.recording, "run", run.model.platform, 0.0);
+    EXPECT_TRUE(readings.has_heading);
+    EXPECT_FALSE(readings.sees_attitude());
+    const MotionModel model(run.model, run.sensors, settings, readings.schedule);
+    EstimationOptions options;
+    options.unread_attitude_rad2 = Vec3(1e-8, 1e-8, 1e-2).asDiagonal();
+    const AttitudeEstimate end = estimate_attitude(model, readings, options).filtered.back();
+    return std::abs(
+        turn_vector(end.lab_from_body * simulated.truth.back()->lab_from_body.conjugate()).z());
+  };
+  EXPECT_LT(heading_error_rad(true), 20 * arcsecond_rad);
+  EXPECT_GT(heading_error_rad(false), 200 * arcsecond_rad);
+}
+
+// Turning about all three axes the scale of the gyro is found; about an axis that does not turn it
+// is not, and the estimate says so.
+TEST(Estimates, FindTheScaleOfAGyroThatTurns) {
+  PropagationRun run;
+  run.model.platform.inertia_kg_m2 = 0.1 * Mat3::Identity();
+  run.model = with(run.model, "gyro_scale", {{"scale", numbers({0, 0, 0})}});
+  for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 0.01;
+  // Constant rates tell scale from bias by what is known of the bias alone.
+  run.model = with(run.model, "gyro_bias", {{"bias_rad_s", numbers({0, 0, 0})}});
+  for (Parameter& p : run.model.disturbances.back().parameters) p.sigma = 1e-5;
+  run.sensors = instruments(1e-4, 2e-4, 0.0);
+  run.initial = Dynamics(run.model).initial_state({0.3, -0.2, 0.0});
+  run.duration_s = 30.0;
+  const SimulatedRun simulated = simulate_run(run, 21);
+  const EstimateStudy study = study_of(run, 0);
+  const Readings readings = readings_of(simulated.recording, "run", run.model.platform, 0.0);
+  const EstimateResult result = estimate_ways(study, readings, simulated.truth);
+  const Estimation& e = result.ways[result.chosen].estimation;
+  ASSERT_EQ(e.parameter_names[0], "gyro_scale.scale[0]");
+  for (int axis = 0; axis < 3; ++axis) {
+    // As simulate_run() draws them: the seed, its stream, one number each.
+    const double truth = 0.01 * gaussian(21, 1000, static_cast<uint64_t>(axis), 0);
+    EXPECT_LT(std::abs(e.parameters[axis] - truth), 4.0 * e.sigma[axis]);
+    EXPECT_LT(e.sigma[axis], axis < 2 ? 0.003 : 0.011);
+  }
+  EXPECT_GT(e.sigma[2], 0.009);
+  EXPECT_THAT(result.unseen,
+              testing::Contains("gyro_scale.scale[2] does not show in the readings"));
+  EXPECT_THAT(result.unseen,
+              testing::Not(testing::Contains(testing::StartsWith("gyro_scale.scale[0]"))));
+}
+
 // A camera that reports the past: dated back, the filter is as good as with one that does not.
 TEST(Estimates, DateLateAttitudesBack) {
   PropagationRun run = drawn_run();

@@ -38,8 +38,8 @@ class ServeClient {
   ServeClient(const ServeClient&) = delete;
   ServeClient& operator=(const ServeClient&) = delete;
 
-  // Answers every tick until the run is over; what came, in order.
-  std::vector<photorque_measurement_packet> follow(const ClientLaw& law) {
+  // Answers every tick until the run is over or so many have come; what came, in order.
+  std::vector<photorque_measurement_packet> follow(const ClientLaw& law, size_t most = SIZE_MAX) {
     std::vector<photorque_measurement_packet> all;
     for (int silent = 0; silent < 50; ++silent) {
       if (run_ == 0) send_header(PHOTORQUE_HELLO);
@@ -54,6 +54,7 @@ class ServeClient {
       if (!all.empty() && packet.header.sequence <= all.back().header.sequence) continue;
       all.push_back(packet);
       command(law(packet), packet.now_tick);
+      if (all.size() == most) return all;
     }
     ADD_FAILURE() << "the server fell silent";
     return all;
@@ -86,13 +87,20 @@ class ServeCommand : public CommandTest {
   // Runs `photorque serve ARGUMENTS` on a free port with a client; what the client received.
   std::vector<photorque_measurement_packet> serve(const std::string& arguments,
                                                   const ClientLaw& law) {
+    std::vector<photorque_measurement_packet> all;
+    serve_to(arguments, [&](ServeClient& client) { all = client.follow(law); });
+    return all;
+  }
+  // The same with a client that does what it likes.
+  void serve_to(const std::string& arguments, const std::function<void(ServeClient&)>& act) {
     std::filesystem::remove(at("stdout"));
     std::thread server([&] { outcome_ = run("serve " + arguments + " --set serve.port=0"); });
     const int port = port_when_known();
-    std::vector<photorque_measurement_packet> all;
-    if (port > 0) all = ServeClient(port).follow(law);
+    if (port > 0) {
+      ServeClient client(port);
+      act(client);
+    }
     server.join();
-    return all;
   }
   // From the line "serving at 127.0.0.1:PORT, …".
   int port_when_known() const {

@@ -133,6 +133,44 @@ TEST_F(Lockstep, IsTheSameAtAnotherRate) {
   EXPECT_EQ(content(files("s").at("recording.csv")), content(files("p").at("recording.csv")));
 }
 
+// A camera whose noise follows from its geometry, at the attitude and rate of every tick.
+TEST_F(Lockstep, SendsWhatACameraOfMarkersSees) {
+  const std::string experiment = std::string(PHOTORQUE_SOURCE_DIR) +
+                                 "/scenes/stasis/camera.toml --set propagate.duration_s=0.5";
+  const auto sent =
+      serve(experiment + " --set serve.mode=\\\"lockstep\\\" --out " + at("s"), damping);
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  const auto rows = rows_of(files("s").at("recording.csv"));
+  ASSERT_EQ(sent.size() + 1, rows.size());
+  for (size_t i = 0; i < sent.size(); ++i) {
+    for (size_t k = 0; k < 4; ++k) EXPECT_NEAR(sent[i].attitude[k], rows[i].at(1 + k), 1e-13) << i;
+  }
+  ASSERT_EQ(run("propagate " + experiment +
+                " --set propagate.tick_rate_Hz=160 --set propagate.output_rate_Hz=160"
+                " --set propagate.commands=\\\"" +
+                at("s") + "/commands.csv\\\" --out " + at("p"))
+                .status,
+            0);
+  EXPECT_EQ(content(files("s").at("recording.csv")), content(files("p").at("recording.csv")));
+}
+
+// One row of commands would be no recording.
+TEST_F(Lockstep, IsTheSameWithoutAnyCommand) {
+  const std::string experiment = write("p.toml", served_platform);
+  serve(experiment + " --set propagate.duration_s=1 --set serve.mode=\\\"lockstep\\\" --out " +
+            at("s"),
+        [](const auto&) {
+          return ClientTorque{0, 0, 0};
+        });
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  const Outcome again = run("propagate " + experiment +
+                            " --set propagate.duration_s=1 --set propagate.tick_rate_Hz=160"
+                            " --set propagate.output_rate_Hz=160 --set propagate.commands=\\\"" +
+                            at("s") + "/commands.csv\\\" --out " + at("p"));
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(content(files("s").at("recording.csv")), content(files("p").at("recording.csv")));
+}
+
 // Delays of 5 and 13 ms are one and three ticks of 6.25 ms: readings come a tick later, and a
 // command acts three ticks after the tick that it answers.
 TEST_F(Lockstep, LinksDelayByWholeTicks) {
@@ -199,7 +237,40 @@ TEST_F(Lockstep, LinksFollowAMeasuredTrace) {
   }
 }
 
+// Nobody is waited for any more, and nothing is commanded.
+TEST_F(Lockstep, GoesOnAloneAfterAGoodbye) {
+  const std::string experiment = write("p.toml", served_platform);
+  serve_to(experiment + " --set propagate.duration_s=2 --set serve.mode=\\\"lockstep\\\" --out " +
+               at("s"),
+           [](ServeClient& client) {
+             client.follow([](const auto&) { return ClientTorque{1e-4, 0, 0}; }, 50);
+             client.send_header(PHOTORQUE_GOODBYE);
+           });
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  const auto rows = rows_of(files("s").at("recording.csv"));
+  ASSERT_EQ(rows.size(), 321u);
+  for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(rows[i].at(8), i < 50 ? 1e-4 : 0.0) << i;
+}
+
 class Paced : public ServeCommand {};
+
+// A command that is not renewed ends after hold_s; the client's next acts again.
+TEST_F(Paced, CommandsEndWhenTheyAreNotRenewed) {
+  const std::string experiment = write("p.toml", served_platform);
+  serve_to(experiment + " --set propagate.duration_s=3 --set serve.hold_s=0.6 --out " + at("s"),
+           [](ServeClient& client) {
+             const auto torque = [](const auto&) { return ClientTorque{0, 0, 1e-4}; };
+             client.follow(torque, 20);
+             std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+             client.follow(torque);
+           });
+  ASSERT_EQ(outcome_.status, 0) << outcome_.err;
+  const auto rows = rows_of(files("s").at("commands.csv"));
+  // Nothing, the command, nothing, the command; on a busy machine perhaps once more.
+  ASSERT_GE(rows.size(), 4u);
+  for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(rows[i][3], i % 2 == 0 ? 0.0 : 1e-4) << i;
+  EXPECT_GT(rows[2][0] - rows[1][0], 0.6);
+}
 
 TEST_F(Paced, KeepsTheClockAndTellsItsDeadlines) {
   const std::string experiment = write("p.toml", served_platform);
@@ -221,6 +292,14 @@ TEST_F(Paced, KeepsTheClockAndTellsItsDeadlines) {
     EXPECT_GE(summary.at(name).at("value").get<double>(), 0.0) << name;
   }
   EXPECT_TRUE(files("s").contains("deadlines.png"));
+  // Whenever the commands came, what acted is known, and the run can be repeated.
+  ASSERT_EQ(run("propagate " + experiment +
+                " --set propagate.duration_s=1 --set propagate.tick_rate_Hz=160"
+                " --set propagate.output_rate_Hz=160 --set propagate.commands=\\\"" +
+                at("s") + "/commands.csv\\\" --out " + at("p"))
+                .status,
+            0);
+  EXPECT_EQ(content(files("s").at("recording.csv")), content(files("p").at("recording.csv")));
 }
 
 TEST_F(Paced, SharesMemory) {

@@ -80,7 +80,7 @@ class SimulatedLink {
   // The next that has arrived by `now_s`, by time of arrival.
   std::optional<Packet> pop(double now_s) {
     if (on_the_way_.empty() || on_the_way_.front().due_s > now_s) return {};
-    const Packet first = on_the_way_.front().packet;
+    Packet first = on_the_way_.front().packet;
     on_the_way_.erase(on_the_way_.begin());
     return first;
   }

@@ -16,6 +16,8 @@
 #define PHOTORQUE_VERSION 1u
 #define PHOTORQUE_PORT 4160
 
+/* NOLINTBEGIN(modernize-use-using): it is C as well */
+
 enum photorque_packet_kind {
   PHOTORQUE_HELLO = 1,       /* client: begins; header alone. Answered by the first measurement */
   PHOTORQUE_COMMAND = 2,     /* client: photorque_command_packet */
@@ -77,6 +79,8 @@ typedef struct {
   uint64_t command_lock; /* written by the client: hello, command and goodbye alike */
   photorque_command_packet command;
 } photorque_shared_memory;
+
+/* NOLINTEND(modernize-use-using) */
 
 /* CRC-32 of a packet, its own field taken as zero. */
 static inline uint32_t photorque_checksum(const void* packet, uint32_t size) {

@@ -31,6 +31,7 @@ class Session {
 
   // What acted, for `propagate` to do the same again.
   const Schedule& commands() const { return acted_; }
+  double last_tick_s() const { return start_s_ + tick_s_; }
   // Deadlines, packets and what was refused.
   Product product() const;
 

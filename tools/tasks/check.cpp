@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <functional>
 
+#include "attitude/camera/study.h"
 #include "attitude/disturbances/mass/moving_masses.h"
+#include "attitude/filtering/study.h"
 #include "attitude/propagation/run.h"
 #include "attitude/recordings/recording.h"
 #include "attitude/studies/budget.h"
@@ -143,6 +145,16 @@ class Checker {
     if (settings.has("supply_trade")) {
       attempt([&] { add("supply", supply_in_words(full)); });
     }
+    attempt([&] {
+      const EstimateStudy study = read_estimate(settings);
+      add("estimate", "recordings of motion (--recording FILE), or simulated runs: " +
+                          std::to_string(study.runs));
+      const auto& camera = study.nominal.sensors.camera;
+      if (!camera || !camera->geometry) return;
+      const Platform& platform = study.nominal.model.platform;
+      read_camera_study(settings, *camera->geometry, platform.tilt_limit_rad);
+      add("camera", counted(camera->geometry->markers.size(), "marker"));
+    });
     attempt([&] {
       const Budget budget = read_budget(settings);
       add("budget", counted(budget.entries.size(), "torque"));

@@ -54,7 +54,12 @@ void print_session(const Console& console, const Product& product) {
 }
 
 // What acted, for propagate.commands.
-Recording commands_recording(const Schedule& commands) {
+Recording commands_recording(Schedule commands, double last_tick_s) {
+  // The last holds on; a recording has two rows at least.
+  if (commands.time_s.size() == 1 && last_tick_s > commands.time_s.back()) {
+    commands.time_s.push_back(last_tick_s);
+    commands.held.push_back(commands.held.back());
+  }
   Recording recording;
   recording.time_s = commands.time_s;
   for (int axis = 0; axis < 3; ++axis) {
@@ -89,7 +94,7 @@ RunResult serve_experiment(const RunOptions& options, const Console& console) {
   append(result.product, beside);
   const std::string stamp = result.provenance.one_line();
   const auto write = [session, stamp](const std::filesystem::path& path) {
-    write_recording(path, commands_recording(session->commands()), {stamp});
+    write_recording(path, commands_recording(session->commands(), session->last_tick_s()), {stamp});
   };
   result.files.push_back({"commands.csv", write, "what acted, for propagate.commands"});
   return result;
