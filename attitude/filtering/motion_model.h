@@ -94,8 +94,18 @@ class MotionModel {
   double camera_delay_s() const;
 
  private:
-  struct Derivatives;
-  struct Prediction;
+  // By the error state: of the rates (rows as Dynamics' components) or of the readings
+  // (Dynamics::reading_count rows).
+  struct Derivatives {
+    MatX rates;
+    MatX readings;
+  };
+  struct Prediction {
+    Vec3 gyro_rad_s;
+    Vec3 camera_error_rad;
+    double camera_delay_s;
+    MatX derivative;  // Dynamics::reading_count rows
+  };
   Derivatives derivatives_of(const FilterState& state, bool of_readings) const;
   Prediction predicted_readings(const FilterState& state) const;
   MatX rate_matrix(const FilterState& state) const;

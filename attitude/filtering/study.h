@@ -37,7 +37,7 @@ struct RecordingNoise {
   std::vector<std::string> found;
 };
 RecordingNoise with_noise_of(const Sensors& sensors, const Recording& recording,
-                         const std::string& name, const Platform& platform);
+                             const std::string& name, const Platform& platform);
 
 // One way to estimate.
 struct Ingredients {
