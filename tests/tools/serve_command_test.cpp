@@ -265,11 +265,14 @@ TEST_F(Paced, CommandsEndWhenTheyAreNotRenewed) {
              client.follow(torque);
            });
   ASSERT_EQ(outcome_.status, 0) << outcome_.err;
-  const auto rows = rows_of(files("s").at("commands.csv"));
-  // Nothing, the command, nothing, the command; on a busy machine perhaps once more.
-  ASSERT_GE(rows.size(), 4u);
-  for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(rows[i][3], i % 2 == 0 ? 0.0 : 1e-4) << i;
-  EXPECT_GT(rows[2][0] - rows[1][0], 0.6);
+  auto rows = rows_of(files("s").at("commands.csv"));
+  // Whether the first answer was in time for the first tick is the machine's affair.
+  ASSERT_FALSE(rows.empty());
+  if (rows.front()[3] == 0.0) rows.erase(rows.begin());
+  // The command, nothing, the command; on a busy machine perhaps once more.
+  ASSERT_GE(rows.size(), 3u);
+  for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(rows[i][3], i % 2 == 0 ? 1e-4 : 0.0) << i;
+  EXPECT_GT(rows[1][0] - rows[0][0], 0.6);
 }
 
 TEST_F(Paced, KeepsTheClockAndTellsItsDeadlines) {
