@@ -9,11 +9,11 @@
 #include "core/provenance.h"
 #include "core/settings/settings.h"
 #include "core/text/numbers.h"
-#include "tools/manual/pages.h"
 #include "tools/commands/verb.h"
 #include "tools/guards/interruption.h"
 #include "tools/guards/memory.h"
 #include "tools/guards/output_folder.h"
+#include "tools/manual/pages.h"
 
 namespace photorque {
 
