@@ -317,8 +317,8 @@ TEST_F(Paced, SharesMemory) {
   EXPECT_FALSE(std::filesystem::exists("/dev/shm/" + name));
 }
 
-// Twenty thousand packets of nonsense while the run goes on: none acts, refused ones are counted. (A
-// million at the door itself: realtime_test.cpp.)
+// Twenty thousand packets of nonsense while the run goes on: none acts, refused ones are counted.
+// (A million at the door itself: realtime_test.cpp.)
 TEST_F(Paced, IsNotMovedByNonsense) {
   const std::string experiment = write("p.toml", served_platform);
   uint64_t word = 88172645463325252ull;
