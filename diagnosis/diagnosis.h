@@ -149,6 +149,14 @@ struct InstrumentFinding {
   std::string text;    // one sentence for people
 };
 
+// Recordings that are of one body, where others are of another: its inertia tensor in units of its
+// mean moment, which is all that motion without a known torque tells.
+struct BodyOfRecordings {
+  std::vector<std::string> recordings;         // names as given
+  std::vector<double> inertia_relative;        // Ixx, Iyy, Izz, Ixy, Ixz, Iyz
+  std::vector<double> inertia_relative_sigma;  // of each
+};
+
 // What the files held.
 struct DataQuality {
   int64_t rows = 0;
@@ -183,7 +191,8 @@ struct Diagnosis {
   // What was nominal with an uncertainty, after the fit; keys as "disturbance[0].offset_m".
   std::vector<FittedParameter> priors_refined;
   std::vector<InstrumentFinding> instruments;
-  std::vector<std::string> warnings;  // "the quaternions look conjugated", …
+  std::vector<BodyOfRecordings> bodies;  // two or more: the recordings are not of one body
+  std::vector<std::string> warnings;     // "the quaternions look conjugated", …
   DataQuality data;
   std::vector<RecordingSeries> series;
   std::optional<Replay> replay;

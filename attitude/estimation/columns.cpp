@@ -45,7 +45,11 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
   for (const char* known : event_names) {
     if (event_ == nullptr) event_ = take(known);
   }
-  for (size_t k = 0; k < 3; ++k) gyro_[k] = take(gyro_names[k]);
+  const bool one_axis = platform.turns_about_one_axis();
+  for (size_t k = 0; k < 3; ++k) {
+    // About one axis alone the other two read nothing of the motion.
+    if (!one_axis || k == index_of(platform.axis)) gyro_[k] = take(gyro_names[k]);
+  }
   const bool any_q = std::any_of(std::begin(quaternion_names), std::end(quaternion_names),
                                  [&](const char* q) { return recording.find(q) != nullptr; });
   const bool all_euler = std::all_of(std::begin(euler_names), std::end(euler_names),

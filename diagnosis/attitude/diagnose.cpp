@@ -9,6 +9,7 @@
 #include "attitude/estimation/noise.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/answer.h"
+#include "diagnosis/attitude/bodies.h"
 #include "diagnosis/attitude/findings/account.h"
 #include "diagnosis/attitude/findings/empirical_torque.h"
 #include "diagnosis/attitude/findings/locate.h"
@@ -202,9 +203,14 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
     d.warnings.push_back(text);
   }
   d.instruments = data.instruments;
+  d.bodies = different_bodies(stated.model.platform, data);
+  if (!d.bodies.empty()) d.warnings.insert(d.warnings.begin(), sentence_of(d.bodies));
   d.data = quality_of(recordings, holdouts, data);
   d.replay = replay_of(answer.chosen().fit, data.train.front());
   d.sentence = sentence_of(d);
+  if (!d.bodies.empty())
+    d.sentence +=
+        " The recordings are of " + std::to_string(d.bodies.size()) + " different bodies.";
   return d;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/errors.h"
 #include "core/parallel.h"
@@ -214,6 +215,45 @@ double squares_of(const ModuleFitter& fitter, const ModuleAnswer& answer, size_t
   return std::sqrt(squares / std::max(1.0, points));
 }
 
+// One diode describes modules in even light to 0.1 to 0.5 % of their short-circuit current (curves
+// of docs/real_light.md and of measured modules of others), with a cell in the shade or a step to
+// 0.8 % and more.
+constexpr double even_misfit = 7e-3;
+
+// A curve that is given as the module as it was and as a recording at once: what one diode cannot
+// describe counts as noise, so nothing would be found.
+bool is_its_own_reference(const ModuleDesign& design,
+                          const std::vector<LightRecording>& recordings) {
+  return std::ranges::any_of(recordings, [&](const LightRecording& r) {
+    return std::ranges::any_of(design.references, [&](const LightRecording& reference) {
+      return r.voltage_V == reference.voltage_V && r.current_A == reference.current_A;
+    });
+  });
+}
+
+void judge_references(const ModuleDesign& design, const ModuleNominal& nominal,
+                      const std::vector<LightRecording>& recordings, Diagnosis& d) {
+  const bool own = is_its_own_reference(design, recordings);
+  const bool uneven = !design.references.empty() && nominal.misfit > even_misfit;
+  char percent[40];
+  std::snprintf(percent, sizeof percent, "%.2g %%", 100.0 * nominal.misfit);
+  if (uneven) {
+    d.warnings.push_back(std::string("one diode leaves ") + percent +
+                         " of the short-circuit current of the reference itself, where even light "
+                         "on like cells leaves 0.1 to 0.5 %: part of it may be shaded or damaged, "
+                         "and what the recordings share with it cannot be found");
+  }
+  if (own) {
+    d.warnings.push_back(
+        "a recording is its own reference: what one diode cannot describe counts as noise, so that "
+        "only another curve or a datasheet can show what is missing");
+  }
+  if (!own || !uneven || d.verdict != Verdict::consistent) return;
+  d.verdict = Verdict::unexplained;
+  d.because = std::string("the curve is its own reference, and one diode describes it only to ") +
+              percent + " of its short-circuit current";
+}
+
 }  // namespace
 
 Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRecording>& recordings,
@@ -282,6 +322,7 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   if (answer.decision.undecided) {
     d.warnings.push_back("something is missing, but not which effect it is: see the alternatives");
   }
+  judge_references(design, nominal, recordings, d);
   d.sentence = module_sentence(d);
   return d;
 }

@@ -138,6 +138,13 @@ Json instrument_json(const InstrumentFinding& finding) {
           {"text", finding.text}};
 }
 
+Json body_json(const BodyOfRecordings& body) {
+  return {{"recordings", body.recordings},
+          {"inertia_relative",
+           {{"value", numbers(body.inertia_relative)},
+            {"sigma", numbers(body.inertia_relative_sigma)}}}};
+}
+
 }  // namespace
 
 std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
@@ -158,6 +165,7 @@ std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
   json["manoeuvres"] = list(d.manoeuvres, manoeuvre_json);
   json["beliefs_refined"] = parameters_json(d.priors_refined);
   json["instruments"] = list(d.instruments, instrument_json);
+  json["different_bodies"] = list(d.bodies, body_json);
   json["warnings"] = d.warnings;
   json["data"] = {{"rows", d.data.rows},
                   {"used", d.data.used},

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path written(const std::string& name, const std::string& text) {
+fs::path light_file(const std::string& name, const std::string& text) {
   const fs::path path = fs::path(testing::TempDir()) / name;
   std::ofstream(path) << text;
   return path;
@@ -19,10 +19,10 @@ fs::path written(const std::string& name, const std::string& text) {
 
 TEST(LightRecordings, AScanAmongCommentsAndTornRows) {
   const auto scan = read_light_recording(
-      written("scan.csv",
-              "# operator: nobody\nsome words of an "
-              "instrument\nu_m,v_m,irradiance_W_m2,tilt_deg,heading_deg\n"
-              "0.01,0.02,300.5,12,60\n0.01,0.03\n0.02,0.02,nan,12,60\n0.03,0.02,301,12,60\n"),
+      light_file("scan.csv",
+                 "# operator: nobody\nsome words of an "
+                 "instrument\nu_m,v_m,irradiance_W_m2,tilt_deg,heading_deg\n"
+                 "0.01,0.02,300.5,12,60\n0.01,0.03\n0.02,0.02,nan,12,60\n0.03,0.02,301,12,60\n"),
       {});
   EXPECT_EQ(scan.kind, LightRecording::Kind::scan);
   ASSERT_EQ(scan.rows(), 2u);
@@ -35,17 +35,17 @@ TEST(LightRecordings, AScanAmongCommentsAndTornRows) {
 }
 
 TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
-  const auto sweep = read_light_recording(written("sweep.csv", "voltage_mV,current_mA\n1000,250\n"),
-                                          {Quat::Identity(), 310.0});
+  const auto sweep = read_light_recording(
+      light_file("sweep.csv", "voltage_mV,current_mA\n1000,250\n"), {Quat::Identity(), 310.0});
   EXPECT_EQ(sweep.kind, LightRecording::Kind::sweep);
   EXPECT_NEAR(sweep.voltage_V[0], 1.0, 1e-12);
   EXPECT_NEAR(sweep.current_A[0], 0.25, 1e-12);
   EXPECT_EQ(sweep.temperature_K[0], 310.0);
   const auto run = read_light_recording(
-      written("run.csv",
-              "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,array_power_W,"
-              "cell_temperature_K,led_current_A\n0,1,0,0,0,8,0.3,2.4,297,0.7\n"
-              "1,2,0,0,0,8,0.3,2.4,297,0.7\n"),
+      light_file("run.csv",
+                 "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,array_power_W,"
+                 "cell_temperature_K,led_current_A\n0,1,0,0,0,8,0.3,2.4,297,0.7\n"
+                 "1,2,0,0,0,8,0.3,2.4,297,0.7\n"),
       {});
   EXPECT_EQ(run.kind, LightRecording::Kind::run);
   EXPECT_EQ(run.rows(), 1u);
@@ -55,17 +55,19 @@ TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
 // Once a conversion without a meaning.
 TEST(LightRecordings, NumbersOfSweepsBeyondAllCountingAreLeftOut) {
   const auto sweep = read_light_recording(
-      written("many.csv", "sweep,voltage_V,current_A\n1e300,1,0.2\n-3,1,0.2\n"), {});
+      light_file("many.csv", "sweep,voltage_V,current_A\n1e300,1,0.2\n-3,1,0.2\n"), {});
   ASSERT_EQ(sweep.rows(), 1u);
   EXPECT_EQ(sweep.sweep[0], -3);
   EXPECT_EQ(sweep.rejected.at("unreadable number"), 1);
 }
 
 TEST(LightRecordings, OthersAreRefused) {
-  const fs::path motion = written("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");
+  const fs::path motion =
+      light_file("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");
   EXPECT_FALSE(is_light_recording(motion));
   EXPECT_THROW(read_light_recording(motion, {}), InputError);
-  EXPECT_THROW(read_light_recording(written("empty.csv", "voltage_V,current_A\n"), {}), InputError);
+  EXPECT_THROW(read_light_recording(light_file("empty.csv", "voltage_V,current_A\n"), {}),
+               InputError);
 }
 
 }  // namespace

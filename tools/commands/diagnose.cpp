@@ -3,6 +3,9 @@
 
 #include <cstdio>
 
+#include "core/errors.h"
+#include "core/files.h"
+
 #include "tools/commands/terminal.h"
 
 namespace photorque {
@@ -33,7 +36,28 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
   for (const std::string& warning : d.warnings) console.line("  note: " + warning);
 }
 
+// All that is printed is an experiment too.
+void write_guess(const CommandLine& line) {
+  const Console console = terminal(line);
+  const std::filesystem::path file = line.out_folder() / (line.name_of_guess().string() + ".toml");
+  const std::string text = first_experiment(line.guess, file);
+  // Somebody may have confirmed what stands there.
+  if (std::filesystem::exists(file) && read_file(file) != text) {
+    throw InputError({file.string()}, "", "another file of this name",
+                     "a folder without one (--out DIR)");
+  }
+  write_file_whole(file, text);
+  console.line(text);
+  console.line("# Written to " + file.string() + ". Next, as it is or confirmed:");
+  std::string next = "# photorque diagnose " + file.string();
+  for (const std::filesystem::path& recording : line.guess) {
+    next += " --recording " + recording.string();
+  }
+  console.line(next);
+}
+
 void run_diagnose(const CommandLine& line) {
+  if (!line.guess.empty()) return write_guess(line);
   const Console console = terminal(line);
   const DiagnosisRun run = diagnose_experiment(line, line.recordings, line.holdouts, console);
   print_diagnosis(console, run.diagnosis);
@@ -51,6 +75,7 @@ Verb diagnose_verb() {
             run_diagnose};
   verb.takes_recordings = true;
   verb.takes_holdouts = true;
+  verb.takes_guess = true;
   return verb;
 }
 

@@ -22,6 +22,7 @@ struct CommandLine : RunOptions {
   bool json = false;                              // the summary as JSON on standard output
   std::vector<std::filesystem::path> recordings;  // --recording, of commands that take some
   std::vector<std::filesystem::path> holdouts;    // --holdout, recordings held out from a fit
+  std::vector<std::filesystem::path> guess;       // --guess, recordings without an experiment
   std::optional<std::filesystem::path> truth;     // --truth, what is known of a recording's motion
   std::optional<std::filesystem::path> cases;     // --cases, a folder of injected cases
   bool only_make = false;                         // --only-make: the cases, nothing more
@@ -32,8 +33,11 @@ struct CommandLine : RunOptions {
   // Of a run in a sweep: takes what came out, and no file is written.
   std::function<void(const RunResult&)> take_result = {};
 
-  // --out, or out/EXPERIMENT/VERB below the current folder.
+  // --out, or out/EXPERIMENT/VERB below the current folder; without an experiment the name of the
+  // recording that one is guessed from.
   std::filesystem::path out_folder() const;
+  // The first recording of --guess without folder and endings: "run1" of data/run1.csv.gz.
+  std::filesystem::path name_of_guess() const;
 };
 
 // One command. `run` does everything and throws what goes wrong.
@@ -44,6 +48,7 @@ struct Verb {
   bool traces_light = false;  // --target-error, --max-time
   bool takes_recordings = false;
   bool takes_holdouts = false;
+  bool takes_guess = false;  // instead of an experiment
   bool takes_truth = false;
   bool takes_cases = false;
   bool takes_shard = false;

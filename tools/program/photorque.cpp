@@ -18,7 +18,15 @@
 namespace photorque {
 
 std::filesystem::path CommandLine::out_folder() const {
-  return out ? *out : std::filesystem::path("out") / experiment.stem() / verb;
+  if (out) return *out;
+  return std::filesystem::path("out") / (guess.empty() ? experiment.stem() : name_of_guess()) /
+         verb;
+}
+
+std::filesystem::path CommandLine::name_of_guess() const {
+  std::filesystem::path name = guess.front().filename();
+  while (name.has_extension()) name = name.stem();
+  return name;
 }
 
 namespace {
@@ -30,7 +38,8 @@ std::string seconds_above_zero(const std::string& text) {
 
 void add_options(CLI::App& command, const Verb& verb, CommandLine& line) {
   if (verb.takes_experiment) {
-    command.add_option("experiment", line.experiment, "Experiment file (TOML)")->required();
+    command.add_option("experiment", line.experiment, "Experiment file (TOML)")
+        ->required(!verb.takes_guess);
     command.add_option("--set", line.overrides, "Change a key of the experiment: KEY=VALUE")
         ->allow_extra_args(false);
   }
@@ -123,6 +132,11 @@ int run(int argc, char** argv, Interruption& interruption) {
                        "A recording held out: never fitted, it judges the finding; as above")
           ->allow_extra_args(false);
     }
+    if (verb.takes_guess) {
+      command->add_option("--guess", line.guess,
+                          "Instead of an experiment: write one that fits the columns of these "
+                          "recordings (CSV), its assumptions marked");
+    }
     if (verb.takes_truth) {
       command->add_option("--truth", line.truth,
                           "What is true of the recording's motion (CSV with q_w ..., such as "
@@ -172,6 +186,13 @@ int run(int argc, char** argv, Interruption& interruption) {
   for (const Verb& verb : verbs) {
     if (app.got_subcommand(verb.name)) {
       line.verb = verb.name;
+      if (verb.takes_guess && line.experiment.empty() == line.guess.empty()) {
+        std::fprintf(stderr, "photorque: %s (see photorque %s --help)\n",
+                     line.guess.empty() ? "experiment is required, or --guess RECORDING"
+                                        : "an experiment beside --guess: one of the two",
+                     verb.name.c_str());
+        return 2;
+      }
       if (line.out && line.out->empty()) throw InputError({"--out"}, "", "nothing", "a folder");
       hold_memory(line.max_memory_GB);
       return run_verb(verb, line);

@@ -5,6 +5,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/guess/guess.h"
 #include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/written.h"
 #include "diagnosis/module/diagnose.h"
@@ -149,6 +150,21 @@ DiagnosisRun diagnose_experiment(const RunOptions& options, const std::vector<fs
   return is_light_recording(recordings.front())
              ? diagnose_light_recordings(options, recordings, holdouts, console)
              : diagnose_motion(options, recordings, holdouts, console);
+}
+
+std::string first_experiment(const std::vector<fs::path>& recordings, const fs::path& file) {
+  const std::string text = guess_experiment(recordings, file.parent_path());
+  const Settings root(std::make_shared<const SettingsNode>(parse_toml(text, file.string())));
+  if (root.has("module")) {
+    read_module(root, file.parent_path());
+  } else {
+    read_attitude_model(root);
+    const Settings recording = own_table(root, "recording", false);
+    read_recording_options(recording);
+    recording.finish();
+  }
+  root.finish();
+  return text;
 }
 
 void write_diagnosis(const DiagnosisRun& run, const fs::path& folder) {

@@ -32,6 +32,11 @@ DiagnosisRun diagnose_experiment(const RunOptions& options,
                                  const std::vector<std::filesystem::path>& holdouts,
                                  const Console& console);
 
+// A first experiment for recordings without one (diagnosis/guess/guess.h), as the text of `file`;
+// it has been read again as `diagnose` will.
+std::string first_experiment(const std::vector<std::filesystem::path>& recordings,
+                             const std::filesystem::path& file);
+
 // improved.toml, report.html and diagnosis.json into a folder.
 void write_diagnosis(const DiagnosisRun& run, const std::filesystem::path& folder);
 

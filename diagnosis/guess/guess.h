@@ -1,0 +1,27 @@
+// A first experiment for recordings of a machine of which nothing else is at hand: what the columns
+// allow to be said, what the readings themselves tell (noise, ratios of moments of inertia), and a
+// mark at everything that is assumed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace photorque {
+
+// The text of an experiment file for `diagnose` that is to stand in `folder`. Lines that hold an
+// assumption say CONFIRM. All recordings are taken to be of one machine, with columns as those of
+// the first. InputError for what is neither a recording of motion nor curves of current over
+// voltage, with the cure where one is known.
+std::string guess_experiment(const std::vector<std::filesystem::path>& recordings,
+                             const std::filesystem::path& folder);
+
+// The same by what is recorded.
+std::string guess_motion(const std::vector<std::filesystem::path>& recordings);
+std::string guess_module(const std::vector<std::filesystem::path>& recordings,
+                         const std::filesystem::path& folder);
+
+// "# " before every line, broken after `width` letters.
+std::string comment_lines(const std::string& text, size_t width = 100);
+
+}  // namespace photorque

@@ -1,0 +1,304 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "attitude/estimation/columns.h"
+#include "attitude/estimation/free_inertia.h"
+#include "attitude/noise/reading_level.h"
+#include "attitude/stretches/segments.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "diagnosis/guess/guess.h"
+#include "diagnosis/guess/names.h"
+#include "scenes/experiment/toml_writer.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string digits(double value, int significant = 3) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", significant, value);
+  return text;
+}
+
+// What the columns and readings of some recordings tell of their machine.
+struct Machine {
+  Platform platform;
+  std::string why;  // the topology
+  std::vector<Recording> recordings;
+  std::vector<std::string> names;
+  std::vector<Observation> runs;
+
+  bool has(const char* channel) const { return recordings.front().find(channel) != nullptr; }
+  bool has_all(std::initializer_list<const char*> channels) const {
+    return std::all_of(channels.begin(), channels.end(),
+                       [&](const char* c) { return this->has(c); });
+  }
+  bool sees_attitude() const {
+    return has_all({"q_w", "q_x", "q_y", "q_z"}) || has_all({"roll_rad", "pitch_rad", "yaw_rad"});
+  }
+  bool has_three_rates() const { return has_all({"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"}); }
+  bool is_commanded() const {
+    return has("command_x_N_m") || has("command_y_N_m") || has("command_z_N_m");
+  }
+  void observe_as(Topology topology, const Vec3& axis = Vec3::UnitZ()) {
+    platform.topology = topology;
+    platform.axis = axis;
+    runs.clear();
+    for (size_t i = 0; i < recordings.size(); ++i) {
+      Segments segments = observe_segments(recordings[i], names[i], platform);
+      std::move(segments.all.begin(), segments.all.end(), std::back_inserter(runs));
+    }
+  }
+};
+
+std::string machine_text(const Machine& m) {
+  std::string text = "[platform]\n" + comment_lines("CONFIRM: " + m.why);
+  switch (m.platform.topology) {
+    case Topology::free:
+      return text + "topology = \"free\"\n";
+    case Topology::one_axis: {
+      Eigen::Index axis = 2;
+      m.platform.axis.maxCoeff(&axis);
+      return text + "topology = \"one_axis\"\naxis = \"" + "xyz"[axis] + "\"\n" +
+             comment_lines(
+                 "No moment of inertia can be known from motion alone: it is one, and "
+                 "all torques are per unit of it.");
+    }
+    default:
+      return text + "topology = \"tabletop\"\n" +
+             comment_lines(
+                 "CONFIRM: neither can be read from a recording; torques and offsets of the "
+                 "centre of mass scale with them.") +
+             "mass_kg = 10\ninertia_kg_m2 = [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]\n";
+  }
+}
+
+std::string matrix_text(const Mat3& m) {
+  std::string text = "[";
+  for (int i = 0; i < 3; ++i) {
+    text += i > 0 ? ", [" : "[";
+    for (int j = 0; j < 3; ++j) text += (j > 0 ? ", " : "") + digits(m(i, j));
+    text += "]";
+  }
+  return text + "]";
+}
+
+// Ratios of the moments as far as the rates alone tell them.
+std::string inertia_text(const std::vector<Observation>& runs) {
+  const std::optional<FreeInertia> found = free_inertia(runs);
+  Mat3 value = Mat3::Identity(), sigma;
+  sigma << 0, 0.2, 0.2, 0.2, 0.4, 0.2, 0.2, 0.2, 0.4;
+  constexpr double worth_saying = 0.1;
+  const bool is_known = found && found->sigma(0) < worth_saying && found->sigma(1) < worth_saying &&
+                        found->sigma(2) < worth_saying;
+  std::string why = "CONFIRM: the rates do not tell the ratios of the moments; guessed alike.";
+  if (is_known) {
+    // The first moment is the unit. Torques that nobody knows shift what the rates tell by more
+    // than its own error.
+    const InertiaNumbers in_first = found->value / found->value[0];
+    constexpr double of_moment = 0.1, errors = 5.0;
+    const auto uncertain = [&](int k, double scale) {
+      return std::hypot(errors * found->sigma(k) / found->value[0], of_moment * scale);
+    };
+    value.diagonal() = in_first.head<3>();
+    sigma.setZero();
+    const int row[] = {0, 0, 1}, column[] = {1, 2, 2};
+    for (int k = 1; k < 3; ++k) sigma(k, k) = uncertain(k, in_first[k]);
+    for (int k = 0; k < 3; ++k) {
+      const double scale = std::sqrt(in_first[row[k]] * in_first[column[k]]);
+      sigma(row[k], column[k]) = sigma(column[k], row[k]) = uncertain(3 + k, scale);
+    }
+    why =
+        "CONFIRM: the ratios of the moments as the rates change without a torque; that explains " +
+        digits(100.0 * (1.0 - found->left * found->left), 4) +
+        " % of what they do. The sigmas allow for torques that are not known yet.";
+  }
+  return comment_lines(
+             "Motion without a known torque tells ratios of moments alone: Ixx is one. State "
+             "a moment that was measured, and torques come out in N m.") +
+         comment_lines(why) + "[platform.inertia_kg_m2]\nvalue = " + matrix_text(value) +
+         "\nsigma = " + matrix_text(sigma) + "\n";
+}
+
+// The noise of three channels, where it is alike in all that were read.
+std::string noise_text(const std::vector<Observation>& runs, int first, const char* table,
+                       const char* key, double unit) {
+  std::vector<double> levels;
+  for (int k = 0; k < 3; ++k) {
+    if (const auto level = reading_level(runs, first + k)) levels.push_back(*level / unit);
+  }
+  if (levels.empty()) return "";
+  const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
+  constexpr double alike = 2.0;
+  if (*most > alike * *least) {
+    std::string all;
+    for (const double level : levels) all += (all.empty() ? "" : ", ") + digits(level);
+    return comment_lines(
+        std::string("Neighbouring readings scatter by ") + all + " (" + table + "." + key +
+        "), which differs from axis to axis: it is left out, and diagnose finds it.");
+  }
+  double square = 0.0;
+  for (const double level : levels) square += level * level;
+  return std::string("[") + table + "]\n" + key + " = " +
+         digits(std::sqrt(square / static_cast<double>(levels.size()))) +
+         "  # by which neighbouring readings scatter\n";
+}
+
+bool passes_its_mean(const std::vector<Observation>& runs, int axis) {
+  std::vector<double> angle_rad;
+  for (const Observation& seen : runs) {
+    double at_rad = 0.0;
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      if (!(seen.attitude_rows[i] > 0.0)) continue;
+      if (i > 0 && seen.attitude_rows[i - 1] > 0.0) {
+        at_rad += rotation_vector(seen.attitude[i] * seen.attitude[i - 1].conjugate())[axis];
+      }
+      angle_rad.push_back(at_rad);
+    }
+  }
+  if (angle_rad.empty()) return false;
+  double mean_rad = 0.0, most_rad = 0.0;
+  for (const double a : angle_rad) mean_rad += a / static_cast<double>(angle_rad.size());
+  for (double& a : angle_rad) most_rad = std::max(most_rad, std::abs(a -= mean_rad));
+  // With a margin, so that noise near the mean does not count.
+  int times = 0, side = 0;
+  for (const double a : angle_rad) {
+    const int now = a > 0.2 * most_rad ? 1 : a < -0.2 * most_rad ? -1 : 0;
+    if (now != 0 && now == -side) ++times;
+    if (now != 0) side = now;
+  }
+  constexpr int swings = 4;
+  return times >= swings;
+}
+
+// About which axis, and whether weight may swing it.
+void see_one_axis(Machine& m) {
+  const char* const letters[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k) {
+    if (!m.has((std::string("gyro_") + letters[k] + "_rad_s").c_str())) continue;
+    m.why = std::string("the one gyro axis is ") + letters[k] + ", so it turns about that alone.";
+    return m.observe_as(Topology::one_axis, Vec3::Unit(k));
+  }
+  const bool has_angle = !m.has("rate_rad_s") || m.has("angle_rad") || m.has("roll_rad");
+  m.why = std::string("there is one ") + (has_angle ? "angle" : "rate") +
+          " alone, so it turns about one axis: a wheel, a turntable, one angle of a spacecraft.";
+  m.observe_as(Topology::one_axis);
+  if (has_angle && passes_its_mean(m.runs, 2)) {
+    m.why =
+        "one angle that swings about its mean: a pendulum about a horizontal axis (\"z\" where "
+        "the axis is vertical and something else drives it back). Angle zero is taken to hang.";
+    m.observe_as(Topology::one_axis, Vec3::UnitX());
+  }
+}
+
+// The axis about which nearly all of three rates is; none where more than one counts.
+std::optional<int> only_axis(const std::vector<Observation>& runs) {
+  Vec3 squares = Vec3::Zero();
+  for (const Observation& seen : runs) {
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      if (seen.gyro_rad_s[i].allFinite()) squares += seen.gyro_rad_s[i].cwiseAbs2();
+    }
+  }
+  int axis = 0;
+  const double most = squares.maxCoeff(&axis);
+  constexpr double across = 0.05;  // of the rate: a gyro that is mounted a little askew
+  if (squares.sum() - most > across * across * most) return std::nullopt;
+  return axis;
+}
+
+void see_machine(Machine& m) {
+  if (!m.sees_attitude() && !m.has_three_rates()) return see_one_axis(m);
+  m.why =
+      "three rates and no attitude: thrown, in orbit, or on gimbals, nothing carries it. On a "
+      "bearing or with a weight off the centre it is \"tabletop\".";
+  if (!m.sees_attitude()) {
+    m.observe_as(Topology::free);
+    const std::optional<int> axis = only_axis(m.runs);
+    if (!axis) return;
+    m.why = std::string("three rates, of which that about ") + "xyz"[*axis] +
+            " is all but a twentieth: it turns about one axis.";
+    return m.observe_as(Topology::one_axis, Vec3::Unit(*axis));
+  }
+  m.observe_as(Topology::tabletop);
+  const std::optional<FreeInertia> found = free_inertia(m.runs);
+  constexpr double explains = 0.2;
+  if (found && found->left < explains && !m.is_commanded()) {
+    m.why = "its rates change as its own inertia makes them: nothing carries it.";
+    return m.observe_as(Topology::free);
+  }
+  m.why =
+      "an attitude about three axes that does not follow from inertia alone: a platform on a "
+      "bearing (\"free\" for what is in orbit or thrown).";
+}
+
+std::string columns_text(const std::vector<GuessedColumn>& columns, RecordingOptions& options) {
+  std::string text;
+  for (const GuessedColumn& c : columns) {
+    if (c.channel.empty() || c.channel == c.in_file) continue;
+    options.columns[c.channel] = c.in_file;
+    if (!c.is_sure) text += comment_lines("CONFIRM: " + c.because + " of the next column.");
+    text += c.channel + " = " + toml_value({c.in_file}) + "\n";
+  }
+  return text.empty() ? "" : "[recording.columns]\n" + text + "\n";
+}
+
+// Drag that slows a rate as a whole; a start from which other torques are told apart.
+std::string drag_text(const Machine& m) {
+  Eigen::Index axis = 2;
+  m.platform.axis.maxCoeff(&axis);
+  double slowed = 0.0, sum = 0.0;
+  for (const Observation& seen : m.runs) {
+    std::vector<double> rate;
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      if (seen.gyro_rows[i][axis] > 0.0) rate.push_back(std::abs(seen.gyro_rad_s[i][axis]));
+    }
+    if (rate.size() < 2) continue;
+    const double mean = 0.5 * (rate.front() + rate.back());
+    if (mean > 0.0) slowed += (rate.front() - rate.back()) / mean;
+    sum += seen.duration_s();
+  }
+  const double coefficient_1_s = sum > 0.0 ? slowed / sum : 0.0;
+  if (!(slowed > 0.2)) return "";
+  return "\n" +
+         comment_lines(
+             "CONFIRM: it slows down, so a drag linear in the rate is taken to act; what it "
+             "leaves is looked for.") +
+         "[[disturbance]]\nkind = \"bearing_drag\"\ncoefficient_N_m_s = { value = " +
+         digits(coefficient_1_s) + ", sigma = " + digits(10.0 * coefficient_1_s) + " }\n";
+}
+
+}  // namespace
+
+std::string guess_motion(const std::vector<fs::path>& recordings) {
+  RecordingOptions options;
+  const std::vector<GuessedColumn> columns = guess_columns(recordings.front());
+  const std::string mapped = columns_text(columns, options);
+  Machine m;
+  for (const fs::path& path : recordings) {
+    m.recordings.push_back(read_recording(path, options));
+    m.names.push_back(path.string());
+  }
+  see_machine(m);
+  std::string text = mapped + machine_text(m);
+  if (m.platform.topology == Topology::free) text += inertia_text(m.runs);
+  if (m.platform.turns_about_one_axis()) text += drag_text(m);
+  text += "\n";
+  const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().sees_some_attitude();
+  if (has_gyro) text += noise_text(m.runs, 3, "sensors.gyro", "noise_rad_s", 1.0);
+  if (has_angle && m.platform.turns_about_one_axis()) {
+    text += noise_text(m.runs, 0, "sensors.angle", "noise_arcsec", arcsecond_rad);
+  }
+  std::string unused;
+  for (const std::string& name :
+       MotionColumns(m.recordings.front(), m.platform, m.names.front()).unused()) {
+    unused += (unused.empty() ? "" : ", ") + name;
+  }
+  if (!unused.empty())
+    text += "\n" + comment_lines("Columns that nothing is made of: " + unused + ".");
+  return text;
+}
+
+}  // namespace photorque

@@ -1,0 +1,280 @@
+// A first experiment from the columns and readings of a recording alone, and recordings that cannot
+// be of one body.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "attitude/estimation/free_inertia.h"
+#include "attitude/propagation/run.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/guess/guess.h"
+#include "diagnosis/guess/names.h"
+#include "scenes/experiment/toml_reader.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+
+class Guess : public testing::Test {
+ protected:
+  fs::path write(const std::string& name, const std::string& text) const {
+    const fs::path path = fs::path(testing::TempDir()) / name;
+    std::ofstream(path, std::ios::binary) << text;
+    return path;
+  }
+};
+
+NominalModel model_of(const std::string& toml) {
+  return read_attitude_model(
+      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "guess.toml"))));
+}
+
+// The rates of a body that turns freely, a wheel on its z axis spinning up at `wheel_rad_s2`.
+Recording thrown(const Mat3& inertia_kg_m2, const Vec3& rate_rad_s, double noise_rad_s,
+                 uint64_t seed, double wheel_kg_m2 = 0.0, double wheel_rad_s2 = 0.0) {
+  constexpr double interval_s = 0.005;
+  constexpr int rows = 400;
+  AttitudeModel model;
+  model.platform.topology = Topology::free;
+  model.platform.inertia_kg_m2 = inertia_kg_m2;
+  model.environment.gravity_lab_m_s2 = Vec3::Zero();
+  if (wheel_kg_m2 > 0.0) {
+    const NominalModel with_wheel = model_of(
+        "[platform]\ntopology = \"free\"\ninertia_kg_m2 = [[1,0,0],[0,1,0],[0,0,1]]\n"
+        "[[disturbance]]\nkind = \"wheel_momentum\"\ninertia_kg_m2 = " +
+        std::to_string(wheel_kg_m2) + "\n");
+    model.disturbances = with_wheel.model.disturbances;
+    ZeroOrderHold held;
+    held.wheel.acceleration_rad_s2 = {0.0, 0.0, wheel_rad_s2};
+    model.schedule.append(-1.0, held);
+    model.schedule.held.front().wheel.from_s = 0.0;
+  }
+  const Dynamics dynamics(model);
+  PropagationOptions options;
+  options.tolerance = 1e-11;
+  Propagator propagator(dynamics, dynamics.initial_state(rate_rad_s), interval_s * rows, options);
+  Recording recording;
+  recording.channels = {{"gyro_x_rad_s", {}}, {"gyro_y_rad_s", {}}, {"gyro_z_rad_s", {}}};
+  if (wheel_kg_m2 > 0.0) recording.channels.push_back({"wheel_z_rad_s", {}});
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  sample(
+      propagator, rows, [&](size_t i) { return interval_s * static_cast<double>(i); },
+      [&](const Samples& samples) {
+        for (int lane = 0; lane < samples.count; ++lane) {
+          const double time_s = samples.time_s[lane];
+          recording.time_s.push_back(time_s);
+          for (size_t k = 0; k < 3; ++k) {
+            recording.channels[k].values.push_back(samples.y[component::rate + k][lane] +
+                                                   noise_rad_s * normal(random));
+          }
+          if (wheel_kg_m2 > 0.0) recording.channels[3].values.push_back(wheel_rad_s2 * time_s);
+        }
+      });
+  recording.report.rows_read = recording.report.rows_kept = rows;
+  recording.report.median_interval_s = interval_s;
+  return recording;
+}
+
+Platform free_platform() {
+  Platform platform;
+  platform.topology = Topology::free;
+  return platform;
+}
+
+InertiaNumbers relative(const Mat3& inertia) {
+  InertiaNumbers six;
+  six << inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2);
+  return 3.0 * six / inertia.trace();
+}
+
+const Mat3 racquet = (Mat3() << 1.0, 0.02, 0.0, 0.02, 0.08, -0.01, 0.0, -0.01, 1.07).finished();
+const Mat3 board = (Mat3() << 1.0, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 1.2).finished();
+
+TEST_F(Guess, MomentsFollowFromFreeRatesUpToTheirScale) {
+  for (const bool wheel : {false, true}) {
+    const Recording exact =
+        thrown(racquet, {4.0, 2.0, 3.0}, 0.0, 1, wheel ? 2e-3 : 0.0, wheel ? 900.0 : 0.0);
+    const auto found = free_inertia({observe(exact, "exact.csv", free_platform())});
+    ASSERT_TRUE(found);
+    // Integrals by a rule of fourth order: (5 ms × some 10 rad/s)⁴ / 720.
+    EXPECT_LT((found->value - relative(racquet)).cwiseAbs().maxCoeff(), 2e-5) << wheel;
+    EXPECT_LT(found->left, 1e-4);
+  }
+}
+
+TEST_F(Guess, MomentsHaveTheErrorsOfTheirScatter) {
+  const InertiaNumbers truth = relative(racquet);
+  InertiaNumbers squares = InertiaNumbers::Zero();
+  constexpr int draws = 40;
+  for (uint64_t seed = 0; seed < draws; ++seed) {
+    const auto found = free_inertia(
+        {observe(thrown(racquet, {4.0, 2.0, 3.0}, 0.01, seed), "noisy.csv", free_platform())});
+    ASSERT_TRUE(found);
+    for (int k = 0; k < 6; ++k) {
+      squares[k] += std::pow((found->value[k] - truth[k]) / found->sigma(k), 2.0) / draws;
+    }
+  }
+  // Errors may be too wide by the correlation that is assumed, hardly too narrow.
+  EXPECT_LT(squares.maxCoeff(), 2.0) << squares.transpose();
+  EXPECT_GT(squares.minCoeff(), 0.05) << squares.transpose();
+}
+
+TEST_F(Guess, RatesAboutOneAxisTellNoMoments) {
+  const auto found =
+      free_inertia({observe(thrown(board, {0.0, 0.0, 3.0}, 0.0, 1), "spin.csv", free_platform())});
+  EXPECT_FALSE(found);
+}
+
+std::vector<NamedRecording> throws_of(const std::vector<std::pair<std::string, Mat3>>& bodies) {
+  std::vector<NamedRecording> all;
+  uint64_t seed = 1;
+  for (const auto& [name, inertia] : bodies) {
+    const Vec3 rate(4.0 + 0.3 * static_cast<double>(seed), 2.0, 3.0);
+    all.push_back({name, thrown(inertia, rate, 0.003, seed)});
+    ++seed;
+  }
+  return all;
+}
+
+const char* const free_toml = R"([platform]
+topology = "free"
+[platform.inertia_kg_m2]
+value = [[1, 0, 0], [0, 0.4, 0], [0, 0, 1.2]]
+sigma = [[0, 0.1, 0.1], [0.1, 0.2, 0.1], [0.1, 0.1, 0.2]]
+)";
+
+TEST_F(Guess, RecordingsOfTwoBodiesAreToldApart) {
+  const Diagnosis d =
+      diagnose(model_of(free_toml),
+               throws_of({{"one.csv", board}, {"two.csv", racquet}, {"three.csv", board}}), {});
+  ASSERT_THAT(d.bodies, SizeIs(2));
+  EXPECT_THAT(d.bodies[0].recordings, ElementsAre("one.csv", "three.csv"));
+  EXPECT_THAT(d.bodies[1].recordings, ElementsAre("two.csv"));
+  const InertiaNumbers truth = relative(racquet);
+  for (size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(d.bodies[1].inertia_relative[k], truth[static_cast<Eigen::Index>(k)],
+                5.0 * d.bodies[1].inertia_relative_sigma[k]);
+  }
+  EXPECT_THAT(d.warnings.front(), AllOf(HasSubstr("different bodies"), HasSubstr("two.csv: Ixx"),
+                                        HasSubstr("one.csv, three.csv: Ixx")));
+  EXPECT_THAT(d.sentence, HasSubstr("The recordings are of 2 different bodies."));
+}
+
+TEST_F(Guess, RecordingsOfOneBodyAreNot) {
+  const Diagnosis d =
+      diagnose(model_of(free_toml), throws_of({{"one.csv", board}, {"two.csv", board}}), {});
+  EXPECT_TRUE(d.bodies.empty());
+  for (const std::string& warning : d.warnings) EXPECT_THAT(warning, Not(HasSubstr("bodies")));
+}
+
+TEST_F(Guess, ASensorMountedOtherwiseIsSaid) {
+  const Mat3 turn = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
+  const Diagnosis d =
+      diagnose(model_of(free_toml),
+               throws_of({{"one.csv", board}, {"two.csv", turn * board * turn.transpose()}}), {});
+  ASSERT_THAT(d.bodies, SizeIs(2));
+  EXPECT_THAT(d.warnings.front(), HasSubstr("their principal moments agree"));
+}
+
+TEST_F(Guess, ColumnsByTheirNames) {
+  const std::string header = "Time (s),Gyroscope x (deg/s),wy,omega_z [rad/s],accX,temp,q0";
+  const fs::path file =
+      write("names.csv", "made by a phone\n" + header + "\n0,1,2,3,4,5,6\n" + "0.01,1,2,3,4,5,6\n");
+  std::vector<std::string> channels;
+  std::vector<bool> sure;
+  for (const GuessedColumn& c : guess_columns(file)) {
+    channels.push_back(c.channel);
+    sure.push_back(c.is_sure);
+  }
+  EXPECT_THAT(channels, ElementsAre("t_s", "gyro_x_deg_s", "gyro_y_rad_s", "gyro_z_rad_s",
+                                    "accel_x_m_s2", "", "q_w"));
+  EXPECT_TRUE(sure[1]);
+  EXPECT_FALSE(sure[2]);  // no unit in its name
+}
+
+TEST_F(Guess, AClockThatCountsMilliseconds) {
+  const fs::path file = write("clock.csv", "timestamp;gyro_z\n0;1\n20;1\n40;1\n60;1\n");
+  EXPECT_EQ(guess_columns(file).front().channel, "t_ms");
+  const fs::path fast = write("fast.csv", "timestamp;gyro_z\n0;1\n4000;1\n8000;1\n");
+  EXPECT_EQ(guess_columns(fast).front().channel, "t_us");
+}
+
+TEST_F(Guess, FilesThatCannotBeReadNameTheCure) {
+  const auto refusal = [&](const std::string& text) -> std::string {
+    try {
+      guess_columns(write("bad.csv", text));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal("t_s;gyro_z_rad_s\n0,0;1,5\n0,1;1,6\n"), HasSubstr("decimal commas"));
+  EXPECT_THAT(refusal("0,1\n0.1,2\n"), HasSubstr("a line above them that names the columns"));
+  EXPECT_THAT(refusal(std::string("\xff\xfet\0_\0s\0", 8)), HasSubstr("UTF-16"));
+  EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no rows of numbers"));
+}
+
+// The experiment that is guessed of a wheel names what acts on it, in words of another maker.
+TEST_F(Guess, AWheelIsDiagnosedByItsGuess) {
+  constexpr double dry = 0.01, form = 1.2e-4, start_rad_s = 30.0;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  std::string text = "Time (s),Angular speed (deg/s),Battery\n";
+  for (int i = 0; i < 1200; ++i) {
+    const double unit = std::sqrt(dry / form);
+    // As in machines_test.cpp: I ω' = −τ − k ω² by separation.
+    const double rate =
+        unit * std::tan(std::atan(start_rad_s / unit) - std::sqrt(dry * form) * 0.25 * i);
+    text += std::to_string(0.25 * i) + "," + std::to_string((rate + noise(random)) / degree_rad) +
+            ",12\n";
+  }
+  const fs::path file = write("wheel.csv", text);
+  const std::string toml = guess_experiment({file}, file.parent_path());
+  EXPECT_THAT(toml, AllOf(HasSubstr("topology = \"one_axis\""),
+                          HasSubstr("rate_deg_s = \"Angular speed (deg/s)\""),
+                          HasSubstr("Columns that nothing is made of: Battery")));
+  const Settings root(std::make_shared<const SettingsNode>(parse_toml(toml, "wheel.toml")));
+  const Recording recording = read_recording(file, read_recording_options(root.table("recording")));
+  const Diagnosis d = diagnose(read_attitude_model(root), {{"wheel.csv", recording}}, {});
+  std::vector<std::string> kinds;
+  for (const FoundEffect& effect : d.effects) kinds.push_back(effect.kind);
+  EXPECT_THAT(kinds, testing::UnorderedElementsAre("dry_friction", "air_pressure_drag"));
+}
+
+TEST_F(Guess, APendulumHangsFromAHorizontalAxis) {
+  std::string text = "t_s,angle_deg\n";
+  for (int i = 0; i < 400; ++i) {
+    text += std::to_string(0.05 * i) + "," + std::to_string(20.0 * std::cos(0.15 * i)) + "\n";
+  }
+  const fs::path file = write("pendulum.csv", text);
+  EXPECT_THAT(guess_experiment({file}, "."),
+              AllOf(HasSubstr("axis = \"x\""), HasSubstr("CONFIRM")));
+}
+
+TEST_F(Guess, AThrowHasTheRatiosOfItsMoments) {
+  const fs::path file = fs::path(testing::TempDir()) / "throw.csv";
+  write_recording(file, thrown(board, {4.0, 2.0, 3.0}, 0.003, 7));
+  const std::string toml = guess_experiment({file}, ".");
+  EXPECT_THAT(toml, HasSubstr("topology = \"free\""));
+  const NominalModel model = model_of(toml);
+  EXPECT_NEAR(model.model.platform.inertia_kg_m2(1, 1), 0.4, 0.01);
+  EXPECT_NEAR(model.model.platform.inertia_kg_m2(2, 2), 1.2, 0.02);
+  EXPECT_TRUE(model.uncertain_inertia);
+  ASSERT_TRUE(model.sensors.gyro);
+  EXPECT_NEAR(model.sensors.gyro->noise_rad_s, 0.003, 0.0006);
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,94 @@
+// `diagnose --guess`: an experiment for a recording of which nothing else is at hand.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/outside.h"
+#include "tests/tools/command_test.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class GuessCommand : public CommandTest {
+ protected:
+  // A guess from a recording, then a diagnosis with it as it stands.
+  nlohmann::json diagnosed(const fs::path& recording) const {
+    const Outcome guess = run("diagnose --guess " + recording.string() + " --out " + at("guess"));
+    EXPECT_EQ(guess.status, 0) << guess.err;
+    fs::path name = recording.filename();
+    while (name.has_extension()) name = name.stem();
+    const Outcome got = run("diagnose " + at("guess/" + name.string() + ".toml") + " --recording " +
+                            recording.string() + " --json --quiet --out " + at("out"));
+    EXPECT_EQ(got.status, 0) << got.err;
+    fs::remove_all(at("guess"));
+    return got.status == 0 ? nlohmann::json::parse(got.out) : nlohmann::json();
+  }
+  static std::vector<std::string> names(const nlohmann::json& answer) {
+    std::vector<std::string> kinds;
+    for (const auto& effect : answer.at("effects")) kinds.push_back(effect.at("kind"));
+    return kinds;
+  }
+};
+
+TEST_F(GuessCommand, PrintsWhatItWritesAndKeepsWhatSomebodyChanged) {
+  std::string rows = "t_s,angle_deg\n";
+  for (int i = 0; i < 100; ++i) rows += std::to_string(i) + "," + std::to_string(i * i) + "\n";
+  const std::string recording = write("disc.csv", rows);
+  const Outcome first = run("diagnose --guess " + recording + " --out " + at("guess"));
+  ASSERT_EQ(first.status, 0) << first.err;
+  const std::string text = file_text(at("guess/disc.toml"));
+  EXPECT_THAT(text, HasSubstr("topology = \"one_axis\""));
+  EXPECT_EQ(first.out.substr(0, text.size()), text);
+  EXPECT_THAT(first.out, HasSubstr("# photorque diagnose " + at("guess/disc.toml")));
+  // The same again is no loss; what was confirmed would be.
+  EXPECT_EQ(run("diagnose --guess " + recording + " --out " + at("guess")).status, 0);
+  write("guess/disc.toml", text + "# confirmed\n");
+  const Outcome again = run("diagnose --guess " + recording + " --out " + at("guess"));
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.err, HasSubstr("another file of this name"));
+  EXPECT_THAT(file_text(at("guess/disc.toml")), HasSubstr("# confirmed"));
+}
+
+TEST_F(GuessCommand, NeedsOneOfTheTwo) {
+  EXPECT_THAT(run("diagnose").err, HasSubstr("experiment is required, or --guess RECORDING"));
+  const Outcome both = run("diagnose a.toml --guess b.csv");
+  EXPECT_EQ(both.status, 2);
+  EXPECT_THAT(both.err, HasSubstr("one of the two"));
+  EXPECT_EQ(run("diagnose --guess " + at("none.csv") + " --out " + at("guess")).status, 2);
+  EXPECT_FALSE(fs::exists(at("guess")));
+}
+
+TEST_F(GuessCommand, ACurveThatOneDiodeDoesNotDescribeIsNotConsistentWithItself) {
+  // Two thirds of a string in the light, one in half of it behind a bypass diode: a step at 14 V.
+  std::string rows = "voltage_V,current_A\n";
+  for (int i = 0; i <= 120; ++i) {
+    const double volt = 0.175 * i;
+    const double bright = 5.0 - 2.5 * std::min(1.0, std::exp((volt - 14.0) / 0.4));
+    const double dim = 2.5 * std::exp((volt - 21.0) / 0.6);
+    rows += std::to_string(volt) + "," + std::to_string(bright - dim) + "\n";
+  }
+  const nlohmann::json answer = diagnosed(write("stepped.csv", rows));
+  EXPECT_EQ(answer.at("verdict"), "unexplained");
+  EXPECT_THAT(answer.at("because").get<std::string>(), HasSubstr("its own reference"));
+}
+
+// Recordings of other machines (docs/real.md): what their guess says is taken as it is.
+TEST_F(GuessCommand, RealRecordingsAreDiagnosedByTheirGuess) {
+  PHOTORQUE_NEEDS_THIRD_PARTY("recordings");
+  const fs::path real = photorque::outside::third_party("recordings");
+  using testing::Contains;
+  EXPECT_THAT(names(diagnosed(real / "throw_flywheel/body_37.csv.gz")), Contains("wheel_momentum"));
+  EXPECT_THAT(names(diagnosed(real / "racquet_tumble/flight_081.csv.gz")),
+              Contains("air_pressure_drag"));
+  EXPECT_THAT(names(diagnosed(real / "wheel_coastdown/grandprix406_left_120psi.csv.gz")),
+              Contains("air_pressure_drag"));
+  EXPECT_EQ(diagnosed(real / "pv_iv_shading/curve_058.csv.gz").at("verdict"), "consistent");
+  EXPECT_EQ(diagnosed(real / "pv_iv_shading/curve_067.csv.gz").at("verdict"), "unexplained");
+  EXPECT_EQ(diagnosed(real / "pv_cracked/module_before.csv").at("verdict"), "consistent");
+  EXPECT_EQ(diagnosed(real / "k2_roll/roll_days_0_50.csv.gz").at("verdict"), "unexplained");
+}
+
+}  // namespace
+}  // namespace photorque
