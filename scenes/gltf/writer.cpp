@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/text/base64.h"
+
 namespace photorque {
 namespace {
 
@@ -32,22 +34,6 @@ Json to_json(const SettingsNode& node) {
   for (const auto& [key, item] : std::get<SettingsNode::Table>(node.value))
     items[key] = to_json(item);
   return items;
-}
-
-std::string base64(const std::vector<std::byte>& bytes) {
-  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    const size_t present = std::min<size_t>(3, bytes.size() - i);
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) {
-      group = group << 8 | (k < present ? std::to_integer<uint32_t>(bytes[i + k]) : 0u);
-    }
-    for (size_t k = 0; k < 4; ++k) {
-      text += k <= present ? digits[group >> (18 - 6 * k) & 63u] : '=';
-    }
-  }
-  return text;
 }
 
 // Body (x, y, z) is glTF (x, z, −y).

@@ -1,22 +1,27 @@
 // photorque trace: irradiance on every receiver, power balance, radiation wrench.
-#include "tools/tasks/trace.h"
-
+#include "tools/commands/page.h"
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
+#include "tools/pages/runs.h"
 
 namespace photorque {
 namespace {
 
 void run_trace(const CommandLine& line) {
   const Console console = terminal(line);
-  write_results(line, console, trace_experiment(line, console, !line.take_result).result);
+  TraceRun run = trace_experiment(line, console, !line.take_result);
+  if (line.page) run.result.files.push_back(trace_page(run, page_head(line)));
+  write_results(line, console, run.result);
 }
 
 }  // namespace
 
 Verb trace_verb() {
-  return {"trace", "Irradiance on every receiver, where the power went, radiation force and torque",
-          run_trace, true};
+  Verb verb{"trace",
+            "Irradiance on every receiver, where the power went, radiation force and torque",
+            run_trace, true};
+  verb.draws_page = true;
+  return verb;
 }
 
 }  // namespace photorque

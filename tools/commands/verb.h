@@ -29,6 +29,7 @@ struct CommandLine : RunOptions {
   std::string shard;                              // --shard K/N, of a sweep
   std::optional<std::filesystem::path> scene;     // --scene, of a new experiment
   bool collect = false;                           // --collect, of a sweep
+  bool page = false;                              // --page: also one HTML page to look at
   Interruption* interruption = nullptr;           // the program's, when it is one
   // Of a run in a sweep: takes what came out, and no file is written.
   std::function<void(const RunResult&)> take_result = {};
@@ -53,6 +54,7 @@ struct Verb {
   bool takes_cases = false;
   bool takes_shard = false;
   bool takes_scene = false;
+  bool draws_page = false;
   bool takes_experiment = true;
   bool writes = true;  // into its output folder
 };

@@ -149,6 +149,10 @@ int run(int argc, char** argv, Interruption& interruption) {
     if (verb.takes_scene) {
       command->add_option("--scene", line.scene, "A model (glTF or GLB) to be lit");
     }
+    if (verb.draws_page) {
+      command->add_flag("--page", line.page,
+                        "Write page.html too: scene, maps and curves to look at in a browser");
+    }
     if (verb.takes_shard) {
       command->add_option("--shard", line.shard,
                           "K/N: only every Nth design, from the Kth; the run that finds all "

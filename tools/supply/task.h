@@ -1,6 +1,7 @@
 // The trade of an experiment.
 #pragma once
 
+#include "tools/runs/options.h"
 #include "tools/runs/result.h"
 #include "tools/supply/report.h"
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "core/constants.h"
 #include "core/errors.h"
@@ -99,7 +100,8 @@ void print_summary(const Console& console, const WrenchTable& table, const SunLi
 }  // namespace
 
 TorqueMapRun map_over_direction(const Console& console,
-                                const std::shared_ptr<const OpticalRun>& shared) {
+                                const std::shared_ptr<const OpticalRun>& shared,
+                                const NodeWatch& watch) {
   const OpticalRun& run = *shared;
   const DirectionGrid& grid = *run.experiment().file.light_directions;
   const SunLight sun = only_sun(run.experiment());
@@ -108,18 +110,26 @@ TorqueMapRun map_over_direction(const Console& console,
   uint64_t rays = 0;
   double wall_s = 0.0;
   Warnings warnings;
+  // For the watch alone, which sees every node: what the same direction gave before.
+  std::map<size_t, OpticalResult> earlier;
   const auto progress = console.progress("directions");
   for (size_t a = 0; a < grid.azimuth_rad.size(); ++a) {
     for (size_t e = 0; e < grid.elevation_rad.size(); ++e) {
       const size_t node = table.node(a, e);
       const size_t first = first_of_direction(table, a, e);
+      const Vec3 towards_body = towards_light({grid.elevation_rad[e], grid.azimuth_rad[a]});
+      const RigidTransform lab_from_body = lab_from_body_with_sun(towards_body, sun.towards_lab);
       if (first != node) {
         copy_node(table, node, first);
+        if (watch) watch({run, table.nodes(), lab_from_body, earlier.at(first)});
         continue;
       }
-      const Vec3 towards_body = towards_light({grid.elevation_rad[e], grid.azimuth_rad[a]});
-      const OpticalResult result = run.run(lab_from_body_with_sun(towards_body, sun.towards_lab),
-                                           {}, run.experiment().file.torque_map_rays);
+      const OpticalResult result =
+          run.run(lab_from_body, {}, run.experiment().file.torque_map_rays);
+      if (watch) {
+        watch({run, table.nodes(), lab_from_body, result});
+        if (a == 0) earlier.emplace(node, result);
+      }
       set_node(table, node, run.wrench().total(result.sums[run.wrench_index()]));
       warnings.add(run.warnings(result), "azimuth " + show(stated_deg(grid.azimuth_rad[a])) +
                                              " deg, elevation " +

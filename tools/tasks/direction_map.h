@@ -9,6 +9,7 @@ namespace photorque {
 // sphere, the wrench per pressure is a file of the result in the SPAD layout. The experiment's only
 // source must be a sun.
 TorqueMapRun map_over_direction(const Console& console,
-                                const std::shared_ptr<const OpticalRun>& shared);
+                                const std::shared_ptr<const OpticalRun>& shared,
+                                const NodeWatch& watch = {});
 
 }  // namespace photorque

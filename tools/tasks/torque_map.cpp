@@ -57,7 +57,8 @@ class PowerTable {
   Table table_;
 };
 
-TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<OpticalRun>& shared) {
+TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<OpticalRun>& shared,
+                               const NodeWatch& watch) {
   OpticalRun& run = *shared;
   std::optional<ArrayPower> array;
   if (!run.experiment().file.others("array").empty()) array = read_array_power(run);
@@ -79,8 +80,9 @@ TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<Opt
       const size_t node = wrenches.node(h, t);
       // The same seed everywhere: neighbouring attitudes share their sampling errors, so that
       // differences between them are better known than each.
-      const OpticalResult result = run.run(lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]),
-                                           {}, run.experiment().file.torque_map_rays);
+      const RigidTransform lab_from_body = lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]);
+      const OpticalResult result =
+          run.run(lab_from_body, {}, run.experiment().file.torque_map_rays);
       set_node(wrenches, node, run.wrench().total(result.sums[run.wrench_index()]));
       std::optional<Estimate> electric;
       if (array) electric = evaluate(*array, run, result).power_W;
@@ -89,6 +91,7 @@ TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<Opt
       warnings.add(run.warnings(result), "tilt " + show(stated_deg(grid.tilt_rad[t])) +
                                              " deg, heading " +
                                              show(stated_deg(grid.heading_rad[h])) + " deg");
+      if (watch) watch({run, wrenches.nodes(), lab_from_body, result, electric});
       rays += result.rays;
       wall_s += result.wall_s;
       if (progress) progress(static_cast<double>(node + 1) / static_cast<double>(wrenches.nodes()));
@@ -125,10 +128,11 @@ TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<Opt
 
 }  // namespace
 
-TorqueMapRun torque_map_of_experiment(const RunOptions& options, const Console& console) {
+TorqueMapRun torque_map_of_experiment(const RunOptions& options, const Console& console,
+                                      const NodeWatch& watch) {
   const auto run = std::make_shared<OpticalRun>(options, console);
-  return run->experiment().file.light_directions ? map_over_direction(console, run)
-                                                 : map_over_attitude(console, run);
+  return run->experiment().file.light_directions ? map_over_direction(console, run, watch)
+                                                 : map_over_attitude(console, run, watch);
 }
 
 }  // namespace photorque

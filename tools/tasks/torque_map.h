@@ -1,7 +1,9 @@
 // Force, torque and power over a grid of attitudes, or of directions of light.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "core/wrench_table.h"
 #include "tools/runs/optical_run.h"
@@ -14,7 +16,18 @@ struct TorqueMapRun {
   RunResult result;
 };
 
+// A node of the wrench table, in their order, as it was traced.
+struct TracedNode {
+  const OpticalRun& run;
+  size_t nodes;  // of the table
+  RigidTransform lab_from_body;
+  const OpticalResult& light;
+  std::optional<Estimate> electric_W = {};  // of the array, where there is one
+};
+using NodeWatch = std::function<void(const TracedNode&)>;
+
 // The attitudes of [torque_map], or its directions of light.
-TorqueMapRun torque_map_of_experiment(const RunOptions& options, const Console& console);
+TorqueMapRun torque_map_of_experiment(const RunOptions& options, const Console& console,
+                                      const NodeWatch& watch = {});
 
 }  // namespace photorque

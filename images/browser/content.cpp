@@ -1,0 +1,261 @@
+#include "images/browser/content.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/text/display.h"
+#include "images/browser/packed.h"
+#include "images/browser/stage_content.h"
+#include "images/drawing/colour_map.h"
+#include "images/writers/metadata.h"
+
+namespace photorque {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json figure_json(const PageFigure& figure) {
+  return {{"key", clean_text(figure.key)},
+          {"label", clean_text(figure.label)},
+          {"unit", clean_text(figure.unit)},
+          {"value", json_number(figure.estimate.value)},
+          {"error", json_number(figure.estimate.standard_error)}};
+}
+
+Json figures_json(const std::vector<PageFigure>& figures) {
+  Json list = Json::array();
+  for (const PageFigure& figure : figures) list.push_back(figure_json(figure));
+  return list;
+}
+
+Json power_json(const std::vector<PowerStage>& stages) {
+  Json list = Json::array();
+  for (const PowerStage& stage : stages) {
+    list.push_back({{"label", clean_text(stage.label)},
+                    {"value", json_number(stage.power_W.value)},
+                    {"error", json_number(stage.power_W.standard_error)},
+                    {"total", stage.is_total}});
+  }
+  return list;
+}
+
+Json table_json(const Table& table, size_t most_rows) {
+  const size_t rows = table.columns.empty() ? 0 : table.columns.front().size();
+  const size_t shown = std::min(rows, most_rows);
+  Json columns = Json::array();
+  for (const Table::Column& column : table.columns) {
+    Json cells = Json::array();
+    for (size_t i = 0; i < std::min(shown, column.size()); ++i) {
+      if (column.texts.empty()) {
+        cells.push_back(json_number(column.values[i]));
+      } else {
+        cells.push_back(clean_text(column.texts[i]));
+      }
+    }
+    columns.push_back({{"name", clean_text(column.name)}, {"cells", std::move(cells)}});
+  }
+  return {{"name", clean_text(table.name)},
+          {"title", clean_text(table.title)},
+          {"rows", rows},
+          {"columns", std::move(columns)}};
+}
+
+// Of every stretch of points the lowest and the highest, so that no peak is lost.
+std::vector<size_t> kept_points(const std::vector<double>& y, size_t most) {
+  std::vector<size_t> kept;
+  const size_t stretches = std::max<size_t>(1, most / 2);
+  if (y.size() <= most) {
+    for (size_t i = 0; i < y.size(); ++i) kept.push_back(i);
+    return kept;
+  }
+  for (size_t s = 0; s < stretches; ++s) {
+    const size_t from = s * y.size() / stretches, to = (s + 1) * y.size() / stretches;
+    size_t low = from, high = from;
+    for (size_t i = from; i < to; ++i) {
+      if (y[i] < y[low] || !std::isfinite(y[low])) low = i;
+      if (y[i] > y[high] || !std::isfinite(y[high])) high = i;
+    }
+    kept.push_back(std::min(low, high));
+    if (low != high) kept.push_back(std::max(low, high));
+  }
+  return kept;
+}
+
+Json curve_json(const Plot::Curve& curve, size_t most_points) {
+  static constexpr const char* colours[] = {"", "blue", "vermilion", "green", "grey"};
+  const std::vector<size_t> kept = kept_points(curve.y, most_points);
+  const auto pick = [&](const std::vector<double>& of) {
+    std::vector<double> picked;
+    for (const size_t i : kept) {
+      picked.push_back(i < of.size() ? of[i] : std::numeric_limits<double>::quiet_NaN());
+    }
+    return packed(std::span<const double>(picked));
+  };
+  Json json = {{"label", clean_text(curve.label)},
+               {"x", pick(curve.x)},
+               {"y", pick(curve.y)},
+               {"style", curve.bars                    ? "bars"
+                         : curve.markers || curve.dots ? "points"
+                         : curve.dashed                ? "dashed"
+                                                       : "line"},
+               {"colour", colours[static_cast<size_t>(curve.colour)]},
+               {"thinned_from", kept.size() < curve.y.size() ? curve.y.size() : 0}};
+  if (!curve.y_error.empty()) json["error"] = pick(curve.y_error);
+  return json;
+}
+
+Json panel_json(const std::string& y_label, const std::vector<Plot::Curve>& curves, bool y_log,
+                const std::vector<double>& levels, bool robust, const PageLimits& limits) {
+  Json list = Json::array();
+  for (const Plot::Curve& curve : curves) list.push_back(curve_json(curve, limits.curve_points));
+  Json lines = Json::array();
+  for (const double level : levels) lines.push_back(json_number(level));
+  return {{"y_label", clean_text(y_label)},
+          {"log", y_log},
+          {"robust", robust},
+          {"levels", std::move(lines)},
+          {"curves", std::move(list)}};
+}
+
+Json plot_json(const Plot& plot, const RunPage& page, const PageLimits& limits) {
+  Json panels = Json::array();
+  panels.push_back(
+      panel_json(plot.y_label, plot.curves, plot.y_log, plot.levels, plot.robust_range, limits));
+  for (const Plot::Panel& panel : plot.below) {
+    panels.push_back(panel_json(panel.y_label, panel.curves, panel.y_log, panel.levels,
+                                panel.robust_range, limits));
+  }
+  Json shaded = Json::array();
+  for (const Plot::Interval& interval : plot.shaded) {
+    shaded.push_back({json_number(interval.from), json_number(interval.to)});
+  }
+  Json json = {
+      {"name", clean_text(plot.name)},       {"title", clean_text(plot.title)},
+      {"x_label", clean_text(plot.x_label)}, {"x_log", plot.x_log},
+      {"shaded", std::move(shaded)},         {"shaded_label", clean_text(plot.shaded_label)},
+      {"panels", std::move(panels)}};
+  const auto cursor = std::ranges::find(page.cursors, plot.name, &PlotCursor::plot);
+  if (cursor != page.cursors.end()) {
+    json["cursor"] = {{"axis", cursor->axis}, {"x_per_unit", cursor->x_per_unit}};
+  }
+  return json;
+}
+
+Json map_content(const Map& map, int factor) {
+  const Map small = factor > 1 ? reduced(map, factor) : map;
+  const ColourScale scale = colour_scale(map);
+  const bool diverging = map.signed_values && scale.low == -scale.high;
+  Json json = {{"name", clean_text(map.name)},
+               {"title", clean_text(map.title)},
+               {"unit", clean_text(map.unit)},
+               {"width", small.width},
+               {"height", small.height},
+               {"bins", {map.width, map.height}},
+               {"factor", factor},
+               {"x_low", json_number(map.x_low)},
+               {"x_high", json_number(map.x_high)},
+               {"y_low", json_number(map.y_low)},
+               {"y_high", json_number(map.y_high)},
+               {"x_label", clean_text(map.x_label)},
+               {"y_label", clean_text(map.y_label)},
+               {"equal_scale", map.equal_scale},
+               {"smooth", map.smooth},
+               {"colours", diverging ? "cool_warm" : "viridis"},
+               {"low", json_number(scale.low)},
+               {"high", json_number(scale.high)},
+               {"value", packed_rounded(small.value)}};
+  if (!small.standard_error.empty()) json["error"] = packed_rounded(small.standard_error);
+  return json;
+}
+
+Json colours_json(const ColourMap& map) {
+  std::string hex;
+  for (const Rgb& colour : map.colours) {
+    static constexpr char digits[] = "0123456789abcdef";
+    for (const uint8_t byte : rgb_bytes(colour)) {
+      hex += digits[byte >> 4];
+      hex += digits[byte & 15];
+    }
+  }
+  return hex;
+}
+
+size_t bins_of(const Map& map, int factor) {
+  return static_cast<size_t>((map.width + factor - 1) / factor) *
+         static_cast<size_t>((map.height + factor - 1) / factor);
+}
+
+}  // namespace
+
+std::vector<int> map_reductions(const std::vector<Map>& maps, size_t most_bins) {
+  std::vector<int> factors(maps.size(), 1);
+  std::vector<size_t> bins;
+  size_t total = 0;
+  for (const Map& map : maps) total += bins.emplace_back(bins_of(map, 1));
+  while (total > most_bins) {
+    const auto largest = static_cast<size_t>(std::ranges::max_element(bins) - bins.begin());
+    if (bins[largest] <= 1) break;
+    factors[largest] *= 2;
+    total -= bins[largest];
+    total += bins[largest] = bins_of(maps[largest], factors[largest]);
+  }
+  return factors;
+}
+
+Map reduced(const Map& map, int factor) {
+  Map small = map;
+  small.width = (map.width + factor - 1) / factor;
+  small.height = (map.height + factor - 1) / factor;
+  small.standard_error.clear();
+  const auto size = static_cast<size_t>(small.width) * static_cast<size_t>(small.height);
+  std::vector<double> sum(size, 0.0), count(size, 0.0);
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      const double value = map.value[static_cast<size_t>(y * map.width + x)];
+      if (!std::isfinite(value)) continue;
+      const auto block = static_cast<size_t>(y / factor * small.width + x / factor);
+      sum[block] += value;
+      count[block] += 1.0;
+    }
+  }
+  small.value.assign(size, std::numeric_limits<double>::quiet_NaN());
+  for (size_t i = 0; i < size; ++i) {
+    if (count[i] > 0.0) small.value[i] = sum[i] / count[i];
+  }
+  return small;
+}
+
+Json page_content(const RunPage& page, const PageLimits& limits) {
+  const std::vector<int> factors = map_reductions(page.product.maps, limits.map_bins);
+  Json maps = Json::array(), plots = Json::array(), tables = Json::array(), notes = Json::array();
+  for (size_t i = 0; i < factors.size(); ++i) {
+    maps.push_back(map_content(page.product.maps[i], factors[i]));
+  }
+  for (const Plot& plot : page.product.plots) plots.push_back(plot_json(plot, page, limits));
+  for (const Table& table : page.product.tables) {
+    tables.push_back(table_json(table, limits.table_rows));
+  }
+  for (const std::string& note : page.notes) notes.push_back(clean_text(note));
+  Json provenance = provenance_json(page.provenance);
+  if (page.rays) provenance["rays"] = *page.rays;
+  Json json = {
+      {"schema", "photorque.page/1"},
+      {"title", clean_text(page.title)},
+      {"verb", clean_text(page.verb)},
+      {"command", clean_text(page.command)},
+      {"headline", clean_text(page.headline)},
+      {"headlines", figures_json(page.headlines)},
+      {"figures", figures_json(page.figures)},
+      {"power", power_json(page.power)},
+      {"notes", std::move(notes)},
+      {"maps", std::move(maps)},
+      {"plots", std::move(plots)},
+      {"tables", std::move(tables)},
+      {"colours", {{"viridis", colours_json(viridis())}, {"cool_warm", colours_json(cool_warm())}}},
+      {"provenance", std::move(provenance)}};
+  if (page.stage) json["stage"] = stage_content(*page.stage, page.product, limits);
+  return json;
+}
+
+}  // namespace photorque

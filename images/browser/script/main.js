@@ -1,0 +1,54 @@
+// The page: reads what the program wrote into it and puts its sections together.
+
+import { Chart } from './curves.js';
+import { read } from './data.js';
+import { element, section } from './elements.js';
+import { MapSection, readMap } from './maps.js';
+import { waterfall } from './power.js';
+import { StageSection } from './stage.js';
+import { cards, figureTable, provenance, table } from './tables.js';
+
+function header(run) {
+  const warnings = run.provenance.warnings ?? [];
+  return element('header', {},
+    element('h1', {}, run.title, element('span', { class: 'verb' }, run.verb)),
+    run.headline ? element('p', { class: 'headline' }, run.headline) : null,
+    warnings.map((text) => element('p', { class: 'warning', role: 'alert' }, element('b', {}, 'Do not trust: '), text)),
+    run.headlines.length > 0 ? cards(run.headlines) : null);
+}
+
+function build(run) {
+  const main = document.getElementById('page');
+  main.append(header(run));
+  const maps = run.maps.map(readMap);
+  const byName = new Map(maps.map((map) => [map.name, map]));
+  const charts = run.plots.map((plot) => new Chart(plot));
+  const mapSection = maps.length > 0 ? new MapSection(maps, run.colours) : null;
+  if (run.stage) {
+    const stage = new StageSection(run.stage, byName, run.colours);
+    stage.onmove = (at) => charts.forEach((chart) => chart.follow(at));
+    stage.player.update();
+    if (mapSection) {
+      mapSection.onbin = (name, bin) => stage.markBin(name, bin);
+      stage.onbin = (name, bin) => mapSection.follow(name, bin);
+    }
+    main.append(section('Scene', stage.body));
+  }
+  const isTold = (chart) => chart.json.cursor;
+  const moving = charts.filter(isTold), others = charts.filter((chart) => !isTold(chart));
+  if (moving.length > 0) main.append(section('Along the slider', element('div', { class: 'charts' }, moving.map((chart) => chart.body))));
+  const pair = element('div', { class: 'pair' });
+  if (mapSection) pair.append(section('Maps', mapSection.body));
+  if (run.power.length > 1) pair.append(section('Where the power went', waterfall(run.power)));
+  main.append(pair);
+  if (others.length > 0) main.append(section('Curves', element('div', { class: 'charts' }, others.map((chart) => chart.body))));
+  if (run.figures.length > 0) main.append(section('Figures', ...figureTable(run.figures)));
+  if (run.tables.length > 0) main.append(section('Tables', ...run.tables.map(table)));
+  if (run.notes.length > 0) {
+    main.append(section('Notes', element('ul', {}, run.notes.map((note) => element('li', {}, note)))));
+  }
+  main.append(element('footer', {}, section('What made this page', provenance(run.provenance, run.command))));
+}
+
+build(read(document));
+document.documentElement.dataset.ready = 'yes';

@@ -1,0 +1,236 @@
+"""Pages of runs (--page) in a headless Chromium: what they show is what summary.json and the tables say."""
+import base64
+import csv
+import json
+import os
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from browser import Browser, program
+
+SOURCE = pathlib.Path(os.environ["PHOTORQUE_SOURCE_DIR"])
+PROGRAM = os.environ["PHOTORQUE_PROGRAM"]
+NOMINAL = SOURCE / "scenes/stasis/nominal.toml"
+
+# A square of 0.2 m in a node whose name tries to be a script.
+HOSTILE = "</script><script>window.broken=1</script><img src=x onerror=window.broken=2>"
+SQUARE = {
+    "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"name": HOSTILE, "mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+    "materials": [{"name": "<b>black</b>", "extras": {"photorque": {"absorptance": 1.0}}}],
+    "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-0.1, 0, -0.1], "max": [0.1, 0, 0.1]},
+        {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+}
+LAB = """
+[scene]
+file = "square.gltf"
+[[source]]
+kind = "led"
+name = "<script>window.broken=3</script>"
+power_W = 1.0
+aperture_diameter_mm = 20
+profile = "gaussian"
+fwhm_deg = 6.0
+wavelength_nm = 730
+position_m = [0, 0, 0.5]
+aim_m = [0, 0, 0]
+[[receiver]]
+node = '''%s'''
+name = "board"
+bins = [20, 20]
+[trace]
+rays = 65536
+""" % HOSTILE
+
+
+def run(*arguments):
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise AssertionError(done.stderr)
+
+
+def rows(path):
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(lines))
+
+
+def number(text):
+    """The value of "(−1.5 ± 0.2)×10⁻⁹ N m", and half a unit of its last digit."""
+    match = re.match(r"\(?(−?[\d.]+)(?: ± [\d.]+\))?(?: ± [\d.]+)?(?:×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?", text)
+    plain = match[1].replace("−", "-")
+    exponent = int((match[2] or "0").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")))
+    decimals = len(plain.split(".")[1]) if "." in plain else 0
+    return float(plain) * 10.0 ** exponent, 0.5001 * 10.0 ** (exponent - decimals)
+
+
+class PageTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.browser = Browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.temporary.cleanup()
+
+    def open(self, page):
+        """Opens it; nothing goes wrong, and nothing is fetched but the page itself."""
+        seconds = self.browser.open(page)
+        self.assertEqual(self.browser.errors, [])
+        self.assertEqual([url for url in self.browser.requests if not url.startswith(("data:", "blob:"))],
+                         [pathlib.Path(page).resolve().as_uri()])
+        return seconds
+
+    def colours(self):
+        """How many different colours the stage has."""
+        return self.browser.value("""(() => {
+          const from = document.getElementById('stage'), to = document.createElement('canvas');
+          to.width = from.width; to.height = from.height;
+          const context = to.getContext('2d');
+          context.drawImage(from, 0, 0);
+          return new Set(new Uint32Array(context.getImageData(0, 0, to.width, to.height).data.buffer)).size;
+        })()""")
+
+    def stage(self):
+        self.browser.settle()
+        return self.browser.value("document.getElementById('stage').toDataURL()")
+
+    def assertShown(self, text, value):
+        shown, half = number(text)
+        self.assertLessEqual(abs(shown - value), half + 1e-12 * abs(value), f"{text} for {value}")
+
+    def readings(self):
+        """The readings beside the stage, in order: [label, value]."""
+        return self.browser.value("""[...document.querySelectorAll('.readings dt')].map(
+          (dt) => [dt.textContent, dt.nextElementSibling.textContent])""")
+
+
+class Trace(PageTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = cls.folder / "trace"
+        run("trace", NOMINAL, "--set", "attitude.tilt_deg=20", "--set", "trace.rays=400000", "--page", "--out", cls.out, "--quiet")
+        cls.page = cls.out / "page.html"
+
+    def test_figures_are_those_of_the_summary(self):
+        self.open(self.page)
+        summary = json.loads((self.out / "summary.json").read_text())
+        cells = self.browser.value("""[...document.querySelectorAll('#figures [data-key]')].map(
+          (e) => [e.dataset.key, Number(e.dataset.value), Number(e.dataset.error), e.textContent])""")
+        self.assertEqual([cell[0] for cell in cells],
+                         [key for key, entry in summary.items() if isinstance(entry, dict) and "value" in entry])
+        for key, value, error, text in cells:
+            self.assertEqual(value, summary[key]["value"], key)
+            self.assertEqual(error, summary[key]["standard_error"], key)
+            self.assertShown(text, value)
+        force = [summary[f"force_{axis}_platform_body_N"]["value"] for axis in "xyz"]
+        shown = [value for label, value in self.readings() if label.startswith("body ")]
+        for text, value in zip(shown[:3], force):
+            self.assertShown(text, value)
+
+    def test_stands_within_five_megabytes_and_shows_the_scene(self):
+        self.assertLess(self.page.stat().st_size, 5e6)
+        for width, height in ((1440, 900), (1024, 768), (390, 844)):
+            self.browser.size(width, height)
+            self.assertLess(self.open(self.page), 30.0)
+            self.assertGreater(self.colours(), 200, "the stage is empty")
+            self.assertLessEqual(self.browser.value("document.documentElement.scrollWidth"), width)
+        self.browser.size(1440, 900)
+
+    def test_map_is_read_by_pointer_and_keys(self):
+        self.open(self.page)
+        bins = {(float(row["x_m"]), float(row["y_m"])): row for row in rows(self.out / "irradiance_solar_array.csv")}
+        columns, lines = (sorted({place[k] for place in bins}) for k in (0, 1))
+        box = self.browser.value("""(() => {
+          const field = document.querySelector('.field');
+          field.scrollIntoView({ block: 'center' });
+          const b = field.getBoundingClientRect();
+          return [b.left, b.top, b.width, b.height];
+        })()""")
+        self.browser.point(box[0] + 0.305 * box[2], box[1] + 0.505 * box[3])
+        text = self.browser.value("document.querySelector('.map-section .reading b').textContent")
+        self.assertTrue(text.endswith(" W/m²"), text)
+        under_pointer = bins[columns[30], lines[49]]  # of 100 × 100, rows from below
+        shown, half = number(text)
+        self.assertLess(abs(shown - float(under_pointer["value_W_m2"])), half + 1e-7 * shown)  # single precision
+        before = self.browser.value("document.querySelector('.map-section .reading').textContent")
+        self.browser.value("document.querySelector('.field').focus()")
+        self.browser.key("ArrowRight")
+        self.assertNotEqual(before, self.browser.value("document.querySelector('.map-section .reading').textContent"))
+
+    def test_stage_turns_by_keys(self):
+        self.open(self.page)
+        before = self.stage()
+        self.browser.value("document.getElementById('stage').focus()")
+        self.browser.key("ArrowLeft")
+        self.assertNotEqual(before, self.stage())
+        self.browser.key("Home")
+        self.assertEqual(before, self.stage())
+
+    def test_equal_runs_give_equal_pages_at_any_number_of_threads(self):
+        again = self.folder / "again"
+        run("trace", NOMINAL, "--set", "attitude.tilt_deg=20", "--set", "trace.rays=400000", "--page", "--out", again,
+            "--quiet", "--threads", "1")
+        self.assertEqual(self.page.read_bytes(), (again / "page.html").read_bytes())
+
+
+class TorqueMap(PageTest):
+    def test_slider_moves_the_platform_and_reads_the_table(self):
+        out = self.folder / "map"
+        run("torque-map", NOMINAL, "--set", "torque_map.rays=100000", "--set", "torque_map.tilt_deg=[0,15,30]",
+            "--set", "torque_map.heading_deg=[0,90]", "--page", "--out", out, "--quiet")
+        self.open(out / "page.html")
+        upright = self.stage()
+        self.browser.value("document.getElementById('axis-0').focus()")
+        self.browser.key("ArrowRight")
+        self.browser.key("ArrowRight")
+        self.assertEqual(self.browser.value("document.querySelector('.axis output').textContent"), "30 deg")
+        self.assertNotEqual(upright, self.stage())
+        row = next(r for r in rows(out / "wrench_table_body.csv")
+                   if float(r["tilt_deg"]) == 30.0 and float(r["heading_deg"]) == 0.0)
+        shown = [value for label, value in self.readings() if label.startswith("body ")]
+        names = [f"{what}_{axis}_{unit}" for what, unit in (("force", "N"), ("torque", "N_m")) for axis in "xyz"]
+        for text, name in zip(shown, names, strict=True):
+            self.assertShown(text, float(row[name]))
+        power = rows(out / "power_over_attitude.csv")
+        at = next(r for r in power if float(r["tilt_deg"]) == 30.0 and float(r["heading_deg"]) == 0.0)
+        electric = dict(self.readings())["electric power"]
+        self.assertShown(electric, float(at["electric_W"]))
+
+
+class Hostile(PageTest):
+    def test_names_of_files_are_never_markup(self):
+        corners = [(-0.1, 0, -0.1), (0.1, 0, -0.1), (0.1, 0, 0.1), (-0.1, 0, 0.1)]
+        data = b"".join(struct.pack("<3f", *c) for c in corners) + struct.pack("<6H", 0, 2, 1, 0, 3, 2)
+        model = dict(SQUARE, buffers=[{"byteLength": len(data),
+                                       "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}])
+        (self.folder / "square.gltf").write_text(json.dumps(model))
+        lab = self.folder / "<i>lab&amp;.toml"
+        lab.write_text(LAB)
+        run("trace", lab, "--page", "--out", self.folder / "hostile", "--quiet")
+        page = self.folder / "hostile/page.html"
+        self.open(page)
+        self.assertIsNone(self.browser.value("window.broken ?? null"))
+        self.assertEqual(self.browser.value("document.querySelectorAll('script').length"), 2)
+        self.assertEqual(self.browser.value("document.querySelectorAll('img, main b > b, main i > i').length"), 0)
+        self.assertIn(HOSTILE, self.browser.value("document.body.innerText"))
+        self.assertTrue(self.browser.value("document.querySelector('h1').textContent").startswith("<i>lab&amp;"))
+        self.assertGreater(self.colours(), 50)
+
+
+if __name__ == "__main__":
+    if program() is None:
+        print("page: Skipped\nno Chromium is installed (tools/install --tests)")
+        sys.exit(0)
+    unittest.main()

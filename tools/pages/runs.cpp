@@ -1,0 +1,40 @@
+#include "tools/pages/runs.h"
+
+#include "receivers/wrench/table_product.h"
+#include "tools/pages/stage.h"
+
+namespace photorque {
+namespace {
+
+// One attitude, traced.
+RunPage lit_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
+                 const PageHead& head, const std::vector<std::string>& headlines) {
+  RunPage page = page_of(result, head.title, head.verb, head.command, headlines);
+  const Experiment& experiment = run.experiment();
+  page.headline = "Tilt " + show(stated_deg(experiment.file.attitude.tilt_rad)) + " deg, heading " +
+                  show(stated_deg(experiment.file.attitude.heading_rad)) + " deg. " +
+                  std::to_string(experiment.beams.size()) +
+                  (experiment.beams.size() == 1 ? " lamp, " : " lamps, ") +
+                  std::to_string(experiment.scene.instances.size()) + " parts.";
+  page.power = power_stages(run, light, result.product);
+  page.notes = experiment.notices;
+  page.stage = stage_of(run, StageMaps::of_product);
+  page.stage->states.push_back(lit_state(run, experiment.lab_from_body, light));
+  add_light(*page.stage, run, experiment.lab_from_body, light, 1);
+  return page;
+}
+
+}  // namespace
+
+RunFile trace_page(const TraceRun& run, const PageHead& head) {
+  return page_file(lit_page(*run.run, run.light, run.result, head,
+                            {"emitted_W", "power_on_", "absorbed_W", "escaped_W"}));
+}
+
+RunFile power_page(const PowerRun& run, const PageHead& head) {
+  return page_file(lit_page(*run.run, run.light, run.result, head,
+                            {"array_power_W", "emitted_W", "power_on_cells_W", "array_efficiency",
+                             "light_to_electric_efficiency", "mismatch_loss"}));
+}
+
+}  // namespace photorque

@@ -1,0 +1,22 @@
+// The pages of the commands: what each of them found, with its stage.
+#pragma once
+
+#include <string>
+
+#include "tools/pages/result.h"
+#include "tools/tasks/power.h"
+#include "tools/tasks/trace.h"
+
+namespace photorque {
+
+// What a page says of the run beside its results.
+struct PageHead {
+  std::string title;  // the experiment's name
+  std::string verb;
+  std::string command;  // that makes it again
+};
+
+RunFile trace_page(const TraceRun& run, const PageHead& head);
+RunFile power_page(const PowerRun& run, const PageHead& head);
+
+}  // namespace photorque
