@@ -90,18 +90,18 @@ Json curve_json(const Plot::Curve& curve, size_t most_points) {
     for (const size_t i : kept) {
       picked.push_back(i < of.size() ? of[i] : std::numeric_limits<double>::quiet_NaN());
     }
-    return packed(std::span<const double>(picked));
+    return picked;
   };
   Json json = {{"label", clean_text(curve.label)},
-               {"x", pick(curve.x)},
-               {"y", pick(curve.y)},
+               {"x", packed(std::span<const double>(pick(curve.x)))},
+               {"y", packed_rounded(pick(curve.y))},
                {"style", curve.bars                    ? "bars"
                          : curve.markers || curve.dots ? "points"
                          : curve.dashed                ? "dashed"
                                                        : "line"},
                {"colour", colours[static_cast<size_t>(curve.colour)]},
                {"thinned_from", kept.size() < curve.y.size() ? curve.y.size() : 0}};
-  if (!curve.y_error.empty()) json["error"] = pick(curve.y_error);
+  if (!curve.y_error.empty()) json["error"] = packed_rounded(pick(curve.y_error));
   return json;
 }
 

@@ -56,7 +56,7 @@ struct RunPage {
 struct PageLimits {
   size_t map_bins = 1u << 17;  // of all maps of the product together
   size_t table_rows = 200;     // of one table
-  size_t curve_points = 4000;  // of one curve
+  size_t curve_points = 1500;  // of one curve
   size_t triangles = 400'000;  // of the scene
 };
 

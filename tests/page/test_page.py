@@ -51,6 +51,36 @@ rays = 65536
 """ % HOSTILE
 
 
+MOTION = """
+[platform]
+topology = "tabletop"
+mass_kg = 5.0
+inertia_kg_m2 = [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.18]]
+tilt_limit_deg = 20
+[environment]
+gravity_m_s2 = 9.80665
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = [0, 0, -1e-5]
+[propagate]
+duration_s = 40
+output_rate_Hz = 2
+initial_tilt_deg = 4
+initial_rate_rad_s = [0, 0, 0.1]
+"""
+
+
+def write_square(folder):
+    """A model of one square and an experiment that lights it, all with hostile names."""
+    corners = [(-0.1, 0, -0.1), (0.1, 0, -0.1), (0.1, 0, 0.1), (-0.1, 0, 0.1)]
+    data = b"".join(struct.pack("<3f", *c) for c in corners) + struct.pack("<6H", 0, 2, 1, 0, 3, 2)
+    buffer = {"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}
+    (folder / "square.gltf").write_text(json.dumps(dict(SQUARE, buffers=[buffer])))
+    lab = folder / "<i>lab&amp;.toml"
+    lab.write_text(LAB)
+    return lab
+
+
 def run(*arguments):
     done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
     if done.returncode != 0:
@@ -209,15 +239,59 @@ class TorqueMap(PageTest):
         self.assertShown(electric, float(at["electric_W"]))
 
 
+class Propagate(PageTest):
+    def go_to(self, last):
+        """The slider at its first or last instant."""
+        self.browser.value(f"""(() => {{
+          const slider = document.getElementById('axis-0');
+          slider.value = {'slider.max' if last else '0'};
+          slider.dispatchEvent(new Event('input'));
+        }})()""")
+
+    def compare_with_history(self, out):
+        history = rows(out / "time_history.csv")
+        stages = []
+        for last in (False, True):
+            self.go_to(last)
+            stages.append(self.stage())
+            shown, row = dict(self.readings()), history[-1 if last else 0]
+            self.assertShown(shown["tilt"], float(row["tilt_deg"]))
+            self.assertShown(shown["rate about body z"], float(row["rate_z_rad_s"]))
+            total = [sum(float(value) for name, value in row.items()
+                         if name.startswith("torque_") and name.endswith(f"_{axis}_N_m")) for axis in "xyz"]
+            components = [value for label, value in self.readings() if label.startswith("body ")]
+            for text, value in zip(components[:3], total, strict=True):
+                self.assertShown(text, value)
+        self.assertNotEqual(*stages)
+
+    def test_platform_without_scene_moves_as_its_history_says(self):
+        out = self.folder / "attitude"
+        run("propagate", SOURCE / "scenes/stasis/attitude.toml", "--set", "propagate.duration_s=60", "--page", "--out", out, "--quiet")
+        self.open(out / "page.html")
+        self.compare_with_history(out)
+        self.go_to(False)
+        line = self.browser.value("document.querySelector('.cursor').getAttribute('x1')")
+        self.browser.value("document.querySelector('.play').click()")
+        for _ in range(5):
+            self.browser.settle()
+        self.assertGreater(self.browser.value("Number(document.getElementById('axis-0').value)"), 0)
+        self.assertNotEqual(line, self.browser.value("document.querySelector('.cursor').getAttribute('x1')"))
+
+    def test_light_goes_with_the_platform(self):
+        write_square(self.folder)
+        lab = self.folder / "lit.toml"
+        lab.write_text(LAB + MOTION)
+        out = self.folder / "lit"
+        run("propagate", lab, "--page", "--out", out, "--quiet")
+        self.open(out / "page.html")
+        self.assertIn("torque of light [N m]", dict(self.readings()))
+        self.compare_with_history(out)
+        self.assertGreater(self.colours(), 50)
+
+
 class Hostile(PageTest):
     def test_names_of_files_are_never_markup(self):
-        corners = [(-0.1, 0, -0.1), (0.1, 0, -0.1), (0.1, 0, 0.1), (-0.1, 0, 0.1)]
-        data = b"".join(struct.pack("<3f", *c) for c in corners) + struct.pack("<6H", 0, 2, 1, 0, 3, 2)
-        model = dict(SQUARE, buffers=[{"byteLength": len(data),
-                                       "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}])
-        (self.folder / "square.gltf").write_text(json.dumps(model))
-        lab = self.folder / "<i>lab&amp;.toml"
-        lab.write_text(LAB)
+        lab = write_square(self.folder)
         run("trace", lab, "--page", "--out", self.folder / "hostile", "--quiet")
         page = self.folder / "hostile/page.html"
         self.open(page)

@@ -15,11 +15,6 @@ PageFigure figure_of(const Quantity& quantity) {
   return {quantity.name, label.name, label.unit, quantity.estimate};
 }
 
-const Table* table_of(const Product& product, const std::string& name) {
-  const auto at = std::ranges::find(product.tables, name, &Table::name);
-  return at == product.tables.end() ? nullptr : &*at;
-}
-
 // Rows "stage", "lost_to", "power_W", "lost_W": what is left after each loss.
 std::vector<PowerStage> stages_of_array(const Table& losses) {
   std::vector<PowerStage> stages;
@@ -92,6 +87,11 @@ std::vector<PowerStage> stages_of_light(const OpticalRun& run, const OpticalResu
 }
 
 }  // namespace
+
+const Table* table_of(const Product& product, const std::string& name) {
+  const auto at = std::ranges::find(product.tables, name, &Table::name);
+  return at == product.tables.end() ? nullptr : &*at;
+}
 
 RunPage page_of(const RunResult& result, const std::string& title, const std::string& verb,
                 const std::string& command, const std::vector<std::string>& headlines) {

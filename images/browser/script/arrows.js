@@ -7,6 +7,7 @@ import { palette } from './colours.js';
 
 const up = new Vector3(0, 0, 1);
 const colourOf = { force: palette.vermilion, torque: palette.purple, turn: palette.green };
+const secondColour = palette.blue;
 
 // Along z, one long; a cylinder of three.js stands along y.
 function straight(material) {
@@ -36,13 +37,13 @@ function ring(material) {
 }
 
 export class Arrow {
-  // `metres(value)`: how long it is drawn.
-  constructor(json, metres) {
+  // `metres(value)`: how long it is drawn. `isSecond`: of two of a kind.
+  constructor(json, metres, isSecond) {
     this.name = json.name;
     this.unit = json.unit;
     this.kind = json.kind;
     this.remark = json.remark;
-    this.colour = colourOf[json.kind];
+    this.colour = isSecond ? secondColour : colourOf[json.kind];
     this.metres = metres;
     this.group = new Group();
     this.material = new MeshBasicMaterial({ color: this.colour, transparent: true, depthTest: false });

@@ -116,7 +116,7 @@ export class Painting {
     this.scale = new ColourScale(colours[json.colours], json.low, json.high);
     this.surfaces = json.surfaces.map((surface) => new PaintedSurface(surface, maps, this.scale));
     this.group = new Group();
-    this.group.add(...this.surfaces.map((surface) => surface.mesh));
+    for (const surface of this.surfaces) this.group.add(surface.mesh);
   }
 
   show(light) {

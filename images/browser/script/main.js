@@ -17,6 +17,17 @@ function header(run) {
     run.headlines.length > 0 ? cards(run.headlines) : null);
 }
 
+const bodies = (charts) => element('div', { class: 'charts' }, charts.map((chart) => chart.body));
+
+// Curves that carry the line of the slider; of many the first, and the others to be unfolded.
+function alongTheSlider(stage, charts) {
+  const atOnce = 4;
+  const title = stage?.axes.some((axis) => axis.plays) ? 'Over time' : 'Along the slider';
+  const more = charts.slice(atOnce);
+  return section(title, bodies(charts.slice(0, atOnce)), more.length === 0 ? null
+    : element('details', {}, element('summary', {}, `${more.length} more`), bodies(more)));
+}
+
 function build(run) {
   const main = document.getElementById('page');
   main.append(header(run));
@@ -36,12 +47,12 @@ function build(run) {
   }
   const isTold = (chart) => chart.json.cursor;
   const moving = charts.filter(isTold), others = charts.filter((chart) => !isTold(chart));
-  if (moving.length > 0) main.append(section('Along the slider', element('div', { class: 'charts' }, moving.map((chart) => chart.body))));
+  if (moving.length > 0) main.append(alongTheSlider(run.stage, moving));
   const pair = element('div', { class: 'pair' });
   if (mapSection) pair.append(section('Maps', mapSection.body));
   if (run.power.length > 1) pair.append(section('Where the power went', waterfall(run.power)));
   main.append(pair);
-  if (others.length > 0) main.append(section('Curves', element('div', { class: 'charts' }, others.map((chart) => chart.body))));
+  if (others.length > 0) main.append(section('Curves', bodies(others)));
   if (run.figures.length > 0) main.append(section('Figures', ...figureTable(run.figures)));
   if (run.tables.length > 0) main.append(section('Tables', ...run.tables.map(table)));
   if (run.notes.length > 0) {

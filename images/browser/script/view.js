@@ -28,11 +28,14 @@ export class StageView {
     this.bodies = stage.bodies.map((_, i) => makeBody(stage.parts, i > 0));
     this.scene.add(...this.bodies);
     this.paintings = stage.paintings.map((json) => new Painting(json, maps, colours));
-    this.bodies[0].add(...this.paintings.map((painting) => painting.group));
+    for (const painting of this.paintings) this.bodies[0].add(painting.group);
     this.lamps = makeLamps(stage.lamps, stage.radius);
     this.rays = new Rays();
-    this.arrows = stage.arrows.map((json, i) => new Arrow(json, this.lengthOf(json, i)));
-    this.bodies[0].add(...this.arrows.map((arrow) => arrow.group));
+    this.arrows = stage.arrows.map((json, i) => {
+      const isSecond = stage.arrows.slice(0, i).some((other) => other.kind === json.kind);
+      return new Arrow(json, this.lengthOf(json, i), isSecond);
+    });
+    for (const arrow of this.arrows) this.bodies[0].add(arrow.group);
     this.marker = new Mesh(new SphereGeometry(0.014 * stage.radius, 16, 12),
       new MeshBasicMaterial({ color: '#d55e00', depthTest: false, transparent: true }));
     this.marker.renderOrder = 11;

@@ -1,0 +1,183 @@
+#include "tools/pages/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/constants.h"
+#include "tools/pages/platform.h"
+#include "tools/pages/stage.h"
+
+namespace photorque {
+namespace {
+
+constexpr size_t most_states = 2000;
+
+const std::vector<double>* column_of(const Table* table, const std::string& name) {
+  if (table == nullptr) return nullptr;
+  const auto at = std::ranges::find(table->columns, name, &Table::Column::name);
+  return at == table->columns.end() ? nullptr : &at->values;
+}
+
+// The value of a column at the row nearest to a time.
+double at_time(const Table& table, const std::vector<double>& values, double time_s) {
+  const std::vector<double>& t = table.column("t_s").values;
+  const auto after = std::ranges::lower_bound(t, time_s);
+  if (after == t.begin()) return values.front();
+  auto i = static_cast<size_t>(after - t.begin());
+  if (i == t.size() || time_s - t[i - 1] < t[i] - time_s) --i;
+  return values[i];
+}
+
+// Columns stem_x_N_m, stem_y_N_m, stem_z_N_m of the torque of this stem; empty: of all torques.
+std::vector<const std::vector<double>*> torque_columns(const Table& history, char axis,
+                                                       const std::string& wanted) {
+  const std::string end = std::string("_") + axis + "_N_m";
+  std::vector<const std::vector<double>*> columns;
+  for (const Table::Column& column : history.columns) {
+    if (!column.name.starts_with("torque_") || !column.name.ends_with(end)) continue;
+    if (wanted.empty() || column.name == wanted + end) columns.push_back(&column.values);
+  }
+  return columns;
+}
+
+Vec3 torque_at(const Table& history, const std::string& wanted, double time_s) {
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    for (const auto* values : torque_columns(history, "xyz"[k], wanted)) {
+      sum[k] += at_time(history, *values, time_s);
+    }
+  }
+  return sum;
+}
+
+// A figure beside the stage: a column of one of the run's tables.
+struct Shown {
+  StageFigure figure;
+  const Table* table;
+  const std::vector<double>* values;
+};
+
+std::vector<Shown> shown_figures(const Product& product) {
+  const Table* history = table_of(product, "time_history");
+  const Table* power = table_of(product, "power");
+  std::vector<Shown> shown;
+  const auto add = [&](const char* label, const char* unit, const Table* table, const char* name) {
+    if (const auto* values = column_of(table, name))
+      shown.push_back({{label, unit}, table, values});
+  };
+  add("tilt", "deg", history, "tilt_deg");
+  add("heading", "deg", history, "heading_deg");
+  for (const char* axis : {"x", "y", "z"}) {
+    add((std::string("rate about body ") + axis).c_str(), "rad/s", history,
+        (std::string("rate_") + axis + "_rad_s").c_str());
+  }
+  add("light on the cells", "W", power, "light_on_cells_W");
+  add("array power", "W", power, "array_power_W");
+  add("load served", "W", power, "load_power_W");
+  add("battery", "Wh", power, "battery_charge_Wh");
+  if (power == nullptr) add("charge drawn", "Ah", history, "charge_drawn_Ah");
+  return shown;
+}
+
+std::vector<PlatformState> thinned(const std::vector<PlatformState>& states) {
+  if (states.size() <= most_states) return states;
+  std::vector<PlatformState> kept;
+  for (size_t i = 0; i < most_states; ++i) {
+    kept.push_back(states[i * (states.size() - 1) / (most_states - 1)]);
+  }
+  return kept;
+}
+
+// The largest turn between two states that follow each other.
+double largest_turn_rad(const std::vector<PlatformState>& states) {
+  double largest = 0.0;
+  for (size_t i = 1; i < states.size(); ++i) {
+    largest =
+        std::max(largest, states[i].lab_from_body.angularDistance(states[i - 1].lab_from_body));
+  }
+  return largest;
+}
+
+void add_remark(SceneStage& stage, const std::string& remark) {
+  stage.remark += (stage.remark.empty() ? "" : " ") + remark;
+}
+
+// The light of the experiment at instants evenly over the run; each state shows the nearest.
+void light_the_run(SceneStage& stage, const OpticalRun& run,
+                   const std::vector<PlatformState>& states) {
+  constexpr size_t most_lights = 12;
+  constexpr uint64_t rays = 1u << 18;  // direct light on flat maps is gathered without noise
+  const size_t lights = std::min(most_lights, states.size());
+  for (size_t i = 0; i < lights; ++i) {
+    const size_t middle = (2 * i + 1) * states.size() / (2 * lights);
+    const RigidTransform lab_from_body{states[middle].lab_from_body, Vec3::Zero()};
+    add_light(stage, run, lab_from_body, run.run(lab_from_body, {}, rays), lights);
+  }
+  for (size_t i = 0; i < states.size(); ++i) {
+    stage.light_of_state.push_back(std::min(i * lights / states.size(), lights - 1));
+  }
+  add_remark(stage, "Irradiance and rays are traced at " + std::to_string(lights) +
+                        " instants of the run, with all lamps at full power; shown are those of "
+                        "the nearest instant.");
+}
+
+// The optical half of an experiment that has one.
+std::optional<OpticalRun> optical_run(const MotionRun& run, const RunOptions& options) {
+  if (!run.coupled->light) return std::nullopt;
+  return std::optional<OpticalRun>(std::in_place, options, Console());
+}
+
+}  // namespace
+
+RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageHead& head) {
+  RunPage page = page_of(run.result, head.title, head.verb, head.command,
+                         {"largest_tilt_deg", "final_heading_deg", "final_rate_rad_s",
+                          "mean_array_power_W", "battery_left_J", "pointing_rms_deg"});
+  const std::optional<OpticalRun> light = optical_run(run, options);
+  SceneStage stage =
+      light ? stage_of(*light, StageMaps::own) : platform_stage(run.run->model.platform);
+  const std::vector<PlatformState> states = thinned(run.coupled->motion.states);
+  const Table* history = table_of(run.result.product, "time_history");
+  const bool has_torques = history != nullptr && !torque_columns(*history, 'x', "").empty();
+  const bool has_light =
+      history != nullptr && !torque_columns(*history, 'x', "torque_radiation_pressure").empty();
+  stage.arrows.clear();
+  if (has_torques) stage.arrows.push_back({"all torques", "N m", StageArrow::Kind::torque});
+  if (has_light) stage.arrows.push_back({"torque of light", "N m", StageArrow::Kind::torque});
+  const std::vector<Shown> figures = shown_figures(run.result.product);
+  for (const Shown& shown : figures) stage.figures.push_back(shown.figure);
+  StageAxis time{"time", "s", {}, true};
+  for (const PlatformState& state : states) {
+    StageState at{{state.lab_from_body}};
+    if (has_torques) at.arrow_body.push_back(torque_at(*history, "", state.time_s));
+    if (has_light)
+      at.arrow_body.push_back(torque_at(*history, "torque_radiation_pressure", state.time_s));
+    at.arrow_error_body.assign(at.arrow_body.size(), Vec3::Zero());
+    for (const Shown& shown : figures) {
+      at.figures.push_back({at_time(*shown.table, *shown.values, state.time_s), 0.0});
+    }
+    time.values.push_back(state.time_s);
+    stage.states.push_back(std::move(at));
+  }
+  stage.axes = {std::move(time)};
+  if (light) light_the_run(stage, *light, states);
+  if (const double turn_rad = largest_turn_rad(states); turn_rad > 0.5 * pi) {
+    add_remark(stage, "Between two instants of this page the body turns by up to " +
+                          show(std::round(turn_rad / degree_rad)) +
+                          " deg: how it turns between them is not to be seen.");
+  }
+  page.stage = std::move(stage);
+  for (const Plot& plot : run.result.product.plots) {
+    if (plot.x_label == "Time [s]") page.cursors.push_back({plot.name, 0, 1.0});
+    if (plot.x_label == "Time [h]") page.cursors.push_back({plot.name, 0, 1.0 / 3600.0});
+  }
+  // What has everything over one axis of time comes first.
+  std::ranges::stable_partition(page.product.plots,
+                                [](const Plot& plot) { return plot.name == "power_and_attitude"; });
+  page.headline = show(states.back().time_s - states.front().time_s) + " s, " +
+                  std::to_string(run.run->model.disturbances.size()) + " disturbances.";
+  return page_file(std::move(page));
+}
+
+}  // namespace photorque
