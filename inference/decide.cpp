@@ -69,6 +69,25 @@ class Judge {
     return !p || p->sigma < limits_.max_predictive_sigma;
   }
 
+  // Candidates with a name that no explanation as good does without.
+  std::vector<size_t> indispensable(size_t trial) const {
+    std::vector<size_t> result;
+    for (const size_t c : trials_[trial].candidates) {
+      const auto lacks = [&](const Explanation& t) {
+        return std::none_of(t.candidates.begin(), t.candidates.end(),
+                            [&](size_t other) { return all_[other].name == all_[c].name; });
+      };
+      const auto is_rival = [&](const Explanation& t) {
+        return t.objection.empty() && lacks(t) &&
+               t.log_evidence > trials_[trial].log_evidence - limits_.min_log_odds_beside_law;
+      };
+      if (!all_[c].is_empirical && std::none_of(trials_.begin(), trials_.end(), is_rival)) {
+        result.push_back(c);
+      }
+    }
+    return result;
+  }
+
   bool has_names_of(size_t part, size_t whole) const {
     const auto some = names_of(part), all = names_of(whole);
     return std::includes(all.begin(), all.end(), some.begin(), some.end());
@@ -148,6 +167,9 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
                 : structure_left ? "the best known physics leaves structure in the recording"
                                  : "the best known physics does not predict what was held out";
     d.chosen = only_empirical ? empirical : named;
+    const bool law_does = only_empirical && judge.predicts(empirical) &&
+                          excess_sigma(empirical) < limits.max_excess_sigma;
+    if (law_does) d.beside_law = judge.indispensable(empirical);
     d.confidence = probability_of(d.probability, [&](size_t i) { return judge.is_empirical(i); });
     if (structure_left || !predicts) {
       d.confidence = std::max(d.confidence, limits.structure_confidence);

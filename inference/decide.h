@@ -23,6 +23,9 @@ struct Decision {
   size_t best_named = 0;  // of the best trial without empirical candidates; 0: nominal
   // Why something unknown acts, for a person: "the held-out recording is not predicted".
   std::string because = {};
+  // Candidates of the chosen trial that act beyond doubt beside a law without a name, where such a
+  // law is the finding: whatever else was tried without one of them is far less likely.
+  std::vector<size_t> beside_law = {};
   std::vector<double> probability;  // of each trial
 };
 

@@ -45,6 +45,7 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
   if (d.verdict == Verdict::unexplained) {
     d.where.depends_on = of_unknown_law(depends_on, chosen, all);
     d.empirical = empirical_torques(chosen, all, data.train);
+    d.effects = effects_beside_law(decision, trials, all);
     d.unnamed = unnamed_effects(decision, trials, all, d.effects);
   }
   d.alternatives = alternatives(decision, trials, all);

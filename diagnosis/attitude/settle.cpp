@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "attitude/estimation/noise.h"
+#include "attitude/noise/heavy_tails.h"
 #include "attitude/noise/search.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/holdout.h"
@@ -42,6 +43,15 @@ InstrumentFinding colour_finding(int k, const FoundNoise& found) {
           all ? "" : written(" (%.0f %% of its variance)", 100.0 * found.noise.coloured).c_str())};
 }
 
+InstrumentFinding tail_finding(int k, const HeavyTail& tail) {
+  const double unit = k < 3 ? arcsecond_rad : 1.0;
+  return {
+      channel_names[k], "noise_degrees_of_freedom", tail.degrees, tail.degrees_sigma,
+      written("the noise of %s has heavy tails (Student's t with %.2g degrees of freedom, scale "
+              "%.3g %s): readings far from their neighbours count for less",
+              spoken[k], tail.degrees, tail.scale / unit, k < 3 ? "arcsec" : "rad/s")};
+}
+
 // Gives the runs the noise that was found, and tells of it. Returns whether any changed.
 bool use_noise(const NoiseFindings& findings, RecordedData& data) {
   bool changed = false;
@@ -59,6 +69,50 @@ bool use_noise(const NoiseFindings& findings, RecordedData& data) {
   return changed;
 }
 
+// Takes the edge off what no normal distribution has: bursts are dropped, heavy tails tamed, in
+// what is fitted and in what is held out. `near` is near the readings. Returns whether any changed.
+bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
+  const int64_t in_bursts = drop_bursts(residuals_of(near, data.train), limits.noise, data.train);
+  const std::vector<Prediction> residuals = residuals_of(near, data.train);
+  const HeavyTails tails = heavy_tails(residuals, data.train, limits.noise);
+  tame(tails, residuals, data.train);
+  const std::vector<Prediction> tamed = residuals_of(near, data.train);
+  bool changed = in_bursts > 0;
+  for (int k = 0; k < 6; ++k) {
+    const std::optional<HeavyTail>& tail = tails[static_cast<size_t>(k)];
+    if (!tail) continue;
+    changed = true;
+    data.instruments.push_back(tail_finding(k, *tail));
+    const ChannelNoise now{deviation_level(tamed, data.train, k), 0.0, 0.0};
+    for (auto* runs : {&data.train, &data.held}) {
+      for (Observation& seen : *runs) seen.noise.set(k, now);
+    }
+  }
+  int64_t held_in_bursts = 0;
+  const Fit held = propagate_model(near, data.held, limits);
+  if (std::isfinite(held.chi2)) {
+    held_in_bursts = drop_bursts(residuals_of(held, data.held), limits.noise, data.held);
+    tame(tails, residuals_of(held, data.held), data.held);
+  }
+  if (in_bursts + held_in_bursts > 0) {
+    data.outliers += in_bursts + held_in_bursts;
+    data.warnings.push_back(written("%lld readings in bursts of large errors are left out",
+                                    static_cast<long long>(in_bursts + held_in_bursts)));
+  }
+  return changed;
+}
+
+// What the readings say of their own noise about a fit that is near them, put to use. Returns
+// whether anything changed.
+bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
+  NoiseFindings findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
+  data.noise_is_open = findings.is_open;
+  if (findings.is_open) return false;
+  const bool tamed = tame_noise(near, limits, data);
+  if (tamed) findings = find_noise(data.train, residuals_of(near, data.train), limits.noise);
+  return use_noise(findings, data) || tamed;
+}
+
 }  // namespace
 
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
@@ -70,9 +124,7 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
   bool changed = data.outliers > 0;
   // Without an attitude nothing tells noise from motion.
   if (!nominal.sensors.noise_is_stated && data.train.front().sees_attitude()) {
-    const NoiseFindings findings = find_noise(data.train, residuals, limits.noise);
-    data.noise_is_open = findings.is_open;
-    changed = use_noise(findings, data) || changed;
+    changed = find_and_use_noise(fitted, limits, data) || changed;
   }
   if (changed) fitted = fit(fitted.best, data.train);
   const Fit held = propagate_model(fitted, data.held, limits);
@@ -84,9 +136,9 @@ Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& 
 bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data) {
   if (!data.noise_is_open) return false;
   if (!(explained.chi2_per_sample() < limits.diverged_chi2_per_sample)) return false;
+  const bool changed = find_and_use_noise(explained, limits, data);
   data.noise_is_open = false;
-  const std::vector<Prediction> residuals = residuals_of(explained, data.train);
-  return use_noise(find_noise(data.train, residuals, limits.noise), data);
+  return changed;
 }
 
 }  // namespace photorque

@@ -42,6 +42,17 @@ struct Thresholds {
     double outlier_sigma = 9.0;
     // Readings of a channel, to have neighbours on both sides.
     size_t min_neighbourhood = 5;
+    // Readings of a channel, for the shape of their distribution; twice the logarithm of the
+    // likelihood that Student's t must gain over the normal distribution, as for a correlated
+    // noise; degrees of freedom beyond which it is as good as normal.
+    size_t min_tail_readings = 200;
+    double min_tail_gain = 25.0, max_tail_degrees = 30.0;
+    // A burst: more than half of so many readings in a row are off by more than so many standard
+    // deviations. Independent errors of Student's t with three degrees of freedom do that once in a
+    // hundred thousand; a few readings less do no harm. More than such a fraction of all readings
+    // is no burst but motion, or another noise.
+    size_t burst_readings = 7;
+    double burst_sigma = 4.0, max_burst_fraction = 0.05;
     // Excess of a fit that cannot be propagated [sigma]: beyond every threshold.
     double excess_unknown = 1e9;
   } noise;
@@ -181,6 +192,10 @@ struct Thresholds {
     // Log evidence that a name may cost in predicting them: an effect that shows in the train runs
     // alone predicts nothing.
     double max_predictive_loss = 2.0;
+    // Log evidence by which a law without a name needs the help of a known effect before that is
+    // named: where the law is not quite right, an effect may take up what it leaves, and what it
+    // can leave without being seen as structure is some tens.
+    double min_log_odds_beside_law = 100.0;
     // χ² of what was held out over that of the nominal model, below which names are said beside
     // something that stays unexplained.
     double max_held_out_fraction = 0.5;

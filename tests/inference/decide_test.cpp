@@ -74,5 +74,30 @@ TEST(Decide, HopelessEvidenceHasAProbabilityAsWell) {
   EXPECT_TRUE(std::isfinite(d.confidence));
 }
 
+// A law without a name is the finding; beside it only what it cannot do without is named.
+TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
+  const std::vector<CandidateTraits> all = {
+      {.name = "first"}, {.name = "second"}, {.name = "law", .is_empirical = true}};
+  const std::vector<Explanation> trials = {
+      explanation({}, 0.0, 900.0),         explanation({0}, 500.0, 300.0),
+      explanation({2}, 700.0, 200.0),      explanation({0, 2}, 2000.0, 1.0),
+      explanation({0, 1, 2}, 2006.0, 1.0),
+  };
+  const auto judged = [&](double structure_sigma, const Thresholds::Decision& limits) {
+    return decide(
+        trials, all, [&](size_t) { return structure_sigma; }, limits);
+  };
+  const Thresholds::Decision limits = Thresholds().decision;
+  const Decision d = judged(0.0, limits);
+  EXPECT_EQ(d.finding, Finding::unknown);
+  EXPECT_EQ(d.chosen, 4u);
+  EXPECT_EQ(d.beside_law, std::vector<size_t>{0});
+  // Where the law leaves structure, the names may make up for it.
+  EXPECT_TRUE(judged(20.0, limits).beside_law.empty());
+  Thresholds::Decision mutant = limits;
+  mutant.min_log_odds_beside_law = 3.0;
+  EXPECT_EQ(judged(0.0, mutant).beside_law, (std::vector<size_t>{0, 1}));
+}
+
 }  // namespace
 }  // namespace photorque::inference

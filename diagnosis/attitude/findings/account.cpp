@@ -118,6 +118,17 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
   return effects;
 }
 
+std::vector<FoundEffect> effects_beside_law(const inference::Decision& decision,
+                                            const std::vector<Trial>& trials,
+                                            const Candidates& all) {
+  std::vector<FoundEffect> effects = found_effects(decision, trials, all);
+  std::erase_if(effects, [&](const FoundEffect& effect) {
+    return std::none_of(decision.beside_law.begin(), decision.beside_law.end(),
+                        [&](size_t c) { return all[c].effect.kind == effect.kind; });
+  });
+  return effects;
+}
+
 std::vector<FoundEffect> unnamed_effects(const inference::Decision& decision,
                                          const std::vector<Trial>& trials, const Candidates& all,
                                          const std::vector<FoundEffect>& named) {
@@ -249,8 +260,11 @@ std::string sentence_of(const Diagnosis& d) {
   if (d.verdict == Verdict::missing_physics) {
     return (d.effects.size() == 1 ? "Missing: " : "Missing together: ") + names_of(d) + ".";
   }
-  if (!d.effects.empty()) return mostly_explained(d);
-  std::string text = "Something acts that no effect of the catalogue explains";
+  if (!d.effects.empty() && d.empirical.empty()) return mostly_explained(d);
+  std::string text = d.effects.empty() ? "Something acts that no effect of the catalogue explains"
+                                       : "Acts: " + names_of(d) +
+                                             ", and beside it something that no effect of the "
+                                             "catalogue explains";
   if (!d.where.depends_on.empty()) {
     text += "; it depends on " + d.where.depends_on.front().variable;
   }

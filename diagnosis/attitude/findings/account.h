@@ -11,7 +11,12 @@ namespace photorque {
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,
                                        const std::vector<Trial>& trials, const Candidates& all);
 
-// Those among them that are not in `named`.
+// Those of them that act beyond doubt beside a law without a name.
+std::vector<FoundEffect> effects_beside_law(const inference::Decision& decision,
+                                            const std::vector<Trial>& trials,
+                                            const Candidates& all);
+
+// Those of the chosen trial that are not in `named`.
 std::vector<FoundEffect> unnamed_effects(const inference::Decision& decision,
                                          const std::vector<Trial>& trials, const Candidates& all,
                                          const std::vector<FoundEffect>& named);
