@@ -187,9 +187,17 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   // More than these is not said, though more may act.
   d.confidence =
       probability_of(d.probability, [&](size_t i) { return judge.has_names_of(named, i); });
-  d.undecided = d.confidence < limits.min_confidence_of_weak_name &&
-                !judge.is_significant(named, trials[named].significance);
+  const bool is_weak = d.confidence < limits.min_confidence_of_weak_name &&
+                       !judge.is_significant(named, trials[named].significance);
+  d.undecided = is_weak && judge.predicts(0);
   if (d.undecided) {
+    d.confidence = 1.0 - d.confidence;
+  } else if (is_weak) {
+    // Something acts beyond doubt, and of several explanations none is much likelier than the rest.
+    // What they share may be an error that they share: nothing is named.
+    d.finding = Finding::unknown;
+    d.because = "several explanations are about as likely";
+    d.chosen = named;
     d.confidence = 1.0 - d.confidence;
   } else {
     d.finding = Finding::named;

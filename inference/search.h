@@ -21,9 +21,14 @@ class Search {
     Trial from = nominal;
     if (has_diverged(nominal, limits_)) {
       for (Trial& t : by_pieces(nominal)) trials_.push_back(std::move(t));
-      // Nothing can be predicted about a prediction that is elsewhere.
+      // Nothing can be predicted about a prediction that is elsewhere. One that pieces led to the
+      // readings, all but a part that is still unknown or noise that is more than stated, says
+      // more.
+      constexpr double as_near = 10.0;
       const Trial& best = trials_[best_allowed()];
-      if (has_diverged(best, limits_) || best.fit.samples != nominal.fit.samples) {
+      const bool is_elsewhere =
+          !(best.fit.chi2_per_sample() < as_near * limits_.diverged_chi2_per_sample);
+      if (is_elsewhere || best.fit.samples != nominal.fit.samples) {
         return without_twins(std::move(trials_));
       }
       from = best;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace photorque::inference {
 namespace {
 
@@ -97,6 +99,32 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   Thresholds::Decision mutant = limits;
   mutant.min_log_odds_beside_law = 3.0;
   EXPECT_EQ(judged(0.0, mutant).beside_law, (std::vector<size_t>{0, 1}));
+}
+
+// Two explanations as likely as one another, each weak without what was held out: where nothing at
+// all is as likely, nothing is said to be missing; where nothing predicts nothing, something is.
+TEST(Decide, WhatCannotBeToldApartIsNotNothing) {
+  const std::vector<CandidateTraits> all = {{.name = "sure"}, {.name = "one"}, {.name = "other"}};
+  const auto judged = [&](double nominal_sigma) {
+    std::vector<Explanation> trials = {
+        explanation({}, 0.0, nominal_sigma), explanation({0}, 700.0, 80.0),
+        explanation({1}, 100.0, 200.0),      explanation({0, 1}, 1000.3, 1.0),
+        explanation({0, 2}, 1000.0, 1.0),
+    };
+    for (Explanation& t : trials) {
+      t.joint_significance = t.significance;
+      if (t.candidates.size() == 2) t.significance[1] = 1.0;
+    }
+    return decide(
+        trials, all, [](size_t) { return 0.0; }, Thresholds().decision);
+  };
+  EXPECT_EQ(judged(1.0).finding, Finding::nothing_missing);
+  EXPECT_TRUE(judged(1.0).undecided);
+  const Decision d = judged(900.0);
+  EXPECT_EQ(d.finding, Finding::unknown);
+  EXPECT_FALSE(d.undecided);
+  EXPECT_TRUE(d.beside_law.empty());
+  EXPECT_NEAR(d.confidence, 1.0 / (1.0 + std::exp(0.3)), 1e-6);
 }
 
 }  // namespace
