@@ -247,6 +247,7 @@ Json page_content(const RunPage& page, const PageLimits& limits) {
       {"headline", clean_text(page.headline)},
       {"headlines", figures_json(page.headlines)},
       {"figures", figures_json(page.figures)},
+      {"figures_file", clean_text(page.figures_file)},
       {"power", power_json(page.power)},
       {"notes", std::move(notes)},
       {"maps", std::move(maps)},

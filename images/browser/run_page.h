@@ -42,6 +42,7 @@ struct RunPage {
   std::string headline = {};
   std::vector<PageFigure> headlines = {};  // the few that stand at the top
   std::vector<PageFigure> figures = {};
+  std::string figures_file = "summary.json";  // that has them too
   std::vector<PowerStage> power = {};
   std::vector<std::string> notes = {};
   std::optional<SceneStage> stage = {};

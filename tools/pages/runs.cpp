@@ -17,6 +17,8 @@ RunPage lit_page(const OpticalRun& run, const OpticalResult& light, const RunRes
                   (experiment.beams.size() == 1 ? " lamp, " : " lamps, ") +
                   std::to_string(experiment.scene.instances.size()) + " parts.";
   page.power = power_stages(run, light, result.product);
+  // The same as bars.
+  std::erase_if(page.product.plots, [](const Plot& plot) { return plot.name == "loss_waterfall"; });
   page.notes = experiment.notices;
   page.stage = stage_of(run, StageMaps::of_product);
   page.stage->states.push_back(lit_state(run, experiment.lab_from_body, light));
@@ -34,7 +36,7 @@ RunFile trace_page(const TraceRun& run, const PageHead& head) {
 RunFile power_page(const PowerRun& run, const PageHead& head) {
   return page_file(lit_page(*run.run, run.light, run.result, head,
                             {"array_power_W", "emitted_W", "power_on_cells_W", "array_efficiency",
-                             "light_to_electric_efficiency", "mismatch_loss"}));
+                             "light_to_electric_efficiency"}));
 }
 
 }  // namespace photorque

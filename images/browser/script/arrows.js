@@ -6,7 +6,7 @@ import {
 import { palette } from './colours.js';
 
 const up = new Vector3(0, 0, 1);
-const colourOf = { force: palette.vermilion, torque: palette.purple, turn: palette.green };
+const colourOf = { force: palette.vermilion, torque: palette.purple, turn: palette.vermilion };
 const secondColour = palette.blue;
 
 // Along z, one long; a cylinder of three.js stands along y.

@@ -5,7 +5,7 @@ import {
   LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, NearestFilter, RGBAFormat,
   SRGBColorSpace, Vector2, Vector3,
 } from 'three';
-import { ColourScale, palette } from './colours.js';
+import { ColourScale } from './colours.js';
 import { Grid, numbers } from './data.js';
 
 const largestWithEdges = 60000; // triangles; the lines of more would hide the body
@@ -19,7 +19,7 @@ function geometryOf(json) {
   return geometry;
 }
 
-// All parts of the body: solid, or to be seen through.
+// All parts of the body: solid, or to be seen through in a colour.
 export function makeBody(parts, seeThrough) {
   const group = new Group();
   for (const part of parts) {
@@ -31,7 +31,7 @@ export function makeBody(parts, seeThrough) {
       polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
     });
     if (seeThrough) {
-      material.color.set(palette.blue);
+      material.color.set(seeThrough);
       Object.assign(material, { transparent: true, opacity: 0.16, depthWrite: false });
     }
     const mesh = new Mesh(geometry, material);
@@ -40,7 +40,7 @@ export function makeBody(parts, seeThrough) {
     if (geometry.index.count / 3 > largestWithEdges) continue;
     const edges = new LineSegments(
       new EdgesGeometry(geometry, creaseDeg),
-      new LineBasicMaterial({ color: seeThrough ? palette.blue : '#3a4149', transparent: true,
+      new LineBasicMaterial({ color: seeThrough || '#3a4149', transparent: true,
         opacity: seeThrough ? 0.8 : 0.55 }));
     group.add(edges);
   }

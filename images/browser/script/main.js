@@ -53,7 +53,7 @@ function build(run) {
   if (run.power.length > 1) pair.append(section('Where the power went', waterfall(run.power)));
   main.append(pair);
   if (others.length > 0) main.append(section('Curves', bodies(others)));
-  if (run.figures.length > 0) main.append(section('Figures', ...figureTable(run.figures)));
+  if (run.figures.length > 0) main.append(section('Figures', ...figureTable(run.figures, run.figures_file)));
   if (run.tables.length > 0) main.append(section('Tables', ...run.tables.map(table)));
   if (run.notes.length > 0) {
     main.append(section('Notes', element('ul', {}, run.notes.map((note) => element('li', {}, note)))));

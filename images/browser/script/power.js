@@ -21,7 +21,7 @@ export function waterfall(stages) {
     return element('div', { class: 'fall', tabindex: 0, title: `${stage.label}: ${amount}` },
       element('span', { class: 'fall-label' }, stage.label),
       element('span', { class: 'fall-track' }, bar),
-      element('span', { class: 'fall-value' }, `${stage.total ? '' : '−'}${amount}`),
+      element('span', { class: 'fall-value' }, `${stage.total || stage.value === 0 ? '' : '−'}${amount}`),
       element('span', { class: 'fall-part' }, `${readable(100 * stage.value / whole, 3)} %`));
   });
   return element('div', { class: 'waterfall' }, rows);

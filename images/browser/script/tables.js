@@ -10,7 +10,7 @@ export function cards(figures) {
     element('span', {}, figure.label))));
 }
 
-export function figureTable(figures) {
+export function figureTable(figures, file) {
   const body = element('tbody', {}, figures.map((figure) => element('tr', {},
     element('td', {}, figure.label),
     element('td', { class: 'number', 'data-key': figure.key, 'data-value': figure.value, 'data-error': figure.error },
@@ -25,7 +25,7 @@ export function figureTable(figures) {
     },
   });
   return [filter, element('div', { class: 'scroll' }, element('table', { id: 'figures' },
-    element('thead', {}, element('tr', {}, ['figure', 'value ± standard error', 'unit', 'in summary.json'].map((h) => element('th', {}, h)))),
+    element('thead', {}, element('tr', {}, ['figure', 'value ± standard error', 'unit', `in ${file}`].map((h) => element('th', {}, h)))),
     body))];
 }
 

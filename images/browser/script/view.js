@@ -6,11 +6,15 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Arrow } from './arrows.js';
+import { palette } from './colours.js';
 import { Painting, makeBody } from './bodies.js';
 import { Rays, makeLamps } from './light.js';
 
 // three.js takes y as upwards; this turn of spherical coordinates makes it z.
 const upright = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(0, 1, 0));
+
+// Of the bodies in their order; the first is solid. The colours of the diagnosis: what was nominal, what was found.
+const seeThrough = [null, palette.vermilion, palette.blue];
 
 const widest = 4 / 3;  // width over height for which the field of view is meant; wider ones show more
 
@@ -25,7 +29,7 @@ export class StageView {
     this.scene.background = new Color('#f4f6f8');
     this.scene.add(new HemisphereLight('#ffffff', '#b9c2cc', 2.1));
     this.makeCamera();
-    this.bodies = stage.bodies.map((_, i) => makeBody(stage.parts, i > 0));
+    this.bodies = stage.bodies.map((_, i) => makeBody(stage.parts, i === 0 ? null : seeThrough[i] ?? palette.blue));
     this.scene.add(...this.bodies);
     this.paintings = stage.paintings.map((json) => new Painting(json, maps, colours));
     for (const painting of this.paintings) this.bodies[0].add(painting.group);
