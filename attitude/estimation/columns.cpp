@@ -85,6 +85,13 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
                          "gyro_z_rad_s");
 }
 
+std::string MotionColumns::first_name() const {
+  for (const Channel* channel : {q_[0], angle_, euler_[0], gyro_[0], gyro_[1], gyro_[2]}) {
+    if (channel != nullptr) return channel->name;
+  }
+  return "";
+}
+
 Quat MotionColumns::attitude(size_t row) const {
   if (angle_ != nullptr) {
     return Quat(Eigen::AngleAxisd(cell(angle_, row), platform_.axis));

@@ -29,6 +29,9 @@ class MotionColumns {
   bool has_attitude() const { return sees_axis_[0] || sees_axis_[1] || sees_axis_[2]; }
   bool has_gyro() const { return gyro_[0] || gyro_[1] || gyro_[2]; }
 
+  // The first column that says something of the motion.
+  std::string first_name() const;
+
   // Of a row; not finite where it has none.
   Quat attitude(size_t row) const;
   double rate_rad_s(size_t axis, size_t row) const;  // body axes

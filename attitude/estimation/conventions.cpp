@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "attitude/estimation/free_inertia.h"
 #include "core/constants.h"
 
 namespace photorque {
@@ -179,6 +180,106 @@ double disagreement(const std::vector<Change>& changes, const Mat3& inertia_kg_m
 
 }  // namespace
 
+namespace {
+
+// Axes of wheels whose moment of inertia comes out negative.
+std::array<bool, 3> reversed_wheels(const FreeInertia& found) {
+  constexpr double sigmas = 5.0;
+  std::array<bool, 3> reversed{};
+  for (int k = 0; k < 3; ++k) {
+    reversed[static_cast<size_t>(k)] = found.wheel[k] < -sigmas * found.wheel_sigma[k];
+  }
+  return reversed;
+}
+
+// The names of the columns that were turned.
+std::string turn_wheels(const std::array<bool, 3>& reversed, Observation& seen) {
+  std::string names;
+  for (int k = 0; k < 3; ++k) {
+    if (!reversed[static_cast<size_t>(k)]) continue;
+    for (ZeroOrderHold& held : seen.schedule.held) {
+      held.wheel.speed_rad_s[k] *= -1.0;
+      held.wheel.acceleration_rad_s2[k] *= -1.0;
+    }
+    names += std::string(names.empty() ? "" : ", ") + "wheel_" + "xyz"[k] + "_rad_s";
+  }
+  return names;
+}
+
+// A reading of the gyro, and what the rates then say of the body.
+struct FreeReading {
+  GyroReading gyro;
+  FreeInertia inertia;
+
+  // What is to be assumed for it: changes, and steps of a fifth of the mean moment from what is
+  // stated.
+  double cost(const Mat3& inertia_kg_m2) const {
+    constexpr double step = 0.2;
+    const Vec3 stated = 3.0 / inertia_kg_m2.trace() * inertia_kg_m2.diagonal();
+    double changes = gyro.changes;
+    for (const bool reversed : reversed_wheels(inertia)) changes += reversed ? 1.0 : 0.0;
+    return changes + (inertia.value.head<3>() - stated).squaredNorm() / (step * step);
+  }
+};
+
+// All readings of the gyro under which the rates follow some inertia at all.
+std::vector<FreeReading> free_readings(const Observation& seen) {
+  constexpr size_t most = 600;
+  const Observation rows = seen.averaged(most);
+  std::vector<FreeReading> all;
+  for (const GyroReading& gyro : gyro_readings()) {
+    Observation turned = rows;
+    read_gyro_as(gyro.matrix, turned);
+    if (const auto found = free_inertia({turned}, FreeDrag::none)) all.push_back({gyro, *found});
+  }
+  return all;
+}
+
+// The reading to be taken: that of the header unless another leaves far less.
+const FreeReading* best_reading(const std::vector<FreeReading>& all, const Mat3& inertia_kg_m2) {
+  // Below `good` the header's reading is good; the others have to be so much better, and those that
+  // leave as much are chosen among.
+  constexpr double good = 0.05, better = 1.0 / 3.0, alike = 1.2;
+  const FreeReading* as_is = nullptr;
+  const FreeReading* best = nullptr;
+  for (const FreeReading& r : all) {
+    if (r.gyro.changes == 0) as_is = &r;
+    if (best == nullptr || r.inertia.left < best->inertia.left) best = &r;
+  }
+  if (best == nullptr) return nullptr;
+  if (as_is != nullptr &&
+      (as_is->inertia.left < good || best->inertia.left > better * as_is->inertia.left)) {
+    return as_is;
+  }
+  const FreeReading* taken = best;
+  for (const FreeReading& r : all) {
+    if (r.inertia.left > alike * best->inertia.left) continue;
+    if (r.cost(inertia_kg_m2) < taken->cost(inertia_kg_m2)) taken = &r;
+  }
+  return taken;
+}
+
+// Without trust in the stated inertia.
+std::string repair_by_any_inertia(Observation& seen, const Mat3& inertia_kg_m2) {
+  const std::vector<FreeReading> all = free_readings(seen);
+  const FreeReading* taken = best_reading(all, inertia_kg_m2);
+  if (taken == nullptr || taken->inertia.left > agrees) return "";
+  const std::string wheels = turn_wheels(reversed_wheels(taken->inertia), seen);
+  std::string text;
+  if (taken->gyro.changes > 0) {
+    read_gyro_as(taken->gyro.matrix, seen);
+    text = "convention: " + taken->gyro.text +
+           ": the recording was read so, because only then do the rates change as any inertia "
+           "makes them; a free body cannot tell one reversed axis from another, nor from two axes "
+           "exchanged";
+  }
+  if (wheels.empty()) return text;
+  return text + (text.empty() ? "convention: the sign of " : "; the sign of ") + wheels +
+         " was turned: as it stands the wheel would have a negative moment of inertia";
+}
+
+}  // namespace
+
 std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2) {
   constexpr size_t fewest = 20;
   if (!seen.has_gyro || seen.sees_some_attitude()) return "";
@@ -186,7 +287,15 @@ std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2) {
   if (changes.size() < fewest) return "";
   const double as_is = disagreement(changes, inertia_kg_m2, Mat3::Identity());
   // The body's own inertia explains half of what the rates do: torques may do the rest.
-  if (as_is < 0.5) return "";
+  if (as_is < 0.5) {
+    const auto found = free_inertia({seen}, FreeDrag::none);
+    if (!found || found->left > agrees) return "";
+    const std::string wheels = turn_wheels(reversed_wheels(*found), seen);
+    return wheels.empty() ? ""
+                          : "convention: the sign of " + wheels +
+                                " was turned: as it stands the wheel would have a negative moment "
+                                "of inertia";
+  }
   double best = as_is, best_cost = as_is;
   GyroReading best_gyro{Mat3::Identity(), 0, ""};
   for (const GyroReading& gyro : gyro_readings()) {
@@ -197,7 +306,7 @@ std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2) {
     best_cost = cost;
     best_gyro = gyro;
   }
-  if (best > agrees || best > 0.2 * as_is) return "";
+  if (best > agrees || best > 0.2 * as_is) return repair_by_any_inertia(seen, inertia_kg_m2);
   read_gyro_as(best_gyro.matrix, seen);
   return "convention: " + best_gyro.text +
          ": the recording was read so, because only then do the rates change as the stated inertia "

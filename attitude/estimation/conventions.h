@@ -19,6 +19,12 @@ std::string repair_conventions(Observation& seen);
 // another unit spoil. Which of the axes are reversed such a body cannot tell: the one with the
 // fewest changes is taken. Nothing is done where an attitude is read, or where the moments are so
 // alike that nothing follows from them.
+//
+// Where the stated inertia explains little, as it does when it is only a guess, the rates have to
+// change as some inertia says, measured wheels included (free_inertia.h): a reading of the axes and
+// units that leaves a third of what the header's reading leaves is taken, the one nearest to the
+// stated moments. A wheel whose own moment of inertia comes out negative by five standard errors
+// was read with the wrong sign; its speed is turned.
 std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2);
 
 }  // namespace photorque

@@ -110,6 +110,19 @@ MatrixXd columns_of(const RatesOfPiece& rates) {
   return columns;
 }
 
+Mat3 matrix_of(const InertiaNumbers& six) {
+  Mat3 inertia = Mat3::Zero();
+  for (Index k = 0; k < 6; ++k) inertia += six[k] * unit_inertia(k);
+  return inertia;
+}
+
+std::vector<Vec3> about_mean(std::vector<Vec3> rates) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& rate : rates) mean += rate / static_cast<double>(rates.size());
+  for (Vec3& rate : rates) rate -= mean;
+  return rates;
+}
+
 // Over how many rows residuals about one axis are alike, at least one; the pieces follow each
 // other.
 double alike_rows(const VectorXd& residual) {
@@ -132,9 +145,10 @@ double alike_rows(const VectorXd& residual) {
 
 }  // namespace
 
-std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces) {
+std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces, FreeDrag drags) {
   constexpr size_t most_rows = 6000;
   std::vector<MatrixXd> parts;
+  std::vector<Vec3> rates_rad_s;
   Index rows = 0;
   for (const Observation& seen : pieces) {
     if (is_commanded_torque(seen.schedule)) return std::nullopt;
@@ -142,6 +156,8 @@ std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces) 
     if (rates.time_s.size() < fewest_rows) continue;
     parts.push_back(columns_of(rates));
     rows += parts.back().rows();
+    const std::vector<Vec3> changes = about_mean(rates.rate_rad_s);
+    rates_rad_s.insert(rates_rad_s.end(), changes.begin(), changes.end());
   }
   if (parts.empty()) return std::nullopt;
   MatrixXd all(rows, unknowns);
@@ -154,7 +170,8 @@ std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces) 
   Index unit = 0;
   all.leftCols<3>().colwise().norm().maxCoeff(&unit);
   std::vector<Index> free;
-  for (Index k = 0; k < unknowns; ++k) {
+  const Index last = drags == FreeDrag::fitted ? unknowns : drag;
+  for (Index k = 0; k < last; ++k) {
     if (k != unit && all.col(k).norm() > 0.0) free.push_back(k);
   }
   // Columns of unit length, so that no result depends on units.
@@ -172,10 +189,15 @@ std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces) 
   // All six numbers in units of the one that was given, then in units of their mean moment.
   InertiaNumbers in_units = InertiaNumbers::Zero();
   Eigen::Matrix<double, 6, 6> spread = Eigen::Matrix<double, 6, 6>::Zero();
+  FreeInertia result;
   in_units[unit] = 1.0;
   for (size_t a = 0; a < free.size(); ++a) {
-    if (free[a] >= wheel) continue;
     const auto i = static_cast<Index>(a);
+    if (free[a] >= wheel && free[a] < drag) {
+      result.wheel[free[a] - wheel] = solved[i] / length[i];
+      result.wheel_sigma[free[a] - wheel] = std::sqrt(covariance(i, i)) / length[i];
+    }
+    if (free[a] >= wheel) continue;
     in_units[free[a]] = solved[i] / length[i];
     for (size_t b = 0; b < free.size(); ++b) {
       if (free[b] >= wheel) continue;
@@ -185,12 +207,15 @@ std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces) 
   }
   if (!(in_units.head<3>().minCoeff() > 0.0)) return std::nullopt;
   const double mean = in_units.head<3>().sum() / 3.0;
-  FreeInertia result;
   result.value = in_units / mean;
+  result.wheel /= mean;
+  result.wheel_sigma /= mean;
   Eigen::Matrix<double, 6, 6> slope = Eigen::Matrix<double, 6, 6>::Identity();
   slope.leftCols<3>().colwise() -= result.value / 3.0;
   result.covariance = slope * spread * slope.transpose() / (mean * mean);
-  result.left = std::min(1.0, residual.norm() / y.norm());
+  double change2 = 0.0;
+  for (const Vec3& rate : rates_rad_s) change2 += (matrix_of(in_units) * rate).squaredNorm();
+  result.left = residual.norm() / std::sqrt(change2);
   return result;
 }
 

@@ -17,12 +17,19 @@ struct FreeInertia {
   InertiaNumbers value = InertiaNumbers::Zero();
   // Of the values; singular, because their trace is given.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  // What no inertia explains of the change of the angular momentum: root mean square over that of
-  // the change itself, 0 to 1.
+  // Moments of the wheels about x, y and z in the same unit, with their errors; zero where none was
+  // measured. A negative one says that the wheel's speed was read with the wrong sign.
+  Vec3 wheel = Vec3::Zero(), wheel_sigma = Vec3::Zero();
+  // What nothing of this explains: the root mean square of what is left over that of the change of
+  // the body's angular momentum in body axes. 0 for exact readings, about 1 and more where the
+  // rates follow no such law.
   double left = 0.0;
 
   double sigma(int k) const { return std::sqrt(covariance(k, k)); }
 };
+
+// Whether a drag by the square of the rate about each axis is fitted beside the inertia.
+enum class FreeDrag { fitted, none };
 
 // From the pieces of one recording, each with an angular momentum of its own. With
 //
@@ -34,6 +41,7 @@ struct FreeInertia {
 // counts once in the time over which it is alike. Nothing where a command acted, where an axis was
 // not read in 20 rows at least, or where a negative moment comes out: then something else turns the
 // body.
-std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces);
+std::optional<FreeInertia> free_inertia(const std::vector<Observation>& pieces,
+                                        FreeDrag drag = FreeDrag::fitted);
 
 }  // namespace photorque

@@ -186,8 +186,10 @@ Observation observe(const Recording& recording, const std::string& name, const P
   seen.rows = static_cast<int64_t>(recording.rows());
   seen.row_interval_s = recording.report.median_interval_s;
   seen.time_s = recording.time_s;
+  int64_t events = 0;
   for (size_t row = 0; row < recording.rows(); ++row) {
     const bool usable = !columns.has_event(row);
+    events += usable ? 0 : 1;
     const Quat q = columns.attitude(row);
     const bool complete = usable && columns.has_attitude() && q.coeffs().allFinite();
     seen.attitude.push_back(q);
@@ -199,10 +201,13 @@ Observation observe(const Recording& recording, const std::string& name, const P
         rate.unaryExpr([&](double x) { return usable && std::isfinite(x) ? 1.0 : 0.0; }));
   }
   if (const size_t readings = seen.readings(0, seen.blocks()); readings < fewest_readings) {
-    throw InputError(
-        {name, 0}, columns.has_attitude() ? "q_w" : "gyro_x_rad_s",
-        std::to_string(readings) + (columns.has_attitude() ? " complete attitudes" : " rates"),
-        "at least " + std::to_string(fewest_readings));
+    throw InputError({name, 0}, columns.first_name(),
+                     std::to_string(readings) +
+                         (columns.has_attitude() ? " complete attitudes" : " rates") +
+                         (events > 0 ? ", " + std::to_string(events) + " of " +
+                                           std::to_string(seen.rows) + " rows are marked as events"
+                                     : ""),
+                     "at least " + std::to_string(fewest_readings));
   }
   return seen.averaged(max_blocks);
 }

@@ -16,6 +16,7 @@
 #include "diagnosis/attitude/findings/manoeuvre.h"
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/settle.h"
+#include "diagnosis/attitude/timing.h"
 #include "diagnosis/verdict.h"
 
 namespace photorque {
@@ -204,6 +205,10 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
     d.warnings.push_back(text);
   }
   d.instruments = data.instruments;
+  for (InstrumentFinding& finding : clock_findings(stated.model.platform, data)) {
+    d.warnings.insert(d.warnings.begin(), finding.text);
+    d.instruments.push_back(std::move(finding));
+  }
   d.bodies = different_bodies(stated.model.platform, data);
   if (!d.bodies.empty()) d.warnings.insert(d.warnings.begin(), sentence_of(d.bodies));
   d.data = quality_of(recordings, holdouts, data);

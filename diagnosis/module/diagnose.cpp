@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/constants.h"
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "diagnosis/module/fit.h"
@@ -31,6 +32,55 @@ double light_of(const ModuleSweep& sweep, const ModuleNominal& nominal) {
   return std::max(best / nominal.cell.photocurrent_A, 1e-3);
 }
 
+// What no light and no temperature does to a module: the columns are not what their header says.
+void require_plausible(const ModuleSweep& sweep, const ModuleDesign& design,
+                       const ModuleNominal& nominal) {
+  const ModuleCell& cell = nominal.cell;
+  const double thermal_V = boltzmann_J_K * cell.temperature_K / elementary_charge_C;
+  const double open_V = design.cells * cell.ideality * thermal_V *
+                        std::log1p(cell.photocurrent_A / cell.saturation_A);
+  const double light = light_of(sweep, nominal);
+  double seen_V = 0.0;  // the largest voltage at which it still gives current
+  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+    if (sweep.current_A[i] >= 0.0) seen_V = std::max(seen_V, sweep.voltage_V[i]);
+  }
+  char found[160];
+  constexpr double most_suns = 20.0, most_V = 1.25;
+  if (light > most_suns) {
+    std::snprintf(found, sizeof found, "%.3g times the current of the module as it was", light);
+    throw InputError({sweep.name}, "current_A", found,
+                     "amperes (a column in milliamperes is named current_mA)");
+  }
+  if (seen_V > most_V * open_V) {
+    std::snprintf(found, sizeof found,
+                  "%.3g V at a current, where the module as it was gives %.3g V at none", seen_V,
+                  open_V);
+    const double exchanged = light * cell.photocurrent_A / open_V;
+    constexpr double alike = 0.15;
+    throw InputError({sweep.name}, "voltage_V", found,
+                     std::abs(exchanged - 1.0) < alike
+                         ? "the voltage: the columns of voltage and current look exchanged"
+                         : "volts of the module of the experiment (a column in millivolts is named "
+                           "voltage_mV)");
+  }
+}
+
+void require_current_forward(const LightRecording& r) {
+  double nearest_V = INFINITY, short_A = 0.0;
+  for (size_t i = 0; i < r.rows(); ++i) {
+    if (std::abs(r.voltage_V[i]) > nearest_V) continue;
+    nearest_V = std::abs(r.voltage_V[i]);
+    short_A = r.current_A[i];
+  }
+  double largest_A = 0.0;
+  for (const double current_A : r.current_A) largest_A = std::max(largest_A, std::abs(current_A));
+  if (short_A > -0.5 * largest_A) return;
+  throw InputError(
+      {r.name}, "current_A", "a negative current at the smallest voltage",
+      "currents that a lit module gives as positive numbers: the sign of the column is "
+      "reversed");
+}
+
 ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const ModuleNominal& nominal,
                  const ModuleDiagnoseOptions& options, DataQuality& quality) {
   if (r.kind != LightRecording::Kind::sweep) {
@@ -38,7 +88,9 @@ ModuleRun run_of(const LightRecording& r, const ModuleDesign& design, const Modu
                      "a current-voltage curve, for an experiment with [module]");
   }
   int64_t dropped = 0;
+  require_current_forward(r);
   ModuleRun run{module_sweep(r, design, options.max_points, &dropped)};
+  require_plausible(run.sweep, design, nominal);
   run.sweep.light = light_of(run.sweep, nominal);
   run.sigma_A = point_sigma_A(nominal, run.sweep);
   quality.rows += r.rows_read;

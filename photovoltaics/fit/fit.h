@@ -102,10 +102,11 @@ struct RatedFit {
 };
 
 // Four parameters (I₀, n V_t, R_s, R_sh) by least squares in the relative errors of V_oc, I_mp and
-// V_mp at the points, all at one temperature; at each, the photocurrent is that of its short
-// circuit. One point leaves one parameter open: `ideality_guess_V` (n V_t of the whole device) is
-// then kept. The gap follows from the slope of the open-circuit voltage. Throws InputError for
-// figures that no curve can have.
+// V_mp at the points; at each, the photocurrent is that of its short circuit. Points at other
+// temperatures than the first (a sheet's NOCT beside its STC) are moved to that by the slopes. One
+// point leaves one parameter open: `ideality_guess_V` (n V_t of the whole device) is then kept. The
+// gap follows from the slope of the open-circuit voltage. Throws InputError for figures that no
+// curve can have.
 //
 // Standard errors: the fit is repeated with every figure moved by its standard deviation both ways,
 // and half the differences add up in quadrature; or, if larger, the scatter of the residuals where

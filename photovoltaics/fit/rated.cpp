@@ -36,11 +36,27 @@ void check(std::span<const RatedPoint> points) {
       throw InputError({}, "datasheet", "figures that no cell can have",
                        "0.25 I_sc V_oc < I_mp V_mp with I_mp < I_sc and V_mp < V_oc");
     }
-    if (std::abs(p.temperature_K - points[0].temperature_K) > 0.5) {
-      throw InputError({}, "datasheet", "points at different temperatures",
-                       "one temperature; slopes say how it changes");
-    }
   }
+}
+
+// As they would be at the temperature of the first: every current of a point by what its short
+// circuit changes, every voltage by what the first one's open circuit does (IEC 60891, procedure 1,
+// without the correction of the curve's own change).
+std::vector<RatedPoint> at_first_temperature(std::span<const RatedPoint> points,
+                                             const TemperatureSlopes& slopes) {
+  std::vector<RatedPoint> moved(points.begin(), points.end());
+  for (RatedPoint& p : moved) {
+    const double warmer_K = p.temperature_K - points[0].temperature_K;
+    const double current_A =
+        p.short_circuit_A * (1.0 - 1.0 / (1.0 + slopes.short_circuit_1_K * warmer_K));
+    const double voltage_V = slopes.open_circuit_1_K * points[0].open_circuit_V * warmer_K;
+    p.short_circuit_A -= current_A;
+    p.maximum_A -= current_A;
+    p.open_circuit_V -= voltage_V;
+    p.maximum_V -= voltage_V;
+    p.temperature_K = points[0].temperature_K;
+  }
+  return moved;
 }
 
 VectorXd relative_errors(std::span<const RatedPoint> points, const VectorXd& x) {
@@ -233,6 +249,12 @@ RatedTolerance written_steps(std::span<const RatedPoint> points) {
 RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
                           double ideality_guess_V, const RatedTolerance& tolerance) {
   check(points);
+  const bool moves = std::ranges::any_of(
+      points, [&](const RatedPoint& p) { return p.temperature_K != points[0].temperature_K; });
+  if (moves) {
+    return fit_rated_points(at_first_temperature(points, slopes), slopes, ideality_guess_V,
+                            tolerance);
+  }
   if (!(ideality_guess_V > 0)) {
     throw InputError({}, "datasheet", "n V_t = " + std::to_string(ideality_guess_V),
                      "a number > 0");

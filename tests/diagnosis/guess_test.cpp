@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <random>
 
+#include "attitude/estimation/conventions.h"
 #include "attitude/estimation/free_inertia.h"
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
@@ -137,6 +139,36 @@ TEST_F(Guess, RatesAboutOneAxisTellNoMoments) {
   EXPECT_FALSE(found);
 }
 
+// Swapped, reversed or in degrees, the rates of a thrown body follow no inertia; where the stated
+// one is only a guess nothing but the wheel tells it from a mirror image.
+TEST_F(Guess, RatesThatFollowNoInertiaAreReadAnew) {
+  const Recording recording = thrown(racquet, {4.0, 2.0, 3.0}, 0.003, 5, 2e-3, 900.0);
+  const Mat3 guessed = Mat3::Identity();
+  const auto repaired = [&](const std::function<void(Recording&)>& spoil) {
+    Recording spoilt = recording;
+    spoil(spoilt);
+    Observation seen = observe(spoilt, "throw.csv", free_platform());
+    const std::string text = repair_free_rates(seen, guessed);
+    const auto found = free_inertia({seen}, FreeDrag::none);
+    EXPECT_TRUE(found && found->left < 0.02 && found->wheel.z() > 0.0) << text;
+    return text;
+  };
+  const auto times = [](size_t channel, double factor) {
+    return [=](Recording& r) {
+      for (double& x : r.channels[channel].values) x *= factor;
+    };
+  };
+  EXPECT_EQ(repaired([](Recording&) {}), "");
+  EXPECT_THAT(repaired(times(1, -1.0)), HasSubstr("the gyro's axes x, y, z are"));
+  EXPECT_THAT(repaired([](Recording& r) { std::swap(r.channels[0].values, r.channels[2].values); }),
+              HasSubstr("the gyro's axes x, y, z are"));
+  EXPECT_THAT(repaired([&](Recording& r) {
+                for (size_t k = 0; k < 3; ++k) times(k, 1.0 / degree_rad)(r);
+              }),
+              HasSubstr("the gyro reads degrees per second"));
+  EXPECT_THAT(repaired(times(3, -1.0)), HasSubstr("the sign of wheel_z_rad_s was turned"));
+}
+
 std::vector<NamedRecording> throws_of(const std::vector<std::pair<std::string, Mat3>>& bodies) {
   std::vector<NamedRecording> all;
   uint64_t seed = 1;
@@ -177,6 +209,21 @@ TEST_F(Guess, RecordingsOfOneBodyAreNot) {
       diagnose(model_of(free_toml), throws_of({{"one.csv", board}, {"two.csv", board}}), {});
   EXPECT_TRUE(d.bodies.empty());
   for (const std::string& warning : d.warnings) EXPECT_THAT(warning, Not(HasSubstr("bodies")));
+}
+
+TEST_F(Guess, AClockThatContradictsTheRatesIsSaid) {
+  std::vector<NamedRecording> runs = throws_of({{"one.csv", board}});
+  for (const double factor : {1.0, 1.2}) {
+    for (double& time_s : runs.front().recording.time_s) time_s *= factor;
+    const Diagnosis d = diagnose(model_of(free_toml), runs, {});
+    if (factor == 1.0) {
+      EXPECT_TRUE(d.instruments.empty());
+      continue;
+    }
+    ASSERT_THAT(d.instruments, SizeIs(1));
+    EXPECT_EQ(d.instruments.front().what, "clock_factor");
+    EXPECT_NEAR(d.instruments.front().value, 1.0 / factor, 0.01);
+  }
 }
 
 TEST_F(Guess, ASensorMountedOtherwiseIsSaid) {

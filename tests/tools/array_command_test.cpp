@@ -1,10 +1,12 @@
 // `fit-cell`, and what `power` says beyond the maximum power point, as a user meets them.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 
+#include "attitude/recordings/text_lines.h"
 #include "tests/tools/command_test.h"
 
 namespace photorque {
@@ -29,6 +31,53 @@ TEST_F(ArrayCommand, FitsADatasheetAndPrintsTheCell) {
   EXPECT_THAT(file_text(at("out/summary.json")), HasSubstr("\"ideality\""));
   EXPECT_TRUE(fs::exists(at("out/parameters.csv")));
   EXPECT_TRUE(fs::exists(at("out/fit.png")));
+}
+
+// Figures at the temperature of operation, and the same moved to 25 °C by hand: 20 K warmer, at
+// 0.05 %/K of the current and −0.3 %/K of 38.5 V.
+TEST_F(ArrayCommand, ASheetWithStandardAndOperatingConditionsIsRead) {
+  const std::string standard =
+      "[fit]\ncells_in_series = 60\nrounding_A = 0.1\nrounding_V = 0.1\n"
+      "open_circuit_slope_per_K = -0.003\nshort_circuit_slope_per_K = 0.0005\n"
+      "[[fit.datasheet]]\nshort_circuit_A = 9.5\nopen_circuit_V = 38.5\n"
+      "maximum_A = 9.0\nmaximum_V = 31.5\n[[fit.datasheet]]\nirradiance_W_m2 = 800\n";
+  write("warm.toml", standard +
+                         "temperature_K = 318.15\nshort_circuit_A = 7.7\nopen_circuit_V = 35.9\n"
+                         "maximum_A = 7.2\nmaximum_V = 29.0\n");
+  const double less_A = 7.7 - 7.7 / 1.01;
+  write("moved.toml", standard + "short_circuit_A = " + std::to_string(7.7 - less_A) +
+                          "\nopen_circuit_V = 38.21\nmaximum_A = " + std::to_string(7.2 - less_A) +
+                          "\nmaximum_V = 31.31\n");
+  std::vector<double> ideality;
+  for (const char* file : {"warm", "moved"}) {
+    const Outcome got =
+        run("fit-cell " + at(std::string(file) + ".toml") + " --json --out " + at(file));
+    ASSERT_EQ(got.status, 0) << got.err;
+    const size_t key = got.out.find("\"ideality\"");
+    ASSERT_NE(key, std::string::npos);
+    ideality.push_back(
+        std::stod(got.out.substr(got.out.find(':', got.out.find("value", key)) + 1)));
+  }
+  EXPECT_NEAR(ideality[0], ideality[1], 1e-4 * ideality[1]);
+}
+
+TEST_F(ArrayCommand, ACompressedCurveIsTheSameCurve) {
+  std::string rows = "voltage_V,current_A\n";
+  for (int i = 0; i <= 60; ++i) {
+    const double volt = 0.01 * i;
+    rows +=
+        std::to_string(volt) + "," + std::to_string(1.0 - 1e-10 * std::exp(volt / 0.0267)) + "\n";
+  }
+  write("plain.csv", rows);
+  write("packed.csv.gz", gzip(rows));
+  std::vector<std::string> said;
+  for (const char* file : {"plain.csv", "packed.csv.gz"}) {
+    write("fit.toml", std::string("[fit]\ncurves = [\"") + file + "\"]\n");
+    const Outcome got = run("fit-cell " + at("fit.toml") + " --out " + at("out"));
+    ASSERT_EQ(got.status, 0) << got.err;
+    said.push_back(got.out);
+  }
+  EXPECT_EQ(said[0], said[1]);
 }
 
 TEST_F(ArrayCommand, WrongFitsAreOneLineAndLeaveNothing) {

@@ -8,6 +8,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/columns.h"
+#include "diagnosis/light/recordings/recording.h"
 #include "photovoltaics/fit/fit.h"
 #include "scenes/experiment/toml_reader.h"
 
@@ -31,6 +32,14 @@ struct FitTask {
 
 // voltage_V,current_A; or V,I as some instruments write.
 IvSweep read_sweep(const fs::path& file) {
+  if (file.extension() == ".gz") {
+    const LightRecording recording = read_light_recording(file, {});
+    if (recording.kind != LightRecording::Kind::sweep) {
+      throw InputError({file.string()}, "header", "another recording of light",
+                       "a curve with voltage_V,current_A");
+    }
+    return {recording.voltage_V, recording.current_A};
+  }
   const std::vector<std::string> header = read_column_names(file);
   const auto named = [&](const std::string& name, const std::string& other) {
     const bool has_other = std::ranges::find(header, name) == header.end() &&
@@ -361,10 +370,6 @@ Product fit_uneven_light(const FitTask& task, const Console& console) {
   add_plots(task, scan.points, scan.maxima, product);
   return product;
 }
-
-}  // namespace
-
-namespace {
 
 FitTask task_of(const RunOptions& options, const std::string& text) {
   SettingsNode root = parse_toml(text, options.experiment.string());
