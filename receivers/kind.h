@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/settings/keys.h"
 #include "core/settings/settings.h"
 #include "raytrace/receiver.h"
 #include "raytrace/scene.h"
@@ -32,6 +33,8 @@ struct ReceiverKind {
   std::string summary;  // one sentence, no full stop
   // Reads every key it knows; throws InputError, also when the scene lacks the named node.
   std::function<MadeReceiver(const Settings&, const Scene&)> make;
+  // The keys that `make` reads, beside `kind`.
+  std::vector<Key> keys = {};
 };
 
 // Every kind named in receivers/CMakeLists.txt, in that order.

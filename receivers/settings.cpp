@@ -103,4 +103,36 @@ SurfaceGrid read_surface_grid(const Settings& settings, const Scene& scene,
   return make_surface_grid(scene, target.instances, options);
 }
 
+std::vector<Key> target_keys() {
+  return {Key::text("node", "a node of the scene, with the nodes below it"),
+          Key::text("name", "of the results").usually_is("the node")};
+}
+
+std::vector<Key> target_or_all_keys(const std::string& otherwise_name) {
+  return {
+      Key::text("node", "a node of the scene, with the nodes below it").usually_is("everything"),
+      Key::text("name", "of the results").usually_is("the node, or `" + otherwise_name + "`")};
+}
+
+std::vector<Key> surface_grid_keys(Side default_side) {
+  Key bins =
+      Key::numbers("bins", {1.0, max_grid_bins}, "whole numbers: [along u, along v]").of_size(2);
+  bins.required = false;
+  const SurfaceGridOptions usual;
+  bins.otherwise = {SettingsNode::Array{{int64_t{usual.width}}, {int64_t{usual.height}}}};
+  return {
+      bins,
+      Key::choice_or(
+          "over", {{"plane", "a plane that fits the surface"}, {"uv", "the texture coordinates"}},
+          0, "what the bins lie on"),
+      Key::choice_or("side", words({"front", "back", "both"}), static_cast<size_t>(default_side),
+                     "which side of the surface counts"),
+      Key::vector3("facing", "only faces turned towards this body direction; closed bodies need it")
+          .usually_is("all faces")};
+}
+
+Key torque_point_key() {
+  return Key::vector3_or("about_m", Vec3::Zero(), "the point that torques are about, body axes");
+}
+
 }  // namespace photorque

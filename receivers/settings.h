@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/settings/keys.h"
 #include "core/settings/settings.h"
 #include "raytrace/scene.h"
 #include "receivers/surface_grid.h"
@@ -34,5 +35,12 @@ ReceiverTarget read_target_or_all(const Settings& settings, const Scene& scene,
 // and lays the grid.
 SurfaceGrid read_surface_grid(const Settings& settings, const Scene& scene,
                               const ReceiverTarget& target, Side default_side);
+
+// The keys of read_target(), or of read_target_or_all() with that name; those of
+// read_surface_grid(); and the point of torques.
+std::vector<Key> target_keys();
+std::vector<Key> target_or_all_keys(const std::string& otherwise_name);
+std::vector<Key> surface_grid_keys(Side default_side);
+Key torque_point_key();
 
 }  // namespace photorque

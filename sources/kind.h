@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/settings/keys.h"
 #include "core/settings/settings.h"
 #include "raytrace/emitter.h"
 
@@ -35,6 +36,8 @@ struct SourceKind {
   std::function<std::vector<Beam>(const Settings&, const SourceContext&)> make;
   // Keys of a typical source of this kind. The laws that every source obeys are tested on it.
   SettingsNode::Table example;
+  // The keys that `make` reads, beside `kind`.
+  std::vector<Key> keys = {};
 };
 
 // Every kind named in sources/CMakeLists.txt, in that order.

@@ -40,6 +40,19 @@ Disturbance read_disturbance(const Settings& settings, const DisturbanceContext&
   return disturbance;
 }
 
+Key disturbance_table() {
+  std::vector<Key::Choice> kinds;
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    kinds.push_back({kind.name, kind.summary, kind.keys});
+  }
+  return Key::tables("disturbance",
+                     {Key::choice("kind", std::move(kinds), "what acts"),
+                      Key::flag_or("per_recording", false,
+                                   "its parameters with a sigma have other values in every "
+                                   "recording that `diagnose` gets")},
+                     "what acts on the platform");
+}
+
 std::vector<Disturbance> read_disturbances(const Settings& root,
                                            const DisturbanceContext& context) {
   std::vector<Disturbance> all;

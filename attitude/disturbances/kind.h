@@ -8,6 +8,7 @@
 #include "attitude/disturbances/screening.h"
 #include "attitude/injection/injection.h"
 #include "attitude/model/disturbance.h"
+#include "core/settings/keys.h"
 
 namespace photorque {
 
@@ -37,6 +38,8 @@ struct DisturbanceKind {
   // The table of [sensors] that may hold the kind's key as well; empty: no error of an instrument.
   std::string instrument = {};
   bool has_eclipses = false;  // the light may fail, which a run reports
+  // What `read` reads, as documents, editors and `check` are told; beside `kind`.
+  std::vector<Key> keys = {};
 };
 
 // All kinds, generated from CMakeLists.txt.
@@ -57,6 +60,9 @@ std::vector<Disturbance> read_disturbances(const Settings& root, const Disturban
 Disturbance make_disturbance_of(
     const std::string& kind, const std::vector<std::pair<std::string, std::vector<double>>>& values,
     const DisturbanceContext& context);
+
+// [[disturbance]] as it is declared: `kind` with the keys of every kind.
+Key disturbance_table();
 
 // The first number of `key`, which may be written in another unit than the parameter's own; for
 // copies that are edited. NumericalError if the disturbance has no such parameter.

@@ -1,4 +1,4 @@
-// What settings.cpp and values.cpp have in common.
+// What the files of this room have in common.
 #pragma once
 
 #include <map>
@@ -25,7 +25,26 @@ struct Settings::Log {
   }
 };
 
+// Told of every key that a reader asks for, and of its default (SI) where the reader has one. It
+// does nothing and is a weak symbol: the test that holds the readers against the declared keys
+// (core/settings/keys.h) puts its own in the place of this one.
+void note_asked(const SettingsNode& table, const std::string& name, std::string_view key,
+                const SettingsNode* otherwise_SI);
+
 // Twelve significant digits, as people write numbers.
 std::string format_setting(double x);
+
+// The key of the same quantity as the user wrote it in the table; `key` where there is none.
+std::string as_written(const SettingsNode& table, std::string_view key);
+
+// "a number in (0, 90] deg": `range` is SI, `factor` the unit's.
+std::string describe_range(Range range, double factor, const std::string& unit);
+bool is_inside(double x, Range range);
+// "one of "a", "b"".
+std::string one_of(const std::vector<std::string>& choices);
+// The same for a word that is none of them, with the likest.
+std::string one_of(const std::vector<std::string>& choices, const std::string& instead_of);
+// What is expected in the place of an unknown key.
+std::string known_instead_of(std::string_view key, const std::set<std::string>& known);
 
 }  // namespace photorque

@@ -38,6 +38,20 @@ std::string misspelled(std::string_view key, const SettingsNode::Table& table,
 
 }  // namespace
 
+// The key of the same quantity as the user wrote it.
+std::string as_written(const SettingsNode& table, std::string_view key) {
+  const auto& keys = std::get<SettingsNode::Table>(table.value);
+  if (keys.contains(key)) return std::string(key);
+  const KeyUnit asked = unit_of_key(key);
+  for (const auto& [written, node] : keys) {
+    const KeyUnit unit = unit_of_key(written);
+    if (!asked.unit.empty() && unit.stem == asked.stem && unit.dimension == asked.dimension) {
+      return written;
+    }
+  }
+  return std::string(key);
+}
+
 std::string format_setting(double x) {
   std::ostringstream out;
   out.precision(12);
@@ -71,10 +85,7 @@ std::string nearest(std::string_view word, const std::set<std::string>& candidat
   return best;
 }
 
-namespace {
-
-// What is expected in the place of an unknown key: the likest of the known ones, else the first of
-// them all.
+// The likest of the known ones, else the first of them all.
 std::string known_instead_of(std::string_view key, const std::set<std::string>& known) {
   constexpr size_t most = 12;
   if (const std::string likest = nearest(key, known); !likest.empty()) {
@@ -89,7 +100,9 @@ std::string known_instead_of(std::string_view key, const std::set<std::string>& 
   return "one of " + list + (count > most ? ", …" : "");
 }
 
-}  // namespace
+__attribute__((weak)) void note_asked(const SettingsNode& /*table*/, const std::string& /*name*/,
+                                      std::string_view /*key*/,
+                                      const SettingsNode* /*otherwise_SI*/) {}
 
 Settings::Settings(std::shared_ptr<const SettingsNode> root, std::string name)
     : node_(root.get()),
@@ -102,8 +115,10 @@ Settings::Settings(const SettingsNode* node, std::shared_ptr<const SettingsNode>
     : node_(node), root_(std::move(root)), log_(std::move(log)), name_(std::move(name)) {}
 
 std::string Settings::full_name(std::string_view key) const {
-  if (name_.empty()) return std::string(key);
-  return key.empty() ? name_ : name_ + "." + std::string(key);
+  // Messages name the key as the user wrote it.
+  const std::string written = as_written(*node_, key);
+  if (name_.empty()) return written;
+  return key.empty() ? name_ : name_ + "." + written;
 }
 
 InputLocation Settings::where() const {
@@ -119,6 +134,7 @@ InputError Settings::error(std::string_view key, const std::string& found,
 
 const SettingsNode* Settings::find(std::string_view key, double* factor) const {
   log_->asked[node_].insert(std::string(key));
+  note_asked(*node_, name_, key, nullptr);
   const auto& table = std::get<SettingsNode::Table>(node_->value);
   const KeyUnit wanted = unit_of_key(key);
   *factor = wanted.to_SI;
@@ -164,6 +180,7 @@ const SettingsNode& Settings::require(std::string_view key, double* factor,
 
 bool Settings::has(std::string_view key) const {
   log_->asked[node_].insert(std::string(key));
+  note_asked(*node_, name_, key, nullptr);
   const auto& table = std::get<SettingsNode::Table>(node_->value);
   if (table.contains(key)) return true;
   const KeyUnit wanted = unit_of_key(key);

@@ -1,5 +1,6 @@
 // Units in the names of keys.
 #include "core/constants.h"
+#include "core/settings/keys.h"
 #include "core/settings/settings.h"
 
 namespace photorque {
@@ -110,6 +111,18 @@ KeyUnit unit_of_key(std::string_view key) {
             1.0 / best->to_SI};
   }
   return {std::move(stem), best->suffix, best->dimension, best->to_SI};
+}
+
+std::vector<KeyUnit> units_of(const std::string& dimension) {
+  constexpr std::string_view per = "per ";
+  const bool inverse = dimension.starts_with(per);
+  const std::string plain = inverse ? dimension.substr(per.size()) : dimension;
+  std::vector<KeyUnit> all;
+  for (const Unit& unit : units) {
+    if (plain != unit.dimension) continue;
+    all.push_back({"", unit.suffix, dimension, inverse ? 1.0 / unit.to_SI : unit.to_SI});
+  }
+  return all;
 }
 
 }  // namespace photorque

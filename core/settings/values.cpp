@@ -6,8 +6,6 @@
 #include "core/settings/read_log.h"
 
 namespace photorque {
-namespace {
-
 std::string describe_range(Range range, double factor, const std::string& unit) {
   const std::string suffix = unit.empty() ? "" : " " + unit;
   const bool has_low = range.low > -1e307, has_high = range.high < 1e307;
@@ -22,42 +20,63 @@ std::string describe_range(Range range, double factor, const std::string& unit) 
   return "a finite number" + suffix;
 }
 
-bool inside(double x, Range range) {
+bool is_inside(double x, Range range) {
   if (!std::isfinite(x)) return false;
   if (range.low_open ? x <= range.low : x < range.low) return false;
   if (range.high_open ? x >= range.high : x > range.high) return false;
   return true;
 }
 
-std::string join(const std::vector<std::string>& words) {
+std::string one_of(const std::vector<std::string>& choices) {
   std::string all;
-  for (const auto& word : words) all += (all.empty() ? "\"" : ", \"") + word + "\"";
-  return all;
+  for (const auto& word : choices) all += (all.empty() ? "\"" : ", \"") + word + "\"";
+  return "one of " + all;
+}
+
+std::string one_of(const std::vector<std::string>& choices, const std::string& instead_of) {
+  const std::string likest = nearest(instead_of, {choices.begin(), choices.end()});
+  if (likest.empty()) return one_of(choices);
+  // A long list would hide the suggestion.
+  const std::string known =
+      choices.size() > 10 ? "one of " + std::to_string(choices.size()) + " names" : one_of(choices);
+  return known + " (did you mean \"" + likest + "\"?)";
+}
+
+namespace {
+
+void note_default(const SettingsNode& otherwise_SI, const SettingsNode& table,
+                  const std::string& name, std::string_view key) {
+  note_asked(table, name, key, &otherwise_SI);
 }
 
 }  // namespace
 
 double Settings::to_number(const SettingsNode& node, std::string_view key, double factor,
                            Range range) const {
-  const std::string expected = describe_range(range, factor, unit_of_key(key).unit);
   log_->read.insert(&node);
+  // Messages are in the user's own unit.
+  const auto wrong = [&](const std::string& expected) {
+    return InputError(node.where, full_name(key), describe(node), expected);
+  };
+  const auto in_range = [&] {
+    return describe_range(range, factor, unit_of_key(as_written(*node_, key)).unit);
+  };
   double written = 0.0;
   if (const auto* i = std::get_if<int64_t>(&node.value)) {
     written = static_cast<double>(*i);
   } else if (const auto* d = std::get_if<double>(&node.value)) {
     written = *d;
   } else {
-    throw InputError(node.where, full_name(key), describe(node), expected);
+    throw wrong(in_range());
   }
   const double x = written * factor;
-  if (!inside(x, range)) throw InputError(node.where, full_name(key), describe(node), expected);
+  if (!is_inside(x, range)) throw wrong(in_range());
   // No laboratory needs more of any unit; squares and products stay finite, and places within what
   // single precision can trace.
   const KeyUnit unit = unit_of_key(key);
   const bool length = unit.dimension == "length";
   if (!unit.unit.empty() && std::abs(x) > (length ? 1e12 : 1e30)) {
-    throw InputError(node.where, full_name(key), describe(node),
-                     length ? "at most 1e12 m" : "at most 1e30 in SI units");
+    throw wrong(length ? "at most 1e12 m" : "at most 1e30 in SI units");
   }
   return x;
 }
@@ -70,6 +89,7 @@ double Settings::number(std::string_view key, Range range) const {
 }
 
 double Settings::number_or(std::string_view key, double otherwise_SI, Range range) const {
+  note_default({otherwise_SI}, *node_, name_, key);
   double factor = 1.0;
   const SettingsNode* node = find(key, &factor);
   return node == nullptr ? otherwise_SI : to_number(*node, key, factor, range);
@@ -133,10 +153,12 @@ int64_t Settings::integer(std::string_view key, int64_t low, int64_t high) const
 
 int64_t Settings::integer_or(std::string_view key, int64_t otherwise, int64_t low,
                              int64_t high) const {
+  note_default({otherwise}, *node_, name_, key);
   return has(key) ? integer(key, low, high) : otherwise;
 }
 
 bool Settings::flag_or(std::string_view key, bool otherwise) const {
+  note_default({otherwise}, *node_, name_, key);
   double factor = 1.0;
   const SettingsNode* node = find(key, &factor);
   if (node == nullptr) return otherwise;
@@ -155,31 +177,25 @@ std::string Settings::text(std::string_view key) const {
 }
 
 std::string Settings::text_or(std::string_view key, std::string_view otherwise) const {
+  note_default({std::string(otherwise)}, *node_, name_, key);
   return has(key) ? text(key) : std::string(otherwise);
 }
 
 size_t Settings::choice(std::string_view key, const std::vector<std::string>& choices) const {
-  const std::string expected = "one of " + join(choices);
   double factor = 1.0;
-  const SettingsNode& node = require(key, &factor, expected);
+  const SettingsNode& node = require(key, &factor, one_of(choices));
   const auto* s = std::get_if<std::string>(&node.value);
   if (s != nullptr) {
     const auto it = std::find(choices.begin(), choices.end(), *s);
     if (it != choices.end()) return static_cast<size_t>(it - choices.begin());
-    const std::string likest = nearest(*s, {choices.begin(), choices.end()});
-    if (!likest.empty()) {
-      // A long list would hide the suggestion.
-      const std::string known =
-          choices.size() > 10 ? "one of " + std::to_string(choices.size()) + " names" : expected;
-      throw InputError(node.where, full_name(key), describe(node),
-                       known + " (did you mean \"" + likest + "\"?)");
-    }
   }
-  throw InputError(node.where, full_name(key), describe(node), expected);
+  throw InputError(node.where, full_name(key), describe(node),
+                   s == nullptr ? one_of(choices) : one_of(choices, *s));
 }
 
 size_t Settings::choice_or(std::string_view key, const std::vector<std::string>& choices,
                            size_t otherwise) const {
+  note_default({choices.at(otherwise)}, *node_, name_, key);
   return has(key) ? choice(key, choices) : otherwise;
 }
 
@@ -190,6 +206,8 @@ Vec3 Settings::vector3(std::string_view key) const {
 }
 
 Vec3 Settings::vector3_or(std::string_view key, const Vec3& otherwise_SI) const {
+  note_default({SettingsNode::Array{{otherwise_SI[0]}, {otherwise_SI[1]}, {otherwise_SI[2]}}},
+               *node_, name_, key);
   double factor = 1.0;
   const SettingsNode* node = find(key, &factor);
   return node == nullptr ? otherwise_SI : to_vector3(*node, key, factor);

@@ -185,12 +185,17 @@ std::string with_refined(std::string text, const std::vector<FittedParameter>& r
   return text;
 }
 
+// Where the schema lies is said relative to the experiment, and this one lies elsewhere.
+std::string without_schema(const std::string& text) {
+  return text.starts_with("#:schema ") ? text.substr(text.find('\n') + 1) : text;
+}
+
 }  // namespace
 
 std::string improved_experiment(const std::string& text, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder) {
   std::vector<FittedParameter> others;
-  std::string improved = with_refined(text, diagnosis.priors_refined, others);
+  std::string improved = with_refined(without_schema(text), diagnosis.priors_refined, others);
   if (!improved.empty() && improved.back() != '\n') improved += '\n';
   improved += "\n" + comment("---- Added by the diagnosis: " + diagnosis.sentence);
   for (const FoundEffect& effect : diagnosis.effects) {

@@ -175,7 +175,8 @@ ReceiverKind flux_map_kind() {
             const auto map = std::make_shared<const FluxMapReceiver>(
                 target.name, scene, read_surface_grid(settings, scene, target, Side::front));
             return {.receiver = map, .flux_map = map};
-          }};
+          },
+          joined({target_keys(), surface_grid_keys(Side::front)})};
 }
 
 }  // namespace photorque

@@ -89,7 +89,8 @@ ReceiverKind torque_map_kind() {
                 target.name, scene, read_surface_grid(settings, scene, target, Side::both),
                 settings.vector3_or("about_m", Vec3::Zero()));
             return {.receiver = map, .torque_map = map};
-          }};
+          },
+          joined({target_keys(), surface_grid_keys(Side::both), {torque_point_key()}})};
 }
 
 }  // namespace photorque

@@ -154,7 +154,8 @@ ReceiverKind wrench_kind() {
                 target.name, scene, std::move(target.instances),
                 settings.vector3_or("about_m", Vec3::Zero()));
             return {.receiver = wrench, .wrench = wrench};
-          }};
+          },
+          joined({target_or_all_keys("platform"), {torque_point_key()}})};
 }
 
 }  // namespace photorque

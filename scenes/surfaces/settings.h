@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/settings/keys.h"
 #include "core/settings/settings.h"
 #include "raytrace/surfaces/surface.h"
 
@@ -48,5 +49,8 @@ OpticalSurface read_surface(const Settings& table, int bands, std::string name);
 // it.
 SheetOptics read_sheet(const Settings& table, int bands, const std::string& name,
                        const SurfaceFiles& files = {});
+
+// The keys of read_sheet().
+std::vector<Key> sheet_keys();
 
 }  // namespace photorque

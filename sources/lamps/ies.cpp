@@ -19,6 +19,7 @@
 
 #include "core/constants.h"
 #include "core/files.h"
+#include "sources/lamps/keys.h"
 #include "sources/lamps/measured.h"
 #include "sources/lamps/photometric.h"
 #include "sources/lamps/settings.h"
@@ -61,7 +62,6 @@ PhotometricFile read_table(const Settings& settings, const SourceContext& contex
 }
 
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
-  constexpr double usual_led_fwhm_m = 20e-9;
   const std::string name = settings.text_or("name", "ies");
   const double power_W = settings.number("power_W", Range::positive());
   PhotometricFile file = read_table(settings, context);
@@ -75,23 +75,44 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   for (const std::string& line : file.notices) {
     if (context.notice) context.notice(name + ": " + line);
   }
-  return place_lamps(settings, name, lamp, read_line_spectrum(settings, usual_led_fwhm_m),
+  return place_lamps(settings, name, lamp, read_line_spectrum(settings, usual_led_width_m),
                      uniform_aperture(*lamp));
 }
 
 }  // namespace
 
 SourceKind ies_kind() {
-  return {"ies",
-          "A lamp with a measured intensity: an IES LM-63, IES TM-33 or EULUMDAT file, or a table",
-          make,
-          {{"polar_deg", {SettingsNode::Array{{0.0}, {5.0}, {10.0}, {20.0}, {40.0}, {90.0}}}},
-           {"intensity", {SettingsNode::Array{{1.0}, {0.9}, {0.6}, {0.2}, {0.05}, {0.0}}}},
-           {"power_W", {2.0}},
-           {"aperture_diameter_m", {0.02}},
-           {"wavelength_nm", {730.0}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}}};
+  return {
+      "ies",
+      "A lamp with a measured intensity: an IES LM-63, IES TM-33 or EULUMDAT file, or a table",
+      make,
+      {{"polar_deg", {SettingsNode::Array{{0.0}, {5.0}, {10.0}, {20.0}, {40.0}, {90.0}}}},
+       {"intensity", {SettingsNode::Array{{1.0}, {0.9}, {0.6}, {0.2}, {0.05}, {0.0}}}},
+       {"power_W", {2.0}},
+       {"aperture_diameter_m", {0.02}},
+       {"wavelength_nm", {730.0}},
+       {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+       {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
+      joined(
+          {{source_name_key("ies"),
+            Key::text("file",
+                      "IES LM-63, IES TM-33 or EULUMDAT; or a table of `polar_deg` and `intensity`")
+                .optional(),
+            radiant_power_key()},
+           line_spectrum_keys(usual_led_width_m),
+           lamp_place_keys(),
+           {Key::number("aperture_diameter_m", Range::positive(),
+                        "of the opening that light leaves")
+                .usually_is("the file's; of a table a point"),
+            Key::numbers("polar_deg", {0.0, pi}, "instead of `file`: angles from the axis, rising")
+                .optional(),
+            Key::numbers(
+                "azimuth_deg", {0.0, 2.0 * pi, false, true},
+                "with `polar_deg`, of a beam that is not round: angles about the axis, rising")
+                .optional(),
+            Key::numbers("intensity", Range::not_negative(),
+                         "one for every angle of `polar_deg`; a row for each of `azimuth_deg`")
+                .optional()}})};
 }
 
 }  // namespace photorque

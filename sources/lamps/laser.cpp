@@ -21,6 +21,7 @@
 
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
+#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/profiles/block_maps.h"
 
@@ -71,9 +72,10 @@ class GaussianBeam : public Emitter {
   double slope_;
 };
 
+// Beyond 30 deg a paraxial beam has lost its meaning.
+constexpr Range paraxial{0.0, 30.0 * degree_rad, false, false};
+
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
-  // Beyond 30 deg a paraxial beam has lost its meaning.
-  constexpr Range paraxial{0.0, 30.0 * degree_rad, false, false};
   const std::string name = settings.text_or("name", "laser");
   const Vec3 position_m = settings.vector3("position_m");
   const Vec3 direction = read_direction(settings, position_m);
@@ -103,15 +105,24 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind laser_kind() {
-  return {"laser",
-          "A laser beam, Gaussian in position and angle",
-          make,
-          {{"power_W", {0.005}},
-           {"wavelength_nm", {633.0}},
-           {"waist_radius_m", {0.0005}},
-           {"divergence_half_angle_deg", {0.1}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}}};
+  return {
+      "laser",
+      "A laser beam, Gaussian in position and angle",
+      make,
+      {{"power_W", {0.005}},
+       {"wavelength_nm", {633.0}},
+       {"waist_radius_m", {0.0005}},
+       {"divergence_half_angle_deg", {0.1}},
+       {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+       {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
+      joined(
+          {{source_name_key("laser"), radiant_power_key(),
+            source_position_key("of the waist, lab axes")},
+           direction_keys(),
+           line_spectrum_keys(0.0),
+           {Key::number("waist_radius_m", Range::positive(), "1/e² radius of the irradiance"),
+            Key::number("divergence_half_angle_deg", paraxial, "1/e² half angle of the far field")
+                .usually_is("diffraction")}})};
 }
 
 }  // namespace photorque

@@ -12,6 +12,7 @@
 //   position_m = [0, 0, 1.5]   # centre of the aperture, lab frame
 //   aim_m = [0, 0, 0]          # or direction = [0, 0, -1]
 //   die_size_m = 0.001         # optional: warns of beams that no optics can make
+#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
 namespace photorque {
@@ -41,7 +42,11 @@ SourceKind led_kind() {
            {"halo_fwhm_deg", {12.0}},
            {"wavelength_nm", {730.0}},
            {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}}}};
+           {"aim_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}}},
+          joined({{source_name_key("led"), radiant_power_key(),
+                   source_position_key("of the aperture, lab axes")},
+                  direction_keys(),
+                  lamp_keys()})};
 }
 
 }  // namespace photorque

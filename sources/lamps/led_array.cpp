@@ -32,6 +32,7 @@
 
 #include "core/constants.h"
 #include "core/numerics/random.h"
+#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
 namespace photorque {
@@ -209,6 +210,8 @@ class ScaledEmitter final : public Emitter {
   double factor_;
 };
 
+constexpr double max_power_spread = 0.5, max_aim_spread_rad = 0.5;
+
 // How the LEDs of one panel differ from what they are said to be. Normal draws, by Box and Muller,
 // that belong to seed and LED: panels of different layouts are built from the same LEDs.
 class Spread {
@@ -237,8 +240,6 @@ class Spread {
   }
 
  private:
-  static constexpr double max_power_spread = 0.5, max_aim_spread_rad = 0.5;
-
   double normal(size_t led, uint64_t which) const {
     const double u = unit_interval(hash_words(seed_, led, which, 0));
     const double v = unit_interval(hash_words(seed_, led, which, 1));
@@ -265,6 +266,57 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   return beams;
 }
 
+std::vector<Key> led_array_keys() {
+  const Key centre = source_position_key("centre of the panel, lab axes");
+  const auto count = [] { return Key::integer("count", 1, max_leds, "of LEDs"); };
+  const auto pitch = [] {
+    return Key::number("pitch_m", Range::positive(), "from one LED to the next");
+  };
+  std::vector<Key> keys = {
+      source_name_key("led_array"),
+      Key::choice(
+          "layout",
+          {{"grid",
+            "columns and rows",
+            {Key::numbers("count", {1.0, max_leds, false, false}, "of LEDs, [along x, along y]")
+                 .of_size(2),
+             Key::number("pitch_m", Range::positive(),
+                         "from one LED to the next; or [along x, along y]")
+                 .one_or_several(),
+             centre}},
+           {"ring",
+            "evenly on a circle, from +x on",
+            {count(), Key::number("ring_radius_m", Range::positive(), "of the circle"), centre}},
+           {"hexagonal",
+            "close packed, the ring around the centre first",
+            {count(), pitch(), centre}},
+           {"positions",
+            "at given points",
+            {Key::vectors3("positions_m", "of the LEDs, lab axes")}}},
+          "how the LEDs stand"),
+      direction_key("normal of the panel, lab axes, any length; or `aim_m`").optional(),
+      Key::choice_or("aim",
+                     {{"parallel", "all along `direction`"},
+                      {"converging",
+                       "all at one point",
+                       {Key::number("focus_m", Range::positive(),
+                                    "instead of `aim_m`: the point lies so far along `direction` "
+                                    "from the centre")
+                            .optional()}}},
+                     0, "where the LEDs look"),
+      Key::vector3("aim_m", "the point that they, or the panel, look at").optional(),
+      radiant_power_key().usually_is("from `total_power_W`"),
+      Key::number("total_power_W", Range::positive(), "of all LEDs, instead of `power_W` of each")
+          .optional(),
+      Key::number_or("power_spread", 0.0, {0.0, max_power_spread},
+                     "relative standard deviation of the LEDs' powers"),
+      Key::number_or("aim_spread_deg", 0.0, {0.0, max_aim_spread_rad},
+                     "standard deviation of their axes, about each of two directions across"),
+      Key::integer_or("spread_seed", 1, 0, INT64_MAX,
+                      "which panel of all that could be built so; 0: none differs")};
+  return joined({keys, lamp_keys()});
+}
+
 }  // namespace
 
 SourceKind led_array_kind() {
@@ -282,7 +334,8 @@ SourceKind led_array_kind() {
            {"profile", {"super_gaussian"}},
            {"fwhm_deg", {3.0}},
            {"order", {4.0}},
-           {"wavelength_nm", {730.0}}}};
+           {"wavelength_nm", {730.0}}},
+          led_array_keys()};
 }
 
 }  // namespace photorque

@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "sources/lamps/keys.h"
 #include "sources/lamps/measured.h"
 #include "sources/lamps/rays.h"
 #include "sources/lamps/settings.h"
@@ -45,8 +46,7 @@ double read_power(const Settings& settings, const RaySet& set) {
 }
 
 Spectrum read_spectrum(const Settings& settings, const RaySet& set, std::string& notice) {
-  constexpr double usual_led_fwhm_m = 20e-9;
-  if (settings.has("wavelength_nm")) return read_line_spectrum(settings, usual_led_fwhm_m);
+  if (settings.has("wavelength_nm")) return read_line_spectrum(settings, usual_led_width_m);
   double flux = 0.0, moment = 0.0;
   for (const RaySet::Ray& ray : set.rays) {
     if (!(ray.wavelength_m > 0.0)) continue;
@@ -59,7 +59,7 @@ Spectrum read_spectrum(const Settings& settings, const RaySet& set, std::string&
   }
   Spectrum spectrum;
   spectrum.centre_m = flux > 0.0 ? moment / flux : *set.wavelength_m;
-  spectrum.fwhm_m = settings.number_or("spectral_fwhm_nm", usual_led_fwhm_m, {0.0, 1e-3});
+  spectrum.fwhm_m = settings.number_or("spectral_fwhm_nm", usual_led_width_m, {0.0, 1e-3});
   return spectrum;
 }
 
@@ -81,14 +81,23 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind ray_file_kind() {
-  return {"ray_file",
-          "A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text",
-          make,
-          {{"file", {"lamp.tm25ray"}},
-           {"power_W", {2.0}},
-           {"wavelength_nm", {730.0}},
-           {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
-           {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}}};
+  return {
+      "ray_file",
+      "A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text",
+      make,
+      {{"file", {"lamp.tm25ray"}},
+       {"power_W", {2.0}},
+       {"wavelength_nm", {730.0}},
+       {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {1.5}}}},
+       {"direction", {SettingsNode::Array{{0.0}, {0.0}, {-1.0}}}}},
+      joined({{source_name_key("ray_file"),
+               Key::text("file", "IES TM-25, Zemax binary or LightTools text"),
+               radiant_power_key().usually_is("the file's")},
+              {Key::number("wavelength_nm", {1e-8, 1e-3}, "middle of the spectrum")
+                   .usually_is("the file's"),
+               Key::number_or("spectral_fwhm_nm", usual_led_width_m, {0.0, 1e-3},
+                              "full width at half maximum of the spectrum, a Gaussian; 0: a line")},
+              lamp_place_keys()})};
 }
 
 }  // namespace photorque

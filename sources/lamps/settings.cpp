@@ -7,6 +7,7 @@
 #include "core/constants.h"
 #include "sources/lamps/disc.h"
 #include "sources/lamps/etendue.h"
+#include "sources/lamps/keys.h"
 
 namespace photorque {
 namespace {
@@ -124,7 +125,6 @@ Sunlight read_sunlight(const Settings& settings) {
 
 Lamp read_lamp(const Settings& settings, const SourceContext& context, const std::string& name,
                double power_W) {
-  constexpr double usual_led_fwhm_m = 20e-9;
   const double diameter_m = settings.number("aperture_diameter_m", Range::positive());
   AngularDistribution directions = read_angular_distribution(settings);
   if (const auto die = read_die(settings)) {
@@ -135,7 +135,7 @@ Lamp read_lamp(const Settings& settings, const SourceContext& context, const std
   const double radius_m = 0.5 * diameter_m;
   UniformAperture aperture{radius_m, power_W / (pi * radius_m * radius_m), directions.edges_rad()};
   return {std::make_shared<DiscLamp>(power_W, diameter_m, std::move(directions)),
-          read_line_spectrum(settings, usual_led_fwhm_m), std::move(aperture)};
+          read_line_spectrum(settings, usual_led_width_m), std::move(aperture)};
 }
 
 }  // namespace photorque

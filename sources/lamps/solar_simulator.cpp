@@ -21,6 +21,7 @@
 
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
+#include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 #include "sources/profiles/block_maps.h"
 
@@ -99,7 +100,16 @@ SourceKind solar_simulator_kind() {
            {"collimation_half_angle_deg", {2.0}},
            {"nonuniformity", {0.05}},
            {"position_m", {SettingsNode::Array{{0.0}, {0.0}, {0.0}}}},
-           {"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}}};
+           {"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}},
+          joined({{source_name_key("solar_simulator"),
+                   source_position_key("middle of the field, lab axes"),
+                   direction_key("in which light travels, lab axes, any length")},
+                  sunlight_keys(),
+                  {Key::number("footprint_diameter_m", Range::positive(), "of the lit field"),
+                   Key::number_or("collimation_half_angle_deg", solar_angular_radius_rad,
+                                  {0.0, 0.25 * pi}, "of the light on every point"),
+                   Key::number_or("nonuniformity", 0.0, {0.0, 1.0, false, true},
+                                  "(max − min)/(max + min) of the irradiance on the field")}})};
 }
 
 }  // namespace photorque

@@ -21,6 +21,7 @@
 
 #include "core/constants.h"
 #include "core/numerics/vector_math.h"
+#include "sources/lamps/keys.h"
 #include "sources/lamps/limb_darkening.h"
 #include "sources/lamps/settings.h"
 #include "sources/profiles/block_maps.h"
@@ -125,10 +126,22 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 }  // namespace
 
 SourceKind sun_kind() {
-  return {"sun",
-          "Parallel light from a disc in the sky, of a given irradiance",
-          make,
-          {{"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}}};
+  return {
+      "sun",
+      "Parallel light from a disc in the sky, of a given irradiance",
+      make,
+      {{"direction", {SettingsNode::Array{{0.3}, {0.0}, {-1.0}}}}},
+      joined(
+          {{source_name_key("sun"), direction_key("in which light travels, lab axes, any length")},
+           sunlight_keys(),
+           {Key::number_or("angular_radius_deg", solar_angular_radius_rad,
+                           {0.0, 0.25 * pi, false, false},
+                           "of the disc in the sky; 0 is parallel light"),
+            Key::numbers("limb_darkening", {-1.0, 1.0},
+                         "[u1, u2]: radiance 1 − u1 (1 − μ) − u2 (1 − μ)², μ = √(1 − r²) at r "
+                         "radii from the middle; [0.47, 0.23] in visible light")
+                .of_size(2)
+                .usually_is("none")}})};
 }
 
 }  // namespace photorque

@@ -1,5 +1,6 @@
 // photorque check: planted mistakes are found with one line each, and what is shipped has none.
 #include "tests/tools/command_test.h"
+#include "tools/keys/registry.h"
 
 namespace photorque {
 namespace {
@@ -43,7 +44,8 @@ TEST_F(CheckCommand, SaysWhatEachCommandWouldDo) {
   for (const std::string line :
        {"trace       12845056 rays of 49 lamps, 88 W, onto solar_array",
         "power       16 cells on solar_array", "torque-map  7 tilts × 8 headings",
-        "render      1280 × 960 pixels"}) {
+        "render      1280 × 960 pixels",
+        "reads [scene] [source] [receiver] [attitude] [trace] [torque_map] [array]"}) {
     EXPECT_THAT(got.out, HasSubstr(line));
   }
 }
@@ -55,15 +57,25 @@ struct Planted {
 
 TEST_F(CheckCommand, FindsPlantedMistakesWithOneLineEach) {
   const std::vector<Planted> mistakes = {
-      {"nominal.toml", "fwhm_deg = 3.0", "fwhm_dge = 3.0", ":18: source[0].fwhm_deg",
-       "is \"fwhm_dge\" in line 26 meant?"},
-      {"nominal.toml", "wavelength_nm = 730", "wavelength_nm = 1730", ":18: source[0]",
+      {"nominal.toml", "fwhm_deg = 3.0", "fwhm_dge = 3.0", ":27: source[0].fwhm_dge",
+       "found an unknown key, expected a known key, perhaps \"fwhm_deg\""},
+      {"nominal.toml", "total_power_W = 88", "total_power_W = \"88\"",
+       ":30: source[0].total_power_W", "found \"88\", expected a number > 0 W"},
+      {"nominal.toml", "pitch_mm = 46", "pitch_kg = 46", ":24: source[0].pitch_kg",
+       "found a key without a unit of length, expected the key pitch_m"},
+      {"nominal.toml", "spectral_fwhm_nm = 30", "spectral_fwhm_um = -0.03",
+       ":29: source[0].spectral_fwhm_um", "found -0.03, expected a number in [0, 1000] um"},
+      {"nominal.toml", "kind = \"led_array\"", "kind = \"led_aray\"", ":20: source[0].kind",
+       "did you mean \"led_array\"?"},
+      {"attitude.toml", "table = \"light_torque.csv\"", "table = \"light_torqe.csv\"",
+       "light_torqe.csv", "exists"},
+      {"nominal.toml", "wavelength_nm = 730", "wavelength_nm = 1730", ":19: source[0]",
        "outside the bands"},
       {"nominal.toml", "position_m = [0, 0, 1.0]", "position_m = [0, 0, 0]",
-       ":30: source[0].position_m", "inside of"},
+       ":31: source[0].position_m", "inside of"},
       {"nominal.toml", "direction = [0, 0, -1]", "direction = [0, 0, 1]",
-       ":31: source[0].direction", "misses the scene"},
-      {"nominal.toml", "node = \"solar_array\"", "node = \"solar_aray\"", ":36: receiver[0].node",
+       ":32: source[0].direction", "misses the scene"},
+      {"nominal.toml", "node = \"solar_array\"", "node = \"solar_aray\"", ":37: receiver[0].node",
        "perhaps \"solar_array\""},
       {"nominal.toml", "[[receiver]]\nkind = \"wrench\"",
        "[[receiver]]\nnode = \"bottom_plate\"\nfacing = [0, 0, -1]\n\n[[receiver]]\nkind = "
@@ -92,6 +104,57 @@ TEST_F(CheckCommand, FindsTheMistakesOfDifferentTablesTogether) {
       run("check " + file + " --set platform.mass_kg=0 --set source[0].direction=[0,0,1]");
   EXPECT_EQ(got.status, 2);
   EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 3) << got.err;
+}
+
+// Keys that are wrong by themselves are all told at once, and what follows from them is not.
+TEST_F(CheckCommand, FindsEveryMisspeltKeyOfAFile) {
+  const std::string file = planted("nominal.toml", "fwhm_deg = 3.0", "fwhm_dge = 3.0");
+  const Outcome got = run("check " + file +
+                          " --set source[0].aim=7 --set receiver[0].bin=[9,9] --set trace.rayz=4"
+                          " --set platform.mass=7 --set array.bypass_evry=4");
+  EXPECT_EQ(got.status, 2);
+  EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 6) << got.err;
+  for (const std::string said :
+       {"perhaps \"fwhm_deg\"", "\"parallel\", \"converging\"", "perhaps \"bins\"",
+        "perhaps \"rays\"", "platform.mass", "perhaps \"bypass_every\""}) {
+    EXPECT_THAT(got.err, HasSubstr(said));
+  }
+}
+
+TEST_F(CheckCommand, KnowsModulesAndPlansOfProve) {
+  const std::string datasheet =
+      "[[module.datasheet]]\nshort_circuit_A = 5.116\nopen_circuit_V = 22.05\nmaximum_A = 4.66\n"
+      "maximum_V = 17.63\n";
+  const Outcome module =
+      run("check " + write("module.toml", "[module]\ncells_in_series = 36\n" + datasheet));
+  EXPECT_EQ(module.status, 0) << module.err;
+  EXPECT_THAT(module.out, HasSubstr("diagnose    curves (--recording FILE) of a module of 36 cells "
+                                    "in series, beside 1 point of its datasheet"));
+  EXPECT_THAT(module.out, HasSubstr("reads [module]"));
+  const Outcome broken =
+      run("check " + write("broken.toml", "[module]\ncells_in_serie = 36\n" + datasheet));
+  EXPECT_EQ(broken.status, 2);
+  EXPECT_EQ(std::count(broken.err.begin(), broken.err.end(), '\n'), 1) << broken.err;
+  EXPECT_THAT(broken.err, HasSubstr("broken.toml:2: module.cells_in_serie: found an unknown key, "
+                                    "expected a known key, perhaps \"cells_in_series\""));
+}
+
+// [prove] is read by the command alone: its declared keys are what it takes.
+TEST_F(CheckCommand, PlansOfProveAreDeclared) {
+  for (const Key& table : experiment_keys()) {
+    if (table.name != "prove") continue;
+    EXPECT_GT(table.keys.size(), 20u);
+    for (const Key& key : table.keys) {
+      const bool flag = key.type == Key::Type::flag;
+      const Outcome got =
+          run("prove " +
+              write("plan.toml", "[prove]\n" + key.name + " = " + (flag ? "7" : "true") + "\n") +
+              " --out " + at("out"));
+      EXPECT_EQ(got.status, 2) << key.name;
+      EXPECT_THAT(got.err, HasSubstr("prove." + key.name + ": found " + (flag ? "7" : "true") +
+                                     ", expected " + expected_of(key) + "\n"));
+    }
+  }
 }
 
 TEST_F(CheckCommand, NewWritesWhatRuns) {

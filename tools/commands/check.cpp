@@ -12,7 +12,10 @@ void run_check(const CommandLine& line) {
   const Console console = terminal(line);
   const CheckReport report = check_experiment(line);
   for (const CheckReport::Command& command : report.commands) {
+    std::string tables;
+    for (const std::string& table : command.tables) tables += " [" + table + "]";
     console.line(padded(command.name, 12) + command.what);
+    console.line(padded("", 12) + "reads" + tables);
   }
   for (const std::string& note : report.notes) console.line("note: " + note);
   if (report.mistakes.empty()) return;

@@ -30,6 +30,8 @@ struct CommandLine : RunOptions {
   std::optional<std::filesystem::path> scene;     // --scene, of a new experiment
   bool collect = false;                           // --collect, of a sweep
   bool page = false;                              // --page: also one HTML page to look at
+  std::string key;                                // --key, to be explained
+  std::vector<std::filesystem::path> documents;   // --document, whose tables of keys are renewed
   Interruption* interruption = nullptr;           // the program's, when it is one
   // Of a run in a sweep: takes what came out, and no file is written.
   std::function<void(const RunResult&)> take_result = {};
@@ -55,6 +57,7 @@ struct Verb {
   bool takes_shard = false;
   bool takes_scene = false;
   bool draws_page = false;
+  bool takes_keys = false;  // --out FILE, --key, --document
   bool takes_experiment = true;
   bool writes = true;  // into its output folder
 };

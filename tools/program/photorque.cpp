@@ -146,6 +146,14 @@ int run(int argc, char** argv, Interruption& interruption) {
       command->add_option("--cases", line.cases, "Score this folder of cases instead of new ones");
       command->add_flag("--only-make", line.only_make, "Make the cases, diagnose nothing");
     }
+    if (verb.takes_keys) {
+      command->add_option("--out", line.out, "Write the schema into this file");
+      command->add_option("--key", line.key, "Explain one key instead: source.power_W");
+      command
+          ->add_option("--document", line.documents,
+                       "Instead renew the tables of keys in this Markdown file, between its marks")
+          ->allow_extra_args(false);
+    }
     if (verb.takes_scene) {
       command->add_option("--scene", line.scene, "A model (glTF or GLB) to be lit");
     }

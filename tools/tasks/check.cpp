@@ -1,5 +1,4 @@
 #include "tools/tasks/check.h"
-#include "tools/sweeps/plan.h"
 
 #include <algorithm>
 #include <functional>
@@ -12,11 +11,16 @@
 #include "attitude/studies/budget.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "diagnosis/light/model/lab.h"
+#include "diagnosis/module/design.h"
+#include "scenes/experiment/toml_reader.h"
 #include "tools/coupling/couple.h"
+#include "tools/keys/registry.h"
 #include "tools/realtime/settings.h"
 #include "tools/runs/array_power.h"
 #include "tools/runs/attitude_run.h"
 #include "tools/supply/task.h"
+#include "tools/sweeps/plan.h"
 #include "tools/tasks/fit_cell.h"
 #include "tools/tasks/light_sanity.h"
 
@@ -27,33 +31,71 @@ std::string counted(size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+// The table of a mistake, "source[0]" of "lab.toml:18: source[0].power_W: found …".
+std::string table_of(const InputError& mistake) {
+  std::string line = mistake.what();
+  const size_t end = std::min(line.find(": found "), line.find(": expected "));
+  if (end != std::string::npos) line.resize(end);
+  const size_t colon = line.rfind(": ");
+  if (colon != std::string::npos) line.erase(0, colon + 2);
+  return line.substr(0, line.find('.'));
+}
+
 // What is found, table by table, with the first mistake of each.
 class Checker {
  public:
-  explicit Checker(const RunOptions& options) : options_(options) {}
+  Checker(const RunOptions& options, KeyCheck keys)
+      : options_(options), by_declaration_(keys == KeyCheck::by_declaration) {}
 
   CheckReport report() {
+    if (by_declaration_) {
+      attempt([&] { report_.mistakes = misread_keys(written(), tables_); });
+      for (const InputError& mistake : report_.mistakes) misread_.push_back(table_of(mistake));
+    }
     attempt([&] {
       file_ = read_experiment_text(options_.experiment, options_.experiment_text(),
                                    options_.all_overrides());
     });
-    if (!file_) return std::move(report_);
-    const bool fits = file_->settings.has("fit"), proves = file_->settings.has("prove");
-    // A scene without lamps beside a platform is for the camera alone.
-    const bool unlit = file_->sources.empty() && file_->settings.has("platform");
-    if (file_->scene_file && !unlit) check_light();
-    if (file_->settings.has("platform")) check_motion();
-    if (fits) check_fit();
-    if (file_->settings.has("sweep")) check_sweep();
-    if (proves) add("prove", "a plan of recordings with injected effects, not looked at here");
-    if (!file_->scene_file && !file_->settings.has("platform") && !fits && !proves) {
-      add_mistake(file_->settings.error("", "nothing that a command starts from",
-                                        "[scene], [platform] or [fit]"));
-    }
+    if (file_) read_tables();
+    for (CheckReport::Command& command : report_.commands) add_tables(command);
     return std::move(report_);
   }
 
  private:
+  // The file with its overrides, as it stands.
+  SettingsNode written() const {
+    SettingsNode root = parse_toml(options_.experiment_text(), options_.experiment.string());
+    for (const std::string& change : options_.all_overrides()) apply_override(root, change);
+    return root;
+  }
+
+  // Those of the file that the command reads.
+  void add_tables(CheckReport::Command& command) const {
+    for (const Key& table : tables_) {
+      if (file_->settings.has(table.name) &&
+          std::ranges::find(table.commands, command.name) != table.commands.end()) {
+        command.tables.push_back(table.name);
+      }
+    }
+  }
+
+  void read_tables() {
+    const bool fits = file_->settings.has("fit"), proves = file_->settings.has("prove");
+    // A scene without lamps beside a platform is for the camera alone.
+    const bool unlit = file_->sources.empty() && file_->settings.has("platform");
+    const bool is_module = file_->settings.has("module");
+    if (file_->scene_file && !unlit) check_light();
+    if (file_->settings.has("platform")) check_motion();
+    if (fits) check_fit();
+    if (is_module) check_module();
+    if (file_->settings.has("sweep")) check_sweep();
+    if (proves) add("prove", "recordings with injected effects, made, diagnosed and scored");
+    if (!file_->scene_file && !file_->settings.has("platform") && !fits && !proves && !is_module) {
+      add_mistake(file_->settings.error("", "nothing that a command starts from",
+                                        "[scene], [platform], [module], [fit] or [prove]"));
+    }
+  }
+
   // Whether it went well; else its one line, once.
   bool attempt(const std::function<void()>& work) {
     try {
@@ -70,7 +112,9 @@ class Checker {
     const std::string line = mistake.what();
     const bool known = std::ranges::any_of(
         report_.mistakes, [&](const InputError& other) { return other.what() == line; });
-    if (!known) report_.mistakes.push_back(mistake);
+    // What a misspelt key leads to is no second mistake.
+    const bool follows = std::ranges::find(misread_, table_of(mistake)) != misread_.end();
+    if (!known && !follows) report_.mistakes.push_back(mistake);
   }
   void add(const std::string& command, const std::string& what) {
     report_.commands.push_back({command, what});
@@ -84,7 +128,18 @@ class Checker {
     attempt([&] { read_published(file_->others("published")); });
     for (const InputError& mistake : light_mistakes(*run)) add_mistake(mistake);
     say_light(*run);
-    if (!file_->others("array").empty()) attempt([&] { check_array(*run); });
+    if (file_->settings.has("array")) attempt([&] { check_array(*run); });
+    if (!file_->settings.has("platform")) check_recordings_of_light(*run);
+  }
+
+  // An experiment that says how light is read, or what is missing from it, is meant for them.
+  void check_recordings_of_light(const OpticalRun& run) {
+    if (!file_->settings.has("sensors") && !file_->settings.has("effect")) return;
+    attempt([&] {
+      const LightLab lab(run.experiment());
+      add("diagnose", "scans, sweeps and runs (--recording FILE) of " +
+                          counted(lab.lamps(), "lamp") + " on " + lab.receiver());
+    });
   }
 
   void say_light(const OpticalRun& run) {
@@ -192,6 +247,18 @@ class Checker {
     attempt([&] { add("fit-cell", what_fit_asks(options_)); });
   }
 
+  void check_module() {
+    attempt([&] {
+      const ModuleDesign design = read_module(file_->settings, options_.experiment.parent_path());
+      add("diagnose", "curves (--recording FILE) of a module of " +
+                          counted(static_cast<size_t>(design.cells), "cell") +
+                          " in series, beside " +
+                          (design.datasheet.empty()
+                               ? counted(design.references.size(), "reference curve")
+                               : counted(design.datasheet.size(), "point") + " of its datasheet"));
+    });
+  }
+
   void check_sweep() {
     attempt([&] {
       const SweepPlan plan = read_sweep_plan(file_->others("sweep").front());
@@ -207,14 +274,17 @@ class Checker {
   }
 
   const RunOptions& options_;
+  bool by_declaration_;
+  std::vector<Key> tables_ = experiment_keys();
+  std::vector<std::string> misread_;  // tables with keys that are wrong by themselves
   std::optional<ExperimentFile> file_;
   CheckReport report_;
 };
 
 }  // namespace
 
-CheckReport check_experiment(const RunOptions& options) {
-  return Checker(options).report();
+CheckReport check_experiment(const RunOptions& options, KeyCheck keys) {
+  return Checker(options, keys).report();
 }
 
 }  // namespace photorque

@@ -12,16 +12,23 @@ namespace photorque {
 struct CheckReport {
   struct Command {
     std::string name;
-    std::string
-        what;  // what the command would do, in a sentence; empty: the file has nothing for it
+    std::string what;                      // what the command would do, in a sentence
+    std::vector<std::string> tables = {};  // of the file that it reads
   };
-  std::vector<Command> commands;     // in the order of the program's
-  std::vector<InputError> mistakes;  // as runs would end with: the first of every table
-  std::vector<std::string> notes;    // what the readers had to assume
+  std::vector<Command> commands;  // in the order of the program's
+  // Every key that is unknown, of the wrong type or out of range; beside them, of tables without
+  // such, the first that a run would end with.
+  std::vector<InputError> mistakes;
+  std::vector<std::string> notes;  // what the readers had to assume
+};
+
+enum class KeyCheck {
+  by_declaration,  // tools/keys first, then the readers
+  by_readers,      // the readers alone: for the test that holds them against the declarations
 };
 
 // Reads the experiment as every command would: all files that it names, every table, the geometry;
 // and sends a few rays, to find lamps inside of solids and maps without light.
-CheckReport check_experiment(const RunOptions& options);
+CheckReport check_experiment(const RunOptions& options, KeyCheck keys = KeyCheck::by_declaration);
 
 }  // namespace photorque

@@ -53,7 +53,11 @@ DisturbanceKind air_friction_kind() {
                         .strength = braking.name,
                         .step = 1e-8,
                         .pairs = true},
-          .budget = {.paper_figure = "lumped_drag_at_1_rpm_N_m"}};
+          .budget = {.paper_figure = "lumped_drag_at_1_rpm_N_m"},
+          .keys = {Key::uncertain("coefficient", Range::not_negative(),
+                                  "k in T = −k |ω|^½ ω, N m s^1.5; *or* `[[disturbance.part]]`")
+                       .optional(),
+                   air_parts_key()}};
 }
 
 }  // namespace photorque

@@ -69,7 +69,14 @@ DisturbanceKind air_pressure_drag_kind() {
                     .strength = braking.name,
                     .step = 1e-7,
                     .pairs = true},
-      .budget = {.paper_figure = "cfd_drag_at_1_rpm_N_m"}};
+      .budget = {.paper_figure = "cfd_drag_at_1_rpm_N_m"},
+      .keys = {Key::uncertain(
+                   "coefficient_N_m_s2", Range::not_negative(),
+                   "k in T = −k |ω| ω, or three, for body x, y and z; *or* `[[disturbance.part]]`")
+                   .one_or_several()
+                   .of_size(3)
+                   .optional(),
+               air_parts_key()}};
 }
 
 }  // namespace photorque

@@ -12,6 +12,7 @@
 
 #include "attitude/model/platform.h"
 #include "core/product.h"
+#include "core/settings/keys.h"
 #include "core/settings/settings.h"
 
 namespace photorque {
@@ -105,5 +106,8 @@ std::vector<AirPart> read_air_parts(const std::vector<Settings>& parts);
 
 // One row per part: torque, share, Reynolds number, transition, and whether the law holds.
 Table air_table(const std::vector<AirPart>& parts, const Air& air, double rate_rad_s);
+
+// [[disturbance.part]] as read_air_parts() reads it.
+Key air_parts_key();
 
 }  // namespace photorque

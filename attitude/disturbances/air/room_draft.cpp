@@ -42,7 +42,8 @@ DisturbanceKind room_draft_kind() {
                         .torque = plain_torque,
                         .strength = torque_lab.name,
                         .step = 1e-9,
-                        .pairs = true}};
+                        .pairs = true},
+          .keys = {Key::uncertain_vector("torque_lab_N_m", "lab axes")}};
 }
 
 }  // namespace photorque

@@ -89,6 +89,30 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
       {scalar_parameter(settings, coefficient, Range::not_negative())});
 }
 
+std::vector<Key> socket_keys() {
+  return {
+      Key::number("radius_m", Range::positive(), "of the ball"),
+      Key::number("half_angle_deg", {0.0, pi, true, false}, "polar angle of the socket's rim"),
+      Key::number_or("recess_half_angle_deg", 0.0, {0.0, pi, false, true},
+                     "of the central recess, below `half_angle_deg`")
+          .range_that_varies(),
+      Key::number_or("sheared_share", 1.0, Range::fraction(),
+                     "fraction of the film that is thin (grooves take from it)"),
+      Key::number(
+          "gap_m", Range::positive(),
+          "of the film under the platform's weight, *or* with the next two at the rated load")
+          .optional(),
+      Key::number("rated_load_N", Range::positive(), "of a spring").optional(),
+      Key::number("stiffness_N_m", Range::positive(), "of a spring, newton per metre").optional(),
+      Key::number("supply_Pa", Range::positive(),
+                  "instead of `gap_m`, absolute, above the ambient pressure: the gap follows from "
+                  "supply and feeding holes; needs a recess")
+          .range_that_varies()
+          .optional(),
+      Key::number("hole_area_mm2", Range::positive(), "of the feeding holes").optional(),
+      Key::number_or("discharge_coefficient", 0.8, {0.0, 1.0, true, false}, "of the holes")};
+}
+
 // The law again, for `prove`.
 injected::PlainTorque plain_torque(const InjectedEffect& effect) {
   using namespace injected;
@@ -102,15 +126,23 @@ DisturbanceKind bearing_drag_kind() {
       .name = "bearing_drag",
       .summary = "viscous drag of the bearing's air film, linear in the rate",
       .read = read,
-      .screening = {.parametrisations = {{"the bearing's viscous drag differs from what is "
-                                          "stated, beyond the uncertainty stated",
+      .screening = {.parametrisations = {{"the bearing's viscous drag differs from what is stated, "
+                                          "beyond the uncertainty stated",
                                           {EffectKey::number(coefficient.name, 2e-5)}}},
                     .needs = Requirement::bearing,
                     .least_sum = LeastSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
       .injection = {.draw = injected::fixed_size(coefficient.name, 1e-5),
                     .torque = plain_torque,
                     .strength = coefficient.name,
-                    .step = 1e-8}};
+                    .step = 1e-8},
+      .keys = {
+          Key::uncertain("coefficient_N_m_s", Range::not_negative(),
+                         "c in T = −c ω, about every axis; *or*")
+              .optional(),
+          Key::uncertain("axial_N_m_s", Range::not_negative(), "about the vertical; with the next")
+              .optional(),
+          Key::uncertain("transverse_N_m_s", Range::not_negative(), "across it; *or*").optional(),
+          Key::table("socket", socket_keys(), "both from the film of the ball")}};
 }
 
 }  // namespace photorque

@@ -45,18 +45,22 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 }  // namespace
 
 DisturbanceKind dry_friction_kind() {
-  return {.name = "dry_friction",
-          .summary = "rubbing contact: a torque against the motion, whatever the rate",
-          .read = read,
-          .screening =
-              {.parametrisations = {{"something rubs: a torque of constant size against the motion",
-                                     {EffectKey::not_negative(friction.name, 5e-6)}}},
-               .needs = Requirement::bearing},
-          .injection = {.draw = injected::fixed_size(friction.name, 3e-6),
-                        .torque = plain_torque,
-                        .strength = friction.name,
-                        .step = 1e-9,
-                        .pairs = true}};
+  return {
+      .name = "dry_friction",
+      .summary = "rubbing contact: a torque against the motion, whatever the rate",
+      .read = read,
+      .screening =
+          {.parametrisations = {{"something rubs: a torque of constant size against the motion",
+                                 {EffectKey::not_negative(friction.name, 5e-6)}}},
+           .needs = Requirement::bearing},
+      .injection = {.draw = injected::fixed_size(friction.name, 3e-6),
+                    .torque = plain_torque,
+                    .strength = friction.name,
+                    .step = 1e-9,
+                    .pairs = true},
+      .keys = {Key::uncertain("torque_N_m", Range::not_negative(), "τ in T = −τ ω/√(ω² + creep²)"),
+               Key::number_or("creep_rate_rad_s", 1e-6, Range::positive(),
+                              "below it the torque fades to zero")}};
 }
 
 }  // namespace photorque

@@ -89,7 +89,11 @@ DisturbanceKind tether_kind() {
                         .strength = stiffness.name,
                         .step = 1e-8,
                         .needs_small_turns = true,
-                        .pairs = true}};
+                        .pairs = true},
+          .keys = {
+              Key::uncertain("stiffness_N_m_per_rad", Range::not_negative(),
+                             "k in T = −k φ; φ is the shortest way and jumps at half a turn"),
+              Key::flag_or("winds_up", false, "true: whole turns about body z count, φ + 2π n z")}};
 }
 
 }  // namespace photorque

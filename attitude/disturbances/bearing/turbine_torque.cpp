@@ -43,7 +43,8 @@ DisturbanceKind turbine_torque_kind() {
                         .torque = plain_torque,
                         .strength = torque_up.name,
                         .step = 1e-9,
-                        .pairs = true}};
+                        .pairs = true},
+          .keys = {Key::uncertain("torque_N_m", {}, "positive counterclockwise from above")}};
 }
 
 }  // namespace photorque

@@ -48,7 +48,9 @@ DisturbanceKind eddy_damping_kind() {
                         .torque = plain_torque,
                         .strength = damping.name,
                         .step = 1.0,
-                        .pairs = true}};
+                        .pairs = true},
+          .keys = {Key::uncertain("coefficient_N_m_s_per_T2", Range::not_negative(),
+                                  "k in T = k (ω × B) × B; a thin shell has (2π/3) σ R⁴ δ")}};
 }
 
 }  // namespace photorque

@@ -67,13 +67,31 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind helmholtz_cage_kind() {
-  return {.name = "helmholtz_cage",
-          .summary = "coils around the platform set the magnetic field",
-          .read = read,
-          .screening =
-              {.reason_against =
-                   "the coils are a part of the laboratory that is set, not one that is forgotten"},
-          .injection = {.reason_against = "diagnose does not screen it"}};
+  return {
+      .name = "helmholtz_cage",
+      .summary = "coils around the platform set the magnetic field",
+      .read = read,
+      .screening =
+          {.reason_against =
+               "the coils are a part of the laboratory that is set, not one that is forgotten"},
+      .injection = {.reason_against = "diagnose does not screen it"},
+      .keys = {
+          Key::vector3_or("field_lab_T", Vec3::Zero(), "what the coils set, lab axes; *or*"),
+          Key::text("field_file",
+                    "a CSV: `t_s`, `field_x_T`, `field_y_T`, `field_z_T`, ends held; *or*")
+              .optional(),
+          Key::table(
+              "orbit",
+              {Key::number("altitude_m", Range::not_negative(), "above 6371.2 km"),
+               Key::number("inclination_deg", {}, "of the orbit"),
+               Key::number("date_year", {1900.0, 2035.0, false, false}, "of IGRF"),
+               Key::number("duration_s", Range::positive(), "how long the field is played"),
+               Key::number_or("ascending_node_deg", 0.0, {}, "of the orbit"),
+               Key::number_or("phase_deg", 0.0, {}, "argument of latitude at t = 0"),
+               Key::number_or("greenwich_angle_deg", 0.0, {}, "at t = 0"),
+               Key::number_or("interval_s", 20.0, Range::positive(), "of the table of the field")},
+              "the field of IGRF on a circular orbit"),
+          Key::uncertain_or("gain_error", 0.0, {}, "the coils give 1 + this of the correction")}};
 }
 
 }  // namespace photorque

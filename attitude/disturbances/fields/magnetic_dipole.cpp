@@ -38,19 +38,30 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 }  // namespace
 
 DisturbanceKind magnetic_dipole_kind() {
-  return {.name = "magnetic_dipole",
-          .summary = "current loops and remanent steel turn towards the ambient field",
-          .read = read,
-          .screening =
-              {.parametrisations =
-                   {{"a residual magnetic dipole of the platform turns towards the ambient field",
-                     {EffectKey::vector(moment.name, 0.05)}}},
-               .needs = Requirement::field},
-          .injection = {.draw = injected::random_direction(moment.name, 0.03),
-                        .torque = plain_torque,
-                        .strength = moment.name,
-                        .step = 1e-5,
-                        .pairs = true}};
+  return {
+      .name = "magnetic_dipole",
+      .summary = "current loops and remanent steel turn towards the ambient field",
+      .read = read,
+      .screening =
+          {.parametrisations =
+               {{"a residual magnetic dipole of the platform turns towards the ambient field",
+                 {EffectKey::vector(moment.name, 0.05)}}},
+           .needs = Requirement::field},
+      .injection = {.draw = injected::random_direction(moment.name, 0.03),
+                    .torque = plain_torque,
+                    .strength = moment.name,
+                    .step = 1e-5,
+                    .pairs = true},
+      .keys = {
+          Key::uncertain_vector("dipole_A_m2", "m in T = m × B, body axes; *or* the loops")
+              .optional(),
+          Key::tables(
+              "loop",
+              {Key::number("current_A", {}, "right-handed about the area"),
+               Key::number_or("turns", 1.0, Range::positive(), "of the loop"),
+               Key::vector3("area_m2", "normal times area, body axes; or `corners_m`").optional(),
+               Key::vectors3("corners_m", "at least three, body axes").optional()},
+              "current loops, summed")}};
 }
 
 }  // namespace photorque

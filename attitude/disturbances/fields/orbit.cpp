@@ -76,13 +76,26 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind orbit_kind() {
-  return {.name = "orbit",
-          .summary = "a circular orbit around the Earth: free fall, gradient, field and shadow",
-          .read = read,
-          .screening = {.reason_against = "where a platform is, is known"},
-          .injection = {.reason_against = "diagnose does not screen it"},
-          .budget = {.reason_against = "an orbit is where the others act"},
-          .has_eclipses = true};
+  return {
+      .name = "orbit",
+      .summary = "a circular orbit around the Earth: free fall, gradient, field and shadow",
+      .read = read,
+      .screening = {.reason_against = "where a platform is, is known"},
+      .injection = {.reason_against = "diagnose does not screen it"},
+      .budget = {.reason_against = "an orbit is where the others act"},
+      .has_eclipses = true,
+      .keys = {
+          Key::number("altitude_m", Range::positive(), "above 6371.2 km"),
+          Key::number("inclination_deg", {}, "of the orbit"),
+          Key::number_or("ascending_node_deg", 0.0, {}, "of the orbit"),
+          Key::number_or("phase_deg", 0.0, {}, "argument of latitude at t = 0"),
+          Key::number_or("greenwich_angle_deg", 0.0, {}, "at t = 0"),
+          Key::number("date_year", {1900.0, 2035.0, false, false}, "field by IGRF along the orbit")
+              .usually_is("the field of `[environment]`"),
+          Key::number_or("duration_s", 86400.0, Range::positive(),
+                         "with `date_year`: how long the field is known; its end is held"),
+          Key::vector3("sun_direction", "towards the Sun, any length: shadow with penumbra")
+              .usually_is("always light")}};
 }
 
 }  // namespace photorque

@@ -14,6 +14,7 @@
 #include <algorithm>
 
 #include "attitude/disturbances/kind.h"
+#include "core/constants.h"
 
 namespace photorque {
 namespace {
@@ -134,7 +135,19 @@ DisturbanceKind power_balance_kind() {
       .screening =
           {.reason_against =
                "acts on the battery alone; of the motion nothing shows it but battery_discharge"},
-      .injection = {.reason_against = "diagnose does not screen it"}};
+      .injection = {.reason_against = "diagnose does not screen it"},
+      .keys = {
+          Key::uncertain(
+              "load_W", Range::not_negative(),
+              "what is drawn: the battery gives (load − array)/`platform.battery_voltage_V`, "
+              "tapered when full or empty; nothing where a recording has the current"),
+          Key::number_or("array_power_W", 0.0, Range::not_negative(),
+                         "at zero tilt, falls with its cosine; *or*"),
+          Key::numbers("tilt_deg", {0.0, pi, false, false},
+                       "a table, rising, held beyond its end; with the next")
+              .optional(),
+          Key::numbers("power_W", Range::not_negative(), "of the array at each tilt").optional(),
+          Key::uncertain_or("array_scale", 1.0, Range::not_negative(), "factor on either")}};
 }
 
 }  // namespace photorque

@@ -82,12 +82,22 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind radiation_pressure_kind() {
-  return {.name = "radiation_pressure",
-          .summary = "light pushes on what it falls on",
-          .read = read,
-          .screening = {.reason_against = "needs a table that torque-map traces for this platform"},
-          .injection = {.reason_against = "needs a traced table"},
-          .budget = {.paper_figure = "radiation_torque_at_30_deg_N_m"}};
+  return {
+      .name = "radiation_pressure",
+      .summary = "light pushes on what it falls on",
+      .read = read,
+      .screening = {.reason_against = "needs a table that torque-map traces for this platform"},
+      .injection = {.reason_against = "needs a traced table"},
+      .budget = {.paper_figure = "radiation_torque_at_30_deg_N_m"},
+      .keys = {Key::text("table",
+                         "CSV of `torque-map` (`wrench_table_body.csv`): `tilt_deg`, `heading_deg` "
+                         "or `elevation_deg`, `azimuth_deg`; `torque_x_N_m`, `…_y_…`, `…_z_…`. The "
+                         "motion must stay within it"),
+               Key::vector3(
+                   "sun_direction_lab",
+                   "towards the light, any length; only, and always, with elevation and azimuth")
+                   .optional(),
+               Key::uncertain_or("scale", 1.0, {}, "factor")}};
 }
 
 }  // namespace photorque

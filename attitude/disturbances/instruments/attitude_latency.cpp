@@ -38,7 +38,8 @@ DisturbanceKind attitude_latency_kind() {
                         .max_factor = 6.0,
                         .pairs = true},
           .budget = {.reason_against = "an error of an instrument: no torque"},
-          .instrument = "camera"};
+          .instrument = "camera",
+          .keys = {Key::uncertain("latency_s", {}, "the camera reports what was, so long ago")}};
 }
 
 }  // namespace photorque

@@ -40,7 +40,9 @@ DisturbanceKind camera_misalignment_kind() {
                         .step = 1e-6,
                         .max_factor = 3.0},
           .budget = {.reason_against = "an error of an instrument: no torque"},
-          .instrument = "camera"};
+          .instrument = "camera",
+          .keys = {Key::uncertain_vector("misalignment_rad",
+                                         "rotation vector from the true to the seen body axes")}};
 }
 
 }  // namespace photorque

@@ -38,7 +38,8 @@ DisturbanceKind gyro_bias_kind() {
                     .strength = bias.name,
                     .step = 1e-6},
       .budget = {.reason_against = "an error of an instrument: no torque"},
-      .instrument = "gyro"};
+      .instrument = "gyro",
+      .keys = {Key::uncertain_vector("bias_rad_s", "what it reads at rest")}};
 }
 
 }  // namespace photorque

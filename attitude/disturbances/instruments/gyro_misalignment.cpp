@@ -40,7 +40,8 @@ DisturbanceKind gyro_misalignment_kind() {
                     .max_factor = 3.0,
                     .pairs = true},
       .budget = {.reason_against = "an error of an instrument: no torque"},
-      .instrument = "gyro"};
+      .instrument = "gyro",
+      .keys = {Key::uncertain_vector("misalignment_rad", "rotation vector of the mounting")}};
 }
 
 }  // namespace photorque

@@ -41,7 +41,8 @@ DisturbanceKind gyro_scale_kind() {
                     .step = 1e-5,
                     .pairs = true},
       .budget = {.reason_against = "an error of an instrument: no torque"},
-      .instrument = "gyro"};
+      .instrument = "gyro",
+      .keys = {Key::uncertain_vector("scale", "three fractions: 0.01 reads 1 % too much")}};
 }
 
 }  // namespace photorque

@@ -68,7 +68,23 @@ DisturbanceKind battery_discharge_kind() {
                         .strength = shift.name,
                         .step = 1e-8,
                         .pairs = true},
-          .budget = {.paper_figure = "battery_torque_N_m"}};
+          .budget = {.paper_figure = "battery_torque_N_m"},
+          .keys = {Key::uncertain_vector("shift_m_per_Ah",
+                                         "of the centre of mass per charge drawn, body axes; *or* "
+                                         "the cells, from which it follows")
+                       .optional(),
+                   Key::tables(
+                       "cell",
+                       {Key::vector3("electrodes_m",
+                                     "way of the lithium from charged to empty, body axes; half a "
+                                     "cell's length is the upper bound, wound cells 1/100 of it"),
+                        Key::number_or("charge_share", 1.0, Range::fraction(),
+                                       "1 in series, 1/n of n in parallel")},
+                       "instead of `shift_m_per_Ah`: one table for every cell"),
+                   Key::choice_or("lithium",
+                                  {{"exact", "Faraday's mass per charge"},
+                                   {"rounded", "the paper's 0.3 g/Ah"}},
+                                  0, "with cells: how much lithium moves")}};
 }
 
 }  // namespace photorque

@@ -87,18 +87,36 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 }  // namespace
 
 DisturbanceKind elastic_sag_kind() {
-  return {.name = "elastic_sag",
-          .summary = "the structure bends differently at every tilt",
-          .read = read,
-          .screening = {.parametrisations =
-                            {{"the structure bends under its weight, differently at every tilt",
-                              {EffectKey::vector_not_negative(diagonal.name, 5e-7)}}},
-                        .needs = Requirement::gravity},
-          .injection = {.draw = draw_example,
-                        .torque = plain_torque,
-                        .strength = diagonal.name,
-                        .step = 1e-9,
-                        .pairs = true}};
+  return {
+      .name = "elastic_sag",
+      .summary = "the structure bends differently at every tilt",
+      .read = read,
+      .screening =
+          {.parametrisations = {{"the structure bends under its weight, differently at every tilt",
+                                 {EffectKey::vector_not_negative(diagonal.name, 5e-7)}}},
+           .needs = Requirement::gravity},
+      .injection = {.draw = draw_example,
+                    .torque = plain_torque,
+                    .strength = diagonal.name,
+                    .step = 1e-9,
+                    .pairs = true},
+      .keys = {Key::other("compliance_s2", Key::an_array | Key::a_table,
+                          "C in T = m C (g − g at zero tilt) × g, metres per m/s²: three numbers "
+                          "(a diagonal; only these take ±) or a symmetric 3 × 3 matrix; *or*")
+                   .optional(),
+               Key::table("dumbbell",
+                          {Key::vector3_or("axis", Vec3::UnitX(), "of the arms, body axes"),
+                           Key::number("length_m", Range::positive(), "of one arm"),
+                           Key::number("end_mass_kg", Range::not_negative(), "at its end"),
+                           Key::number("beam_mass_kg", Range::not_negative(), "of one arm"),
+                           Key::number("bending_stiffness_N_m2", Range::positive(), "EI")},
+                          "two arms, from which C follows; *or*"),
+               Key::table("tabletop",
+                          {Key::number("length_m", Range::positive(), "of a beam"),
+                           Key::number("total_mass_kg", Range::not_negative(), "of all"),
+                           Key::number("bending_stiffness_N_m2", Range::positive(), "EI of one"),
+                           Key::integer("count", 1, 1000, "of beams")},
+                          "beams along z, from which C follows")}};
 }
 
 }  // namespace photorque

@@ -101,7 +101,14 @@ DisturbanceKind flexible_mode_kind() {
                     .alter = plain_change,
                     .strength = inertia.name,
                     .max_factor = 6.0,
-                    .needs_commands = true}};
+                    .needs_commands = true},
+      .keys = {Key::uncertain_vector("axis", "of the mode, body axes, any length"),
+               Key::uncertain("frequency_Hz", Range::positive(), "with the body at rest"),
+               Key::uncertain("damping", Range::not_negative(), "fraction of critical damping"),
+               Key::uncertain(
+                   "inertia_kg_m2", Range::positive(),
+                   "of the appendage about the axis, below the platform's, of which it is part")
+                   .range_that_varies()}};
 }
 
 }  // namespace photorque

@@ -52,8 +52,14 @@ DisturbanceKind gravity_tilt_kind() {
                    {{"gravity does not point along the camera's vertical: the camera is not level",
                      {{about_x.name, {0.0, 0.0}, 5e-3}}}},
                .needs = Requirement::gravity},
-          .injection = {
-              .draw = draw_example, .alter = plain_change, .strength = about_x.name, .step = 1e-6}};
+          .injection = {.draw = draw_example,
+                        .alter = plain_change,
+                        .strength = about_x.name,
+                        .step = 1e-6},
+          .keys = {Key::numbers("tilt_rad", {},
+                                "[about x, about y], lab axes: turns lab −z into gravity")
+                       .with_error()
+                       .of_size(2)}};
 }
 
 }  // namespace photorque

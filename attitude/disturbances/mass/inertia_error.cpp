@@ -68,22 +68,29 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 }  // namespace
 
 DisturbanceKind inertia_error_kind() {
-  return {.name = "inertia_error",
-          .summary = "the moments or products of inertia are not those stated",
-          .read = read,
-          .screening =
-              {.parametrisations = {{"the moments or products of inertia differ from those stated",
-                                     {{.key = delta.name,
-                                       .start = {0, 0, 0, 0, 0, 0},
-                                       .scale = 0.03,
-                                       .times_inertia = true}}}},
-               .inertia_change_kg_m2 = inertia_change_kg_m2},
-          .injection = {.draw = draw_example,
-                        .alter = plain_change,
-                        .strength = delta.name,
-                        .step = 1e-6,
-                        .max_factor = 5.0,
-                        .pairs = true}};
+  return {
+      .name = "inertia_error",
+      .summary = "the moments or products of inertia are not those stated",
+      .read = read,
+      .screening =
+          {.parametrisations = {{"the moments or products of inertia differ from those stated",
+                                 {{.key = delta.name,
+                                   .start = {0, 0, 0, 0, 0, 0},
+                                   .scale = 0.03,
+                                   .times_inertia = true}}}},
+           .inertia_change_kg_m2 = inertia_change_kg_m2},
+      .injection = {.draw = draw_example,
+                    .alter = plain_change,
+                    .strength = delta.name,
+                    .step = 1e-6,
+                    .max_factor = 5.0,
+                    .pairs = true},
+      .keys = {
+          Key::numbers(
+              "delta_kg_m2", {},
+              "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the whole stays an inertia")
+              .with_error()
+              .of_size(6)}};
 }
 
 }  // namespace photorque

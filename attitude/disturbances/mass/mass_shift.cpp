@@ -69,7 +69,9 @@ DisturbanceKind mass_shift_kind() {
                     .torque = plain_torque,
                     .jumps_s = plain_jumps_s,
                     .strength = offset.name,
-                    .pairs = true}};
+                    .pairs = true},
+      .keys = {Key::uncertain("time_s", {}, "when"),
+               Key::uncertain_vector("offset_m", "by what the centre of mass moves, body axes")}};
 }
 
 }  // namespace photorque

@@ -85,4 +85,14 @@ std::vector<MovingMass> read_moving_masses(const Settings& settings) {
   return masses;
 }
 
+std::vector<Key> moving_mass_keys() {
+  return {Key::number("moving_mass_kg", Range::positive(), "of each mass"),
+          Key::number("lead_m", Range::positive(), "travel per turn of its screw"),
+          Key::number_or("step_angle_deg", 1.8 * degree_rad, {0.0, 2.0 * pi, true, false},
+                         "of the motor"),
+          Key::integer_or("microsteps", 1, 1, 1024, "positions per step"),
+          Key::vectors3("directions", "of travel, body axes, one per mass")
+              .usually_is("eight: 2 x, 2 y, 4 z")};
+}
+
 }  // namespace photorque

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/settings/keys.h"
 #include "core/settings/settings.h"
 #include "core/vector.h"
 
@@ -50,5 +51,8 @@ BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<Mo
 // Reads moving_mass_kg, lead_m, step_angle_deg (default 1.8), microsteps (default 1) and
 // directions (default: those of eight_masses()).
 std::vector<MovingMass> read_moving_masses(const Settings& settings);
+
+// The keys of read_moving_masses().
+std::vector<Key> moving_mass_keys();
 
 }  // namespace photorque

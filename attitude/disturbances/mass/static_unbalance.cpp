@@ -42,7 +42,10 @@ DisturbanceKind static_unbalance_kind() {
           .injection = {.draw = injected::random_direction(offset.name, 1e-6),
                         .torque = plain_torque,
                         .strength = offset.name,
-                        .step = 1e-8}};
+                        .step = 1e-8},
+          .keys = {Key::uncertain_vector("offset_m",
+                                         "r in T = m r × g, from the centre of rotation, body "
+                                         "axes; a platform that stands stable has a negative z")}};
 }
 
 }  // namespace photorque

@@ -73,7 +73,13 @@ DisturbanceKind stepper_quantization_kind() {
               {.reason_against =
                    "an offset of the centre of mass like any other: found as static_unbalance"},
           .injection = {.reason_against = "an offset of the centre of mass like any other"},
-          .budget = {.paper_figure = "stepper_torque_N_m"}};
+          .budget = {.paper_figure = "stepper_torque_N_m"},
+          .keys = joined(
+              {moving_mass_keys(),
+               {Key::numbers("rounding_steps", {},
+                             "where each mass stands beside its target, in steps, ±0.5")
+                    .with_error()
+                    .usually_is("½ for the first along each direction, else 0: the worst case")}})};
 }
 
 }  // namespace photorque

@@ -57,7 +57,13 @@ DisturbanceKind actuator_gain_kind() {
                         .step = 1e-4,
                         .max_factor = 4.0,
                         .needs_commands = true,
-                        .pairs = true}};
+                        .pairs = true},
+          .keys = {
+              Key::uncertain(
+                  "gain_error", {},
+                  "e: actuators give (1 + e) of the command; one number, or one for each body axis")
+                  .one_or_several()
+                  .of_size(3)}};
 }
 
 }  // namespace photorque

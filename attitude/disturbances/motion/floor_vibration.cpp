@@ -154,8 +154,29 @@ DisturbanceKind floor_vibration_kind() {
                     .needs = Requirement::gravity,
                     .scan = Scan::frequency,
                     .fast = true},
-      .injection = {
-          .draw = draw_example, .torque = plain_torque, .strength = shaking.name, .step = 1e-4}};
+      .injection = {.draw = draw_example,
+                    .torque = plain_torque,
+                    .strength = shaking.name,
+                    .step = 1e-4},
+      .keys = {
+          Key::uncertain_vector("acceleration_m_s2",
+                                "a of a sine in T = −m r × a, nothing without an offset of mass; "
+                                "lab axes; with the next two; *or*")
+              .optional(),
+          Key::uncertain("frequency_Hz", Range::not_negative(), "of a sine").optional(),
+          Key::uncertain_or("phase", 0.0, {}, "of it at t = 0, rad; or `phase_deg`"),
+          Key::uncertain("phase_deg", {}, "instead of `phase`").optional(),
+          Key::table("spectrum",
+                     {Key::numbers("frequency_Hz", Range::positive(), "at least two, rising"),
+                      Key::numbers("density_m2_s3", Range::not_negative(),
+                                   "one-sided, the same along each axis"),
+                      Key::integer_or("tones", 32, 1, 10000, "of which it is made"),
+                      Key::integer_or("seed", 1, 0, INT64_MAX, "of their phases")},
+                     "a random floor; *or*"),
+          Key::text("accelerogram_file",
+                    "CSV: `t_s`, `acceleration_x_m_s2`, `…_y_…`, `…_z_…`, lab axes, zero outside")
+              .optional(),
+          Key::uncertain_or("scale", 1.0, Range::not_negative(), "factor on the last two")}};
 }
 
 }  // namespace photorque

@@ -61,7 +61,11 @@ DisturbanceKind periodic_torque_kind() {
                     .torque = plain_torque,
                     .strength = amplitude.name,
                     .step = 1e-8,
-                    .pairs = true}};
+                    .pairs = true},
+      .keys = {Key::uncertain_vector("torque_N_m", "T₀ in T = T₀ sin(2π f t + φ), body axes"),
+               Key::uncertain("frequency_Hz", Range::not_negative(), "f"),
+               Key::uncertain_or("phase", 0.0, {}, "φ, rad; or `phase_deg`"),
+               Key::uncertain("phase_deg", {}, "instead of `phase`").optional()}};
 }
 
 }  // namespace photorque

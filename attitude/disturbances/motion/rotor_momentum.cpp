@@ -40,7 +40,9 @@ DisturbanceKind rotor_momentum_kind() {
                         .torque = plain_torque,
                         .strength = momentum.name,
                         .step = 1e-7,
-                        .pairs = true}};
+                        .pairs = true},
+          .keys = {Key::uncertain_vector(
+              "momentum_N_m_s", "h in T = −ω × h, ω inertial; against the body, body axes")}};
 }
 
 }  // namespace photorque

@@ -131,7 +131,20 @@ DisturbanceKind wheel_control_kind() {
           .read = read,
           .screening = {.reason_against = "a controller is known to whoever switched it on; its "
                                           "torque stands in the commands"},
-          .injection = {.reason_against = "diagnose does not screen it"}};
+          .injection = {.reason_against = "diagnose does not screen it"},
+          .keys = {
+              Key::uncertain("gain_N_m_per_rad", Range::not_negative(), "on the angle"),
+              Key::uncertain("gain_N_m_s", Range::not_negative(), "on the rate"),
+              Key::vector3_or("target_axis", Vec3::UnitZ(), "of the target attitude, any length"),
+              Key::number_or("target_angle_deg", 0.0, {}, "about it"),
+              Key::vector3_or("target_rate_rad_s", Vec3::Zero(), "body axes"),
+              Key::number("wheel_inertia_kg_m2", Range::positive(),
+                          "of each, part of the platform's and below the least of its diagonal")
+                  .range_that_varies(),
+              Key::number("largest_torque_N_m", Range::positive(), "of a motor"),
+              Key::number("largest_rate_rad_s", Range::positive(), "of a wheel against the body"),
+              Key::uncertain_or("viscous_N_m_s", 0.0, Range::not_negative(), "friction of a wheel"),
+              Key::uncertain_or("dry_N_m", 0.0, Range::not_negative(), "friction of a wheel")}};
 }
 
 }  // namespace photorque

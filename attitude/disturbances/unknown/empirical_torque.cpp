@@ -62,7 +62,8 @@ DisturbanceKind empirical_torque_kind() {
           .read = read,
           .screening = {.reason_against = "it is what diagnose fits where no known law will do"},
           .injection = {.reason_against = "a function without a law; prove has unknown laws of its "
-                                          "own"}};
+                                          "own"},
+          .keys = empirical_shape_keys()};
 }
 
 }  // namespace photorque

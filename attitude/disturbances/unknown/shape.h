@@ -9,6 +9,7 @@
 
 #include "attitude/disturbances/unknown/table.h"
 #include "attitude/model/disturbance.h"
+#include "core/settings/keys.h"
 
 namespace photorque {
 
@@ -82,5 +83,8 @@ std::vector<std::pair<std::string, std::string>> shape_as_written(const Empirica
 // The disturbance, every coefficient 0, the functions' own parameters at their values. Coefficients
 // stand term by term, of each term all components.
 Disturbance empirical_torque(const EmpiricalShape& shape);
+
+// The keys of an empirical torque.
+std::vector<Key> empirical_shape_keys();
 
 }  // namespace photorque

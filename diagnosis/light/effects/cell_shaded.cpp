@@ -5,7 +5,7 @@ namespace photorque {
 
 LightEffectKind cell_shaded_kind() {
   return {.name = "cell_shaded",
-          .explanation = "something over a cell takes a share of its light",
+          .explanation = "something over a cell takes a fraction of its light",
           .index = LightEffectKind::Index::cell,
           .parameters =
               {{.key = "factor", .neutral = 1.0, .scale = 0.2, .lowest = -1.0, .highest = 0.0}},

@@ -5,7 +5,7 @@ namespace photorque {
 
 LightEffectKind soiling_kind() {
   return {.name = "soiling",
-          .explanation = "dirt on the cells takes the same share of the light from all of them",
+          .explanation = "dirt on the cells takes the same fraction of the light from all of them",
           .parameters =
               {{.key = "factor", .neutral = 1.0, .scale = 0.1, .lowest = -1.0, .highest = 0.0}},
           .in_scans = false,

@@ -1,0 +1,74 @@
+// The keys of a torque without a law, which shape.cpp reads: those of every variable and function.
+#include "attitude/disturbances/unknown/shape.h"
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+struct VariableKeys {
+  const char* name;
+  const char* unit;
+  double reference_SI;  // where its powers are 1
+  double least_power;
+};
+constexpr VariableKeys variables[] = {{"tilt", "deg", 0.1, 1.0},
+                                      {"rate", "rad_s", 0.1, 1.0},
+                                      {"time", "s", 100.0, 0.0},
+                                      {"charge", "Ah", 3600.0, 1.0},
+                                      {"command", "N_m", 1e-4, 1.0}};
+constexpr double most_order = 200.0;
+
+void add_keys_of(const VariableKeys& variable, std::vector<Key>& keys) {
+  const std::string name = variable.name, unit = "_" + std::string(variable.unit);
+  keys.push_back(
+      Key::uncertain(name + "_exponent", Range::positive(), "a power of the " + name + "; *or*")
+          .optional());
+  keys.push_back(Key::numbers(name + "_powers", {variable.least_power, most_order},
+                              "whole powers of the " + name + ", rising, one term each; *or*")
+                     .optional());
+  keys.push_back(Key::numbers(name + "_knots" + unit, {},
+                              "a smooth table over the " + name +
+                                  ": at least 4 knots, rising, one value for each, cubic in "
+                                  "between, once continuously differentiable")
+                     .optional());
+  keys.push_back(Key::number_or(name + "_reference" + unit, variable.reference_SI,
+                                Range::positive(), "where the powers are 1"));
+  keys.push_back(
+      Key::numbers(name + "_range" + unit, {},
+                   "[from, to], where it was measured: beyond, the variable is held at the end, "
+                   "which it passes smoothly by a twentieth of the range at most")
+          .of_size(2)
+          .usually_is("everywhere; of a table its knots"));
+}
+
+}  // namespace
+
+std::vector<Key> empirical_shape_keys() {
+  std::vector<Key> keys = {
+      Key::texts(
+          "axes",
+          "any, each once: about `\"body\"` x, y, z; `\"lab\"` x, y, z; `\"vertical\"`; "
+          "`\"lean\"` (the axis about which it leans, positive rights); `\"rate\"` (positive "
+          "brakes); `\"rate_by_axis\"` (brakes about body x, y, z); `\"command\"`; "
+          "`\"cross_talk\"` (of the command about the other axes: xy, xz, yx, yz, zx, zy)"),
+      Key::numbers("heading_orders", {1.0, most_order},
+                   "whole, rising: cos nψ, sin nψ of the heading for each n")
+          .optional()};
+  for (const VariableKeys& variable : variables) add_keys_of(variable, keys);
+  return joined(
+      {keys,
+       {Key::uncertain("time_constant_s", Range::positive(), "exp(−t/τ); *or*").optional(),
+        Key::uncertain("time_period_s", Range::positive(), "with `time_orders`").optional(),
+        Key::numbers("time_orders", {0.0, most_order},
+                     "whole, rising: cos and sin of 2π n t/period for each n (0: a constant); *or*")
+            .optional(),
+        Key::number("time_span_s", Range::positive(), "with `time_cosines`").optional(),
+        Key::numbers("time_cosines", {0.0, most_order}, "whole, rising: cos(π n t/span) for each n")
+            .optional(),
+        Key::uncertain(empirical_coefficients, {},
+                       "term by term of the first function, of each all terms of the second, of "
+                       "each all components of the axes; 200 numbers at most are practical")
+            .one_or_several()}});
+}
+
+}  // namespace photorque

@@ -1,0 +1,76 @@
+#include "attitude/recordings/keys.h"
+
+#include "attitude/camera/keys.h"
+#include "attitude/recordings/sensors.h"
+
+namespace photorque {
+namespace {
+
+// The errors that stand with an instrument as well as in [[disturbance]].
+std::vector<Key> errors_of(const std::string& instrument) {
+  std::vector<Key> keys;
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    if (kind.instrument != instrument) continue;
+    for (const Key& key : kind.keys) keys.push_back(Key(key).usually_is("0"));
+  }
+  return keys;
+}
+
+Key rate_key() {
+  return Key::number_or("rate_Hz", 0.0, Range::not_negative(), "of readings; 0: every row");
+}
+
+}  // namespace
+
+std::vector<Key> sensor_keys() {
+  const Sensors::Camera camera;
+  const auto not_negative = [](const char* name, const char* what) {
+    return Key::number_or(name, 0.0, Range::not_negative(), what);
+  };
+  return {
+      Key::table("camera",
+                 joined({{Key::vector3_or("noise_arcsec", camera.noise_rad,
+                                          "standard deviation about lab x, y, z"),
+                          rate_key()},
+                         errors_of("camera"),
+                         tracking_camera_keys()}),
+                 "sees the attitude")
+          .usually_is("without any `[sensors]` an ideal one"),
+      Key::table("angle", {Key::number("noise_arcsec", Range::positive(), "standard deviation")},
+                 "the angle of a one-axis platform, instead of a camera"),
+      Key::table(
+          "gyro",
+          joined({{not_negative("noise_rad_s", "per reading and axis"),
+                   not_negative("bias_drift", "random walk of the bias, rad/s per √s"), rate_key()},
+                  errors_of("gyro")}),
+          "feels the rate")
+          .usually_is("without any `[sensors]` an ideal one"),
+      Key::table("encoder",
+                 {Key::number("resolution_arcsec", Range::positive(), "step of the heading")},
+                 "reads the heading"),
+      Key::table("power",
+                 {not_negative("current_noise_A", "on the battery's current"),
+                  not_negative("power_noise_W", "on the array's power")},
+                 "reads battery and array"),
+      Key::choice_or("noise_is",
+                     {{"found",
+                       "`diagnose` looks for level and correlation of the noise in the "
+                       "recordings"},
+                      {"stated", "it takes them as stated here"}},
+                     0, "where the noise is known from")};
+}
+
+Key recording_table() {
+  const RecordingOptions usual;
+  return Key::table(
+      "recording",
+      {Key::other("columns", Key::a_table,
+                  "`{ gyro_x_rad_s = \"wx\", … }`: the file's name of a channel. A unit in the "
+                  "channel's key converts: `gyro_x_deg_s = \"wx\"`")
+           .usually_is("names as they are"),
+       Key::flag_or("remove_outliers", usual.remove_outliers,
+                    "empties cells of attitude and gyro far from all neighbours")},
+      "how files of recordings are read");
+}
+
+}  // namespace photorque

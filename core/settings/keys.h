@@ -1,0 +1,132 @@
+// What a table of an experiment may hold: every key once, with type, unit, range, default and a
+// sentence.
+//
+// Each room declares the keys that it reads beside their readers, in the words of the readers:
+//   Key::number_or("tilt_deg", 0.0, {0.0, pi}, "the body's z axis leans by this")
+// stands for settings.number_or("tilt_deg", 0.0, {0.0, pi}). Schema, tables in documents and
+// `check` are made from these declarations; tests/tools/keys_test.cpp holds them against what the
+// readers ask for, expect and take by default.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+struct Key {
+  enum class Type {
+    number,
+    numbers,  // an array of any length
+    integer,
+    flag,
+    text,
+    texts,
+    choice,   // one text of `choices`
+    vector,   // three numbers
+    vectors,  // an array of such
+    matrix,   // three rows of three numbers
+    table,
+    tables,  // an array of tables, or one table
+    other,   // checked by its reader alone
+  };
+  // What a value of TOML may look like where the reader takes several; bits.
+  enum Form : unsigned {
+    a_number = 1,
+    an_array = 2,
+    a_text = 4,
+    a_table = 8,
+    a_flag = 16,
+    a_date = 32
+  };
+
+  // One word of a choice, and the keys that the table has with it and not without.
+  struct Choice {
+    std::string name;
+    std::string what = {};
+    std::vector<Key> keys = {};
+  };
+
+  std::string name;  // with the unit that documents show: "pitch_m"
+  Type type = Type::number;
+  std::string what;           // one sentence, as the meaning in a table of a document
+  bool required = true;       // whatever else the table holds
+  bool completes = false;     // where it stands, required keys beside it may be missing
+  bool has_error = false;     // may be { value = …, sigma = … }
+  bool or_array = false;      // a number that may be an array of them: one for each band, axis
+  size_t size = 0;            // of arrays of numbers; 0: any
+  Range range = {};           // of numbers, SI
+  bool range_varies = false;  // the reader's depends on other keys, and lies within `range`
+  int64_t low = 0, high = 0;  // of integers
+  std::vector<Choice> choices = {};
+  std::optional<SettingsNode> otherwise = {};  // the default, in the unit of `name`
+  std::string usually = {};                    // the default in words, where it is no constant
+  unsigned forms = 0;                          // of Type::other
+  std::vector<Key> keys = {};                  // of tables
+  std::vector<std::string> commands = {};      // of the tables of a file: who reads them
+
+  // As the accessors of Settings: same names, same order. Defaults of numbers are SI.
+  static Key number(std::string name, Range range, std::string what);
+  static Key number_or(std::string name, double otherwise_SI, Range range, std::string what);
+  static Key uncertain(std::string name, Range range, std::string what);
+  static Key uncertain_or(std::string name, double otherwise_SI, Range range, std::string what);
+  static Key uncertain_vector(std::string name, std::string what);
+  static Key integer(std::string name, int64_t low, int64_t high, std::string what);
+  static Key integer_or(std::string name, int64_t otherwise, int64_t low, int64_t high,
+                        std::string what);
+  static Key flag_or(std::string name, bool otherwise, std::string what);
+  static Key text(std::string name, std::string what);
+  static Key text_or(std::string name, std::string otherwise, std::string what);
+  static Key choice(std::string name, std::vector<Choice> choices, std::string what);
+  static Key choice_or(std::string name, std::vector<Choice> choices, size_t otherwise,
+                       std::string what);
+  static Key vector3(std::string name, std::string what);
+  static Key vector3_or(std::string name, const Vec3& otherwise_SI, std::string what);
+  static Key vectors3(std::string name, std::string what);
+  static Key matrix3(std::string name, std::string what);
+  static Key numbers(std::string name, Range range, std::string what);
+  static Key texts(std::string name, std::string what);
+  static Key table(std::string name, std::vector<Key> keys, std::string what);
+  static Key tables(std::string name, std::vector<Key> keys, std::string what);
+  // What its reader takes apart by itself.
+  static Key other(std::string name, unsigned forms, std::string what);
+
+  // For keys that a table can do without and that have no constant for a default.
+  Key optional() &&;
+  // The same, with the default in words: "the file's".
+  Key usually_is(std::string words) &&;
+  Key that_completes() &&;
+  Key with_error() &&;
+  Key one_or_several() &&;
+  Key of_size(size_t count) &&;
+  Key range_that_varies() &&;
+  Key read_by(std::vector<std::string> verbs) &&;
+};
+
+// Several lists of keys one after the other.
+std::vector<Key> joined(std::initializer_list<std::vector<Key>> lists);
+// Choices of words that bring no keys of their own.
+std::vector<Key::Choice> words(std::initializer_list<const char*> names);
+
+// Adds a choice; one of the same name gains its keys, of which those that either lacks are
+// optional.
+void add_choice(std::vector<Key::Choice>& choices, Key::Choice added);
+
+// The units of a quantity, as suffixes of keys, in no order; of "per angle" those of angles.
+std::vector<KeyUnit> units_of(const std::string& dimension);
+
+// What a reader expects of a value, in the words of its messages: "a number > 0 W".
+std::string expected_of(const Key& key);
+
+// The keys that a table holds which looks like this: `keys`, and those that its choices bring.
+std::vector<const Key*> keys_in(const SettingsNode::Table& table, const std::vector<Key>& keys);
+
+// Every key of the tree that is not among `keys`, or whose value has the wrong type, unit or range:
+// one error each. What is missing is left to the readers. `name` is how messages call the table.
+std::vector<InputError> misread_keys(const SettingsNode& table, const std::vector<Key>& keys,
+                                     const std::string& name = "");
+
+}  // namespace photorque

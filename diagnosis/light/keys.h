@@ -1,0 +1,16 @@
+// What the diagnosis of light reads, as it is declared.
+#pragma once
+
+#include <vector>
+
+#include "core/settings/keys.h"
+
+namespace photorque {
+
+// The instruments of light and power in [sensors].
+std::vector<Key> light_sensor_keys();
+// The kinds of [[effect]] on light and power, from their registry. Kinds of one name are one choice
+// with the keys of all.
+std::vector<Key::Choice> light_effects();
+
+}  // namespace photorque

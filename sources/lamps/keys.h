@@ -1,0 +1,30 @@
+// The keys that several kinds of source share, as they are declared; settings.h and measured.h read
+// them.
+#pragma once
+
+#include <vector>
+
+#include "core/settings/keys.h"
+
+namespace photorque {
+
+// `name`, with the kind for a default.
+Key source_name_key(const std::string& kind);
+// The radiant power of one lamp.
+Key radiant_power_key();
+Key source_position_key(const std::string& what);
+// read_direction(), and `direction` alone.
+std::vector<Key> direction_keys();
+Key direction_key(const std::string& what);
+// read_line_spectrum().
+std::vector<Key> line_spectrum_keys(double default_fwhm_m);
+// read_sunlight().
+std::vector<Key> sunlight_keys();
+// read_lamp().
+std::vector<Key> lamp_keys();
+// place_lamps().
+std::vector<Key> lamp_place_keys();
+
+constexpr double usual_led_width_m = 20e-9;  // spectral_fwhm_nm of LEDs
+
+}  // namespace photorque

@@ -1,0 +1,73 @@
+// photorque schema: the keys of experiments for editors, documents and whoever asks for one.
+#include <cstdio>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "tools/commands/verb.h"
+#include "tools/keys/document.h"
+#include "tools/keys/registry.h"
+#include "tools/keys/schema.h"
+#include "tools/keys/words.h"
+
+namespace photorque {
+namespace {
+
+// A key by its path, and the table that holds it: "source.power_W".
+struct FoundKey {
+  std::string path;  // with the choice that brings it: "source (led).power_W"
+  const Key* key;
+};
+
+void find(const std::vector<Key>& keys, const std::string& written, const std::string& path,
+          const std::string& wanted, std::vector<FoundKey>& found) {
+  for (const Key& key : keys) {
+    const std::string name = written.empty() ? key.name : written + "." + key.name;
+    const std::string full = path.empty() ? key.name : path + "." + key.name;
+    if (name == wanted) found.push_back({full, &key});
+    find(key.keys, name, full, wanted, found);
+    for (const Key::Choice& choice : key.choices) {
+      find(choice.keys, written, path + " (" + choice.name + ")", wanted, found);
+    }
+  }
+}
+
+void print_key(const std::string& wanted) {
+  const std::vector<Key> tables = experiment_keys();
+  std::vector<FoundKey> found;
+  find(tables, "", "", wanted, found);
+  if (found.empty()) {
+    throw InputError({"--key"}, "", wanted, "a key with its table, such as source.power_W");
+  }
+  for (const FoundKey& one : found) {
+    std::printf("%s: %s\n", one.path.c_str(), description_of(*one.key).c_str());
+  }
+}
+
+void run_schema(const CommandLine& line) {
+  if (!line.key.empty()) return print_key(line.key);
+  for (const std::filesystem::path& document : line.documents) {
+    write_file_whole(document,
+                     with_key_tables(read_file(document), experiment_keys(), document.string()));
+  }
+  if (!line.documents.empty()) return;
+  const std::string schema = json_schema(experiment_keys());
+  if (line.out) {
+    write_file_whole(*line.out, schema);
+  } else {
+    std::fputs(schema.c_str(), stdout);
+  }
+}
+
+}  // namespace
+
+Verb schema_verb() {
+  Verb verb{"schema",
+            "Every key of an experiment: as a JSON Schema for editors, or one key's meaning",
+            run_schema};
+  verb.takes_keys = true;
+  verb.takes_experiment = false;
+  verb.writes = false;
+  return verb;
+}
+
+}  // namespace photorque

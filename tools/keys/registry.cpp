@@ -1,0 +1,71 @@
+#include "tools/keys/registry.h"
+
+#include <algorithm>
+
+#include "attitude/camera/keys.h"
+#include "attitude/disturbances/kind.h"
+#include "attitude/environment/keys.h"
+#include "attitude/filtering/keys.h"
+#include "attitude/model/keys.h"
+#include "attitude/propagation/keys.h"
+#include "attitude/recordings/keys.h"
+#include "attitude/studies/keys.h"
+#include "diagnosis/light/keys.h"
+#include "diagnosis/module/keys.h"
+#include "scenes/experiment/keys.h"
+#include "tools/keys/tables.h"
+
+namespace photorque {
+namespace {
+
+Key sensors_table() {
+  return Key::table(
+      "sensors", joined({sensor_keys(), light_sensor_keys()}),
+      "without it an ideal camera and gyro are recorded; with it, only the instruments "
+      "named");
+}
+
+Key effect_table() {
+  std::vector<Key::Choice> kinds = light_effects();
+  for (Key::Choice& of_module : module_effects()) add_choice(kinds, std::move(of_module));
+  const auto said = [](const char* name, unsigned forms) {
+    return Key::other(name, forms, "what a diagnosis says beside the numbers that act").optional();
+  };
+  return Key::tables(
+      "effect",
+      {Key::choice("kind", std::move(kinds), "what acts").range_that_varies(),
+       said("u_m", Key::a_number | Key::an_array), said("v_m", Key::a_number | Key::an_array),
+       said("darkest", Key::a_number), said("count_between", Key::a_text)},
+      "what a diagnosis found missing: the nominal model has it");
+}
+
+}  // namespace
+
+std::vector<Key> experiment_keys() {
+  const std::vector<std::string> motion = {"budget",   "propagate", "balance", "diagnose",
+                                           "estimate", "camera",    "serve",   "supply"};
+  const std::vector<std::string> moves = {"propagate", "serve"};
+  return joined({scene_tables(),
+                 {array_table().read_by({"power", "torque-map", "propagate", "diagnose"}),
+                  published_table().read_by({"trace", "power"}),
+                  effect_table().read_by({"trace", "power", "diagnose"}),
+                  light_table().read_by(moves),
+                  platform_table().read_by(motion),
+                  environment_table().read_by(motion),
+                  disturbance_table().read_by(motion),
+                  sensors_table().read_by(motion),
+                  propagate_table().read_by(moves),
+                  serve_table().read_by({"serve"}),
+                  budget_table().read_by({"budget"}),
+                  balance_table().read_by({"balance"}),
+                  recording_table().read_by({"balance", "diagnose", "estimate"}),
+                  estimate_table().read_by({"estimate"}),
+                  camera_study_table().read_by({"camera"}),
+                  supply_table().read_by({"supply"}),
+                  sweep_table().read_by({"sweep", "optimise"}),
+                  fit_table().read_by({"fit-cell"}),
+                  module_table().read_by({"diagnose"}),
+                  prove_table().read_by({"prove"})}});
+}
+
+}  // namespace photorque

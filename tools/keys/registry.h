@@ -1,0 +1,13 @@
+// Every key that an experiment may hold.
+#pragma once
+
+#include <vector>
+
+#include "core/settings/keys.h"
+
+namespace photorque {
+
+// The tables of an experiment, in the order in which documents show them.
+std::vector<Key> experiment_keys();
+
+}  // namespace photorque

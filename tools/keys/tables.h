@@ -1,0 +1,19 @@
+// The tables of an experiment that the program itself reads, as they are declared.
+#pragma once
+
+#include <vector>
+
+#include "core/settings/keys.h"
+
+namespace photorque {
+
+Key array_table();      // tools/runs
+Key published_table();  // tools/runs
+Key light_table();      // tools/coupling
+Key serve_table();      // tools/realtime
+Key sweep_table();      // tools/sweeps
+Key supply_table();     // tools/supply
+Key fit_table();        // tools/tasks
+Key prove_table();      // tools/commands
+
+}  // namespace photorque
