@@ -171,7 +171,7 @@ KinematicRun kinematic_run(const Observation& seen, const Prediction* about) {
     s.about_readings = result.about_readings;
     s.interval_s = interval_s;
     s.gyro_interval_s = gyro_interval_s;
-    const auto columns = seen.has_gyro ? clock_drift_column + 1 : 0;
+    const auto columns = seen.has_gyro ? instrument_columns : 0;
     s.angle_by.setZero(static_cast<Eigen::Index>(blocks), columns);
     s.rate_by.setZero(static_cast<Eigen::Index>(blocks), columns);
     for (size_t i = 0; i < blocks; ++i) {
@@ -192,14 +192,17 @@ KinematicRun kinematic_run(const Observation& seen, const Prediction* about) {
       }
       s.angle_by(row, 15) = -left[i].motion.rate_lab_rad_s[k];
       s.angle_by(row, 16) = since_s * s.angle_by(row, 15);
+      s.rate_by(row, clock_drift_column + 1 + k) = 1.0;
     }
   }
   return result;
 }
 
 Eigen::VectorXd instrument_widths() {
-  Eigen::VectorXd widths(clock_drift_column + 1);
-  widths << Vec3::Constant(0.1), Vec3::Constant(1e-4), Eigen::VectorXd::Constant(9, 0.3), 1.0, 1e-2;
+  Eigen::VectorXd widths(instrument_columns);
+  // The Earth turns by 7.3e-5 rad/s.
+  widths << Vec3::Constant(0.1), Vec3::Constant(1e-4), Eigen::VectorXd::Constant(9, 0.3), 1.0, 1e-2,
+      Vec3::Constant(2e-4);
   return widths;
 }
 

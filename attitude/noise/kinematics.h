@@ -22,7 +22,8 @@ struct KinematicSeries {
   std::vector<char> jumps;                         // a command changed since the block before
   double interval_s = 0.0, gyro_interval_s = 0.0;  // between the readings of each
   // What instruments that are wrong would add: of the gyro biases (3), a linear drift of them (3),
-  // scale and misalignment (9, by rows), of the camera its delay and how that grows with time. No
+  // scale and misalignment (9, by rows), of the camera its delay and how that grows with time; then
+  // the turning of the laboratory itself (3), which the gyro reads and the camera does not. No
   // columns without a gyro.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> angle_by, rate_by;
 
@@ -45,6 +46,6 @@ KinematicRun kinematic_run(const Observation& seen, const Prediction* about);
 Eigen::VectorXd instrument_widths();
 
 // Index of the column of the delay's growth [s/s].
-constexpr Eigen::Index clock_drift_column = 16;
+constexpr Eigen::Index clock_drift_column = 16, instrument_columns = 20;
 
 }  // namespace photorque

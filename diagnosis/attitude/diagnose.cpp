@@ -170,11 +170,13 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   const NominalModel nominal = as_seen(stated, data);
   tell(options, "fitting the nominal model");
   Fit nominal_fit = settle(nominal, options.limits, data);
-  const bool on_air = stated.model.platform.has_air_bearing();
+  // On an air bearing, and wherever the attitude is seen, the whole search is worth its time.
+  const bool is_watched =
+      stated.model.platform.has_air_bearing() || data.train.front().sees_attitude();
   // A machine of which little is known, far from its recording: a search at the noise of the
   // readings would find nothing but ways of bending what is believed.
   const bool is_lost =
-      !on_air && !(nominal_fit.chi2_per_sample() < options.limits.diverged_chi2_per_sample);
+      !is_watched && !(nominal_fit.chi2_per_sample() < options.limits.diverged_chi2_per_sample);
   std::optional<Answer> named;
   if (is_lost) named = named_beside_the_rest(nominal, data, options);
   Answer answer = named     ? unexplained(nominal, nominal_fit, data, options.limits)
@@ -189,7 +191,7 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   // What counted as noise there is far more than the noise of the readings.
   if (is_lost) leave_unexplained(answer.decision);
   say_what_was_found(answer, nominal_fit, data, options, d);
-  if (d.verdict == Verdict::unexplained && !on_air && !is_lost) {
+  if (d.verdict == Verdict::unexplained && !is_watched && !is_lost) {
     named = named_beside_the_rest(nominal, data, options);
   }
   if (named) {
