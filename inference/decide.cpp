@@ -88,6 +88,13 @@ class Judge {
     return result;
   }
 
+  // Whether it predicts what was held out far better than the nominal model, where that was asked.
+  bool predicts_far_better(size_t trial) const {
+    const auto &before = trials_.front().holdout_chi2_per_sample,
+               &after = trials_[trial].holdout_chi2_per_sample;
+    return !before || !after || *after < limits_.max_held_out_fraction * *before;
+  }
+
   bool has_names_of(size_t part, size_t whole) const {
     const auto some = names_of(part), all = names_of(whole);
     return std::includes(all.begin(), all.end(), some.begin(), some.end());
@@ -168,6 +175,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
                                  : "the best known physics does not predict what was held out";
     d.chosen = only_empirical ? empirical : named;
     const bool law_does = only_empirical && judge.predicts(empirical) &&
+                          judge.predicts_far_better(empirical) &&
                           excess_sigma(empirical) < limits.max_excess_sigma;
     if (law_does) d.beside_law = judge.indispensable(empirical);
     d.confidence = probability_of(d.probability, [&](size_t i) { return judge.is_empirical(i); });

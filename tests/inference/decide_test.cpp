@@ -94,6 +94,13 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   EXPECT_EQ(d.finding, Finding::unknown);
   EXPECT_EQ(d.chosen, 4u);
   EXPECT_EQ(d.beside_law, std::vector<size_t>{0});
+  // The fit to the first recordings alone may predict the others worse than no law did.
+  std::vector<Explanation> worse = trials;
+  worse.front().holdout_chi2_per_sample = 20.0;
+  worse.back().holdout_chi2_per_sample = 700.0;
+  EXPECT_TRUE(decide(
+                  worse, all, [](size_t) { return 0.0; }, limits)
+                  .beside_law.empty());
   // Where the law leaves structure, the names may make up for it.
   EXPECT_TRUE(judged(20.0, limits).beside_law.empty());
   Thresholds::Decision mutant = limits;
