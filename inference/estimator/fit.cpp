@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/errors.h"
 
@@ -76,7 +77,8 @@ class Fitter {
     for (const double window : options_.windows) result.termination = fit_window(window);
     const bool is_hopeless =
         options_.max_start_chi2 < infinity && result.termination == Termination::not_evaluable;
-    Evaluation last = evaluate(model_, now_, {!is_hopeless, 1.0, is_hopeless ? 0.0 : infinity});
+    const Request whole{!is_hopeless, 1.0, is_hopeless ? 0.0 : infinity};
+    Evaluation last = ended_at_ ? std::move(*ended_at_) : evaluate(model_, now_, whole);
     result.parameters = model_.parameters(now_);
     // Short runs are not given up half-way: their χ² may be known all the same.
     result.chi2 = is_hopeless ? infinity : last.sums.chi2;
@@ -94,9 +96,9 @@ class Fitter {
   }
 
  private:
+  // Leaves in `ended_at_` what the model says of the whole runs where it ends, if that is known.
   Termination fit_window(double window) {
-    double damping = options_.initial_damping;
-    DampingScale scale(options_.keep_largest_scale);
+    ended_at_.reset();
     if (options_.max_start_chi2 < infinity) {
       const Request alone{false, window, options_.max_start_chi2};
       if (!(evaluate(model_, now_, alone).sums.chi2 <= options_.max_start_chi2)) {
@@ -104,6 +106,15 @@ class Fitter {
       }
     }
     Evaluation now = evaluate(model_, now_, {true, window});
+    const Termination termination = iterate(now, window);
+    if (window == 1.0 && termination != Termination::not_evaluable) ended_at_ = std::move(now);
+    return termination;
+  }
+
+  // From `now`, which stays the evaluation at the point reached.
+  Termination iterate(Evaluation& now, double window) {
+    double damping = options_.initial_damping;
+    DampingScale scale(options_.keep_largest_scale);
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       if (!std::isfinite(now.sums.chi2)) return Termination::not_evaluable;
       ++iterations_;
@@ -118,7 +129,7 @@ class Fitter {
       // Not "<": a perfect fit has nothing to gain and asks for nothing.
       if (!(predicted_gain >
             std::max(options_.min_gain, options_.min_gain_fraction * now.sums.chi2))) {
-        if (options_.polish) polish(step, predicted_gain, damping, window);
+        if (options_.polish) polish(step, predicted_gain, damping, window, now);
         return Termination::converged;
       }
       Eigen::VectorXd tried = model_.stepped(now_, step);
@@ -138,16 +149,17 @@ class Fitter {
   }
 
   // Takes a step untested, and others as long as each predicts to gain less than half of the last.
-  void polish(Eigen::VectorXd step, double gain, double damping, double window) {
+  void polish(Eigen::VectorXd step, double gain, double damping, double window, Evaluation& now) {
     for (int k = 0; k < options_.max_iterations; ++k) {
       const Eigen::VectorXd tried = model_.stepped(now_, step);
-      const Evaluation at = evaluate(model_, tried, {true, window});
+      Evaluation at = evaluate(model_, tried, {true, window});
       if (!std::isfinite(at.sums.chi2)) return;
       now_ = tried;
+      now = std::move(at);
       ++iterations_;
       const Eigen::VectorXd damped = Eigen::VectorXd::Ones(step.size());
-      step = step_within_bounds(at.sums, model_.parameters(now_), damped, damping);
-      const double next = step.dot(2.0 * at.sums.gradient - at.sums.matrix * step);
+      step = step_within_bounds(now.sums, model_.parameters(now_), damped, damping);
+      const double next = step.dot(2.0 * now.sums.gradient - now.sums.matrix * step);
       if (!(next < 0.5 * gain)) return;
       gain = next;
     }
@@ -156,6 +168,7 @@ class Fitter {
   const ForwardModel& model_;
   const Options& options_;
   Eigen::VectorXd now_;
+  std::optional<Evaluation> ended_at_;
   int iterations_ = 0;
 };
 
