@@ -1,5 +1,7 @@
 #include "attitude/estimation/hypothesis.h"
 
+#include <algorithm>
+
 namespace photorque {
 
 AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
@@ -12,6 +14,35 @@ AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
         runs[run].own[own++];
   }
   return result;
+}
+
+void suit_to_runs(Hypothesis& h, const std::vector<Observation>& runs) {
+  const bool in_pieces =
+      std::any_of(runs.begin(), runs.end(), [](const Observation& seen) { return seen.is_piece; });
+  const std::vector<Free> before = h.free;
+  bool changed = false;
+  for (Free& f : h.free) {
+    if (!f.per_recording) continue;
+    changed = changed || f.per_run == in_pieces;
+    f.per_run = !in_pieces;
+  }
+  if (!changed) return;
+  std::vector<std::vector<double>> own(h.runs.size());
+  size_t next = 0;  // among those that were per run
+  for (size_t i = 0; i < before.size(); ++i) {
+    const Free& f = h.free[i];
+    if (f.per_run) {
+      for (size_t r = 0; r < h.runs.size(); ++r) {
+        own[r].push_back(before[i].per_run ? h.runs[r].own[next] : h.value(f));
+      }
+    } else if (before[i].per_run) {
+      double sum = 0.0;
+      for (const RunStart& run : h.runs) sum += run.own[next];
+      h.value(f) = sum / static_cast<double>(h.runs.size());
+    }
+    if (before[i].per_run) ++next;
+  }
+  for (size_t r = 0; r < h.runs.size(); ++r) h.runs[r].own = std::move(own[r]);
 }
 
 namespace {

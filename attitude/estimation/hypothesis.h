@@ -19,6 +19,9 @@ struct Free {
   // The fit does not leave these.
   double lowest = -inference::infinity;
   double highest = inference::infinity;
+  // Every recording has its own value: every run does, but where runs are pieces that one recording
+  // was cut into for the search, which share it.
+  bool per_recording = false;
 };
 
 struct RunStart {
@@ -42,6 +45,10 @@ struct Hypothesis {
   // The model of one run: its schedule and its own parameters.
   AttitudeModel model_of(size_t run, const Observation& seen) const;
 };
+
+// Makes what is per recording of `h` per run, or shared by all where the runs are pieces; the
+// values go along. `h.runs` are the starts for `runs`, with what was per run until now.
+void suit_to_runs(Hypothesis& h, const std::vector<Observation>& runs);
 
 // A start of every run from what was seen at its beginning.
 PlatformState first_state(const AttitudeModel& model, const Observation& seen);

@@ -44,6 +44,7 @@ struct Observation {
   Schedule schedule;
   double initial_charge_C = 0.0;  // drawn before the first row
   bool has_gyro = false;
+  bool is_piece = false;  // of a recording that was cut for the search alone
   // Lab axes about which the attitude is read; none: there is no attitude.
   std::array<bool, 3> sees_axis = {true, true, true};
 

@@ -30,6 +30,7 @@ void read_errors(const Settings& settings, const DisturbanceContext& context,
     if (!settings.has(kind.screening.parametrisations.front().keys.front().key)) continue;
     errors.push_back(kind.read(settings, context));
     errors.back().kind = kind.name;
+    errors.back().per_recording = kind.screening.per_recording;
   }
 }
 

@@ -113,6 +113,7 @@ std::vector<Observation> AttitudeDomain::cut(const Runs& runs, size_t pieces) co
       const size_t first = i * seen.blocks() / pieces, last = (i + 1) * seen.blocks() / pieces;
       if (first == last) continue;
       Observation piece = seen.part(first, last);
+      piece.is_piece = true;
       if (piece.readings(0, piece.blocks()) >= limits().search.min_readings_of_piece) {
         result.push_back(std::move(piece));
       }

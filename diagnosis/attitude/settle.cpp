@@ -1,13 +1,14 @@
 #include "diagnosis/attitude/settle.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "attitude/estimation/noise.h"
 #include "attitude/noise/heavy_tails.h"
 #include "attitude/noise/search.h"
 #include "core/constants.h"
+#include "diagnosis/attitude/gyro_bias.h"
 #include "diagnosis/attitude/holdout.h"
+#include "diagnosis/attitude/sentences.h"
 
 namespace photorque {
 namespace {
@@ -15,13 +16,6 @@ namespace {
 constexpr const char* spoken[] = {"the camera about lab x", "the camera about lab y",
                                   "the camera about lab z", "the gyro about body x",
                                   "the gyro about body y",  "the gyro about body z"};
-
-template <typename... Values>
-std::string written(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
   const double unit = k < 3 ? arcsecond_rad : 1.0;
@@ -116,6 +110,7 @@ bool find_and_use_noise(const Fit& near, const Thresholds& limits, RecordedData&
 }  // namespace
 
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data) {
+  take_out_bias_drift(data);
   Fit fitted = fit_nominal(nominal, data.train, limits);
   // One that cannot be propagated along the recording says nothing of its readings.
   if (!std::isfinite(fitted.chi2)) return fitted;

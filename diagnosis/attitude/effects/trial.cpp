@@ -403,6 +403,7 @@ Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observa
   Trial result = trial;
   Hypothesis h = trial.fit.best;
   h.runs = starts;
+  suit_to_runs(h, runs);
   result.fit = fit(h, runs, settings);
   judge(result, all);
   return result;

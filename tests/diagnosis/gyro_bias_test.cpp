@@ -1,0 +1,131 @@
+// A gyro whose bias drifts, or is another after every switching on: no torque, and no other error
+// of an instrument, is named for it.
+#include <gtest/gtest.h>
+
+#include "attitude/estimation/nominal_model.h"
+#include "attitude/noise/bias_history.h"
+#include "tests/diagnosis/noisy_recording.h"
+
+namespace photorque {
+namespace {
+
+using namespace rigid_body;
+using BiasOverTime = std::function<Vec3(double)>;
+
+constexpr size_t gyro_x_channel = 4;
+
+NamedRecording with_bias(NamedRecording r, const BiasOverTime& bias_rad_s) {
+  for (size_t row = 0; row < r.recording.time_s.size(); ++row) {
+    const Vec3 bias = bias_rad_s(r.recording.time_s[row]);
+    for (size_t k = 0; k < 3; ++k) {
+      r.recording.channels[gyro_x_channel + k].values[row] += bias[static_cast<Eigen::Index>(k)];
+    }
+  }
+  return r;
+}
+
+// What an unknown torque does to the motion must not matter.
+Vec3 unknown_torque(const State& s) {
+  return 4e-6 * Vec3(std::sin(0.11 * s.time_s), std::cos(0.07 * s.time_s), 0.3);
+}
+
+Vec3 slow_drift_rad_s(double t_s) {
+  return 4e-4 *
+         Vec3(std::sin(2.0 * pi * t_s / 600.0), std::cos(2.0 * pi * t_s / 700.0), 1e-3 * t_s);
+}
+
+std::vector<BiasHistory> histories_of(const std::vector<NamedRecording>& recordings) {
+  std::vector<Observation> seen;
+  for (const NamedRecording& r : recordings) seen.push_back(observe(r.recording, r.name));
+  std::vector<const Observation*> pieces;
+  for (const Observation& s : seen) pieces.push_back(&s);
+  return bias_histories(pieces);
+}
+
+// The drift at its knots, in units of the stated errors; a mutant that states half of them fails.
+TEST(BiasHistory, FollowsADriftBesideAnyTorque) {
+  double square = 0.0, largest = 0.0;
+  int count = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    Session session;
+    session.duration_s = 360.0;
+    const auto found =
+        histories_of({with_bias(recorded_with(seed, session, unknown_torque), slow_drift_rad_s)});
+    ASSERT_EQ(found.size(), 1u) << seed;
+    const BiasHistory& history = found.front();
+    Vec3 mean = Vec3::Zero();
+    for (const double t_s : history.time_s) mean += slow_drift_rad_s(t_s);
+    mean /= static_cast<double>(history.time_s.size());
+    for (size_t i = 0; i < history.time_s.size(); ++i) {
+      const Vec3 off = history.bias_rad_s[i] - (slow_drift_rad_s(history.time_s[i]) - mean);
+      const Vec3 pull = off.cwiseQuotient(history.sigma_rad_s[i]);
+      square += pull.squaredNorm();
+      largest = std::max(largest, off.cwiseAbs().maxCoeff());
+      count += 3;
+    }
+  }
+  // Lines between knots a minute apart leave 4e-4 (2π 60/600)²/8 = 2e-5 of the curves.
+  EXPECT_LT(largest, 1.5e-4);
+  EXPECT_LT(std::sqrt(square / count), 1.5);
+  EXPECT_GT(std::sqrt(square / count), 0.6);
+}
+
+// Nor does anything that a constant bias goes with: loud or correlated noise, a camera whose clock
+// runs behind, gyro axes with a scale of their own.
+TEST(BiasHistory, IsSilentWhereNothingDrifts) {
+  int found = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    Session session;
+    session.duration_s = 360.0;
+    if (seed % 4 == 1) session.gyro.level = 3.0;
+    if (seed % 4 == 2) session.gyro.time_s = 2.0;
+    if (seed % 4 == 3) session.camera.time_s = 3.0;
+    NamedRecording r = with_bias(recorded_with(seed, session, unknown_torque),
+                                 [](double) { return Vec3(1e-3, -2e-3, 5e-4); });
+    for (size_t k = 0; k < 3; ++k) {
+      for (double& rate : r.recording.channels[gyro_x_channel + k].values) {
+        rate *= 1.0 + 0.004 * (static_cast<double>(k) - 1.0);
+      }
+    }
+    found += histories_of({r}).empty() ? 0 : 1;
+  }
+  EXPECT_EQ(found, 0);
+}
+
+NominalModel model_with_bias() {
+  NominalModel nominal = nominal_model();
+  const DisturbanceContext context{nominal.model.platform, nominal.model.environment};
+  Disturbance bias = make_disturbance_of("gyro_bias", {{"bias_rad_s", {0, 0, 0}}}, context);
+  for (Parameter& p : bias.parameters) p.sigma = 1e-3;
+  bias.per_recording = true;
+  nominal.model.disturbances.push_back(bias);
+  return nominal;
+}
+
+// Three standard deviations of what is stated lie between the two.
+TEST(GyroBias, IsAnotherAfterEverySwitchingOnWithoutANameForIt) {
+  Session session;
+  session.duration_s = 250.0;
+  const NamedRecording first = with_bias(recorded_with(1, session, nothing_more),
+                                         [](double) { return Vec3(1e-3, 0.0, -1e-3); }),
+                       second = with_bias(recorded_with(2, session, nothing_more),
+                                          [](double) { return Vec3(-1e-3, 1e-3, 2e-3); });
+  const Diagnosis d = diagnose(model_with_bias(), {first}, {second});
+  EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
+  EXPECT_LT(d.holdout->chi2_per_sample_after, 1.1);
+}
+
+TEST(GyroBias, ThatDriftsIsAFindingOfTheInstrument) {
+  Session session;
+  session.duration_s = 250.0;
+  const NamedRecording first = with_bias(recorded_with(1, session, nothing_more), slow_drift_rad_s),
+                       second =
+                           with_bias(recorded_with(2, session, nothing_more), slow_drift_rad_s);
+  const Diagnosis d = diagnose(model_with_bias(), {first}, {second});
+  EXPECT_EQ(d.verdict, Verdict::consistent) << d.sentence;
+  const auto is_drift = [](const InstrumentFinding& f) { return f.what == "bias_drift_rad_s"; };
+  EXPECT_EQ(std::count_if(d.instruments.begin(), d.instruments.end(), is_drift), 6);
+}
+
+}  // namespace
+}  // namespace photorque
