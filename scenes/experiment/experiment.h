@@ -76,7 +76,9 @@ struct ExperimentFile {
 
   // Of an optical run; empty when the file has no [scene].
   std::optional<std::filesystem::path> scene_file;
-  double metres_per_unit = 1.0;   // [scene] metres_per_unit: of lengths in the scene's file
+  double metres_per_unit = 1.0;  // [scene] metres_per_unit: of lengths in the scene's file
+  // [scene] centre_of_rotation_m: where the model has it, body axes
+  Vec3 centre_of_rotation_m = Vec3::Zero();
   bool textures = false;          // [scene] textures: base colours from the model's pictures
   bool may_leave_folder = false;  // [scene] allow_outside: of models that name files elsewhere
   Bands bands;

@@ -197,6 +197,7 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
     const Settings scene = settings.table("scene");
     file.scene_file = path.parent_path() / scene.text("file");
     file.metres_per_unit = scene.number_or("metres_per_unit", 1.0, Range::positive());
+    file.centre_of_rotation_m = scene.vector3_or("centre_of_rotation_m", Vec3::Zero());
     file.textures = scene.flag_or("textures", false);
     file.may_leave_folder = scene.flag_or("allow_outside", false);
     file.bands = read_bands(scene);

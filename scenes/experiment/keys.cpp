@@ -27,6 +27,9 @@ Key scene_table() {
                  "(x, −z, y)"),
        Key::number_or("metres_per_unit", 1.0, Range::positive(),
                       "scale of the file's lengths: 0.001 for a model in millimetres"),
+       Key::vector3_or("centre_of_rotation_m", Vec3::Zero(),
+                       "where the model has the centre of rotation, in body axes (z up): the model "
+                       "is moved so that this point is the origin"),
        Key::flag_or("textures", false,
                     "true: materials that are derived from drawing values take their base colour "
                     "from its picture (PNG, JPEG), as the mean over each triangle"),
