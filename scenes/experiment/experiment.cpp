@@ -205,6 +205,7 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
                                                  .origin_m = file.centre_of_rotation_m,
                                                  .may_leave_folder = file.may_leave_folder});
   require_triangles(model.scene, *file.scene_file);
+  turn_joints(model.scene, file.joints, file.joint_tables);
 
   std::vector<Beam> beams = make_beams(file, model);
   std::vector<NamedReceiver> receivers = make_receivers(file, model.scene);

@@ -18,6 +18,7 @@
 #include "raytrace/scene.h"
 #include "raytrace/tracing/tracer.h"
 #include "receivers/kind.h"
+#include "scenes/experiment/joints.h"
 #include "scenes/gltf/picture.h"
 
 namespace photorque {
@@ -85,6 +86,8 @@ struct ExperimentFile {
   std::vector<Settings> materials;  // [[material]], overrides by name
   std::vector<Settings> sources;
   std::vector<Settings> receivers;
+  std::vector<Settings> joint_tables;  // [[joint]]
+  std::vector<Joint> joints;
 
   Attitude attitude;
   TraceOptions trace;

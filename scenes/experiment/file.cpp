@@ -205,6 +205,8 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
   file.materials = settings.tables("material");
   file.sources = settings.tables("source");
   file.receivers = settings.tables("receiver");
+  file.joint_tables = settings.tables("joint");
+  file.joints = read_joints(file.joint_tables);
   file.attitude = read_attitude(settings);
   file.trace = read_trace_options(settings);
   file.effort = read_effort(settings);

@@ -65,6 +65,10 @@ Key receiver_table() {
                      "where light is measured");
 }
 
+Key joint_table() {
+  return Key::tables("joint", joint_keys(), "a part of the scene that turns about an axis");
+}
+
 Key attitude_table() {
   return Key::table(
       "attitude",
@@ -164,13 +168,10 @@ Key camera_table() {
 
 std::vector<Key> scene_tables() {
   const std::vector<std::string> optical = {"trace", "power", "torque-map", "render"};
-  return {scene_table().read_by(optical),
-          material_table().read_by(optical),
-          source_table().read_by(optical),
-          receiver_table().read_by(optical),
-          attitude_table().read_by(optical),
-          trace_table().read_by(optical),
-          torque_map_table().read_by({"torque-map"}),
+  return {scene_table().read_by(optical),    material_table().read_by(optical),
+          source_table().read_by(optical),   receiver_table().read_by(optical),
+          joint_table().read_by(optical),    attitude_table().read_by(optical),
+          trace_table().read_by(optical),    torque_map_table().read_by({"torque-map"}),
           camera_table().read_by({"render"})};
 }
 
