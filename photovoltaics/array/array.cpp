@@ -128,7 +128,7 @@ double sum_of(const std::vector<double>& values) {
 
 // What gets a standard error.
 struct Headline {
-  enum Item { power, voltage, current, light, entering, alone, efficiency, mismatch, count };
+  enum Item { power, voltage, current, light, entering, alone, efficiency, cells, mismatch, count };
   std::array<double, count> value{};
 };
 using Estimates = std::array<Estimate, Headline::count>;
@@ -143,7 +143,8 @@ Headline headline(const PreparedArray& array, const LightBins& bins) {
   }
   const double power_W = best.power_W();
   return {{power_W, best.voltage_V, best.current_A, light_W, sum_of(light.entering_W), alone_W,
-           light_W > 0 ? power_W / light_W : 0.0, alone_W > 0 ? 1.0 - power_W / alone_W : 0.0}};
+           light_W > 0 ? power_W / light_W : 0.0, light_W > 0 ? alone_W / light_W : 0.0,
+           alone_W > 0 ? 1.0 - power_W / alone_W : 0.0}};
 }
 
 // The mean of all replicates but one; noise may have made it negative.
@@ -268,6 +269,7 @@ ArrayResult evaluate_array(const ArrayDesign& design, const ArrayLight& light,
   result.entry_known = light.entry.bins > 0;
   result.sum_of_cells_W = estimates[Headline::alone];
   result.efficiency = estimates[Headline::efficiency];
+  result.efficiency_of_cells = estimates[Headline::cells];
   result.mismatch_loss = estimates[Headline::mismatch];
   result.cell_area_m2 = array.area_m2;
   if (design.places) result.cell_centre_m = design.places->centres;

@@ -23,10 +23,11 @@ struct ArrayResult {
   // The light on the cells, weighed by what their front lets in at its angle over what it lets in
   // at normal incidence.
   Estimate power_entering_W;
-  bool entry_known = false;  // false: all light counts as perpendicular, nothing is subtracted
-  Estimate sum_of_cells_W;   // every cell at its own maximum
-  Estimate efficiency;       // power_W / power_on_cells_W
-  Estimate mismatch_loss;    // 1 − power_W / sum_of_cells_W: uneven light, and diodes
+  bool entry_known = false;      // false: all light counts as perpendicular, nothing is subtracted
+  Estimate sum_of_cells_W;       // every cell at its own maximum
+  Estimate efficiency;           // power_W / power_on_cells_W
+  Estimate efficiency_of_cells;  // sum_of_cells_W / power_on_cells_W
+  Estimate mismatch_loss;        // 1 − power_W / sum_of_cells_W: uneven light, and diodes
   double area_of_cells_m2 = 0.0;
 
   std::vector<double> cell_light_W;  // per cell, cell = row · columns + column

@@ -61,7 +61,12 @@ std::vector<Key> cover_keys() {
                    "instead of these: angles of incidence, from 0, rising")
           .optional(),
       Key::numbers("transmittance", Range::fraction(), "T at each of them; only ratios count")
-          .optional()};
+          .optional(),
+      Key::flag_or(
+          "cosine_twice", false,
+          "instead of all these, T = cos θ: the light on the cells, which holds the cosine "
+          "already, counts with it once more; for the paper's figures "
+          "([paper.md](paper.md)), not for cells")};
 }
 
 std::vector<Key> wiring_keys() {

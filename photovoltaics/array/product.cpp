@@ -90,6 +90,7 @@ Product array_product(const ArrayResult& result) {
       {"area_of_cells_m2", {result.area_of_cells_m2, 0.0}},
       {"array_efficiency", result.efficiency},
       {"power_of_cells_alone_W", result.sum_of_cells_W},
+      {"efficiency_of_cells_alone", result.efficiency_of_cells},
       {"mismatch_loss", result.mismatch_loss},
       {"short_circuit_current_A", {result.curve.front().current_A, 0.0}},
       {"open_circuit_voltage_V", {result.curve.back().voltage_V, 0.0}},

@@ -72,6 +72,7 @@ double film_reflectance(double cosine, const FilmCoating& film, double index, do
 }
 
 double CellFront::transmitted(double cosine, double wavelength_m) const {
+  if (cosine_twice) return std::max(cosine, 0.0);
   if (!angle_rad.empty()) {
     return table_at(angle_rad, transmittance, std::acos(std::clamp(cosine, 0.0, 1.0)));
   }
@@ -81,6 +82,14 @@ double CellFront::transmitted(double cosine, double wavelength_m) const {
 
 CellFront read_cell_front(const Settings& cover) {
   CellFront front;
+  front.cosine_twice = cover.flag_or("cosine_twice", false);
+  if (front.cosine_twice) {
+    for (const char* key : {"refractive_index", "coating_index", "coating_thickness_m", "angle_rad",
+                            "transmittance"}) {
+      if (cover.has(key)) throw cover.error(key, "a front beside cosine_twice", "one of the two");
+    }
+    return front;
+  }
   if (cover.has("angle_rad")) {
     read_front_table(cover, front);
     return front;

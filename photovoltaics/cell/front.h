@@ -26,6 +26,9 @@ struct CellFront {
   // In place of both: T by angle, straight in between and down to zero at 90 deg.
   std::vector<double> angle_rad;      // ascending from 0
   std::vector<double> transmittance;  // as many, in [0, 1], first > 0
+  // In place of all these: T = cos θ. The light on a cell holds the cosine already; with this it
+  // counts twice, as in equation 29 of the paper.
+  bool cosine_twice = false;
 
   // T at a cosine in [0, 1] of the angle of incidence; the wavelength counts for a coating alone.
   double transmitted(double cosine, double wavelength_m) const;
@@ -46,6 +49,7 @@ double film_reflectance(double cosine, const FilmCoating& film, double index, do
 //   coating_thickness_m = 132e-9       (or _nm)
 //   angle_deg = [0, …]                 instead of all these, a table
 //   transmittance = [1, …]             in any scale: only ratios count
+//   cosine_twice = true                instead of all these
 CellFront read_cell_front(const Settings& cover);
 
 }  // namespace photorque

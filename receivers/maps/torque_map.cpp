@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/constants.h"
 #include "receivers/kind.h"
 #include "receivers/maps/grid_map.h"
 #include "receivers/settings.h"
@@ -11,13 +12,23 @@ namespace {
 
 constexpr size_t axes = 3;
 
+Vec3 force_as_published_N(const Hits& hits, size_t hit) {
+  double power_W = 0.0;
+  for (size_t band = 0; band < static_cast<size_t>(hits.bands); ++band) {
+    power_W += hits.incident_W[band][hit];
+  }
+  const auto along = [&](size_t axis) { return static_cast<double>(hits.direction[axis][hit]); };
+  return power_W * hits.cosine[hit] / speed_of_light_m_s * Vec3(along(0), along(1), along(2));
+}
+
 }  // namespace
 
 TorqueMapReceiver::TorqueMapReceiver(std::string name, const Scene& scene, SurfaceGrid grid,
-                                     const Vec3& about_body_m)
+                                     const Vec3& about_body_m, Force force)
     : name_(std::move(name)),
       grid_(std::move(grid)),
       about_body_m_(about_body_m),
+      force_(force),
       binner_(scene, grid_) {}
 
 size_t TorqueMapReceiver::bins() const {
@@ -25,12 +36,16 @@ size_t TorqueMapReceiver::bins() const {
 }
 
 void TorqueMapReceiver::score(const Hits& hits, std::span<double> sums) const {
+  const bool as_published = force_ == Force::as_published;
+  if (as_published && hits.depth[0] > 0) return;
   BinnedHits binned;
   binner_.bin(hits, binned);
   const Vec3 about_m = about_body_m_;
   const size_t offset = hits.depth[0] == 0 ? 0 : direct_entries();
   for_each_binned(binned, [&](size_t hit, size_t index) {
-    const Vec3 f(hits.force_N[0][hit], hits.force_N[1][hit], hits.force_N[2][hit]);
+    const Vec3 f = as_published
+                       ? force_as_published_N(hits, hit)
+                       : Vec3(hits.force_N[0][hit], hits.force_N[1][hit], hits.force_N[2][hit]);
     const Vec3 r(hits.position_m[0][hit], hits.position_m[1][hit], hits.position_m[2][hit]);
     const Vec3 torque = (r - about_m).cross(f);
     double* bin = sums.data() + offset + index * axes;
@@ -84,13 +99,26 @@ ReceiverKind torque_map_kind() {
   return {"torque_map", "Torque of light per bin of a surface",
           [](const Settings& settings, const Scene& scene) -> MadeReceiver {
             const ReceiverTarget target = read_target(settings, scene);
+            constexpr TorqueMapReceiver::Force forces[] = {TorqueMapReceiver::Force::momentum,
+                                                           TorqueMapReceiver::Force::as_published};
             // Light pushes on either side, so that the total is the torque on the node.
             const auto map = std::make_shared<const TorqueMapReceiver>(
                 target.name, scene, read_surface_grid(settings, scene, target, Side::both),
-                settings.vector3_or("about_m", Vec3::Zero()));
+                settings.vector3_or("about_m", Vec3::Zero()),
+                forces[settings.choice_or("force", {"momentum", "as_published"}, 0)]);
             return {.receiver = map, .torque_map = map};
           },
-          joined({target_keys(), surface_grid_keys(Side::both), {torque_point_key()}})};
+          joined({target_keys(),
+                  surface_grid_keys(Side::both),
+                  {torque_point_key(),
+                   Key::choice_or(
+                       "force",
+                       {{"momentum", "momentum in minus momentum out"},
+                        {"as_published",
+                         "equation 29 of the paper as it stands: all light absorbed, and the "
+                         "cosine, which the irradiance on a surface holds already, taken once more "
+                         "([paper.md](paper.md))"}},
+                       0, "what light does to an element")}})};
 }
 
 }  // namespace photorque

@@ -25,9 +25,15 @@ struct TorqueMap {
 // before.
 class TorqueMapReceiver final : public Receiver {
  public:
+  // What the light on an element does to it. `momentum`: momentum in minus momentum out.
+  // `as_published`: equation 29 of the paper ray by ray, power/c |d·n| d with the ray's travel d:
+  // the cosine, which the power on a surface holds already, counts once more, all light is
+  // absorbed, and what bounced before counts for nothing. Never gathered.
+  enum class Force { momentum, as_published };
+
   // `grid` must have been laid over `scene`.
   TorqueMapReceiver(std::string name, const Scene& scene, SurfaceGrid grid,
-                    const Vec3& about_body_m = Vec3::Zero());
+                    const Vec3& about_body_m = Vec3::Zero(), Force force = Force::momentum);
 
   size_t bins() const override;
   // Hits that are scored together must be of one depth.
@@ -43,11 +49,13 @@ class TorqueMapReceiver final : public Receiver {
   const std::string& name() const { return name_; }
   const SurfaceGrid& grid() const { return grid_; }
   const Vec3& about_body_m() const { return about_body_m_; }
+  Force force() const { return force_; }
 
  private:
   std::string name_;
   SurfaceGrid grid_;
   Vec3 about_body_m_;
+  Force force_;
   HitBinner binner_;
 };
 

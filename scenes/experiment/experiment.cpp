@@ -72,6 +72,7 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   for (const Settings& written : file.sources) {
     if (written.has("light") && !lights) {
       lights = read_gltf_lights(*file.scene_file, file.metres_per_unit, file.may_leave_folder);
+      for (GltfLight& light : *lights) light.position_m -= file.centre_of_rotation_m;
     }
     const bool at_light = written.has("light");
     const Settings source = at_light ? source_at_light(written, *lights) : written;
@@ -201,8 +202,10 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
                                                  .material_file = files_beside(file.path),
                                                  .picture = file.textures ? picture : nullptr,
                                                  .metres_per_unit = file.metres_per_unit,
+                                                 .origin_m = file.centre_of_rotation_m,
                                                  .may_leave_folder = file.may_leave_folder});
   require_triangles(model.scene, *file.scene_file);
+  turn_joints(model.scene, file.joints, file.joint_tables);
 
   std::vector<Beam> beams = make_beams(file, model);
   std::vector<NamedReceiver> receivers = make_receivers(file, model.scene);

@@ -18,6 +18,7 @@
 #include "raytrace/scene.h"
 #include "raytrace/tracing/tracer.h"
 #include "receivers/kind.h"
+#include "scenes/experiment/joints.h"
 #include "scenes/gltf/picture.h"
 
 namespace photorque {
@@ -76,13 +77,17 @@ struct ExperimentFile {
 
   // Of an optical run; empty when the file has no [scene].
   std::optional<std::filesystem::path> scene_file;
-  double metres_per_unit = 1.0;   // [scene] metres_per_unit: of lengths in the scene's file
+  double metres_per_unit = 1.0;  // [scene] metres_per_unit: of lengths in the scene's file
+  // [scene] centre_of_rotation_m: where the model has it, body axes
+  Vec3 centre_of_rotation_m = Vec3::Zero();
   bool textures = false;          // [scene] textures: base colours from the model's pictures
   bool may_leave_folder = false;  // [scene] allow_outside: of models that name files elsewhere
   Bands bands;
   std::vector<Settings> materials;  // [[material]], overrides by name
   std::vector<Settings> sources;
   std::vector<Settings> receivers;
+  std::vector<Settings> joint_tables;  // [[joint]]
+  std::vector<Joint> joints;
 
   Attitude attitude;
   TraceOptions trace;

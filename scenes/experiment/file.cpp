@@ -197,6 +197,7 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
     const Settings scene = settings.table("scene");
     file.scene_file = path.parent_path() / scene.text("file");
     file.metres_per_unit = scene.number_or("metres_per_unit", 1.0, Range::positive());
+    file.centre_of_rotation_m = scene.vector3_or("centre_of_rotation_m", Vec3::Zero());
     file.textures = scene.flag_or("textures", false);
     file.may_leave_folder = scene.flag_or("allow_outside", false);
     file.bands = read_bands(scene);
@@ -204,6 +205,8 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
   file.materials = settings.tables("material");
   file.sources = settings.tables("source");
   file.receivers = settings.tables("receiver");
+  file.joint_tables = settings.tables("joint");
+  file.joints = read_joints(file.joint_tables);
   file.attitude = read_attitude(settings);
   file.trace = read_trace_options(settings);
   file.effort = read_effort(settings);

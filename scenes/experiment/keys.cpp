@@ -27,6 +27,9 @@ Key scene_table() {
                  "(x, −z, y)"),
        Key::number_or("metres_per_unit", 1.0, Range::positive(),
                       "scale of the file's lengths: 0.001 for a model in millimetres"),
+       Key::vector3_or("centre_of_rotation_m", Vec3::Zero(),
+                       "where the model has the centre of rotation, in body axes (z up): the model "
+                       "is moved so that this point is the origin"),
        Key::flag_or("textures", false,
                     "true: materials that are derived from drawing values take their base colour "
                     "from its picture (PNG, JPEG), as the mean over each triangle"),
@@ -60,6 +63,10 @@ Key receiver_table() {
   return Key::tables("receiver",
                      {Key::choice_or("kind", choices_of(kinds), flux_map, "what is measured")},
                      "where light is measured");
+}
+
+Key joint_table() {
+  return Key::tables("joint", joint_keys(), "a part of the scene that turns about an axis");
 }
 
 Key attitude_table() {
@@ -161,13 +168,10 @@ Key camera_table() {
 
 std::vector<Key> scene_tables() {
   const std::vector<std::string> optical = {"trace", "power", "torque-map", "render"};
-  return {scene_table().read_by(optical),
-          material_table().read_by(optical),
-          source_table().read_by(optical),
-          receiver_table().read_by(optical),
-          attitude_table().read_by(optical),
-          trace_table().read_by(optical),
-          torque_map_table().read_by({"torque-map"}),
+  return {scene_table().read_by(optical),    material_table().read_by(optical),
+          source_table().read_by(optical),   receiver_table().read_by(optical),
+          joint_table().read_by(optical),    attitude_table().read_by(optical),
+          trace_table().read_by(optical),    torque_map_table().read_by({"torque-map"}),
           camera_table().read_by({"render"})};
 }
 

@@ -118,6 +118,7 @@ class Assembly {
   void add_instance(const Placement& placement, uint32_t mesh, int material) {
     Instance instance;
     instance.body_from_mesh = body_from_world(options_.metres_per_unit) * placement.world_from_mesh;
+    instance.body_from_mesh.pretranslate(-options_.origin_m);
     const double reach_m = instance.body_from_mesh.linear().norm() * radii_[mesh] +
                            instance.body_from_mesh.translation().norm();
     if (!(reach_m <= largest_extent_m)) {

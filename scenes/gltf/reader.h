@@ -44,6 +44,8 @@ struct GltfOptions {
   PictureReader picture = {};
   // Length of one unit of the file [m]; CAD exports often count millimetres: 1e-3.
   double metres_per_unit = 1.0;
+  // The point of the model that becomes the origin of the body frame, in body axes.
+  Vec3 origin_m = Vec3::Zero();
   // Links and paths out of the model's folder are followed.
   bool may_leave_folder = false;
   // Most memory that the files, and what is made of them, may take.

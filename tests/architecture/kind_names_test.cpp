@@ -35,7 +35,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     // Light in the run is this kind; what says the same by other means is refused, and the orbit
     // learns where the Sun is.
     {"attitude/disturbances/fields/light_pressure.cpp", {"radiation_pressure"}},
-    {"tools/coupling/couple.cpp", {"orbit", "power_balance", "radiation_pressure"}},
+    {"tools/coupling/couple.cpp", {"orbit", "planet_light", "power_balance", "radiation_pressure"}},
     // The trade compares ways by the disturbances that they are.
     {"tools/supply/onboard.cpp", {"battery_discharge", "tether"}},
     // A field of truth.json.

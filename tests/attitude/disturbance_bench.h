@@ -1,6 +1,10 @@
 // A platform with chosen disturbances, and what acts on it.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +12,7 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/model/dynamics.h"
 #include "attitude/propagation/propagator.h"
+#include "core/files.h"
 #include "tests/attitude/settings_bench.h"
 
 namespace photorque {
@@ -67,6 +72,31 @@ inline PlatformState propagated(const AttitudeModel& model, const PlatformState&
   PropagationOptions options;
   options.tolerance = tolerance;
   return propagate(dynamics, start, times_s, options).states.back();
+}
+
+// A torque linear in the direction of light (body axes), and a table of it over the sphere, written
+// to a file: its path.
+inline Vec3 sphere_table_torque_N_m(const Vec3& light_body) {
+  Mat3 of_direction;
+  of_direction << 1e-6, 2e-6, -1e-6, 0.5e-6, -3e-6, 2e-6, 4e-6, 1e-6, 0.2e-6;
+  return of_direction * light_body;
+}
+inline std::string sphere_table() {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "sphere_light.csv";
+  std::ostringstream file;
+  file.precision(17);
+  file << "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
+  for (int azimuth = -180; azimuth <= 180; azimuth += 5) {
+    for (int elevation = -90; elevation <= 90; elevation += 5) {
+      const double a = azimuth * degree_rad, e = elevation * degree_rad;
+      const Vec3 torque = sphere_table_torque_N_m(
+          {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)});
+      file << azimuth << ',' << elevation << ',' << torque.x() << ',' << torque.y() << ','
+           << torque.z() << '\n';
+    }
+  }
+  write_file_whole(path, file.str());  // other processes may be reading it
+  return path;
 }
 
 }  // namespace photorque

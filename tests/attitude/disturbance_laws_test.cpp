@@ -37,7 +37,7 @@ std::string light_table() {
 
 // One example of each kind, with values large enough to matter in double precision.
 std::map<std::string, Entries> examples() {
-  const std::string light = light_table();
+  const std::string light = light_table(), sphere = sphere_table();
   return {
       {"static_unbalance", {{"offset_m", numbers({2e-5, -1e-5, -3e-5})}}},
       {"mass_shift", {{"time_s", node(5)}, {"offset_m", numbers({1e-5, 2e-5, 1e-6})}}},
@@ -56,6 +56,8 @@ std::map<std::string, Entries> examples() {
       {"helmholtz_cage", {{"gain_error", node(0.1)}}},
       {"eddy_damping", {{"coefficient_N_m_s_per_T2", node(40)}}},
       {"radiation_pressure", {{"table", node(light.c_str())}}},
+      {"planet_light",
+       {{"table", node(sphere.c_str())}, {"sun_direction", numbers({1, 0.3, 0.2})}}},
       {"gravity_gradient", {}},
       {"earth_rotation", {}},
       {"wheel_momentum", {{"inertia_kg_m2", numbers({1e-4, 2e-4, 3e-4})}}},
@@ -285,6 +287,7 @@ std::vector<std::string> kinds_without_heading() {
       {"tether", "pulls to zero attitude"},
       {"wheel_control", "turns to a target attitude"},
       {"gravity_tilt", "is about lab axes"},
+      {"planet_light", "is in inertial axes"},
       {"orbit", "is in inertial axes"}};
   std::vector<std::string> names;
   for (const std::string& name : kind_names()) {

@@ -72,6 +72,34 @@ TEST(HelmholtzCage, PlaysAFile) {
   std::filesystem::remove(path);
 }
 
+// A table over the sphere that is linear in the light's direction: then the planet's parts act as
+// their sum, which for an evenly glowing planet is M (R/r)² straight up from it, whatever the
+// attitude.
+TEST(PlanetLight, AnEvenlyGlowingPlanetActsAsOneLightFromBelow) {
+  const std::string path = sphere_table();
+  const AttitudeModel in_orbit =
+      with(bench_model(), "orbit", {{"altitude_m", node(550e3)}, {"inclination_deg", node(97.6)}});
+  const auto planet = [&](const char* changed, double value) {
+    return with(in_orbit, "planet_light",
+                {{"table", node(path.c_str())},
+                 {"sun_direction", numbers({0.3, 0.9, 0.2})},
+                 {"zonal", flag(false)},
+                 {"albedo", node(0.0)},
+                 {changed, node(value)}});
+  };
+  const double ratio = 6371.2 / (6371.2 + 550.0);
+  const Quat attitude = turned(0.8, {1, -2, 0.5});
+  const CircularOrbit orbit{.radius_m = 6921.2e3, .inclination_rad = 97.6 * degree_rad};
+  const Vec3 towards = attitude.conjugate() * -orbit.up(900.0);
+  const Vec3 expected = 0.68 / 4.0 * ratio * ratio * (sphere_table_torque_N_m(towards));
+  const PlatformState state = state_of(in_orbit, attitude, Vec3::Zero(), 900.0);
+  const Vec3 found = torque_body_N_m(planet("scale", 1.0), state);
+  EXPECT_LT((found - expected).norm(), 1e-4 * expected.norm());
+  // Twice the table's light is half the torque.
+  const Vec3 half = torque_body_N_m(planet("table_irradiance_W_m2", 2722.0), state);
+  EXPECT_LT((half - 0.5 * found).norm(), 1e-12 * found.norm());
+}
+
 // Basilisk's gravity-gradient test case (reference values recomputed from its orbit and attitude).
 TEST(GravityGradient, AgreesWithBasilisk) {
   AttitudeModel model;

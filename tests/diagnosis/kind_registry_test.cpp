@@ -20,12 +20,13 @@ namespace {
 using Names = std::set<std::string>;
 
 // What a recording of motion cannot reveal, or nobody can forget: see the reasons in their files.
-const Names not_screened = {"empirical_torque", "helmholtz_cage",     "orbit",
-                            "power_balance",    "radiation_pressure", "stepper_quantization",
-                            "wheel_control"};
-// Instruments exert no torque; an orbit is where others do.
+const Names not_screened = {"empirical_torque",     "helmholtz_cage", "orbit",
+                            "planet_light",         "power_balance",  "radiation_pressure",
+                            "stepper_quantization", "wheel_control"};
+// Instruments exert no torque; an orbit is where others do, in which alone a planet shines.
 const Names not_ranked = {"attitude_latency",  "camera_misalignment", "gyro_bias",
-                          "gyro_misalignment", "gyro_scale",          "orbit"};
+                          "gyro_misalignment", "gyro_scale",          "orbit",
+                          "planet_light"};
 
 Names all_names() {
   Names names;

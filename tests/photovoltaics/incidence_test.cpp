@@ -32,6 +32,15 @@ TEST(CellFront, ReflectsWhatTheTextbookSays) {
   EXPECT_EQ(front.transmitted(0.0, any_m), 0.0);
 }
 
+// What the paper's equation 29 does: T = cos θ.
+TEST(CellFront, CosineTwiceIsTheCosine) {
+  CellFront front;
+  front.cosine_twice = true;
+  EXPECT_DOUBLE_EQ(front.modifier(std::cos(pi / 6.0), any_m), std::cos(pi / 6.0));
+  EXPECT_EQ(front.modifier(1.0, any_m), 1.0);
+  EXPECT_EQ(front.transmitted(0.0, any_m), 0.0);
+}
+
 // A film of a quarter wave reflects ((n − f²)/(n + f²))² of perpendicular light, one of half a wave
 // is as if it were not there (Born and Wolf, section 1.6.4).
 TEST(CellFront, QuarterWaveAndHalfWaveFilmsAreTheirClosedForms) {
@@ -229,6 +238,10 @@ TEST(CellFront, WrongCoversNameTheirKey) {
                                     {"transmittance", node_of(Numbers{1.0, 0.9})},
                                     {"refractive_index", node_of(1.5)}}))
                 .find("a table by angle too"),
+            std::string::npos);
+  EXPECT_NE(message(cover_settings({{"cosine_twice", SettingsNode{true, {}}},
+                                    {"refractive_index", node_of(1.5)}}))
+                .find("a front beside cosine_twice"),
             std::string::npos);
 }
 

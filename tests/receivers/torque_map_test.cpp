@@ -1,7 +1,9 @@
 #include "receivers/maps/torque_map.h"
 
+#include "raytrace/tracing/tracer.h"
 #include "receiver_scenes.h"
 #include "receivers/wrench/wrench.h"
+#include "tests/receivers/gather_lamps.h"
 
 namespace photorque {
 namespace {
@@ -37,6 +39,44 @@ std::vector<HitMaker> even_light(int n, double z) {
     }
   }
   return hits;
+}
+
+// Equation 29 of the paper, with the cosine that the power on the plate holds already: in parallel
+// light a black plate feels cos θ of what momentum says, and a mirror the same as a black one.
+TEST(TorqueMap, AsPublishedTakesTheCosineOnceMoreAndAbsorbsAll) {
+  for (const double tilt_deg : {0.0, 30.0, 55.0}) {
+    for (const double mirrored : {0.0, 0.4}) {
+      Scene scene = scene_of(plate(-0.4, 0.3, -0.2, 0.5, 0.1));
+      scene.surfaces = {grey_surface("s", mirrored, 0.0)};
+      SurfaceGridOptions options;
+      options.side = Side::both;
+      const SurfaceGrid grid = make_surface_grid(scene, plate_instance, options);
+      using Force = TorqueMapReceiver::Force;
+      const TorqueMapReceiver own("own", scene, grid, Vec3::Zero(), Force::momentum);
+      const TorqueMapReceiver printed("printed", scene, grid, Vec3::Zero(), Force::as_published);
+      const Beam sun = testing::source("sun", {{"irradiance_W_m2", testing::number(1000)},
+                                               {"angular_radius_deg", testing::number(0.0)}});
+      const TraceableScene traceable(scene);
+      const Receiver* const receivers[] = {&own, &printed};
+      const RigidTransform attitude = lab_from_body_at(tilt_deg * degree_rad, 0.3);
+      TraceOptions few;
+      few.rays = 1 << 14;
+      const TraceResult traced = trace(traceable, attitude, std::span(&sun, 1), receivers, few);
+      const TorqueMap expected = own.torque_map(traced.sums[0]);
+      const TorqueMap found = printed.torque_map(traced.sums[1]);
+      // A mirror turns d into d − 2 (d·n) n: of the torque of light absorbed it leaves the part
+      // 1 − s across and 1 + s along the normal; the part along the plate is about z.
+      const double scale_N_m = 1000.0 * 0.49 * 0.3 / speed_of_light_m_s;
+      const double cosine = std::cos(tilt_deg * degree_rad);
+      const double z_N_m = expected.total_N_m[2].value / (1.0 - mirrored);
+      EXPECT_NEAR(found.total_N_m[2].value, cosine * z_N_m, 1e-6 * scale_N_m);
+      if (mirrored > 0.0) continue;
+      for (size_t axis = 0; axis < 2; ++axis) {
+        const double whole_N_m = expected.total_N_m[axis].value;
+        EXPECT_NEAR(found.total_N_m[axis].value, cosine * whole_N_m, 1e-6 * scale_N_m);
+      }
+    }
+  }
 }
 
 TEST(TorqueMap, EvenLightOnAPlateAboveThePivot) {

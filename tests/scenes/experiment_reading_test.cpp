@@ -43,6 +43,24 @@ TEST(Experiment, StasisIsReadAsWritten) {
   EXPECT_EQ(experiment.file.trace.rays, 12845056u);
 }
 
+// A model whose origin is elsewhere: every vertex moves by the same, lamps stay where they are.
+TEST(Experiment, CentreOfRotationBecomesTheOrigin) {
+  const Experiment as_drawn = read_experiment(scenes / "stasis/nominal.toml");
+  const std::vector<std::string> overrides = {"scene.centre_of_rotation_mm=[3, -2, 12.5]"};
+  const Experiment moved = read_experiment(scenes / "stasis/nominal.toml", overrides);
+  ASSERT_EQ(moved.scene.instances.size(), as_drawn.scene.instances.size());
+  for (size_t i = 0; i < moved.scene.instances.size(); ++i) {
+    const auto corner = [&](const Scene& scene) {
+      const Instance& of = scene.instances[i];
+      return Vec3(of.body_from_mesh * scene.meshes[of.mesh].vertices_m.back());
+    };
+    const Vec3 by_m = corner(moved.scene) - corner(as_drawn.scene);
+    EXPECT_NEAR((by_m - Vec3(-0.003, 0.002, -0.0125)).norm(), 0.0, 1e-15);
+  }
+  EXPECT_EQ(moved.beams[7].lab_from_emitter.translation_m,
+            as_drawn.beams[7].lab_from_emitter.translation_m);
+}
+
 TEST(Experiment, EveryCommittedOneIsRead) {
   int found = 0;
   for (const auto& folder : std::filesystem::directory_iterator(scenes)) {

@@ -1,4 +1,5 @@
 // `propagate` with light: against closed forms of a plate in sunlight, and tables against tracing.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -175,6 +176,53 @@ TEST_F(CoupledCommand, TorqueOfAPlateInSlantingSunlight) {
   auto attitude = table("o/time_history.csv");
   EXPECT_GT(power.at("light_on_cells_W").size(), 30u);
   EXPECT_LE(summary("o").at("energy_closure").at("value").get<double>(), 1e-9);
+}
+
+// The same plate on a joint about body y through its middle: r × F with the cosine of the turned
+// plate, which follows the Sun, or a schedule that the light was traced for at some angles only.
+TEST_F(CoupledCommand, APlateOnAJointTakesTheLightOfItsAngle) {
+  const std::string joint =
+      "[[joint]]\nnode = \"plate\"\naxis = [0, 1, 0]\npoint_m = [0, 0, 0.1]\n";
+  const std::string follows = joint + "towards_sun = [0, 0, 1]\n";
+  const std::string scheduled = joint +
+                                "positions = 7\n[[joint.at]]\ntime_s = 0\nangle_deg = -30\n"
+                                "[[joint.at]]\ntime_s = 30\nangle_deg = 30\n";
+  for (const bool follow : {true, false}) {
+    // Within these tilts no angle of the schedule turns the plate edge-on.
+    const Outcome got =
+        run("propagate " + experiment(sun, follow ? follows : scheduled) +
+            " --set platform.tilt_limit_deg=8 --set light.tolerance=4e-3 --out " + at("o"));
+    ASSERT_EQ(got.status, 0) << got.err;
+    auto history = table("o/time_history.csv");
+    double largest = 0.0, worst = 0.0;
+    for (size_t i = 0; i < history.at("t_s").size(); ++i) {
+      const Quat q(history.at("q_w")[i], history.at("q_x")[i], history.at("q_y")[i],
+                   history.at("q_z")[i]);
+      const Vec3 light = q.conjugate() * Vec3(0.6, 0, -0.8);
+      const double angle = (-30.0 + 2.0 * std::min(30.0, history.at("t_s")[i])) * degree_rad;
+      const double cosine = follow ? std::hypot(light.x(), light.z())
+                                   : -Vec3(std::sin(angle), 0, std::cos(angle)).dot(light);
+      const Vec3 force = 1000.0 * edge_m * edge_m * cosine / speed_of_light_m_s * light;
+      const Vec3 torque = Vec3(0, 0, height_m).cross(force);
+      largest = std::max(largest, torque.norm());
+      worst = std::max(worst,
+                       (row_of(history, "torque_radiation_pressure", i, "_N_m") - torque).norm());
+    }
+    EXPECT_GT(largest, 2e-8);
+    EXPECT_LE(worst, 0.012 * largest) << (follow ? "follows" : "scheduled");
+    EXPECT_LE(summary("o").at("energy_closure").at("value").get<double>(), 1e-9);
+    // No more than all light that a plate square to the Sun takes; when it follows, the cosine of
+    // 0.6 across the joint, turned by the yaw, and of a few degrees of tilt.
+    const auto cells = table("o/power.csv").at("light_on_cells_W");
+    const double most_W = 1000.0 * edge_m * edge_m;
+    EXPECT_LE(std::ranges::max(cells), 1.002 * most_W);
+    const double least_W = follow ? 0.74 * most_W : 0.0;
+    EXPECT_GT(std::ranges::min(cells), least_W);
+  }
+  const Outcome two =
+      run("propagate " + experiment(sun, follows + follows) + " --out " + at("two"));
+  EXPECT_EQ(two.status, 2);
+  EXPECT_EQ(std::count(two.err.begin(), two.err.end(), '\n'), 1) << two.err;
 }
 
 // A table that forgot the yaw would give the same body torque after a quarter turn.

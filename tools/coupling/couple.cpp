@@ -94,33 +94,57 @@ std::optional<PowerSupply> supply_of(const ExperimentFile& file, const LightMode
 
 }  // namespace
 
-std::vector<std::string> orbit_overrides(const ExperimentFile& file) {
-  if (!has_light(file)) return {};
+namespace {
+
+std::string vector_override(size_t disturbance, const Vec3& v) {
+  char text[160];
+  std::snprintf(text, sizeof text, "disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]",
+                disturbance, v.x(), v.y(), v.z());
+  return text;
+}
+
+std::optional<Vec3> direction_of_sun_source(const ExperimentFile& file) {
   std::optional<Vec3> to_sun;
+  if (!has_light(file)) return to_sun;
   for (const Settings& source : file.sources) {
     if (source.text_or("kind", "") == "sun" && source.has("direction")) {
       to_sun = -source.vector3("direction").normalized();
     }
   }
-  if (!to_sun) return {};
+  return to_sun;
+}
+
+}  // namespace
+
+std::vector<std::string> orbit_overrides(const ExperimentFile& file) {
+  std::optional<Vec3> to_sun = direction_of_sun_source(file);
   const std::vector<Settings> disturbances = file.others("disturbance");
   std::vector<std::string> overrides;
+  bool in_orbit = false;
   for (size_t i = 0; i < disturbances.size(); ++i) {
     const Settings& orbit = disturbances[i];
     if (orbit.text_or("kind", "") != "orbit") continue;
-    if (orbit.has("sun_direction")) {
-      const Vec3 named = orbit.vector3("sun_direction").normalized();
-      constexpr double alike_rad = 0.1 * degree_rad;
-      if (std::atan2(named.cross(*to_sun).norm(), named.dot(*to_sun)) > alike_rad) {
-        throw orbit.error("sun_direction", "a direction away from that of [[source]] \"sun\"",
-                          "the opposite of its `direction`, or nothing");
-      }
+    in_orbit = true;
+    if (!orbit.has("sun_direction")) {
+      if (to_sun) overrides.push_back(vector_override(i, *to_sun));
       continue;
     }
-    char text[160];
-    std::snprintf(text, sizeof text, "disturbance[%zu].sun_direction=[%.17g,%.17g,%.17g]", i,
-                  to_sun->x(), to_sun->y(), to_sun->z());
-    overrides.emplace_back(text);
+    const Vec3 named = orbit.vector3("sun_direction").normalized();
+    constexpr double alike_rad = 0.1 * degree_rad;
+    if (to_sun && std::atan2(named.cross(*to_sun).norm(), named.dot(*to_sun)) > alike_rad) {
+      throw orbit.error("sun_direction", "a direction away from that of [[source]] \"sun\"",
+                        "the opposite of its `direction`, or nothing");
+    }
+    to_sun = named;
+  }
+  for (size_t i = 0; i < disturbances.size(); ++i) {
+    const Settings& planet = disturbances[i];
+    if (planet.text_or("kind", "") != "planet_light") continue;
+    if (!in_orbit) {
+      throw planet.error("kind", "\"planet_light\" of a platform on the ground",
+                         "a disturbance \"orbit\" beside it");
+    }
+    if (!planet.has("sun_direction") && to_sun) overrides.push_back(vector_override(i, *to_sun));
   }
   return overrides;
 }
@@ -130,10 +154,12 @@ namespace {
 std::vector<LampGroup> lamp_groups(const std::vector<GroupOutput>& outputs) {
   std::vector<LampGroup> groups;
   for (const GroupOutput& one : outputs) {
-    const auto output = one.output;
+    std::vector<double> switches_s = one.output->switches_s();
+    switches_s.insert(switches_s.end(), one.corners_s.begin(), one.corners_s.end());
+    std::ranges::sort(switches_s);
     groups.push_back({.first_channel = one.group.first,
-                      .output = [output](double time_s) { return output->at(time_s); },
-                      .switches_s = output->switches_s(),
+                      .output = [one](double time_s) { return one.at(time_s); },
+                      .switches_s = std::move(switches_s),
                       .in_orbit = one.group.is_sun});
   }
   return groups;

@@ -33,6 +33,10 @@ std::vector<GroupOutput> group_outputs(const LightModel& light, const LightSetti
     // The Sun does not warm up.
     outputs.push_back({group, std::make_shared<const LampOutput>(group.is_sun ? LampDroop{} : droop,
                                                                  schedule, start_s)});
+    outputs.back().corners_s = light.corners_s();
+    if (!outputs.back().corners_s.empty()) {
+      outputs.back().share = [&light, group](double time_s) { return light.share(group, time_s); };
+    }
   }
   return outputs;
 }
@@ -52,6 +56,7 @@ CoupledRun::CoupledRun(const LightModel& light, std::shared_ptr<const RotationTa
       start_charge_C_(run.initial.charge_drawn_C) {
   for (const GroupOutput& group : outputs_) {
     has_sun_ = has_sun_ || group.group.is_sun;
+    if (group.group.position > 0) continue;  // the same lamps as at the first
     const auto& all = group.output->switches_s();
     switches_s_.insert(switches_s_.end(), all.begin(), all.end());
     for (const double time_s : all) {
@@ -75,7 +80,7 @@ std::vector<double> CoupledRun::channels_at(const Quat& lab_from_body) const {
 }
 
 double CoupledRun::output(const GroupOutput& group, double time_s, double illumination) const {
-  return group.output->at(time_s) * (group.group.is_sun ? illumination : 1.0);
+  return group.at(time_s) * (group.group.is_sun ? illumination : 1.0);
 }
 
 // The next segment ends at the next exchange, switch or end of the run; the power system has its
@@ -160,6 +165,9 @@ PowerSupply::Light CoupledRun::light_of(const Instant& instant) const {
     }
     light.on_cells_W += factor * std::max(0.0, cell[light_.cells()]);
   }
+  // Weights of a joint's positions may be negative.
+  for (double& current_A : light.photocurrent_A) current_A = std::max(0.0, current_A);
+  light.on_cells_W = std::max(0.0, light.on_cells_W);
   return light;
 }
 
@@ -237,8 +245,8 @@ void CoupledRun::run_supply() {
     power_.push_back({current_A, state.array_W, charge_C(*supply_)});
     double emitted_W = 0.0, full_W = 0.0;
     for (const GroupOutput& group : outputs_) {
-      emitted_W += group.group.emitted_W * group.output->at(instant.middle_s());
-      full_W += group.group.emitted_W;
+      emitted_W += group.group.emitted_W * group.at(instant.middle_s());
+      full_W += group.group.emitted_W * group.share_at(instant.middle_s());
     }
     emitted_.add(emitted_W * h);
     row.output += h * (full_W > 0.0 ? emitted_W / full_W : instant.illumination);

@@ -1,6 +1,7 @@
 // Light, power and attitude in one run: what happens beside the motion.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,6 +16,12 @@ namespace photorque {
 struct GroupOutput {
   LightModel::Group group;
   std::shared_ptr<const LampOutput> output;
+  // What counts of it: the weight of a joint's position, which may be negative; nothing: all.
+  std::function<double(double time_s)> share = {};
+  std::vector<double> corners_s = {};  // of that weight
+
+  double at(double time_s) const { return output->at(time_s) * share_at(time_s); }
+  double share_at(double time_s) const { return share ? share(time_s) : 1.0; }
 };
 std::vector<GroupOutput> group_outputs(const LightModel& light, const LightSettings& settings,
                                        double start_s);

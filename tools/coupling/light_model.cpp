@@ -60,15 +60,14 @@ LightModel::~LightModel() = default;
 
 LightModel::LightModel(const RunOptions& options, const Console& console,
                        const LightSettings& settings, const Platform& platform)
-    : settings_(settings), threads_(options.threads) {
-  RunOptions own = options;
-  own.seed.reset();  // that of the instruments
+    : settings_(settings), threads_(options.threads), options_(options) {
+  options_.seed.reset();  // that of the instruments
   // Of a table many attitudes are traced at a time, which keeps all processors busier than one
   // does.
-  if (settings.mode == LightSettings::Mode::table) own.threads = 1;
-  auto whole = std::make_unique<OpticalRun>(own, console);
+  if (settings.mode == LightSettings::Mode::table) options_.threads = 1;
+  auto whole = std::make_unique<OpticalRun>(options_, console);
   const std::vector<Beam> beams = whole->experiment().beams;
-  const ExperimentFile& file = whole->experiment().file;
+  const ExperimentFile file = whole->experiment().file;
   inputs_ = whole->experiment().inputs;
   sun_direction_lab_ = direction_of_suns(beams);
   const double tilt_rad = settings.max_tilt_rad.value_or(platform.tilt_limit_rad.value_or(pi));
@@ -77,45 +76,40 @@ LightModel::LightModel(const RunOptions& options, const Console& console,
     max_angle_rad_ =
         std::min(pi, tilt_rad + std::acos(std::clamp(sun_direction_lab_->z(), -1.0, 1.0)));
   }
-  const std::set<std::string> switched = switched_sources(settings);
-  for (const std::string& name : switched) {
+  for (const std::string& name : switched_sources(settings)) {
     if (std::ranges::none_of(beams, [&](const Beam& beam) { return is_of(beam, name); })) {
       throw unknown_source(file, name, beams);
     }
   }
-  // Suns, which the planet's shadow takes away, apart from lamps.
-  const auto group_of = [&](const Beam& beam) -> std::string {
-    for (const std::string& name : switched) {
-      if (is_of(beam, name)) return name;
-    }
-    return is_sun(beam) ? "sun" : "light";
-  };
+  find_joint(file);
   std::vector<std::string> names;
   for (const Beam& beam : beams) {
     if (std::ranges::find(names, group_of(beam)) == names.end()) names.push_back(group_of(beam));
   }
-  const bool has_array = !file.others("array").empty();
   key_ = content_key(file);
+  const size_t positions = positions_ ? positions_->angles_rad().size() : 1;
   for (const std::string& name : names) {
-    auto run = names.size() == 1 ? std::move(whole) : std::make_unique<OpticalRun>(own, Console());
-    run->keep_beams([&](const Beam& beam) { return group_of(beam) == name; });
-    Group group{.name = name};
-    for (const Beam& beam : run->experiment().beams) {
-      group.is_sun = is_sun(beam);
-      if (!group.is_sun) group.emitted_W += beam.emitter->power_W();
+    for (size_t position = 0; position < positions; ++position) {
+      std::optional<double> joint_rad;
+      if (positions_) joint_rad = positions_->angles_rad()[position];
+      const bool alone = names.size() == 1 && !joint_rad;
+      lights_.push_back(make_light(alone ? std::move(whole) : nullptr, name, joint_rad));
+      Group group{.name = name, .position = position};
+      for (const Beam& beam : lights_.back().run->experiment().beams) {
+        group.is_sun = is_sun(beam);
+        if (!group.is_sun) group.emitted_W += beam.emitter->power_W();
+      }
+      groups_.push_back(group);
     }
-    groups_.push_back(group);
-    arrays_.emplace_back();
-    if (has_array) arrays_.back() = read_array_power(*run);
-    runs_.push_back(std::move(run));
   }
-  if (has_array) {
-    const ArrayPower& array = *arrays_.front();
+  if (lights_.front().array) {
+    const Light& first = lights_.front();
+    const ArrayPower& array = *first.array;
     for (const std::string& notice : array.notices) console.line("note: " + notice);
     array_ = array.design;
     day_ = array.report.day;
     if (array.report.motion) tracker_ = array.report.motion->trackers.front();
-    const FluxMapReceiver& map = runs_.front()->flux_map(array.flux_map);
+    const FluxMapReceiver& map = first.run->flux_map(array.flux_map);
     BinSums dark{map.bins(), 1, std::vector<double>(map.bins(), 0.0)};
     cell_area_m2_ =
         cell_currents(array.design, array_light(map, dark), array.responsivity_A_W).area_m2;
@@ -123,38 +117,112 @@ LightModel::LightModel(const RunOptions& options, const Console& console,
   for (size_t g = 0; g < groups_.size(); ++g) groups_[g].first = g * channels_per_group();
 }
 
+// The joint that moves, of which there is at most one.
+void LightModel::find_joint(const ExperimentFile& file) {
+  for (size_t j = 0; j < file.joints.size(); ++j) {
+    const Joint& joint = file.joints[j];
+    if (!joint.moves()) continue;
+    if (joint_) {
+      throw file.joint_tables[j].error("", "a second joint that moves",
+                                       "one (parts that turn together are its nodes)");
+    }
+    if (joint.towards_sun && !sun_direction_lab_) {
+      throw file.joint_tables[j].error("towards_sun", "light that is not of one Sun alone",
+                                       "one [[source]] of kind \"sun\"");
+    }
+    joint_ = joint;
+    joint_number_ = j;
+    if (!joint.towards_sun) positions_.emplace(joint);
+  }
+}
+
+// Suns, which the planet's shadow takes away, apart from lamps.
+std::string LightModel::group_of(const Beam& beam) const {
+  for (const std::string& name : switched_sources(settings_)) {
+    if (is_of(beam, name)) return name;
+  }
+  return is_sun(beam) ? "sun" : "light";
+}
+
+// `run`: made already, or nothing.
+LightModel::Light LightModel::make_light(std::unique_ptr<OpticalRun> run, const std::string& group,
+                                         std::optional<double> joint_rad) const {
+  Light light{std::move(run), {}};
+  if (!light.run) {
+    RunOptions posed = options_;
+    if (joint_rad) {
+      char text[80];
+      std::snprintf(text, sizeof text, "joint[%zu].angle_rad=%.17g", joint_number_, *joint_rad);
+      posed.overrides.emplace_back(text);
+    }
+    light.run = std::make_unique<OpticalRun>(posed, Console());
+  }
+  light.run->keep_beams([&](const Beam& beam) { return group_of(beam) == group; });
+  if (!light.run->experiment().file.others("array").empty()) {
+    const auto rest = std::ranges::find(groups_, group, &Group::name);
+    const auto same = static_cast<size_t>(rest - groups_.begin());
+    light.array =
+        read_array_power(*light.run, rest == groups_.end() ? nullptr : &*lights_[same].array);
+  }
+  return light;
+}
+
+double LightModel::share(const Group& group, double time_s) const {
+  if (!positions_) return 1.0;
+  return positions_->weights(joint_->angle_at(time_s))[group.position];
+}
+
+std::vector<double> LightModel::corners_s() const {
+  std::vector<double> corners;
+  if (positions_) {
+    for (const Joint::Instant& instant : joint_->schedule) corners.push_back(instant.time_s);
+  }
+  return corners;
+}
+
 RotationSample LightModel::trace(const Quat& lab_from_body) const {
   RotationSample sample;
-  const auto put = [&](double value, double error) {
-    sample.value.push_back(value);
-    sample.error.push_back(error);
-  };
   for (size_t g = 0; g < groups_.size(); ++g) {
-    const OpticalRun& run = *runs_[g];
-    const OpticalResult result = run.run({lab_from_body, Vec3::Zero()}, {}, settings_.rays);
-    const WrenchEstimate wrench =
-        wrench_about(run.wrench().total(result.sums[run.wrench_index()]), Vec3::Zero());
-    const Vec3 torque_error = wrench.torque_error_N_m(), force_error = wrench.force_error_N();
-    for (int k = 0; k < 3; ++k) put(wrench.mean.torque_N_m[k], torque_error[k]);
-    for (int k = 0; k < 3; ++k) put(wrench.mean.force_N[k], force_error[k]);
-    if (!arrays_[g]) continue;
-    const ArrayPower& array = *arrays_[g];
-    const CellCurrents cells =
-        cell_currents(array.design,
-                      array_light(run.flux_map(array.flux_map), result.sums[array.flux_map],
-                                  array.incidence ? result.sums[*array.incidence] : BinSums{}),
-                      array.responsivity_A_W);
-    for (size_t i = 0; i < cells.photocurrent_A.size(); ++i) {
-      put(cells.photocurrent_A[i], cells.photocurrent_error_A[i]);
+    if (joint_ && joint_->towards_sun) {
+      const double angle_rad =
+          joint_->angle_towards(lab_from_body.conjugate() * *sun_direction_lab_);
+      add(make_light(nullptr, groups_[g].name, angle_rad), lab_from_body, sample);
+    } else {
+      add(lights_[g], lab_from_body, sample);
     }
-    put(cells.power_on_cells_W.value, cells.power_on_cells_W.standard_error);
   }
   return sample;
 }
 
+// The channels of one group.
+void LightModel::add(const Light& light, const Quat& lab_from_body, RotationSample& sample) const {
+  const auto put = [&](double value, double error) {
+    sample.value.push_back(value);
+    sample.error.push_back(error);
+  };
+  const OpticalRun& run = *light.run;
+  const OpticalResult result = run.run({lab_from_body, Vec3::Zero()}, {}, settings_.rays);
+  const WrenchEstimate wrench =
+      wrench_about(run.wrench().total(result.sums[run.wrench_index()]), Vec3::Zero());
+  const Vec3 torque_error = wrench.torque_error_N_m(), force_error = wrench.force_error_N();
+  for (int k = 0; k < 3; ++k) put(wrench.mean.torque_N_m[k], torque_error[k]);
+  for (int k = 0; k < 3; ++k) put(wrench.mean.force_N[k], force_error[k]);
+  if (!light.array) return;
+  const ArrayPower& array = *light.array;
+  const CellCurrents cells =
+      cell_currents(array.design,
+                    array_light(run.flux_map(array.flux_map), result.sums[array.flux_map],
+                                array.incidence ? result.sums[*array.incidence] : BinSums{}),
+                    array.responsivity_A_W);
+  for (size_t i = 0; i < cells.photocurrent_A.size(); ++i) {
+    put(cells.photocurrent_A[i], cells.photocurrent_error_A[i]);
+  }
+  put(cells.power_on_cells_W.value, cells.power_on_cells_W.standard_error);
+}
+
 std::string LightModel::content_key(const ExperimentFile& file) const {
   std::string text = table_cache_version();
-  for (const char* table : {"scene", "material", "source", "receiver", "trace"}) {
+  for (const char* table : {"scene", "material", "source", "receiver", "joint", "trace"}) {
     if (file.settings.has(table))
       text += std::string(table) + written_out(file.settings.raw(table));
   }

@@ -31,8 +31,13 @@ class LightModel {
     size_t first = 0;  // channel
     bool is_sun = false;
     double emitted_W = 0.0;  // 0 for the Sun
+    size_t position = 0;     // of the joint that follows a schedule, see share()
   };
   const std::vector<Group>& groups() const { return groups_; }
+  // How much a group counts at an instant: the weight of its position of the joint, else 1.
+  double share(const Group& group, double time_s) const;
+  // Instants at which the joint's schedule has a corner.
+  std::vector<double> corners_s() const;
   size_t cells() const { return cell_area_m2_.size(); }
   size_t channels_per_group() const { return cells() > 0 ? 7 + cells() : 6; }
 
@@ -59,13 +64,26 @@ class LightModel {
   static constexpr const char* units[] = {"N m", "N", "A", "W"};
 
  private:
+  // One pose of the scene with one group of lamps.
+  struct Light {
+    std::unique_ptr<OpticalRun> run;
+    std::optional<ArrayPower> array;
+  };
+  Light make_light(std::unique_ptr<OpticalRun> run, const std::string& group,
+                   std::optional<double> joint_rad) const;
+  void find_joint(const ExperimentFile& file);
+  std::string group_of(const Beam& beam) const;
+  void add(const Light& light, const Quat& lab_from_body, RotationSample& sample) const;
   std::string content_key(const ExperimentFile& file) const;
 
   LightSettings settings_;
   int threads_ = 0;
   std::vector<Group> groups_;
-  std::vector<std::unique_ptr<OpticalRun>> runs_;  // one per group
-  std::vector<std::optional<ArrayPower>> arrays_;  // likewise
+  std::vector<Light> lights_;   // one per group; of a joint that follows the Sun at its rest
+  std::optional<Joint> joint_;  // the one that moves
+  size_t joint_number_ = 0;     // among [[joint]]
+  std::optional<JointPositions> positions_;
+  RunOptions options_;
   std::optional<ArrayDesign> array_;
   std::optional<DaySettings> day_;
   std::optional<Tracker> tracker_;

@@ -69,6 +69,11 @@ Key published_table() {
       "published",
       {Key::text("quantity", "a name in `summary.json`"), Key::number("value", {}, "in its unit"),
        Key::number_or("tilt_deg", 0.0, {0.0, pi}, "at which it holds"),
+       Key::number("rounded_to", Range::positive(),
+                   "one unit of its last printed digit (38 %: 0.01): ours is held against it, and "
+                   "`published_misfit` of the summary is the sum of ((ours − `value`)/(½ "
+                   "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees")
+           .optional(),
        Key::text("source", "who printed it"), Key::text_or("why", "", "ours differs")},
       "a figure that somebody printed, compared at the same tilt");
 }

@@ -44,9 +44,25 @@ std::vector<std::string> unlike_sources(const QuantumEfficiency& efficiency, con
   return notices;
 }
 
+// What each watt of the lamps' light gives in each band.
+void read_responsivity(const Experiment& experiment, ArrayPower& array) {
+  std::vector<WeighedSpectrum> spectra;
+  for (const Beam& beam : experiment.beams) {
+    spectra.push_back({beam.spectrum, beam.emitter->power_W()});
+  }
+  const Bands& bands = experiment.scene.bands;
+  const auto over_bands = [&](const QuantumEfficiency& efficiency) {
+    const BandValues values = band_responsivity_A_W(efficiency, bands, spectra);
+    return std::vector<double>(values.begin(), values.begin() + bands.count());
+  };
+  array.responsivity_A_W = over_bands(array.design.efficiency);
+  array.notices = unlike_sources(array.design.efficiency, bands, spectra);
+  array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
+}
+
 }  // namespace
 
-ArrayPower read_array_power(OpticalRun& run) {
+ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
   const Experiment& experiment = run.experiment();
   const auto tables = experiment.file.others("array");
   if (tables.size() != 1) {
@@ -61,18 +77,12 @@ ArrayPower read_array_power(OpticalRun& run) {
   array.report = read_array_report(tables[0], read_published(experiment.file.others("published")));
   tables[0].finish();
 
-  std::vector<WeighedSpectrum> spectra;
-  for (const Beam& beam : experiment.beams) {
-    spectra.push_back({beam.spectrum, beam.emitter->power_W()});
+  if (known) {
+    array.responsivity_A_W = known->responsivity_A_W;
+    array.ideal_responsivity_A_W = known->ideal_responsivity_A_W;
+  } else {
+    read_responsivity(experiment, array);
   }
-  const Bands& bands = experiment.scene.bands;
-  const auto over_bands = [&](const QuantumEfficiency& efficiency) {
-    const BandValues values = band_responsivity_A_W(efficiency, bands, spectra);
-    return std::vector<double>(values.begin(), values.begin() + bands.count());
-  };
-  array.responsivity_A_W = over_bands(array.design.efficiency);
-  array.notices = unlike_sources(array.design.efficiency, bands, spectra);
-  array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
   if (array.design.front || has_own_front(experiment.scene, map.grid())) {
     const InputLocation where = tables[0].where();
     array.incidence =

@@ -25,7 +25,8 @@ struct ArrayPower {
 // Reads `[array]`; its key `receiver` names the flux map that holds the cells (default: the first
 // one). InputError when the experiment has no array, and for unknown keys. Adds a receiver to the
 // run where the light's angle counts: under [array.cover], and on a surface with optics by angle.
-ArrayPower read_array_power(OpticalRun& run);
+// `known`: the array of a run with the same lamps, whose spectra need not be looked at again.
+ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known = nullptr);
 
 ArrayResult evaluate(const ArrayPower& array, const OpticalRun& run, const TraceResult& result);
 

@@ -35,6 +35,7 @@ std::vector<std::pair<std::string, std::string>> look_through_scene(const Experi
   if (!file.scene_file || !sensors.camera || !sensors.camera->geometry) return {};
   GltfModel model = read_gltf(*file.scene_file, {.bands = file.bands,
                                                  .metres_per_unit = file.metres_per_unit,
+                                                 .origin_m = file.centre_of_rotation_m,
                                                  .may_leave_folder = file.may_leave_folder});
   const auto scene = std::make_shared<const TraceableScene>(std::move(model.scene));
   TrackingCamera& camera = *sensors.camera->geometry;

@@ -128,7 +128,7 @@ DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scen
                                         .target_error = effort.target_error.value_or(0.0)};
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
     const TorqueMapReceiver* torques = experiment.receivers[i].torque_map.get();
-    if (torques != nullptr &&
+    if (torques != nullptr && torques->force() == TorqueMapReceiver::Force::momentum &&
         can_gather_torque(experiment.scene, torques->grid(), experiment.beams)) {
       constexpr size_t dearer = 8;  // than irradiance, for which there are tables
       const size_t weight = dearer * torques->grid().bins() * experiment.beams.size();

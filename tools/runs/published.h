@@ -1,6 +1,8 @@
 // Figures that somebody published, beside ours.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/product.h"
@@ -13,20 +15,23 @@ namespace photorque {
 //   quantity  name of a headline figure of summary.json
 //   value     as published, in the unit that the name of the quantity ends in
 //   tilt_deg  the attitude that it holds for; the figure is left out at others
+//   rounded_to  one unit of its last printed digit
 //   source    where it was published
 //   why       why ours differs, and which key changes it
 struct PublishedFigure {
   std::string quantity;
   double value = 0.0;
   double tilt_rad = 0.0;
+  std::optional<double> rounded_to;  // > 0
   std::string source;
   std::string why;
 };
 std::vector<PublishedFigure> read_published(const std::vector<Settings>& tables);
 
 // The table "published" of those figures that hold at this tilt and that `product` has, with the
-// ratio ours/published; prints it. Without columns when there is none.
-Table compare_published(const std::vector<PublishedFigure>& figures, double tilt_rad,
-                        const Product& product, const Console& console);
+// ratio ours/published; prints it. Where any of them says what it is rounded to, also the quantity
+// "published_misfit", Σ ((ours − published)/(½ rounded_to))². Empty when no figure holds.
+Product compare_published(const std::vector<PublishedFigure>& figures, double tilt_rad,
+                          const Product& product, const Console& console);
 
 }  // namespace photorque

@@ -1,5 +1,6 @@
 #include "tools/tasks/direction_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -7,6 +8,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/parallel.h"
 #include "receivers/wrench/spad.h"
 #include "receivers/wrench/table_product.h"
 
@@ -45,6 +47,26 @@ size_t first_of_direction(const WrenchTable& table, size_t around, size_t polar)
   if (std::abs(table.polar_rad[polar]) > 0.5 * pi - same) return table.node(0, polar);
   const double turn = table.around_rad[around] - table.around_rad[0];
   return std::abs(turn - 2.0 * pi) < same ? table.node(0, polar) : table.node(around, polar);
+}
+
+// A node of the table, in their order.
+struct Direction {
+  size_t node, first;  // of the table; the earlier one with the same direction, or itself
+  size_t around, polar;
+  RigidTransform lab_from_body;
+};
+
+std::vector<Direction> directions_of(const WrenchTable& table, const DirectionGrid& grid,
+                                     const SunLight& sun) {
+  std::vector<Direction> all;
+  for (size_t a = 0; a < grid.azimuth_rad.size(); ++a) {
+    for (size_t e = 0; e < grid.elevation_rad.size(); ++e) {
+      const Vec3 towards_body = towards_light({grid.elevation_rad[e], grid.azimuth_rad[a]});
+      all.push_back({table.node(a, e), first_of_direction(table, a, e), a, e,
+                     lab_from_body_with_sun(towards_body, sun.towards_lab)});
+    }
+  }
+  return all;
 }
 
 // Without what only a full, regular sphere has, format_spad() refuses: then there is no such file.
@@ -100,7 +122,7 @@ void print_summary(const Console& console, const WrenchTable& table, const SunLi
 }  // namespace
 
 TorqueMapRun map_over_direction(const Console& console,
-                                const std::shared_ptr<const OpticalRun>& shared,
+                                const std::shared_ptr<const OpticalRun>& shared, int threads,
                                 const NodeWatch& watch) {
   const OpticalRun& run = *shared;
   const DirectionGrid& grid = *run.experiment().file.light_directions;
@@ -108,37 +130,50 @@ TorqueMapRun map_over_direction(const Console& console,
   WrenchTable table = make_wrench_table(WrenchTable::Angles::azimuth_elevation, grid.elevation_rad,
                                         grid.azimuth_rad);
   uint64_t rays = 0;
-  double wall_s = 0.0;
   Warnings warnings;
+  const WallTime wall;
+  const std::vector<Direction> all = directions_of(table, grid, sun);
   // For the watch alone, which sees every node: what the same direction gave before.
   std::map<size_t, OpticalResult> earlier;
   const auto progress = console.progress("directions");
-  for (size_t a = 0; a < grid.azimuth_rad.size(); ++a) {
-    for (size_t e = 0; e < grid.elevation_rad.size(); ++e) {
-      const size_t node = table.node(a, e);
-      const size_t first = first_of_direction(table, a, e);
-      const Vec3 towards_body = towards_light({grid.elevation_rad[e], grid.azimuth_rad[a]});
-      const RigidTransform lab_from_body = lab_from_body_with_sun(towards_body, sun.towards_lab);
-      if (first != node) {
-        copy_node(table, node, first);
-        if (watch) watch({run, table.nodes(), lab_from_body, earlier.at(first)});
+  // So many at a time, each on one thread: a trace of one direction is too short to share out.
+  constexpr size_t block = 64;
+  std::vector<OpticalResult> results(block);
+  for (size_t from = 0; from < all.size(); from += block) {
+    const size_t count = std::min(block, all.size() - from);
+    parallel_for(count, threads, [&](size_t i) {
+      const Direction& one = all[from + i];
+      if (one.first != one.node) return;
+      results[i] = run.run(one.lab_from_body, {}, run.experiment().file.torque_map_rays);
+    });
+    for (size_t i = 0; i < count; ++i) {
+      const Direction& one = all[from + i];
+      if (one.first != one.node) {
+        copy_node(table, one.node, one.first);
+        if (watch) watch({run, table.nodes(), one.lab_from_body, earlier.at(one.first)});
         continue;
       }
-      const OpticalResult result =
-          run.run(lab_from_body, {}, run.experiment().file.torque_map_rays);
+      const OpticalResult& result = results[i];
       if (watch) {
-        watch({run, table.nodes(), lab_from_body, result});
-        if (a == 0) earlier.emplace(node, result);
+        watch({run, table.nodes(), one.lab_from_body, result});
+        if (one.around == 0) earlier.emplace(one.node, result);
       }
-      set_node(table, node, run.wrench().total(result.sums[run.wrench_index()]));
-      warnings.add(run.warnings(result), "azimuth " + show(stated_deg(grid.azimuth_rad[a])) +
-                                             " deg, elevation " +
-                                             show(stated_deg(grid.elevation_rad[e])) + " deg");
+      set_node(table, one.node, run.wrench().total(result.sums[run.wrench_index()]));
+      warnings.add(run.warnings(result),
+                   "azimuth " + show(stated_deg(grid.azimuth_rad[one.around])) +
+                       " deg, elevation " + show(stated_deg(grid.elevation_rad[one.polar])) +
+                       " deg");
       rays += result.rays;
-      wall_s += result.wall_s;
-      if (progress) progress(static_cast<double>(node + 1) / static_cast<double>(table.nodes()));
     }
+    const size_t done = from + count;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(all.size()));
+    const double left_s = wall.elapsed_s() * static_cast<double>(all.size() - done) /
+                          static_cast<double>(std::max<size_t>(done, 1));
+    console.note_progress("directions: " + std::to_string(done) + " of " +
+                          std::to_string(all.size()) + " traced, about " + show(std::ceil(left_s)) +
+                          " s to go");
   }
+  const double wall_s = wall.elapsed_s();
   console.done();
   print_summary(console, table, sun);
 

@@ -18,9 +18,8 @@ PowerRun power_of_experiment(const RunOptions& options, const Console& console) 
   Product product = run->product(light);
   append(product, array_power_product(power, light));
   append(product, report_array(console, *run, array, light, power));
-  Table table = compare_published(array.report.published, experiment.file.attitude.tilt_rad,
-                                  product, console);
-  if (!table.columns.empty()) product.tables.push_back(std::move(table));
+  append(product, compare_published(array.report.published, experiment.file.attitude.tilt_rad,
+                                    product, console));
   RunResult result{std::move(product), run->provenance(light), {light.wall_s, light.rays}};
   return {run, std::move(light), std::move(array), std::move(power), std::move(result)};
 }

@@ -7,22 +7,13 @@
 //
 // Per ray, the tracer counts momentum in minus momentum out; eq. 29's cosine is inside the
 // irradiance already (docs/physics.md).
-#include "attitude/disturbances/fields/torque_surface.h"
+#include "attitude/disturbances/fields/surface_lookup.h"
 #include "attitude/disturbances/kind.h"
 
 namespace photorque {
 namespace {
 
 constexpr ScalarKey factor{"scale"};
-
-// f(x, y) with its derivatives, from lanes of numbers.
-Lanes combine(const Lanes&, const Lanes&, const Lanes& f, const Lanes&, const Lanes&) {
-  return f;
-}
-DualLanes combine(const DualLanes& x, const DualLanes& y, const Lanes& f, const Lanes& by_x,
-                  const Lanes& by_y) {
-  return DualLanes::chain(x, y, f, by_x, by_y);
-}
 
 class RadiationPressure final : public TorqueLaw<RadiationPressure> {
  public:
@@ -31,36 +22,19 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
 
   template <class T>
   Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    if (surface_.angles() == WrenchTable::Angles::azimuth_elevation) {
+      return own[factor] * now.illumination *
+             look_up_towards<T>(surface_, now.to_body(sun_direction_lab_.template cast<T>()));
+    }
     // A hair off the pole, where the second angle has no derivative.
     constexpr double hair = 1e-9;
-    const bool tilt = surface_.angles() == WrenchTable::Angles::tilt_heading;
-    const Vec3Of<T> light = tilt ? Vec3Of<T>(now.lab_from_body.row(2).transpose())
-                                 : now.to_body(sun_direction_lab_.template cast<T>());
-    const T x = light.x() + hair, y = light.y(), across = sqrt(x * x + y * y);
+    const Vec3Of<T> up = now.lab_from_body.row(2).transpose();
+    const T x = up.x() + hair, y = up.y(), across = sqrt(x * x + y * y);
     return own[factor] * now.illumination *
-           (tilt ? look_up<T>(atan2(across, light.z()), atan2(-y, -x))
-                 : look_up<T>(atan2(light.z(), across), atan2(y, x)));
+           look_up<T>(surface_, atan2(across, up.z()), atan2(-y, -x));
   }
 
  private:
-  template <class T>
-  Vec3Of<T> look_up(const T& polar_rad, const T& around_rad) const {
-    std::array<Lanes, 3> value, by_polar, by_around;
-    for (int i = 0; i < Lanes::count; ++i) {
-      const TorqueSurface::Sample at = surface_.at({values(polar_rad)[i], values(around_rad)[i]});
-      for (int k = 0; k < 3; ++k) {
-        value[k].set(i, at.torque_body_N_m[k]);
-        by_polar[k].set(i, at.by_polar[k]);
-        by_around[k].set(i, at.by_around[k]);
-      }
-    }
-    Vec3Of<T> torque;
-    for (int k = 0; k < 3; ++k) {
-      torque[k] = combine(polar_rad, around_rad, value[k], by_polar[k], by_around[k]);
-    }
-    return torque;
-  }
-
   TorqueSurface surface_;
   Vec3 sun_direction_lab_;
 };

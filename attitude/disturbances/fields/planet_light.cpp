@@ -1,0 +1,153 @@
+// The pressure of the light that the planet sends: sunlight that it reflects, and its infrared, by
+// Knocke, Ries and Tapley (attitude/environment/planet_light.h). Needs an `orbit`.
+//
+// table: of torque-map over azimuth and elevation, traced in sunlight of table_irradiance_W_m2
+// (default that of the Sun at 1 au); infrared_table: the same in infrared light, where the surfaces
+// have other optics; without it they meet it as they meet sunlight. sun_direction[3] (any length):
+// towards the Sun, by default that of `orbit`. albedo, emissivity: means over the planet; zonal:
+// with the Earth's belts, and with date_year its seasons. irradiance_W_m2: of the Sun at the
+// planet. scale: default 1.
+//
+// The planet's night side reflects nothing, so that an eclipse shows by itself; infrared stays.
+#include <cmath>
+
+#include "attitude/disturbances/fields/coil_cage.h"
+#include "attitude/disturbances/fields/surface_lookup.h"
+#include "attitude/disturbances/kind.h"
+#include "attitude/environment/planet_light.h"
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+constexpr double mean_radius_of_planet_m = 6371.2e3;
+constexpr ScalarKey planet_factor{"scale"};
+
+struct PlanetOptions {
+  PlanetSurface surface;
+  double season = 0.0;  // its cosine
+  Vec3 to_sun = Vec3::UnitX();
+  double irradiance_W_m2 = solar_irradiance_W_m2;
+  double table_W_m2 = solar_irradiance_W_m2;
+};
+
+class PlanetLight final : public TorqueLaw<PlanetLight> {
+ public:
+  PlanetLight(PlanetOptions options, TorqueSurface sunlight, std::optional<TorqueSurface> infrared)
+      : options_(std::move(options)),
+        sunlight_(std::move(sunlight)),
+        infrared_(std::move(infrared)) {}
+
+  template <class T>
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    Vec3Of<T> sum = Vec3Of<T>::Constant(T(0.0));
+    // The orbit is a circle: the same at all eight instants.
+    const double gradient_1_s2 = values(now.gravity_gradient_1_s2)[0];
+    const double distance_m = std::cbrt(earth_gravitation_m3_s2 / gradient_1_s2);
+    if (!(distance_m > 1.001 * mean_radius_of_planet_m)) return sum;  // on the ground
+    std::array<Mat3, Lanes::count> axes;
+    for (int i = 0; i < Lanes::count; ++i) {
+      const Vec3 up(values(now.up_lab.x())[i], values(now.up_lab.y())[i],
+                    values(now.up_lab.z())[i]);
+      axes[static_cast<size_t>(i)] = planet_axes(up.normalized(), options_.to_sun);
+    }
+    for (const PlanetPart& part : planet_parts(mean_radius_of_planet_m, distance_m)) {
+      Vec3Of<Lanes> towards;
+      Lanes reflected = 0.0, emitted = 0.0;
+      for (int i = 0; i < Lanes::count; ++i) {
+        const Mat3& of = axes[static_cast<size_t>(i)];
+        const Vec3 way = of * part.towards;
+        for (int k = 0; k < 3; ++k) towards[k].set(i, way[k]);
+        const PlanetIrradiance light =
+            planet_irradiance(part, options_.surface, of, options_.to_sun, options_.season,
+                              options_.irradiance_W_m2 / options_.table_W_m2);
+        reflected.set(i, infrared_ ? light.reflected_W_m2 : light.sum_W_m2());
+        emitted.set(i, light.infrared_W_m2);
+      }
+      const Vec3Of<T> way = now.to_body(Vec3Of<T>(T(towards.x()), T(towards.y()), T(towards.z())));
+      sum += T(reflected) * look_up_towards<T>(sunlight_, way);
+      if (infrared_) sum += T(emitted) * look_up_towards<T>(*infrared_, way);
+    }
+    return own[planet_factor] * sum;
+  }
+
+ private:
+  PlanetOptions options_;
+  TorqueSurface sunlight_;
+  std::optional<TorqueSurface> infrared_;
+};
+
+TorqueSurface sphere_of(const Settings& settings, const char* key) {
+  TorqueSurface surface(read_wrench_table(file_of(settings, key)));
+  if (surface.angles() != WrenchTable::Angles::azimuth_elevation) {
+    throw settings.error(key, "a table over tilt and heading",
+                         "one over azimuth and elevation: the planet's light comes from all sides");
+  }
+  return surface;
+}
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  PlanetOptions options;
+  PlanetSurface& surface = options.surface;
+  if (!settings.flag_or("zonal", true)) {
+    surface.albedo.season = surface.albedo.second = 0.0;
+    surface.emissivity.season = surface.emissivity.second = 0.0;
+  }
+  surface.albedo.mean = settings.number_or("albedo", surface.albedo.mean, Range::fraction());
+  surface.emissivity.mean =
+      settings.number_or("emissivity", surface.emissivity.mean, Range::fraction());
+  if (settings.has("date_year")) {
+    options.season = season_cosine(settings.number("date_year", {1900.0, 2100.0, false, false}));
+  }
+  options.to_sun = settings.vector3("sun_direction");
+  if (!(options.to_sun.norm() > 0.0)) {
+    throw settings.error("sun_direction", "a zero vector", "a direction");
+  }
+  options.to_sun.normalize();
+  options.irradiance_W_m2 =
+      settings.number_or("irradiance_W_m2", options.irradiance_W_m2, Range::positive());
+  options.table_W_m2 =
+      settings.number_or("table_irradiance_W_m2", options.table_W_m2, Range::positive());
+  std::optional<TorqueSurface> infrared;
+  if (settings.has("infrared_table")) infrared = sphere_of(settings, "infrared_table");
+  return make_disturbance<PlanetLight>({scalar_parameter_or(settings, planet_factor, 1.0)},
+                                       Stage::torque, {}, options, sphere_of(settings, "table"),
+                                       std::move(infrared));
+}
+
+}  // namespace
+
+DisturbanceKind planet_light_kind() {
+  const PlanetSurface earth;
+  return {
+      .name = "planet_light",
+      .summary = "sunlight that the planet reflects, and its infrared, push on a spacecraft",
+      .read = read,
+      .screening = {.reason_against = "needs a table that torque-map traces for this spacecraft"},
+      .injection = {.reason_against = "needs a traced table"},
+      .budget = {.reason_against = "of a spacecraft in orbit, not of a platform on the ground"},
+      .keys = {
+          Key::text("table",
+                    "CSV of `torque-map` over the sphere (`elevation_deg`, `azimuth_deg`; "
+                    "`torque_x_N_m`, …), traced in sunlight"),
+          Key::text("infrared_table", "the same in the planet's infrared")
+              .usually_is("`table`: surfaces meet infrared as they meet sunlight"),
+          Key::number_or("table_irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
+                         "of the light in which the tables were traced"),
+          Key::number_or("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
+                         "of sunlight at the planet"),
+          Key::vector3("sun_direction", "towards the Sun, any length")
+              .usually_is("`propagate`: that of `orbit`"),
+          Key::number_or("albedo", earth.albedo.mean, Range::fraction(), "mean over the planet"),
+          Key::number_or("emissivity", earth.emissivity.mean, Range::fraction(),
+                         "likewise: of a quarter of the sunlight"),
+          Key::flag_or(
+              "zonal", true,
+              "with the Earth's belts of latitude: albedo + 0.29 P₂, emissivity − 0.18 P₂"),
+          Key::number("date_year", {1900.0, 2100.0, false, false},
+                      "and its seasons: ± 0.10 and ∓ 0.07 P₁")
+              .usually_is("no season"),
+          Key::uncertain_or("scale", 1.0, {}, "factor")}};
+}
+
+}  // namespace photorque

@@ -1,0 +1,180 @@
+#include "scenes/experiment/joints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/constants.h"
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+constexpr Range joint_angle{-2.0 * pi, 2.0 * pi};
+constexpr int64_t most_positions = 33;
+
+Vec3 read_direction(const Settings& joint, const char* key) {
+  const Vec3 direction = joint.vector3(key);
+  if (!(direction.norm() > 0.0)) throw joint.error(key, "a zero vector", "a direction");
+  return direction.normalized();
+}
+
+std::vector<std::string> read_nodes(const Settings& joint) {
+  if (joint.has("nodes") == joint.has("node")) {
+    throw joint.error("node", joint.has("node") ? "node beside nodes" : "nothing",
+                      "one of node and nodes");
+  }
+  if (joint.has("node")) return {joint.text("node")};
+  const std::vector<std::string> nodes = joint.texts("nodes");
+  if (nodes.empty()) throw joint.error("nodes", "an empty array", "names of nodes");
+  return nodes;
+}
+
+std::vector<Joint::Instant> read_schedule(const Settings& joint) {
+  std::vector<Joint::Instant> schedule;
+  for (const Settings& at : joint.tables("at")) {
+    schedule.push_back({at.number("time_s"), at.number("angle_deg", joint_angle)});
+    const size_t n = schedule.size();
+    if (n > 1 && !(schedule[n - 2].time_s < schedule[n - 1].time_s)) {
+      throw at.error("time_s", std::to_string(schedule[n - 1].time_s), "instants in rising order");
+    }
+  }
+  return schedule;
+}
+
+Joint read_joint(const Settings& table) {
+  Joint joint;
+  joint.nodes = read_nodes(table);
+  joint.axis = read_direction(table, "axis");
+  joint.point_m = table.vector3_or("point_m", Vec3::Zero());
+  joint.angle_rad = table.number_or("angle_deg", 0.0, joint_angle);
+  joint.schedule = read_schedule(table);
+  joint.positions = static_cast<size_t>(table.integer_or("positions", 5, 2, most_positions));
+  if (table.has("towards_sun")) {
+    joint.towards_sun = read_direction(table, "towards_sun");
+    if (!joint.schedule.empty()) {
+      throw table.error("towards_sun", "a schedule beside it",
+                        "one of towards_sun and [[joint.at]]");
+    }
+    if (joint.towards_sun->cross(joint.axis).norm() < 1e-6) {
+      throw table.error("towards_sun", "a direction along the axis", "one that the joint turns");
+    }
+  }
+  table.finish();
+  return joint;
+}
+
+std::string nodes_of(const Scene& scene) {
+  std::set<std::string> names;
+  for (const Instance& instance : scene.instances) names.insert(instance.node);
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+}  // namespace
+
+double Joint::angle_at(double time_s) const {
+  if (schedule.empty()) return angle_rad;
+  const auto after = std::ranges::upper_bound(schedule, time_s, {}, &Instant::time_s);
+  if (after == schedule.begin()) return schedule.front().angle_rad;
+  if (after == schedule.end()) return schedule.back().angle_rad;
+  const Instant &from = *(after - 1), &to = *after;
+  return std::lerp(from.angle_rad, to.angle_rad,
+                   (time_s - from.time_s) / (to.time_s - from.time_s));
+}
+
+double Joint::angle_towards(const Vec3& sun_body) const {
+  const auto across = [this](const Vec3& v) -> Vec3 { return v - v.dot(axis) * axis; };
+  const Vec3 face = across(*towards_sun), sun = across(sun_body);
+  if (!(sun.norm() > 1e-9)) return 0.0;
+  return std::atan2(axis.dot(face.cross(sun)), face.dot(sun));
+}
+
+JointPositions::JointPositions(const Joint& joint) {
+  double low = joint.angle_rad, high = joint.angle_rad;
+  if (!joint.schedule.empty()) {
+    const auto [least, most] =
+        std::ranges::minmax_element(joint.schedule, {}, &Joint::Instant::angle_rad);
+    low = least->angle_rad;
+    high = most->angle_rad;
+  }
+  const auto last = static_cast<double>(joint.positions - 1);
+  for (size_t i = 0; i < joint.positions; ++i) {
+    const double x = -std::cos(pi * static_cast<double>(i) / last);
+    angles_rad_.push_back(0.5 * (low + high) + 0.5 * (high - low) * x);
+  }
+  if (!(high > low)) angles_rad_.resize(1);
+}
+
+std::vector<double> JointPositions::weights(double angle_rad) const {
+  const size_t n = angles_rad_.size();
+  std::vector<double> weights(n, 1.0);
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t k = 0; k < n; ++k) {
+      if (k == i) continue;
+      weights[i] *= (angle_rad - angles_rad_[k]) / (angles_rad_[i] - angles_rad_[k]);
+    }
+  }
+  return weights;
+}
+
+std::vector<Joint> read_joints(const std::vector<Settings>& tables) {
+  std::vector<Joint> joints;
+  for (const Settings& table : tables) joints.push_back(read_joint(table));
+  return joints;
+}
+
+void turn_joints(Scene& scene, const std::vector<Joint>& joints,
+                 const std::vector<Settings>& tables) {
+  std::set<uint32_t> turned;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    const Joint& joint = joints[j];
+    Affine turn = Affine::Identity();
+    turn.translate(joint.point_m);
+    turn.rotate(Eigen::AngleAxisd(joint.angle_rad, joint.axis));
+    turn.translate(-joint.point_m);
+    for (const std::string& node : joint.nodes) {
+      const std::vector<uint32_t> parts = scene.instances_of(node);
+      if (parts.empty()) {
+        throw tables[j].error(tables[j].has("node") ? "node" : "nodes", "\"" + node + "\"",
+                              "a node of the scene that holds a mesh: " + nodes_of(scene));
+      }
+      for (const uint32_t part : parts) {
+        if (!turned.insert(part).second) {
+          throw tables[j].error(tables[j].has("node") ? "node" : "nodes", "\"" + node + "\"",
+                                "parts that no joint turns yet");
+        }
+        // A joint at rest leaves every bit as it is.
+        if (joint.angle_rad == 0.0) continue;
+        Instance& instance = scene.instances[part];
+        instance.body_from_mesh = turn * instance.body_from_mesh;
+      }
+    }
+  }
+}
+
+std::vector<Key> joint_keys() {
+  const Joint usual;
+  return {
+      Key::text("node", "of the scene: it and all below turns; *or*").optional(),
+      Key::texts("nodes", "several that turn together").optional(),
+      Key::vector3("axis", "body axes, any length"),
+      Key::vector3_or("point_m", Vec3::Zero(), "a point on the axis, body axes"),
+      Key::number_or("angle_deg", 0.0, joint_angle, "from how the model is drawn"),
+      Key::vector3("towards_sun",
+                   "in a run of the motion: the direction, of the model as drawn, that follows the "
+                   "Sun as near as the axis lets it")
+          .optional(),
+      Key::tables("at",
+                  {Key::number("time_s", {}, "rising"),
+                   Key::number("angle_deg", joint_angle,
+                               "then; on a straight line to the next, held before the first and "
+                               "after the last")},
+                  "or the angle over time, in a run of the motion"),
+      Key::integer_or("positions", static_cast<int64_t>(usual.positions), 2, most_positions,
+                      "angles between the least and the most of `[[joint.at]]` at which the light "
+                      "is traced; between them it is interpolated")};
+}
+
+}  // namespace photorque
