@@ -51,6 +51,7 @@ class Search {
     const auto [pieces, near] = near_pieces(domain_, nominal, runs_);
     std::vector<Trial> found = rounds(pieces, near).run(near);
     found.erase(found.begin());
+    if (found.empty()) return found;  // nothing explains the pieces either
     sort_by_evidence(found);
     const size_t refits = put_refits_first(found);
     const Effort growing{.windows = limits_.fitting.diverged_windows};

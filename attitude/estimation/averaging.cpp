@@ -1,6 +1,7 @@
 #include "attitude/estimation/averaging.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "attitude/estimation/fit.h"
@@ -15,6 +16,7 @@ struct Neighbours {
   Vec3 attitude_sum = Vec3::Zero(), gyro_sum = Vec3::Zero();
   double attitude_rows = 0.0;
   Vec3 gyro_rows = Vec3::Zero();
+  std::array<double, scalar_count> scalar_sum = {}, scalar_rows = {};
 
   void add(const Observation& from, const Prediction& propagated, size_t i) {
     if (last == first) first = i;
@@ -31,6 +33,12 @@ struct Neighbours {
       if (!(read > 0.0)) continue;
       gyro_sum[k] += read * off[3 + k];
       gyro_rows[k] += read;
+    }
+    for (int s = 0; s < scalar_count; ++s) {
+      const double read = from.rows_of(i, vector_channels + s);
+      if (!(read > 0.0)) continue;
+      scalar_sum[static_cast<size_t>(s)] += read * off[vector_channels + s];
+      scalar_rows[static_cast<size_t>(s)] += read;
     }
   }
 
@@ -62,6 +70,12 @@ struct Neighbours {
     }
     to.gyro_rad_s.push_back(rate);
     to.gyro_rows.push_back(gyro_rows);
+    for (size_t s = 0; s < from.scalar.size(); ++s) {
+      if (from.scalar[s].rows.empty()) continue;
+      const double mean = scalar_rows[s] > 0.0 ? scalar_sum[s] / scalar_rows[s] : NAN;
+      to.scalar[s].value.push_back(propagated.scalars[m][static_cast<Eigen::Index>(s)] + mean);
+      to.scalar[s].rows.push_back(scalar_rows[s]);
+    }
   }
 };
 
@@ -72,6 +86,7 @@ Observation averaged_run(const Prediction& propagated, const Observation& seen, 
   result.attitude_rows.clear();
   result.gyro_rad_s.clear();
   result.gyro_rows.clear();
+  result.scalar = {};
   const double block_s = seen.duration_s() / static_cast<double>(blocks);
   // Half a reading of slack, so that rounding of the times does not make uneven blocks.
   const double slack_s = 0.5 * seen.duration_s() / static_cast<double>(seen.blocks());

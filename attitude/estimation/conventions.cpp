@@ -1,11 +1,15 @@
 #include "attitude/estimation/conventions.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
 #include "attitude/estimation/free_inertia.h"
+#include "attitude/readings/angle_sequence.h"
+#include "attitude/readings/columns.h"
 #include "core/constants.h"
 
 namespace photorque {
@@ -33,9 +37,23 @@ struct Pair {
   Vec3 gyro_rad_s;  // mean
 };
 
-// Attitudes about a second apart and the mean rate between.
+// The median rate from one attitude to the next.
+double usual_rate_rad_s(const Observation& seen) {
+  std::vector<double> rates;
+  for (size_t i = 1; i < seen.blocks(); ++i) {
+    if (seen.attitude_rows[i] == 0.0 || seen.attitude_rows[i - 1] == 0.0) continue;
+    rates.push_back(rotation_vector(seen.attitude[i - 1].conjugate() * seen.attitude[i]).norm() /
+                    (seen.time_s[i] - seen.time_s[i - 1]));
+  }
+  if (rates.empty()) return 0.0;
+  const auto middle = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2);
+  std::nth_element(rates.begin(), middle, rates.end());
+  return *middle;
+}
+
+// Attitudes about a second apart, or a radian where it turns faster, and the mean rate between.
 std::vector<Pair> pairs_of(const Observation& seen) {
-  constexpr double interval_s = 1.0;
+  const double interval_s = 1.0 / std::max(1.0, usual_rate_rad_s(seen));
   constexpr size_t most = 400;
   std::vector<Pair> all;
   const size_t stride = std::max<size_t>(1, seen.blocks() / most);
@@ -311,6 +329,57 @@ std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2) {
   return "convention: " + best_gyro.text +
          ": the recording was read so, because only then do the rates change as the stated inertia "
          "makes them; a free body cannot tell one reversed axis from another";
+}
+
+std::optional<AngleConvention> convention_of_angles(const Recording& recording,
+                                                    const Platform& platform,
+                                                    const std::string& name) {
+  constexpr std::array<const char*, 3> columns = {"roll_rad", "pitch_rad", "yaw_rad"};
+  const MotionColumns motion(recording, platform, name);
+  if (!motion.has_angles() || !motion.has_gyro() || !recording.angle_sequence.empty()) {
+    return std::nullopt;
+  }
+  const auto pairs_as = [&](std::string_view sequence, double factor) {
+    Recording read = recording;
+    read.angle_sequence = sequence;
+    for (Channel& channel : read.channels) {
+      if (std::find(columns.begin(), columns.end(), channel.name) == columns.end()) continue;
+      for (double& angle : channel.values) angle *= factor;
+    }
+    return pairs_of(observe(read, name, platform, std::numeric_limits<size_t>::max()));
+  };
+  const AngleConvention usual{std::string(angle_sequences[0])};
+  const std::vector<Pair> as_usual = pairs_as(usual.sequence, 1.0);
+  constexpr size_t fewest = 20;
+  if (as_usual.size() < fewest) return usual;
+  const double as_is = disagreement(as_usual, Reading::as_is, Mat3::Identity());
+  if (as_is < agrees) return usual;
+  double by_axes = as_is;
+  for (const GyroReading& gyro : gyro_readings()) {
+    by_axes = std::min(by_axes, disagreement(as_usual, Reading::as_is, gyro.matrix));
+  }
+  double best = as_is;
+  AngleConvention found = usual;
+  for (const double factor : {1.0, degree_rad, 1.0 / degree_rad}) {
+    for (const std::string_view sequence : angle_sequences) {
+      const double d = disagreement(pairs_as(sequence, factor), Reading::as_is, Mat3::Identity());
+      if (!(d < best)) continue;
+      best = d;
+      found = {std::string(sequence), factor};
+    }
+  }
+  constexpr double better = 0.5;  // than other axes of the gyro
+  if (best > agrees || best > 0.2 * as_is || best > better * by_axes) return usual;
+  const std::string unit = found.factor == 1.0  ? ""
+                           : found.factor < 1.0 ? " and are in degrees under a header of radians"
+                                                : " and are in radians under a header of degrees";
+  found.text = "convention: roll, pitch and yaw are turned in the sequence " + found.sequence +
+               ", " + formula_of(found.sequence) + ", not " + usual.sequence + unit;
+  if (found.sequence == usual.sequence)
+    found.text = "convention: roll, pitch and yaw" + unit.substr(4);
+  found.text +=
+      ": the recording was read so, because only then do the rates integrate to the angles";
+  return found;
 }
 
 std::string repair_conventions(Observation& seen) {

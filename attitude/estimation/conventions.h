@@ -1,6 +1,7 @@
 // Frame and convention checks before any physics: the rates must integrate to the attitude.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "attitude/estimation/observation.h"
@@ -13,6 +14,20 @@ namespace photorque {
 // and a sentence says so. Empty: nothing was changed. An observation without gyro cannot be
 // checked.
 std::string repair_conventions(Observation& seen);
+
+// How roll, pitch and yaw of a recording are to be read.
+struct AngleConvention {
+  std::string sequence;   // of angle_sequences
+  double factor = 1.0;    // to radians, of what the header calls radians
+  std::string text = {};  // a sentence; empty where they are as usual
+};
+
+// The sequence, and the unit, with which the rates integrate to the angles, where the recording
+// states no sequence. Nothing where there are no such angles or no rates; the usual one where it
+// agrees, where none does, or where gyro axes that are permuted or reversed explain it better.
+std::optional<AngleConvention> convention_of_angles(const Recording& recording,
+                                                    const Platform& platform,
+                                                    const std::string& name);
 
 // The same for the rates of a body on which nothing but its own inertia acts, or little else: they
 // must change as Euler's equations say, which an odd number of reversed axes, two axes exchanged or

@@ -9,9 +9,9 @@ namespace photorque {
 std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals) {
   std::vector<inference::ChannelResiduals> runs;
   for (const Prediction& p : residuals) {
-    inference::ChannelResiduals channels(6);
+    inference::ChannelResiduals channels(static_cast<size_t>(channel_count));
     for (const WhiteRow& row : p.residual) {
-      for (size_t k = 0; k < 6; ++k) {
+      for (size_t k = 0; k < channels.size(); ++k) {
         const double white = row[static_cast<Eigen::Index>(k)];
         if (std::isfinite(white)) channels[k].push_back(white);
       }
@@ -35,7 +35,7 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds
   int64_t dropped = 0;
   const std::vector<inference::ChannelResiduals> all = channels_of(residuals);
   for (size_t run = 0; run < runs.size(); ++run) {
-    for (Eigen::Index k = 0; k < 6; ++k) {
+    for (Eigen::Index k = 0; k < channel_count; ++k) {
       // Neighbours are the next that were read: gaps and empty cells lie in between.
       std::vector<size_t> rows;
       for (size_t i = 0; i < residuals[run].residual.size(); ++i) {
@@ -45,7 +45,9 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds
         ++dropped;
         // An attitude is right or wrong as a whole.
         if (k < 3) runs[run].attitude_rows[rows[n]] = 0.0;
-        if (k >= 3) runs[run].gyro_rows[rows[n]][k - 3] = 0.0;
+        if (k >= 3 && k < vector_channels) runs[run].gyro_rows[rows[n]][k - 3] = 0.0;
+        if (k < vector_channels) continue;
+        runs[run].scalar[static_cast<size_t>(k - vector_channels)].rows[rows[n]] = 0.0;
       }
     }
   }

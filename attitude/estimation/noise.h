@@ -6,7 +6,7 @@
 
 namespace photorque {
 
-// The six channels of whitened residuals (camera x, y, z, gyro x, y, z) without gaps, by run.
+// The channels of whitened residuals (readings/channels.h) without gaps, by run.
 std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals);
 
 // The structure that a fit leaves; huge where it cannot be propagated.

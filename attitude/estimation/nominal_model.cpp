@@ -1,6 +1,7 @@
 #include "attitude/estimation/nominal_model.h"
 
 #include "attitude/disturbances/kind.h"
+#include "attitude/estimation/starts.h"
 
 namespace photorque {
 namespace {
@@ -59,7 +60,9 @@ Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& run
                 const Thresholds& limits) {
   FitSettings settings;
   settings.windows = limits.fitting.first_windows;
-  return fit(nominal_hypothesis(nominal, runs), runs, settings);
+  Hypothesis start = nominal_hypothesis(nominal, runs);
+  choose_starts(start, runs);
+  return fit(start, runs, settings);
 }
 
 }  // namespace photorque

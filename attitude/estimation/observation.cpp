@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "attitude/estimation/columns.h"
+#include "attitude/readings/columns.h"
+#include "core/constants.h"
 #include "core/errors.h"
 
 namespace photorque {
@@ -40,18 +41,25 @@ struct BlockRows {
     double rad_s = NAN, slope_rad_s2 = 0.0;
   };
 
-  // The mean of the gyro's readings about one axis, moved to `at_s` with the slope over three
-  // blocks: a camera that sees every second row has another mean time.
   Rate gyro_rate(int axis, double at_s) const {
+    return mean_of(
+        at_s, [&](size_t i) { return from.gyro_rows[i][axis]; },
+        [&](size_t i) { return from.gyro_rad_s[i][axis]; });
+  }
+
+  // The mean of one number's readings, moved to `at_s` with the slope over three blocks: a camera
+  // that sees every second row has another mean time.
+  template <typename Weight, typename Value>
+  Rate mean_of(double at_s, const Weight& weight_of, const Value& value_of) const {
     const size_t length = last - first;
     const double reach_s = 1.5 * (from.time_s[last - 1] - from.time_s[first]) + 1e-9;
     double rows = 0.0, rate_sum = 0.0, time_sum_s = 0.0;
     double all = 0.0, all_rate = 0.0, all_s = 0.0, all_s2 = 0.0, all_product = 0.0;
     const size_t end = std::min(from.blocks(), last + length);
     for (size_t i = first - std::min(first, length); i < end; ++i) {
-      const double weight = from.gyro_rows[i][axis], since_s = from.time_s[i] - at_s;
+      const double weight = weight_of(i), since_s = from.time_s[i] - at_s;
       if (!(weight > 0.0) || std::abs(since_s) > reach_s) continue;
-      const double rate_rad_s = from.gyro_rad_s[i][axis];
+      const double rate_rad_s = value_of(i);
       all += weight;
       all_rate += weight * rate_rad_s;
       all_s += weight * since_s;
@@ -125,8 +133,28 @@ struct BlockRows {
     seen.attitude_rows.push_back(attitude_rows);
     seen.gyro_rad_s.emplace_back(gyro[0].rad_s, gyro[1].rad_s, gyro[2].rad_s);
     seen.gyro_rows.push_back(gyro_rows);
+    for (size_t s = 0; s < from.scalar.size(); ++s) {
+      const ScalarReadings& all = from.scalar[s];
+      if (all.rows.empty()) continue;
+      const auto weight = [&](size_t i) { return all.rows[i]; };
+      seen.scalar[s].value.push_back(
+          mean_of(at_s, weight, [&](size_t i) { return all.value[i]; }).rad_s);
+      double rows = 0.0;
+      for (size_t i = first; i < last; ++i) rows += all.rows[i];
+      seen.scalar[s].rows.push_back(rows);
+    }
   }
 };
+
+// Angles that come again after a whole turn, made continuous so that means of them mean something.
+void unwind(std::vector<double>& angle_rad) {
+  double last_rad = NAN;
+  for (double& angle : angle_rad) {
+    if (!std::isfinite(angle)) continue;
+    if (std::isfinite(last_rad)) angle = last_rad + std::remainder(angle - last_rad, 2.0 * pi);
+    last_rad = angle;
+  }
+}
 
 }  // namespace
 
@@ -137,12 +165,19 @@ Vec3 rotation_vector(const Quat& rotation) {
 }
 
 ChannelNoise NoiseLevels::of(int channel) const {
+  if (channel >= vector_channels) {
+    return {scalar[static_cast<size_t>(channel - vector_channels)], 0.0, 0.0};
+  }
   const int k = channel % 3;
   if (channel < 3) return {camera_rad[k], camera_colour.fraction[k], camera_colour.time_s[k]};
   return {gyro_rad_s[k], gyro_colour.fraction[k], gyro_colour.time_s[k]};
 }
 
 void NoiseLevels::set(int channel, const ChannelNoise& noise) {
+  if (channel >= vector_channels) {
+    scalar[static_cast<size_t>(channel - vector_channels)] = noise.level;
+    return;
+  }
   const int k = channel % 3;
   (channel < 3 ? camera_rad : gyro_rad_s)[k] = noise.level;
   Colour& colour = channel < 3 ? camera_colour : gyro_colour;
@@ -154,7 +189,51 @@ NoiseLevels noise_levels(const Sensors& sensors) {
   NoiseLevels noise;
   if (states_camera_noise(sensors)) noise.camera_rad = sensors.camera->noise_rad;
   if (states_gyro_noise(sensors)) noise.gyro_rad_s = Vec3::Constant(sensors.gyro->noise_rad_s);
+  for (int s = 0; s < scalar_count; ++s) {
+    double& level = noise.scalar[static_cast<size_t>(s)];
+    constexpr double usual_force_m_s2 = 0.01, usual_field_T = 1e-7;
+    switch (channel_traits(vector_channels + s).measures) {
+      case Measures::angle:  // as good as the camera about the vertical
+        level = noise.camera_rad[2];
+        break;
+      case Measures::rate:  // a magnitude is as good as one of its axes
+        level = noise.gyro_rad_s[2];
+        break;
+      case Measures::force:
+        level = states_noise(sensors, vector_channels + s) ? sensors.accelerometer->noise_m_s2
+                                                           : usual_force_m_s2;
+        break;
+      case Measures::field:
+        level = states_noise(sensors, vector_channels + s) ? sensors.magnetometer->noise_T
+                                                           : usual_field_T;
+        break;
+    }
+  }
   return noise;
+}
+
+FieldInstruments field_instruments(const Sensors& sensors) {
+  FieldInstruments fields;
+  if (sensors.accelerometer) {
+    fields.accelerometer_place_m = sensors.accelerometer->position_m;
+    fields.accelerometer_bias_m_s2 = sensors.accelerometer->bias_m_s2;
+  }
+  if (sensors.magnetometer) fields.magnetometer_bias_T = sensors.magnetometer->bias_T;
+  return fields;
+}
+
+bool states_noise(const Sensors& sensors, int channel) {
+  switch (channel_traits(channel).measures) {
+    case Measures::angle:
+      return states_camera_noise(sensors);
+    case Measures::rate:
+      return states_gyro_noise(sensors);
+    case Measures::force:
+      return sensors.accelerometer && sensors.accelerometer->noise_m_s2 > 0.0;
+    case Measures::field:
+      return sensors.magnetometer && sensors.magnetometer->noise_T > 0.0;
+  }
+  return false;
 }
 
 bool states_camera_noise(const Sensors& sensors) {
@@ -165,11 +244,31 @@ bool states_gyro_noise(const Sensors& sensors) {
   return sensors.gyro && sensors.gyro->noise_rad_s > 0.0;
 }
 
+bool Observation::has_scalars() const {
+  return std::any_of(scalar.begin(), scalar.end(),
+                     [](const ScalarReadings& s) { return !s.rows.empty(); });
+}
+
+bool Observation::feels_attitude(const Platform& platform) const {
+  if (sees_some_attitude()) return true;
+  for (int s = 0; s < scalar_count; ++s) {
+    if (scalar[static_cast<size_t>(s)].rows.empty()) continue;
+    const Measures measures = channel_traits(vector_channels + s).measures;
+    // What falls freely does not feel its weight.
+    if (measures == Measures::force ? platform.has_bearing() : measures != Measures::rate) {
+      return true;
+    }
+  }
+  return false;
+}
+
 size_t Observation::readings(size_t first, size_t last) const {
   size_t count = 0;
   for (size_t i = first; i < last; ++i) {
-    const bool read =
-        sees_some_attitude() ? attitude_rows[i] > 0.0 : (gyro_rows[i].array() > 0.0).any();
+    bool read = sees_some_attitude() ? attitude_rows[i] > 0.0 : (gyro_rows[i].array() > 0.0).any();
+    if (!sees_some_attitude()) {
+      for (const ScalarReadings& s : scalar) read = read || (!s.rows.empty() && s.rows[i] > 0.0);
+    }
     count += read ? 1 : 0;
   }
   return count;
@@ -200,10 +299,22 @@ Observation observe(const Recording& recording, const std::string& name, const P
     seen.gyro_rows.push_back(
         rate.unaryExpr([&](double x) { return usable && std::isfinite(x) ? 1.0 : 0.0; }));
   }
+  for (int s = 0; s < scalar_count; ++s) {
+    if (!columns.has_scalar(static_cast<Scalar>(s))) continue;
+    ScalarReadings& read = seen.scalar[static_cast<size_t>(s)];
+    for (size_t row = 0; row < recording.rows(); ++row) {
+      const double value = columns.scalar(static_cast<Scalar>(s), row);
+      read.value.push_back(value);
+      read.rows.push_back(!columns.has_event(row) && std::isfinite(value) ? 1.0 : 0.0);
+    }
+    if (channel_traits(vector_channels + s).turns) unwind(read.value);
+  }
   if (const size_t readings = seen.readings(0, seen.blocks()); readings < fewest_readings) {
     throw InputError({name, 0}, columns.first_name(),
                      std::to_string(readings) +
-                         (columns.has_attitude() ? " complete attitudes" : " rates") +
+                         (columns.has_attitude() ? " complete attitudes"
+                          : columns.has_gyro()   ? " rates"
+                                                 : " readings") +
                          (events > 0 ? ", " + std::to_string(events) + " of " +
                                            std::to_string(seen.rows) + " rows are marked as events"
                                      : ""),
@@ -220,6 +331,7 @@ Observation Observation::averaged(size_t max_blocks) const {
   result.attitude_rows.clear();
   result.gyro_rad_s.clear();
   result.gyro_rows.clear();
+  result.scalar = {};
   const double block_s = duration_s() / static_cast<double>(max_blocks);
   for (size_t first = 0, last = 0; first < blocks(); first = last) {
     // Half a row of slack, so that rounding of the times does not make uneven blocks.
@@ -241,6 +353,11 @@ Observation Observation::part(size_t first, size_t last) const {
   cut(result.attitude_rows, attitude_rows);
   cut(result.gyro_rad_s, gyro_rad_s);
   cut(result.gyro_rows, gyro_rows);
+  for (size_t s = 0; s < scalar.size(); ++s) {
+    if (scalar[s].rows.empty()) continue;
+    cut(result.scalar[s].value, scalar[s].value);
+    cut(result.scalar[s].rows, scalar[s].rows);
+  }
   const double start_s = result.time_s.front();
   double from_s = time_s.front();
   for (size_t i = 0; i < schedule.time_s.size() && from_s < start_s; ++i) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "attitude/model/platform.h"
+#include "attitude/readings/channels.h"
 #include "attitude/recordings/recording.h"
 #include "attitude/recordings/sensors.h"
 
@@ -28,8 +29,9 @@ struct NoiseLevels {
   struct Colour {
     Vec3 fraction = Vec3::Zero(), time_s = Vec3::Zero();
   } camera_colour, gyro_colour;
+  std::array<double, scalar_count> scalar = {};  // white; in SI
 
-  // Of channels 0 to 5: camera about lab x, y, z, gyro about body x, y, z.
+  // Of a channel (readings/channels.h).
   ChannelNoise of(int channel) const;
   void set(int channel, const ChannelNoise& noise);
 };
@@ -38,9 +40,26 @@ struct NoiseLevels {
 NoiseLevels noise_levels(const Sensors& sensors);
 bool states_camera_noise(const Sensors& sensors);
 bool states_gyro_noise(const Sensors& sensors);
+// Of any channel.
+bool states_noise(const Sensors& sensors, int channel);
+
+// Readings of one scalar, block by block; empty where there are none at all.
+struct ScalarReadings {
+  std::vector<double> value;
+  std::vector<double> rows;  // how many readings went into each; 0: none
+};
+
+// What an experiment says of the instruments that feel a field.
+struct FieldInstruments {
+  Vec3 accelerometer_place_m = Vec3::Zero();  // from the centre of rotation, or of mass where free
+  Vec3 accelerometer_bias_m_s2 = Vec3::Zero();
+  Vec3 magnetometer_bias_T = Vec3::Zero();
+};
+FieldInstruments field_instruments(const Sensors& sensors);
 
 struct Observation {
   std::string name;
+  FieldInstruments fields = {};
   Schedule schedule;
   double initial_charge_C = 0.0;  // drawn before the first row
   bool has_gyro = false;
@@ -54,6 +73,7 @@ struct Observation {
   std::vector<double> attitude_rows;  // how many rows went into it
   std::vector<Vec3> gyro_rad_s;
   std::vector<Vec3> gyro_rows;  // by axis
+  std::array<ScalarReadings, scalar_count> scalar = {};
   NoiseLevels noise;
   double row_interval_s = 0.0;  // of the file
   int64_t rows = 0;             // of the file
@@ -61,12 +81,20 @@ struct Observation {
   size_t blocks() const { return time_s.size(); }
   // Of a channel as in NoiseLevels.
   double rows_of(size_t block, int channel) const {
+    if (channel >= vector_channels) {
+      const std::vector<double>& rows = scalar[static_cast<size_t>(channel - vector_channels)].rows;
+      return rows.empty() ? 0.0 : rows[block];
+    }
     if (channel >= 3) return gyro_rows[block][channel - 3];
     return sees_axis[static_cast<size_t>(channel)] ? attitude_rows[block] : 0.0;
   }
   bool sees_attitude() const { return sees_axis[0] && sees_axis[1] && sees_axis[2]; }
   bool sees_some_attitude() const { return sees_axis[0] || sees_axis[1] || sees_axis[2]; }
-  // Readings in the blocks [first, last): attitudes, or rates where there are none.
+  bool has(Scalar s) const { return !scalar[static_cast<size_t>(s)].rows.empty(); }
+  bool has_scalars() const;
+  // Whether anything that is read would be different at another attitude of this platform.
+  bool feels_attitude(const Platform& platform) const;
+  // Readings in the blocks [first, last): attitudes, or rates and scalars where there are none.
   size_t readings(size_t first, size_t last) const;
   double duration_s() const { return time_s.back() - time_s.front(); }
   // The blocks [first, last) alone, the charge drawn before them counted.

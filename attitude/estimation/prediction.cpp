@@ -24,6 +24,111 @@ struct Delay {
   Vec3 turn_rad() const { return time_s * (rate_rad_s - 0.5 * time_s * acceleration_rad_s2); }
 };
 
+struct StateChange {
+  Vec3 rotation_body_rad, rate_rad_s;
+};
+
+// Accelerometer and magnetometer, in the order of their scalars.
+using FieldRow = Eigen::Matrix<double, scalar_count - first_field, 1>;
+
+// What they read: f = ω' × r + ω × (ω × r) − g, without g in free fall, and the field of the lab.
+class FieldReadings {
+ public:
+  FieldReadings(const Dynamics& dynamics, const Observation& seen)
+      : place_m_(seen.fields.accelerometer_place_m),
+        bias_m_s2_(seen.fields.accelerometer_bias_m_s2),
+        bias_T_(seen.fields.magnetometer_bias_T),
+        field_lab_T_(dynamics.model().environment.magnetic_field_lab_T) {
+    if (dynamics.model().platform.has_bearing()) {
+      gravity_lab_m_s2_ = dynamics.model().environment.gravity_lab_m_s2;
+    }
+  }
+
+  bool feels_turning() const { return place_m_.norm() > 0.0; }
+
+  FieldRow at(const PlatformState& state, const Vec3& acceleration_rad_s2) const {
+    const Vec3& w = state.rate_body_rad_s;
+    FieldRow row;
+    row << acceleration_rad_s2.cross(place_m_) + w.cross(w.cross(place_m_)) -
+               state.lab_from_body.conjugate() * gravity_lab_m_s2_ + bias_m_s2_,
+        state.lab_from_body.conjugate() * field_lab_T_ + bias_T_;
+    return row;
+  }
+
+  // `turning`: the change of ω'.
+  FieldRow slope(const PlatformState& state, const StateChange& by, const Vec3& turning) const {
+    const Vec3 &w = state.rate_body_rad_s, &dw = by.rate_rad_s;
+    const Vec3 gravity = state.lab_from_body.conjugate() * gravity_lab_m_s2_,
+               field = state.lab_from_body.conjugate() * field_lab_T_;
+    FieldRow row;
+    row << turning.cross(place_m_) + dw.cross(w.cross(place_m_)) + w.cross(dw.cross(place_m_)) -
+               gravity.cross(by.rotation_body_rad),
+        field.cross(by.rotation_body_rad);
+    return row;
+  }
+
+ private:
+  Vec3 place_m_, bias_m_s2_, bias_T_, field_lab_T_, gravity_lab_m_s2_ = Vec3::Zero();
+};
+
+// How the angular acceleration changes by each variable: through the state, and by a parameter
+// itself.
+class AccelerationSlopes {
+ public:
+  AccelerationSlopes(const Sensitivity& sensitivity, const Samples& samples)
+      : count_(sensitivity.variables().size()), all_(3 * count_, Lanes(0.0)) {
+    const Dynamics& dynamics = sensitivity.dynamics();
+    const auto size = static_cast<size_t>(dynamics.size());
+    std::vector<Lanes> partials(size * DualLanes::block);
+    constexpr auto width = static_cast<size_t>(DualLanes::block);
+    const auto partial = [&](size_t component, size_t k) {
+      return partials[component * width + k];
+    };
+    const auto evaluate = [&](const Dynamics::Block& block) {
+      dynamics.derivatives(samples.time_s, samples.held[0], samples.y.data(), block,
+                           partials.data());
+    };
+    for (size_t first = 0; first < size; first += width) {
+      Dynamics::Block block = nothing();
+      for (size_t k = 0; k < width && first + k < size; ++k) {
+        block.state[k] = static_cast<int>(first + k);
+      }
+      evaluate(block);
+      for (size_t k = 0; k < width && first + k < size; ++k) {
+        for (size_t v = 0; v < count_; ++v) {
+          for (size_t a = 0; a < 3; ++a) {
+            all_[a * count_ + v] +=
+                partial(component::rate + a, k) * samples.derivatives[(first + k) * count_ + v];
+          }
+        }
+      }
+    }
+    for (size_t v = 0; v < count_; ++v) {
+      const Variable& variable = sensitivity.variables()[v];
+      if (variable.parameter < 0) continue;
+      Dynamics::Block block = nothing();
+      block.parameter[0] = dynamics.first_parameter(variable.disturbance) + variable.parameter;
+      evaluate(block);
+      for (size_t a = 0; a < 3; ++a) all_[a * count_ + v] += partial(component::rate + a, 0);
+    }
+  }
+
+  Vec3 of(size_t v, int lane) const {
+    return {all_[v][lane], all_[count_ + v][lane], all_[2 * count_ + v][lane]};
+  }
+
+ private:
+  static Dynamics::Block nothing() {
+    Dynamics::Block block;
+    block.state.fill(-1);
+    block.parameter.fill(-1);
+    return block;
+  }
+
+  size_t count_;
+  std::vector<Lanes> all_;
+};
+
 // The slopes of the six readings in one lane, a row each.
 class Slopes {
  public:
@@ -37,7 +142,7 @@ class Slopes {
 
   // The camera sees the attitude, its own misalignment, and all of it late.
   void fill(int lane, const PlatformState& state, const Delay& delay,
-            Eigen::Matrix<double, 6, Eigen::Dynamic>& slope) {
+            Eigen::Matrix<double, channel_count, Eigen::Dynamic>& slope) {
     const Quat& q = state.lab_from_body;
     const Mat3 lab_from_body = q.toRotationMatrix();
     for (size_t v = 0; v < count_; ++v) {
@@ -55,15 +160,47 @@ class Slopes {
     }
   }
 
+  // Of the state itself: the rotation of the body, in body axes, and the rate.
+  StateChange change(size_t v, int lane, const PlatformState& state) const {
+    const auto by = [&](size_t c) { return samples_.derivatives[c * count_ + v][lane]; };
+    const Quat turned(by(0), by(1), by(2), by(3));
+    return {2.0 * (state.lab_from_body.conjugate() * turned).vec(),
+            {by(component::rate), by(component::rate + 1), by(component::rate + 2)}};
+  }
+
  private:
   size_t count_;
   const Samples& samples_;
   std::vector<Lanes> readings_;
 };
 
+// How fast a scalar says that it turns: an angle from one reading to the next, a rate as it is.
+double fastest_of_scalar(const ScalarReadings& read, Measures measures,
+                         const std::vector<double>& time_s) {
+  if (measures != Measures::angle && measures != Measures::rate) return 0.0;
+  const bool is_angle = measures == Measures::angle;
+  double fastest = 0.0;
+  size_t before = time_s.size();
+  for (size_t i = 0; i < read.rows.size(); ++i) {
+    if (!(read.rows[i] > 0.0)) continue;
+    if (!is_angle) fastest = std::max(fastest, read.value[i]);
+    if (is_angle && before < i) {
+      fastest = std::max(
+          fastest, std::abs(read.value[i] - read.value[before]) / (time_s[i] - time_s[before]));
+    }
+    before = i;
+  }
+  return fastest;
+}
+
 // By the gyro, or from one attitude to the next; 0.1 at least.
 double fastest_rad_s(const Observation& seen) {
   double fastest = 0.1;
+  for (int s = 0; s < scalar_count; ++s) {
+    fastest = std::max(
+        fastest, fastest_of_scalar(seen.scalar[static_cast<size_t>(s)],
+                                   channel_traits(vector_channels + s).measures, seen.time_s));
+  }
   size_t before = seen.blocks();
   for (size_t i = 0; i < seen.blocks(); ++i) {
     if (seen.has_gyro) {
@@ -91,11 +228,15 @@ class Comparison {
         max_chi2_(max_chi2),
         max_rate_rad_s_(runaway * fastest_rad_s(seen)),
         sums_(static_cast<Eigen::Index>(variables)),
-        slope_(6, static_cast<Eigen::Index>(variables)),
+        slope_(Eigen::Index{channel_count}, static_cast<Eigen::Index>(variables)),
         keep_(keep) {
     slope_.setZero();
-    for (int channel = 0; channel < 6; ++channel) {
+    for (int channel = 0; channel < channel_count; ++channel) {
       whitening_.emplace_back(seen, channel, slope_.cols() + 1);
+      const bool is_scalar = channel >= vector_channels;
+      if (is_scalar && seen.has(static_cast<Scalar>(channel - vector_channels))) {
+        scalars_.push_back(channel - vector_channels);
+      }
     }
   }
 
@@ -103,6 +244,12 @@ class Comparison {
     const Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
     std::optional<Slopes> slopes;
     if (sensitivity != nullptr) slopes.emplace(*sensitivity, samples);
+    const FieldReadings fields(dynamics, seen_);
+    const bool has_fields = !scalars_.empty() && scalars_.back() >= first_field;
+    std::optional<AccelerationSlopes> turning;
+    if (has_fields && sensitivity != nullptr && fields.feels_turning()) {
+      turning.emplace(*sensitivity, samples);
+    }
     // Nothing of what follows would be worth its steps.
     if (chi2_ > max_chi2_) throw NumericalError("the prediction has left the readings");
     std::vector<double> y(samples.y.size());
@@ -117,9 +264,15 @@ class Comparison {
                         {now.rates[component::rate][lane], now.rates[component::rate + 1][lane],
                          now.rates[component::rate + 2][lane]}};
       if (slopes) slopes->fill(lane, state, delay, slope_);
+      for (Eigen::Index v = 0; has_fields && slopes && v < slope_.cols(); ++v) {
+        const auto column = static_cast<size_t>(v);
+        slope_.col(v).tail<scalar_count - first_field>() =
+            fields.slope(state, slopes->change(column, lane, state),
+                         turning ? turning->of(column, lane) : Vec3::Zero());
+      }
       const Vec3 camera_offset_body = in_lane(now.camera_error_rad, lane) - delay.turn_rad();
       add_block(samples.first + static_cast<size_t>(lane), state, camera_offset_body,
-                in_lane(now.gyro_rad_s, lane));
+                in_lane(now.gyro_rad_s, lane), fields.at(state, delay.acceleration_rad_s2));
     }
   }
 
@@ -130,14 +283,34 @@ class Comparison {
 
  private:
   void add_block(size_t block, const PlatformState& state, const Vec3& camera_offset_body,
-                 const Vec3& gyro_rad_s) {
+                 const Vec3& gyro_rad_s, const FieldRow& fields) {
     WhiteRow white = WhiteRow::Constant(NAN), off = white;
     if (seen_.attitude_rows[block] > 0.0 && seen_.sees_some_attitude()) {
       off.head<3>() = rotation_vector(seen_.attitude[block] * state.lab_from_body.conjugate()) -
                       state.lab_from_body * camera_offset_body;
     }
-    off.tail<3>() = seen_.gyro_rad_s[block] - gyro_rad_s;
-    for (int channel = 0; channel < 6; ++channel) {
+    off.segment<3>(3) = seen_.gyro_rad_s[block] - gyro_rad_s;
+    Eigen::Matrix<double, scalar_count, 1> scalars = Eigen::Matrix<double, scalar_count, 1>::Zero();
+    for (const int s : scalars_) {
+      const ScalarReadings& read = seen_.scalar[static_cast<size_t>(s)];
+      if (s >= first_field) {
+        scalars[s] = fields[s - first_field];
+        off[vector_channels + s] = read.value[block] - scalars[s];
+        continue;  // its slopes are filled
+      }
+      const auto which = static_cast<Scalar>(s);
+      const Vec3 camera_offset_lab = state.lab_from_body * camera_offset_body;
+      const double angle = camera_offset_lab.norm();
+      const Quat as_seen = angle > 0.0 ? Quat(Eigen::AngleAxisd(angle, camera_offset_lab / angle)) *
+                                             state.lab_from_body
+                                       : state.lab_from_body;
+      const ScalarReading reading = scalar_reading(which, as_seen, gyro_rad_s);
+      scalars[s] = reading.value;
+      off[vector_channels + s] = scalar_difference(which, read.value[block], reading.value);
+      slope_.row(vector_channels + s) = reading.by_rotation_lab.transpose() * slope_.topRows<3>() +
+                                        reading.by_rate.transpose() * slope_.middleRows<3>(3);
+    }
+    for (int channel = 0; channel < channel_count; ++channel) {
       const double rows = seen_.rows_of(block, channel);
       if (rows > 0.0) white[channel] = put(channel, block, rows, off[channel]);
       if (!(rows > 0.0)) off[channel] = NAN;
@@ -148,6 +321,7 @@ class Comparison {
     result_.states.push_back(state);
     result_.camera_offset_lab_rad.emplace_back(state.lab_from_body * camera_offset_body);
     result_.gyro_rad_s.push_back(gyro_rad_s);
+    result_.scalars.push_back(scalars);
   }
 
   // Slopes and residual, whitened alike. Returns the whitened residual.
@@ -167,7 +341,8 @@ class Comparison {
   const Observation& seen_;
   double max_chi2_, max_rate_rad_s_, chi2_ = 0.0;
   inference::SumsOfRows sums_;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> slope_;
+  Eigen::Matrix<double, channel_count, Eigen::Dynamic> slope_;
+  std::vector<int> scalars_;          // that were read
   std::vector<Whitening> whitening_;  // of each channel
   bool keep_;
   Prediction result_;

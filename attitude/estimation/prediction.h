@@ -11,9 +11,9 @@
 
 namespace photorque {
 
-// Six residuals of a block: attitude about lab x, y, z, then gyro x, y, z; NaN where nothing was
-// measured.
-using WhiteRow = Eigen::Matrix<double, 6, 1>;
+// The residuals of a block by channel (readings/channels.h): attitude about lab x, y, z, gyro x, y,
+// z, scalars; NaN where nothing was measured.
+using WhiteRow = Eigen::Matrix<double, channel_count, 1>;
 
 struct Prediction {
   inference::NormalSums sums;
@@ -23,6 +23,8 @@ struct Prediction {
   std::vector<PlatformState> states;
   std::vector<Vec3> camera_offset_lab_rad;  // from the state's attitude to what the camera reports
   std::vector<Vec3> gyro_rad_s;             // what the gyro reads
+  // What each scalar that the observation has reads; zero for others.
+  std::vector<Eigen::Matrix<double, scalar_count, 1>> scalars;
 };
 
 struct PredictionOptions {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/columns.h"
+#include "attitude/readings/columns.h"
 #include "core/errors.h"
 
 namespace photorque {
@@ -14,6 +14,11 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
     throw InputError({name, 0}, "rows", std::to_string(recording.rows()), "at least 2");
   }
   const MotionColumns columns(recording, platform, name);
+  if (!columns.has_attitude() && !columns.has_gyro()) {
+    throw InputError({name, 0}, "header", "neither an attitude nor a rate about an axis",
+                     "the attitude q_w, q_x, q_y, q_z, or gyro_x_rad_s, gyro_y_rad_s, "
+                     "gyro_z_rad_s");
+  }
   Readings readings;
   readings.name = name;
   readings.rows = recording.rows();

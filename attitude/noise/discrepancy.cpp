@@ -80,7 +80,7 @@ NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
                              const std::vector<Observation>& runs, const NoiseLevels& own,
                              Remainder remainder) {
   NoiseLevels noise = own;
-  for (int channel = 0; channel < 6; ++channel) {
+  for (int channel = 0; channel < channel_count; ++channel) {
     const std::vector<LeftSeries> left = left_of(residuals, runs, channel);
     const double square = mean_square(left), level = own.of(channel).level;
     if (!(square > level * level)) continue;
@@ -98,12 +98,15 @@ NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
 NoiseLevels patient_noise(const std::vector<Observation>& runs, const NoiseLevels& own) {
   constexpr double part = 0.1;
   NoiseLevels noise = own;
-  for (int channel = 3; channel < 6; ++channel) {
+  for (int channel = 3; channel < channel_count; ++channel) {
+    if (channel_traits(channel).measures != Measures::rate) continue;
     double sum = 0.0, square = 0.0, count = 0.0;
     for (const Observation& seen : runs) {
       for (size_t i = 0; i < seen.blocks(); ++i) {
         if (!(seen.rows_of(i, channel) > 0.0)) continue;
-        const double x = seen.gyro_rad_s[i][channel - 3];
+        const double x = channel < vector_channels
+                             ? seen.gyro_rad_s[i][channel - 3]
+                             : seen.scalar[static_cast<size_t>(channel - vector_channels)].value[i];
         sum += x;
         square += x * x;
         count += 1.0;
@@ -119,7 +122,7 @@ NoiseLevels patient_noise(const std::vector<Observation>& runs, const NoiseLevel
 
 bool is_quieter(const NoiseLevels& now, const NoiseLevels& before) {
   constexpr double worth = 0.9;
-  for (int channel = 0; channel < 6; ++channel) {
+  for (int channel = 0; channel < channel_count; ++channel) {
     if (now.of(channel).level < worth * before.of(channel).level) return true;
   }
   return false;

@@ -45,6 +45,16 @@ std::vector<Key> sensor_keys() {
                   errors_of("gyro")}),
           "feels the rate")
           .usually_is("without any `[sensors]` an ideal one"),
+      Key::table("accelerometer",
+                 {not_negative("noise_m_s2", "per reading and axis; 0: found in the readings"),
+                  Key::vector3_or("position_m", Vec3::Zero(),
+                                  "from the centre of rotation (of mass, where nothing carries it)"),
+                  Key::vector3_or("bias_m_s2", Vec3::Zero(), "what it reads too much")},
+                 "feels the specific force; for `diagnose`"),
+      Key::table("magnetometer",
+                 {not_negative("noise_T", "per reading and axis; 0: found in the readings"),
+                  Key::vector3_or("bias_T", Vec3::Zero(), "the platform's own field, body axes")},
+                 "feels the environment's magnetic field; for `diagnose`"),
       Key::table("encoder",
                  {Key::number("resolution_arcsec", Range::positive(), "step of the heading")},
                  "reads the heading"),
@@ -68,6 +78,17 @@ Key recording_table() {
                   "`{ gyro_x_rad_s = \"wx\", … }`: the file's name of a channel. A unit in the "
                   "channel's key converts: `gyro_x_deg_s = \"wx\"`")
            .usually_is("names as they are"),
+       Key::choice_or("angle_sequence",
+                      {{"found",
+                        "the one with which the rates integrate to the angles; `zyx` "
+                        "where there are no rates"},
+                       {"zyx", "q = Rz(yaw) Ry(pitch) Rx(roll)"},
+                       {"xyz", "q = Rx(roll) Ry(pitch) Rz(yaw)"},
+                       {"xzy", "q = Rx(roll) Rz(yaw) Ry(pitch)"},
+                       {"yxz", "q = Ry(pitch) Rx(roll) Rz(yaw)"},
+                       {"yzx", "q = Ry(pitch) Rz(yaw) Rx(roll)"},
+                       {"zxy", "q = Rz(yaw) Rx(roll) Ry(pitch)"}},
+                      0, "in which roll, pitch and yaw are turned, about axes that turn along"),
        Key::flag_or("remove_outliers", usual.remove_outliers,
                     "empties cells of attitude and gyro far from all neighbours")},
       "how files of recordings are read");

@@ -16,12 +16,37 @@ namespace {
 
 // The contract's channels. A header may name them in another unit of the same kind.
 constexpr std::string_view known_channels[] = {
-    "t_s",           "gyro_x_rad_s",      "gyro_y_rad_s",    "gyro_z_rad_s",
-    "command_x_N_m", "command_y_N_m",     "command_z_N_m",   "battery_current_A",
-    "array_power_W", "array_voltage_V",   "array_current_A", "cell_temperature_K",
-    "led_current_A", "battery_voltage_V", "heading_rad",     "angle_rad",
-    "roll_rad",      "pitch_rad",         "yaw_rad",         "rate_rad_s",
-    "wheel_x_rad_s", "wheel_y_rad_s",     "wheel_z_rad_s",
+    "t_s",
+    "gyro_x_rad_s",
+    "gyro_y_rad_s",
+    "gyro_z_rad_s",
+    "command_x_N_m",
+    "command_y_N_m",
+    "command_z_N_m",
+    "battery_current_A",
+    "array_power_W",
+    "array_voltage_V",
+    "array_current_A",
+    "cell_temperature_K",
+    "led_current_A",
+    "battery_voltage_V",
+    "heading_rad",
+    "angle_rad",
+    "roll_rad",
+    "pitch_rad",
+    "yaw_rad",
+    "rate_rad_s",
+    "wheel_x_rad_s",
+    "wheel_y_rad_s",
+    "wheel_z_rad_s",
+    "tilt_rad",
+    "rate_magnitude_rad_s",
+    "accel_x_m_s2",
+    "accel_y_m_s2",
+    "accel_z_m_s2",
+    "mag_x_T",
+    "mag_y_T",
+    "mag_z_T",
 };
 
 // NaN for an empty cell or the word nan; nullopt for what is no number.
@@ -156,6 +181,7 @@ class RecordingReader {
   }
 
   void finish() {
+    recording_.angle_sequence = options_.angle_sequence;
     RecordingReport& report = recording_.report;
     report.rows_kept = static_cast<int64_t>(recording_.rows());
     if (report.backward_times > report.rows_kept) {
@@ -296,6 +322,9 @@ RecordingOptions read_recording_options(const Settings& settings) {
     }
   }
   options.remove_outliers = settings.flag_or("remove_outliers", true);
+  const std::vector<std::string> sequences = {"found", "zyx", "xyz", "xzy", "yxz", "yzx", "zxy"};
+  const size_t sequence = settings.choice_or("angle_sequence", sequences, 0);
+  if (sequence > 0) options.angle_sequence = sequences[sequence];
   return options;
 }
 

@@ -58,6 +58,9 @@ struct Recording {
   std::vector<double> time_s;  // rises strictly
   std::vector<Channel> channels;
   RecordingReport report;
+  // In which roll, pitch and yaw are turned ("zyx": q = Rz(yaw) Ry(pitch) Rx(roll)); empty where
+  // nobody said.
+  std::string angle_sequence = {};
 
   // Null when there is no such channel.
   const Channel* find(std::string_view name) const;
@@ -72,6 +75,7 @@ struct RecordingOptions {
   // in another unit of its kind ("gyro_x_deg_s"); it is converted and renamed.
   std::map<std::string, std::string> columns;
   bool remove_outliers = true;
+  std::string angle_sequence = {};  // of the recording
   // Largest number of cells that are kept, times included (8 bytes each).
   int64_t max_cells = 150'000'000;
 };

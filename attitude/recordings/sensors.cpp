@@ -109,6 +109,19 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
     gyro.rate_Hz = s.number_or("rate_Hz", 0.0, not_negative);
     read_errors(s, context, "gyro", sensors.errors);
   }
+  if (settings.has("accelerometer")) {
+    const Settings s = settings.table("accelerometer");
+    Sensors::Accelerometer& accelerometer = sensors.accelerometer.emplace();
+    accelerometer.noise_m_s2 = s.number_or("noise_m_s2", 0.0, not_negative);
+    accelerometer.position_m = s.vector3_or("position_m", Vec3::Zero());
+    accelerometer.bias_m_s2 = s.vector3_or("bias_m_s2", Vec3::Zero());
+  }
+  if (settings.has("magnetometer")) {
+    const Settings s = settings.table("magnetometer");
+    Sensors::Magnetometer& magnetometer = sensors.magnetometer.emplace();
+    magnetometer.noise_T = s.number_or("noise_T", 0.0, not_negative);
+    magnetometer.bias_T = s.vector3_or("bias_T", Vec3::Zero());
+  }
   if (settings.has("encoder")) {
     sensors.encoder.emplace().resolution_rad =
         settings.table("encoder").number("resolution_arcsec", Range::positive());

@@ -34,6 +34,16 @@ struct Sensors {
     double bias_drift_rad_s_1_s = 0.0;  // random walk of the bias: grows with the root of time [s]
     double rate_Hz = 0.0;
   };
+  // What `diagnose` compares and `propagate` does not write.
+  struct Accelerometer {
+    double noise_m_s2 = 0.0;         // per reading and axis; 0: not stated
+    Vec3 position_m = Vec3::Zero();  // from the centre of rotation, or of mass where nothing carries it
+    Vec3 bias_m_s2 = Vec3::Zero();
+  };
+  struct Magnetometer {
+    double noise_T = 0.0;
+    Vec3 bias_T = Vec3::Zero();
+  };
   // Reads the heading in whole steps.
   struct Encoder {
     double resolution_rad = 0.0;
@@ -44,6 +54,8 @@ struct Sensors {
   };
   std::optional<Camera> camera;
   std::optional<Gyro> gyro;
+  std::optional<Accelerometer> accelerometer;
+  std::optional<Magnetometer> magnetometer;
   std::optional<Encoder> encoder;
   Power power;
   // The noise is what is stated here, whatever a recording shows.
@@ -57,6 +69,8 @@ struct Sensors {
 //     misalignment_rad[3];
 //   gyro: noise_rad_s, bias_rad_s[3], bias_drift (rad/s per √s), scale[3], misalignment_rad[3],
 //     rate_Hz;
+//   accelerometer: noise_m_s2, position_m[3], bias_m_s2[3];
+//   magnetometer: noise_T, bias_T[3];
 //   encoder: resolution_arcsec;
 //   power: current_noise_A, power_noise_W;
 //   noise_is: "found" (diagnose looks for the noise in the recording) or "stated".

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "attitude/estimation/columns.h"
+#include "attitude/readings/columns.h"
 #include "attitude/stretches/law_breaks.h"
 #include "core/errors.h"
 
@@ -67,10 +67,8 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   return kinks;
 }
 
-}  // namespace
-
-Segments observe_segments(const Recording& recording, const std::string& name,
-                          const Platform& platform, size_t max_blocks) {
+Segments cut(const Recording& recording, const std::string& name, const Platform& platform,
+             size_t max_blocks) {
   const Observation rows = observe(recording, name, platform, std::numeric_limits<size_t>::max());
   const MotionColumns columns(recording, platform, name);
   const double gap_s = long_gap_s(recording);
@@ -111,6 +109,30 @@ Segments observe_segments(const Recording& recording, const std::string& name,
                          std::to_string(least_of_stretch) + " readings",
                      "a recording with longer ones");
   }
+  return result;
+}
+
+// Its angles as they are meant.
+Recording read_as(const AngleConvention& angles, Recording recording) {
+  recording.angle_sequence = angles.sequence;
+  for (Channel& channel : recording.channels) {
+    if (channel.name != "roll_rad" && channel.name != "pitch_rad" && channel.name != "yaw_rad") {
+      continue;
+    }
+    for (double& angle : channel.values) angle *= angles.factor;
+  }
+  return recording;
+}
+
+}  // namespace
+
+Segments observe_segments(const Recording& recording, const std::string& name,
+                          const Platform& platform, size_t max_blocks) {
+  const std::optional<AngleConvention> angles = convention_of_angles(recording, platform, name);
+  const bool as_usual = !angles || angles->text.empty();
+  Segments result =
+      cut(as_usual ? recording : read_as(*angles, recording), name, platform, max_blocks);
+  if (angles) result.angles = *angles;
   return result;
 }
 

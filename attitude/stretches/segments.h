@@ -2,9 +2,11 @@
 // where nothing was read for long.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "attitude/estimation/conventions.h"
 #include "attitude/estimation/observation.h"
 
 namespace photorque {
@@ -15,7 +17,8 @@ struct Segments {
   int64_t kinks = 0;      // rows at which an angle changes its rate at once: left out as well
   int64_t long_gaps = 0;  // at which the recording was cut
   int64_t too_short = 0;  // stretches with too few readings for a start of their own: left out
-  std::vector<std::string> lawless;  // why parts of stretches are left out (law_breaks.h)
+  std::optional<AngleConvention> angles;  // how roll, pitch and yaw were read
+  std::vector<std::string> lawless;       // why parts of stretches are left out (law_breaks.h)
 };
 
 // `max_blocks`: of all stretches together. InputError as observe() (observation.h), and where every

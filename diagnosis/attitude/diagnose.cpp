@@ -122,9 +122,9 @@ std::vector<std::string> warnings_of(const RecordedData& data,
 // Where nobody sees the attitude and nothing depends on it, it is not propagated.
 NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   NominalModel nominal = stated;
-  const bool is_seen =
-      std::any_of(data.train.begin(), data.train.end(),
-                  [](const Observation& seen) { return seen.sees_some_attitude(); });
+  const bool is_seen = std::any_of(
+      data.train.begin(), data.train.end(),
+      [&](const Observation& seen) { return seen.feels_attitude(stated.model.platform); });
   nominal.model.holds_attitude = !is_seen && !depends_on_attitude(stated.model);
   return nominal;
 }

@@ -3,29 +3,27 @@
 #include <cmath>
 
 #include "attitude/estimation/noise.h"
+#include "attitude/estimation/starts.h"
 #include "core/constants.h"
 #include "core/errors.h"
 
 namespace photorque {
 namespace {
 
-constexpr const char* labels[] = {"Attitude about lab x", "Attitude about lab y",
-                                  "Attitude about lab z", "Rate about body x",
-                                  "Rate about body y",    "Rate about body z"};
-
 // What one whitened unit of a channel is in its own unit, at one reading.
 double noise_of(const Observation& seen, Eigen::Index k) {
-  return k < 3 ? seen.noise.camera_rad[k] / arcsecond_rad : seen.noise.gyro_rad_s[k - 3];
+  const auto channel = static_cast<int>(k);
+  return seen.noise.of(channel).level * channel_traits(channel).per_SI;
 }
 
 double in_unit(const WhiteRow& off, Eigen::Index k) {
-  return k < 3 ? off[k] / arcsecond_rad : off[k];
+  return off[k] * channel_traits(static_cast<int>(k)).per_SI;
 }
 
 std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
                                   const std::vector<Observation>& runs) {
   std::map<std::string, double> result;
-  for (Eigen::Index k = 0; k < 6; ++k) {
+  for (Eigen::Index k = 0; k < channel_count; ++k) {
     double sum = 0.0;
     int64_t count = 0;
     for (size_t run = 0; run < runs.size(); ++run) {
@@ -36,7 +34,9 @@ std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
         ++count;
       }
     }
-    if (count > 0) result[channel_names[k]] = std::sqrt(sum / static_cast<double>(count));
+    if (count > 0)
+      result[channel_traits(static_cast<int>(k)).name] =
+          std::sqrt(sum / static_cast<double>(count));
   }
   return result;
 }
@@ -51,6 +51,7 @@ Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs,
   for (const Free& f : h.free) own.push_back(f.mean);
   h.runs.clear();
   for (const Observation& seen : runs) h.runs.push_back({first_state(h.model, seen), own});
+  choose_starts(h, runs);
   FitSettings settings;
   settings.windows = limits.fitting.first_windows;
   return fit(h, runs, settings);
@@ -83,11 +84,15 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
   const double max_gap_s = 5.0 * seen.duration_s() / static_cast<double>(seen.blocks());
   try {
     const Prediction a = propagated(before), b = propagated(after);
-    for (Eigen::Index k = 0; k < 6; ++k) {
+    for (Eigen::Index k = 0; k < channel_count; ++k) {
+      const ChannelTraits& traits = channel_traits(static_cast<int>(k));
+      const bool is_scalar = k >= vector_channels;
+      const auto scalar = static_cast<size_t>(is_scalar ? k - vector_channels : 0);
+      if (is_scalar && !seen.has(static_cast<Scalar>(scalar))) continue;
       ChannelSeries c;
-      c.name = channel_names[k];
-      c.label = labels[k];
-      c.unit = k < 3 ? "arcsec" : "rad/s";
+      c.name = traits.name;
+      c.label = traits.label;
+      c.unit = traits.unit;
       c.residual_unit = c.unit;
       c.noise = noise_of(seen, k);
       for (size_t i = 0; i < seen.blocks(); ++i) {
@@ -100,10 +105,11 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
         c.residual_before.push_back(in_unit(a.off[i], k));
         c.residual_after.push_back(in_unit(b.off[i], k));
         if (k < 3) continue;
-        const double rate = seen.gyro_rad_s[i][k - 3];
-        c.measured.push_back(rate);
-        c.before.push_back(rate - c.residual_before.back());
-        c.after.push_back(rate - c.residual_after.back());
+        const double value =
+            is_scalar ? traits.per_SI * seen.scalar[scalar].value[i] : seen.gyro_rad_s[i][k - 3];
+        c.measured.push_back(value);
+        c.before.push_back(value - c.residual_before.back());
+        c.after.push_back(value - c.residual_after.back());
       }
       result.channels.push_back(std::move(c));
     }

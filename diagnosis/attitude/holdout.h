@@ -6,11 +6,6 @@
 
 namespace photorque {
 
-// The six channels of an observation, as diagnosis.json names them.
-inline constexpr const char* channel_names[] = {"attitude_x_arcsec", "attitude_y_arcsec",
-                                                "attitude_z_arcsec", "gyro_x_rad_s",
-                                                "gyro_y_rad_s",      "gyro_z_rad_s"};
-
 // The model of a fit propagated on other runs: only how these runs began (initial state, instrument
 // biases within their stated uncertainty) is taken from them.
 Fit propagate_model(const Fit& fitted, const std::vector<Observation>& runs,

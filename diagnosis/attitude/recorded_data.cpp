@@ -4,9 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "attitude/estimation/columns.h"
 #include "attitude/estimation/conventions.h"
 #include "attitude/noise/reading_level.h"
+#include "attitude/readings/angle_sequence.h"
+#include "attitude/readings/columns.h"
 #include "attitude/stretches/segments.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/holdout.h"
@@ -32,26 +33,68 @@ void say_cuts(const std::string& name, const Segments& segments,
   }
 }
 
-void say_unused(const NamedRecording& r, const Platform& platform,
+// An accelerometer and a magnetometer count where the experiment has them: where the one sits, and
+// that nothing aboard disturbs the other, is nothing that a recording says.
+bool is_declared(const Sensors& sensors, int scalar) {
+  const Measures measures = channel_traits(vector_channels + scalar).measures;
+  if (measures == Measures::force) return sensors.accelerometer.has_value();
+  return measures != Measures::field || sensors.magnetometer.has_value();
+}
+
+void say_unused(const NamedRecording& r, const NominalModel& nominal,
                 std::vector<std::string>& warnings) {
-  std::string names;
-  for (const std::string& column : MotionColumns(r.recording, platform, r.name).unused()) {
+  const Platform& platform = nominal.model.platform;
+  std::string names, undeclared;
+  const MotionColumns motion(r.recording, platform, r.name);
+  for (int s = first_field; s < scalar_count; ++s) {
+    if (is_declared(nominal.sensors, s) || !motion.has_scalar(static_cast<Scalar>(s))) continue;
+    undeclared +=
+        (undeclared.empty() ? "" : ", ") + std::string(channel_traits(vector_channels + s).column);
+  }
+  if (!undeclared.empty()) {
+    warnings.push_back(r.name + ": " + undeclared +
+                       " are not compared: the experiment has no [sensors.accelerometer] or "
+                       "[sensors.magnetometer] for them");
+  }
+  for (const std::string& column : motion.unused()) {
     names += (names.empty() ? "" : ", ") + column;
   }
   if (!names.empty()) warnings.push_back(r.name + ": columns that are not used: " + names);
 }
 
+// Without rates nothing tells in which sequence angles are turned.
+void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
+                          std::vector<std::string>& warnings) {
+  const MotionColumns columns(r.recording, platform, r.name);
+  if (!columns.has_angles() || columns.has_gyro() || !r.recording.angle_sequence.empty()) return;
+  warnings.push_back(r.name + ": roll, pitch and yaw are taken in the sequence zyx, " +
+                     formula_of(angle_sequences[0]) +
+                     "; no rates are there to test it, and [recording] angle_sequence states it");
+}
+
 // The stretches of each recording.
 std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecording>& recordings,
-                                                  const Platform& platform, size_t max_blocks,
+                                                  const NominalModel& nominal, size_t max_blocks,
                                                   std::vector<std::string>& warnings) {
+  const Platform& platform = nominal.model.platform;
   std::vector<std::vector<Observation>> all;
   for (const NamedRecording& r : recordings) {
     Segments segments = observe_segments(r.recording, r.name, platform, max_blocks);
     say_cuts(r.name, segments, warnings);
-    say_unused(r, platform, warnings);
-    std::string convention;
+    say_unused(r, nominal, warnings);
+    say_assumed_sequence(r, platform, warnings);
+    if (MotionColumns(r.recording, platform, r.name).has_scalar(Scalar::tilt)) {
+      warnings.push_back(r.name +
+                         ": a tilt does not say whereto the body leans: an answer has a mirror "
+                         "image that reads the same, leaning the other way, and priors alone "
+                         "decide between them; signs of what is found may be those of the image");
+    }
+    std::string convention = segments.angles ? segments.angles->text : "";
     for (Observation& seen : segments.all) {
+      for (int s = 0; s < scalar_count; ++s) {
+        if (!is_declared(nominal.sensors, s)) seen.scalar[static_cast<size_t>(s)] = {};
+      }
+      seen.fields = field_instruments(nominal.sensors);
       const std::string of_stretch =
           platform.has_bearing()
               ? repair_conventions(seen)
@@ -90,8 +133,8 @@ NoiseLevels noise_of(const Sensors& sensors, const std::vector<Observation>& run
                      std::vector<std::string>& warnings) {
   NoiseLevels noise = noise_levels(sensors);
   const bool can_be_found = runs.front().sees_attitude();
-  for (int channel = 0; !can_be_found && channel < 6; ++channel) {
-    if (channel < 3 ? states_camera_noise(sensors) : states_gyro_noise(sensors)) continue;
+  for (int channel = 0; !can_be_found && channel < channel_count; ++channel) {
+    if (states_noise(sensors, channel)) continue;
     const std::optional<double> level = reading_level(runs, channel);
     if (!level) continue;
     noise.set(channel, {*level, 0.0, 0.0});
@@ -99,8 +142,8 @@ NoiseLevels noise_of(const Sensors& sensors, const std::vector<Observation>& run
     std::snprintf(
         text, sizeof text,
         "%s: no noise is stated; neighbouring readings scatter by %.3g %s, which was used",
-        channel_names[channel], channel < 3 ? *level / arcsecond_rad : *level,
-        channel < 3 ? "arcsec" : "rad/s");
+        channel_traits(channel).name, *level * channel_traits(channel).per_SI,
+        channel_traits(channel).unit);
     warnings.emplace_back(text);
   }
   return noise;
@@ -111,16 +154,15 @@ NoiseLevels noise_of(const Sensors& sensors, const std::vector<Observation>& run
 RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts,
                        const DiagnoseOptions& options) {
-  const Platform& platform = nominal.model.platform;
   RecordedData data;
-  for (auto& stretches : observe_all(recordings, platform, options.max_blocks, data.warnings)) {
+  for (auto& stretches : observe_all(recordings, nominal, options.max_blocks, data.warnings)) {
     if (holdouts.empty()) {
       hold_out(std::move(stretches), options.holdout_fraction, data);
     } else {
       append_to(data.train, std::move(stretches));
     }
   }
-  for (auto& stretches : observe_all(holdouts, platform, options.max_blocks, data.warnings)) {
+  for (auto& stretches : observe_all(holdouts, nominal, options.max_blocks, data.warnings)) {
     append_to(data.held, std::move(stretches));
   }
   const NoiseLevels noise = noise_of(nominal.sensors, data.train, data.warnings);

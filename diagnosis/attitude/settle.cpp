@@ -13,37 +13,35 @@
 namespace photorque {
 namespace {
 
-constexpr const char* spoken[] = {"the camera about lab x", "the camera about lab y",
-                                  "the camera about lab z", "the gyro about body x",
-                                  "the gyro about body y",  "the gyro about body z"};
 
 InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
   const double unit = k < 3 ? arcsecond_rad : 1.0;
   const double value = found.noise.level / unit;
-  return {channel_names[k], "noise_level", value, found.level_sigma * value,
+  return {channel_traits(k).name, "noise_level", value, found.level_sigma * value,
           written("the noise of %s is not what the experiment states: %.3g %s were found in the "
                   "recording and used, %.3g are stated",
-                  spoken[k], value, k < 3 ? "arcsec" : "rad/s", stated / unit)};
+                  channel_traits(k).spoken, value, k < 3 ? "arcsec" : "rad/s", stated / unit)};
 }
 
 InstrumentFinding colour_finding(int k, const FoundNoise& found) {
   const bool all = !(found.noise.coloured < 1.0);
   return {
-      channel_names[k], "noise_correlation_time_s", found.noise.time_s, found.time_sigma_s,
+      channel_traits(k).name, "noise_correlation_time_s", found.noise.time_s, found.time_sigma_s,
       written(
           "the noise of %s is correlated over %.3g s%s: neighbouring readings count for "
           "less",
-          spoken[k], found.noise.time_s,
+          channel_traits(k).spoken, found.noise.time_s,
           all ? "" : written(" (%.0f %% of its variance)", 100.0 * found.noise.coloured).c_str())};
 }
 
 InstrumentFinding tail_finding(int k, const HeavyTail& tail) {
   const double unit = k < 3 ? arcsecond_rad : 1.0;
   return {
-      channel_names[k], "noise_degrees_of_freedom", tail.degrees, tail.degrees_sigma,
+      channel_traits(k).name, "noise_degrees_of_freedom", tail.degrees, tail.degrees_sigma,
       written("the noise of %s has heavy tails (Student's t with %.2g degrees of freedom, scale "
               "%.3g %s): readings far from their neighbours count for less",
-              spoken[k], tail.degrees, tail.scale / unit, k < 3 ? "arcsec" : "rad/s")};
+              channel_traits(k).spoken, tail.degrees, tail.scale / unit,
+              k < 3 ? "arcsec" : "rad/s")};
 }
 
 // Gives the runs the noise that was found, and tells of it. Returns whether any changed.

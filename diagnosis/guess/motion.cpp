@@ -2,9 +2,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "attitude/estimation/columns.h"
 #include "attitude/estimation/free_inertia.h"
 #include "attitude/noise/reading_level.h"
+#include "attitude/readings/angle_sequence.h"
+#include "attitude/readings/columns.h"
 #include "attitude/stretches/segments.h"
 #include "core/constants.h"
 #include "core/errors.h"
@@ -30,6 +31,7 @@ struct Machine {
   std::vector<Recording> recordings;
   std::vector<std::string> names;
   std::vector<Observation> runs;
+  std::optional<AngleConvention> angles;  // how roll, pitch and yaw of the first are turned
 
   bool has(const char* channel) const { return recordings.front().find(channel) != nullptr; }
   bool has_all(std::initializer_list<const char*> channels) const {
@@ -49,6 +51,7 @@ struct Machine {
     runs.clear();
     for (size_t i = 0; i < recordings.size(); ++i) {
       Segments segments = observe_segments(recordings[i], names[i], platform);
+      if (i == 0) angles = segments.angles;
       std::move(segments.all.begin(), segments.all.end(), std::back_inserter(runs));
     }
   }
@@ -90,11 +93,13 @@ std::string matrix_text(const Mat3& m) {
 std::string inertia_text(const std::vector<Observation>& runs) {
   const std::optional<FreeInertia> found = free_inertia(runs);
   Mat3 value = Mat3::Identity(), sigma;
+  // The magnitude of the rate of a sphere does not change, to first order whatever its moments.
+  if (!runs.front().has_gyro) value.diagonal() << 1.0, 0.8, 0.6;
   sigma << 0, 0.2, 0.2, 0.2, 0.4, 0.2, 0.2, 0.2, 0.4;
   constexpr double worth_saying = 0.1;
   const bool is_known = found && found->sigma(0) < worth_saying && found->sigma(1) < worth_saying &&
                         found->sigma(2) < worth_saying;
-  std::string why = "CONFIRM: the rates do not tell the ratios of the moments; guessed alike.";
+  std::string why = "CONFIRM: the rates do not tell the ratios of the moments; guessed.";
   if (is_known) {
     // The first moment is the unit. Torques that nobody knows shift what the rates tell by more
     // than its own error.
@@ -123,12 +128,12 @@ std::string inertia_text(const std::vector<Observation>& runs) {
          "\nsigma = " + matrix_text(sigma) + "\n";
 }
 
-// The noise of three channels, where it is alike in all that were read.
-std::string noise_text(const std::vector<Observation>& runs, int first, const char* table,
-                       const char* key, double unit) {
+// The noise of some channels, where it is alike in all that were read.
+std::string noise_text(const std::vector<Observation>& runs, const std::vector<int>& channels,
+                       const char* table, const char* key, double unit) {
   std::vector<double> levels;
-  for (int k = 0; k < 3; ++k) {
-    if (const auto level = reading_level(runs, first + k)) levels.push_back(*level / unit);
+  for (const int channel : channels) {
+    if (const auto level = reading_level(runs, channel)) levels.push_back(*level / unit);
   }
   if (levels.empty()) return "";
   const auto [least, most] = std::minmax_element(levels.begin(), levels.end());
@@ -209,7 +214,27 @@ std::optional<int> only_axis(const std::vector<Observation>& runs) {
   return axis;
 }
 
+// An angle against the vertical, or the length of a rate, is of a body that turns about more than
+// one axis.
+bool see_by_scalars(Machine& m) {
+  if (m.sees_attitude() || m.has_three_rates()) return false;
+  if (m.has("rate_magnitude_rad_s")) {
+    m.why =
+        "the magnitude of a rate and no axis: thrown or in orbit, nothing carries it. On a bearing "
+        "it is \"tabletop\".";
+    m.observe_as(Topology::free);
+    return true;
+  }
+  if (!m.has("tilt_rad") && !(m.has("roll_rad") && m.has("pitch_rad"))) return false;
+  m.why =
+      "angles against the vertical alone: a platform on a bearing that leans. About one axis it is "
+      "\"one_axis\".";
+  m.observe_as(Topology::tabletop);
+  return true;
+}
+
 void see_machine(Machine& m) {
+  if (see_by_scalars(m)) return;
   if (!m.sees_attitude() && !m.has_three_rates()) return see_one_axis(m);
   m.why =
       "three rates and no attitude: thrown, in orbit, or on gimbals, nothing carries it. On a "
@@ -270,6 +295,20 @@ std::string drag_text(const Machine& m) {
          digits(coefficient_1_s) + ", sigma = " + digits(10.0 * coefficient_1_s) + " }\n";
 }
 
+// Of roll, pitch and yaw.
+std::string sequence_text(const Machine& m) {
+  if (!m.platform.turns_about_one_axis() && m.has_all({"roll_rad", "pitch_rad", "yaw_rad"}) &&
+      !m.has("q_w")) {
+    const std::string sequence = m.angles ? m.angles->sequence : std::string(angle_sequences[0]);
+    const std::string why =
+        !m.angles ? "CONFIRM: the sequence of roll, pitch and yaw; no rates are there to test it."
+                  : "With this sequence, " + formula_of(sequence) +
+                        ", the rates integrate to the angles.";
+    return "[recording]\n" + comment_lines(why) + "angle_sequence = \"" + sequence + "\"\n\n";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string guess_motion(const std::vector<fs::path>& recordings) {
@@ -282,14 +321,24 @@ std::string guess_motion(const std::vector<fs::path>& recordings) {
     m.names.push_back(path.string());
   }
   see_machine(m);
-  std::string text = mapped + machine_text(m);
+  std::string text = sequence_text(m) + mapped + machine_text(m);
   if (m.platform.topology == Topology::free) text += inertia_text(m.runs);
   if (m.platform.turns_about_one_axis()) text += drag_text(m);
   text += "\n";
   const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().sees_some_attitude();
-  if (has_gyro) text += noise_text(m.runs, 3, "sensors.gyro", "noise_rad_s", 1.0);
+  if (has_gyro) text += noise_text(m.runs, {3, 4, 5}, "sensors.gyro", "noise_rad_s", 1.0);
   if (has_angle && m.platform.turns_about_one_axis()) {
-    text += noise_text(m.runs, 0, "sensors.angle", "noise_arcsec", arcsecond_rad);
+    text += noise_text(m.runs, {0, 1, 2}, "sensors.angle", "noise_arcsec", arcsecond_rad);
+  }
+  std::vector<int> rates, angles;
+  for (int channel = vector_channels; channel < channel_count; ++channel) {
+    const Measures measures = channel_traits(channel).measures;
+    if (measures == Measures::angle) angles.push_back(channel);
+    if (measures == Measures::rate) rates.push_back(channel);
+  }
+  if (!has_gyro) text += noise_text(m.runs, rates, "sensors.gyro", "noise_rad_s", 1.0);
+  if (!has_angle) {
+    text += noise_text(m.runs, angles, "sensors.angle", "noise_arcsec", arcsecond_rad);
   }
   std::string unused;
   for (const std::string& name :

@@ -189,6 +189,10 @@ MeantQuantity quantity_of(const std::vector<std::string>& words) {
   if (any("time", "sec", "elapsed", "clock") || (words.size() == 1 && words[0] == "t")) {
     return {"t", "s"};
   }
+  if (any("magnitude", "norm", "modulus") &&
+      any("gyr", "omega", "ang", "rate", "spin", "speed", "w")) {
+    return {"rate_magnitude", "rad_s"};
+  }
   if (any("acc")) return {axis.empty() ? "" : "accel_" + axis, "m_s2"};
   if (any("mag") || (words.size() <= 2 && any("b") && !axis.empty())) {
     return {axis.empty() ? "" : "mag_" + axis, "T"};
@@ -243,8 +247,10 @@ GuessedColumn guessed(const FileHead& head, size_t column) {
     guess.channel = q;
     return guess;
   }
-  const MeantQuantity quantity = quantity_of(words);
+  MeantQuantity quantity = quantity_of(words);
   if (quantity.stem.empty()) return guess;
+  // "|omega|"
+  if (quantity.stem == "rate" && name.starts_with("|")) quantity.stem = "rate_magnitude";
   const std::string usual = quantity.stem == "t" ? clock_unit(head, column) : quantity.usual_unit;
   guess.channel = quantity.stem + "_" + (unit.empty() ? usual : unit);
   const bool fits = unit_of_key(guess.channel).dimension ==

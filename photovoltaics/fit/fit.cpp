@@ -9,6 +9,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "photovoltaics/fit/limits.h"
 #include "photovoltaics/fit/parts.h"
 
 namespace photorque {
@@ -72,21 +73,22 @@ MatrixXd covariance_root(const IvSweep& sweep, const SweepNoise& noise, const Ve
   return covariance.llt().matrixL();
 }
 
-std::vector<inference::Parameter> parameters_from(const VectorXd& x) {
-  return {{"photocurrent", "A", x[light]},
-          {"saturation", "ln A", x[saturation]},
-          {"n V_t", "ln V", x[scale]},
-          {"series", "ln ohm", x[series]},
-          {"shunt", "ln S", x[shunt]}};
+std::vector<inference::Parameter> parameters_from(const VectorXd& x, const SweepEnds& ends) {
+  std::vector<inference::Parameter> all = {{"photocurrent", "A", x[light]},
+                                           {"saturation", "ln A", x[saturation]},
+                                           {"n V_t", "ln V", x[scale]},
+                                           {"series", "ln ohm", x[series]},
+                                           {"shunt", "ln S", x[shunt]}};
+  bound_resistances(ends.open_circuit_V / ends.short_circuit_A, all[series], all[shunt]);
+  return all;
 }
 
-// The residuals of some sweeps, whitened by the roots of their covariances.
-inference::Fit fit_round(std::span<const IvSweep> sweeps, const std::vector<MatrixXd>& roots,
-                         const VectorXd& start) {
+// The residuals of some sweeps, whitened by the roots of their covariances; all must outlive it.
+inference::ResidualFunction whitened(std::span<const IvSweep> sweeps,
+                                     const std::vector<MatrixXd>& roots) {
   Index points = 0;
   for (const IvSweep& sweep : sweeps) points += static_cast<Index>(sweep.voltage_V.size());
-  const auto whitened = [&, points](const VectorXd& x, Index, VectorXd& residuals,
-                                    MatrixXd* slopes) {
+  return [sweeps, &roots, points](const VectorXd& x, Index, VectorXd& residuals, MatrixXd* slopes) {
     residuals = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
     if (!reasonable(x)) return;
     if (slopes != nullptr) slopes->resize(points, count);
@@ -104,7 +106,19 @@ inference::Fit fit_round(std::span<const IvSweep> sweeps, const std::vector<Matr
       if (slopes != nullptr) root.solveInPlace(slopes->middleRows(first, row - first));
     }
   };
-  const inference::ResidualModel model(parameters_from(start), whitened);
+}
+
+std::vector<MatrixXd> covariance_roots(std::span<const IvSweep> sweeps, const SweepNoise& noise,
+                                       const VectorXd& x) {
+  std::vector<MatrixXd> roots;
+  for (const IvSweep& sweep : sweeps) roots.push_back(covariance_root(sweep, noise, x));
+  return roots;
+}
+
+inference::Fit fit_round(std::span<const IvSweep> sweeps, const std::vector<MatrixXd>& roots,
+                         const VectorXd& start) {
+  const inference::ResidualModel model(parameters_from(start, sweep_ends(sweeps[0])),
+                                       whitened(sweeps, roots));
   return inference::fit(model, start, inference::Options::to_rounding());
 }
 
@@ -113,9 +127,7 @@ inference::Fit fit_rounds(std::span<const IvSweep> sweeps, const SweepNoise& noi
                           int rounds) {
   inference::Fit fit;
   for (int round = 0; round < rounds; ++round) {
-    std::vector<MatrixXd> roots;
-    for (const IvSweep& sweep : sweeps) roots.push_back(covariance_root(sweep, noise, x));
-    fit = fit_round(sweeps, roots, x);
+    fit = fit_round(sweeps, covariance_roots(sweeps, noise, x), x);
     x = fit.at;
   }
   return fit;
@@ -172,6 +184,11 @@ SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
                   exponential(x[scale], error[scale]),
                   exponential(x[series], error[series]),
                   exponential(-x[shunt], error[shunt])};
+  const std::vector<MatrixXd> roots = covariance_roots(sweeps, noise, x);
+  const inference::Fit settled = fit_round(sweeps, roots, x);
+  limit_resistances(settled, whitened(sweeps, roots), series, shunt, settled.variance(),
+                    result.diode);
+  result.bounds = bounds_reached(best, resistance_bounds(series, shunt));
   result.rms_A = rms_A(sweeps, x);
   result.points = static_cast<size_t>(best.samples);
   return result;

@@ -6,7 +6,9 @@
 // on the scatter of the data and not on the noise that was stated.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/estimate.h"
@@ -34,12 +36,24 @@ struct SingleDiode {
   Estimate scale_V;  // n V_t
   Estimate series_ohm;
   Estimate shunt_ohm;
+  // Where the data do not tell the shunt from none at all, or the series resistance from zero:
+  // what they leave of it at 95 % (one-sided). The estimate above is then no measurement.
+  std::optional<double> shunt_above_ohm = {};
+  std::optional<double> series_below_ohm = {};
 
   CellParameters parameters(double temperature_K) const;
 };
 
+// A bound on which a fit ended: which figure, where the bound lies, and what it means.
+struct BoundReached {
+  std::string key;
+  double value = 0.0;
+  std::string meaning;
+};
+
 struct SweepFit {
   SingleDiode diode;
+  std::vector<BoundReached> bounds;
   double rms_A = 0.0;     // of current at the measured voltages
   double variance = 0.0;  // per degree of freedom, in units of the noise given
   size_t points = 0;
@@ -91,7 +105,8 @@ struct RatedTolerance {
 RatedTolerance written_steps(std::span<const RatedPoint> points);
 
 struct RatedFit {
-  SingleDiode diode;                  // photocurrent at the first point
+  SingleDiode diode;  // photocurrent at the first point
+  std::vector<BoundReached> bounds;
   CellModel model;                    // of the whole device, reference_area_m2 = 1
   double gap_error_eV = 0.0;          // standard error of the model's gap
   double short_circuit_A_m2_W = 0.0;  // short-circuit current over irradiance at the first point
@@ -117,7 +132,8 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
 
 // A string of like substrings, each with a bypass diode, under light that differs between them.
 struct ShadedFit {
-  SingleDiode substring;                  // photocurrent of the brightest
+  SingleDiode substring;  // photocurrent of the brightest
+  std::vector<BoundReached> bounds;
   std::vector<Estimate> photocurrents_A;  // by falling light
   Estimate bypass_drop_V;
   double rms_A = 0.0;

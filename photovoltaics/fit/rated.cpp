@@ -11,6 +11,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "photovoltaics/fit/limits.h"
 #include "photovoltaics/fit/parts.h"
 
 namespace photorque {
@@ -75,11 +76,18 @@ VectorXd relative_errors(std::span<const RatedPoint> points, const VectorXd& x) 
   return errors;
 }
 
+std::vector<inference::Parameter> parameters_from(const VectorXd& start,
+                                                  std::span<const RatedPoint> points) {
+  std::vector<inference::Parameter> all = {{"saturation", "ln A", start[saturation]},
+                                           {"n V_t", "ln V", start[scale]},
+                                           {"series", "ln ohm", start[series]},
+                                           {"shunt", "ln S", start[shunt]}};
+  bound_resistances(points[0].open_circuit_V / points[0].short_circuit_A, all[series], all[shunt]);
+  return all;
+}
+
 inference::Fit fit_from(const VectorXd& start, std::span<const RatedPoint> points, double guess_V) {
-  std::vector<inference::Parameter> parameters = {{"saturation", "ln A", start[saturation]},
-                                                  {"n V_t", "ln V", start[scale]},
-                                                  {"series", "ln ohm", start[series]},
-                                                  {"shunt", "ln S", start[shunt]}};
+  std::vector<inference::Parameter> parameters = parameters_from(start, points);
   if (points.size() == 1) {
     // Without a second point a weak pull keeps n V_t where it was guessed.
     parameters[scale].mean = std::log(guess_V);
@@ -217,6 +225,39 @@ FigureErrors rounding_errors(const VectorXd& start, std::span<const RatedPoint> 
   return squares.cwiseSqrt();
 }
 
+// The limits of the resistances: the profile of the figures' errors over how well they are known.
+// That of a current holds the short circuit's, of which the photocurrent is made.
+void limit_by_figures(const inference::Fit& best, std::span<const RatedPoint> points,
+                      const RatedTolerance& tolerance, SingleDiode& diode) {
+  constexpr double exact = 1e-12;  // figures without rounding
+  const double scatter = std::sqrt(best.variance());
+  VectorXd sigma(3 * static_cast<Index>(points.size()));
+  Index row = 0;
+  for (const RatedPoint& p : points) {
+    const auto relative = [&](double figure, double step) {
+      return rounded_sigma(figure, step, tolerance.fraction) / figure;
+    };
+    const auto known = [&](double stated) { return std::hypot(stated, scatter, exact); };
+    sigma[row++] = known(relative(p.open_circuit_V, tolerance.step_V));
+    sigma[row++] = known(std::hypot(relative(p.maximum_A, tolerance.step_A),
+                                    relative(p.short_circuit_A, tolerance.step_A)));
+    sigma[row++] = known(relative(p.maximum_V, tolerance.step_V));
+  }
+  const inference::ResidualFunction residuals =
+      inference::with_differences([&](const VectorXd& x) -> VectorXd {
+        return relative_errors(points, x).cwiseQuotient(sigma);
+      });
+  std::vector<inference::Parameter> parameters = parameters_from(best.at, points);
+  if (points.size() == 1) {
+    constexpr double assumed = 0.1;  // of the ideality, which one point leaves open
+    parameters[scale].mean = best.at[scale];
+    parameters[scale].sigma = assumed;
+  }
+  const inference::Fit fit = inference::fit(inference::ResidualModel(parameters, residuals),
+                                            best.at, inference::Options::to_rounding());
+  limit_resistances(fit, residuals, series, shunt, 1.0, diode);
+}
+
 // The unit of the last decimal of a number, as its first nine digits show it.
 double last_decimal(double number) {
   std::array<char, 32> text;
@@ -278,6 +319,8 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
     of->standard_error = errors[row++];
   }
   result.gap_error_eV = errors[row];
+  limit_by_figures(best, points, tolerance, d);
+  result.bounds = bounds_reached(best, resistance_bounds(series, shunt));
   return result;
 }
 

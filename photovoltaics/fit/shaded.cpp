@@ -7,6 +7,7 @@
 
 #include "core/errors.h"
 #include "core/numerics/root.h"
+#include "photovoltaics/fit/limits.h"
 #include "photovoltaics/fit/parts.h"
 
 namespace photorque {
@@ -76,7 +77,11 @@ VectorXd first_guess(const IvSweep& sweep, int substrings, double knee) {
   return x;
 }
 
-std::vector<inference::Parameter> parameters_from(const VectorXd& x) {
+// Substrings without light, and diodes that drop nothing or all of the voltage, end on a bound.
+constexpr double darkest_part = 1e-6;  // of the short-circuit current
+constexpr double least_drop_V = 1e-3, most_drop_V = 5.0;
+
+std::vector<inference::Parameter> parameters_from(const VectorXd& x, const SweepEnds& ends) {
   std::vector<inference::Parameter> all = {{"saturation", "ln A", x[saturation]},
                                            {"n V_t", "ln V", x[scale]},
                                            {"series", "ln ohm", x[series]},
@@ -84,6 +89,22 @@ std::vector<inference::Parameter> parameters_from(const VectorXd& x) {
                                            {"bypass drop", "ln V", x[drop]}};
   for (Index k = first_light; k < x.size(); ++k) {
     all.push_back({"photocurrent " + std::to_string(k - first_light + 1), "ln A", x[k]});
+    all.back().lowest = std::log(darkest_part * ends.short_circuit_A);
+  }
+  all[drop].lowest = std::log(least_drop_V);
+  all[drop].highest = std::log(most_drop_V);
+  const auto substrings = static_cast<double>(x.size() - first_light);
+  bound_resistances(ends.open_circuit_V / substrings / ends.short_circuit_A, all[series],
+                    all[shunt]);
+  return all;
+}
+
+std::vector<NamedBound> named_bounds(Index substrings) {
+  std::vector<NamedBound> all = resistance_bounds(series, shunt);
+  all.push_back({drop, "bypass_drop_V", 1.0, "the bypass diodes drop nothing",
+                 "no substring is bypassed: is the curve of a partly shaded string?"});
+  for (Index k = 0; k < substrings; ++k) {
+    all.push_back({first_light + k, "a photocurrent", 1.0, "a substring is dark", ""});
   }
   return all;
 }
@@ -116,13 +137,13 @@ ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoi
     throw InputError({}, "substrings", std::to_string(substrings),
                      "at least 1, and fewer parameters than points");
   }
-  const double max_A = sweep_ends(sweep).short_circuit_A;
+  const SweepEnds ends = sweep_ends(sweep);
+  const double max_A = ends.short_circuit_A;
   constexpr double knee = 20.0;  // open-circuit voltage over n V_t of silicon: 18 to 27
   const VectorXd start = first_guess(sweep, substrings, knee);
-  const inference::ResidualModel model(parameters_from(start),
-                                       inference::with_differences([&](const VectorXd& x) {
-                                         return weighted_errors(sweep, noise, max_A, x);
-                                       }));
+  const inference::ResidualFunction residuals = inference::with_differences(
+      [&](const VectorXd& x) { return weighted_errors(sweep, noise, max_A, x); });
+  const inference::ResidualModel model(parameters_from(start, ends), residuals);
   const inference::Fit best = inference::fit(model, start, inference::Options::to_rounding());
   if (!std::isfinite(best.chi2)) {
     throw InputError({}, "curves", "a sweep and noise that no string fits",
@@ -138,6 +159,8 @@ ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoi
   fit.substring = {fit.photocurrents_A[0], exponential(x[saturation], error[saturation]),
                    exponential(x[scale], error[scale]), exponential(x[series], error[series]),
                    exponential(-x[shunt], error[shunt])};
+  limit_resistances(best, residuals, series, shunt, best.variance(), fit.substring);
+  fit.bounds = bounds_reached(best, named_bounds(substrings));
   fit.bypass_drop_V = exponential(x[drop], error[drop]);
   const ShadedString string(x);
   double squares = 0.0;

@@ -117,6 +117,64 @@ TEST(PhotovoltaicFit, StandardErrorsAreTheScatterOfFits) {
   EXPECT_NEAR(squares / predicted_gain, 1.0, 0.55);
 }
 
+// A curve without series resistance is explicit: I = I_L − I₀ (e^{V/a} − 1) − G V. Noise from
+// uniform numbers of variance 1.
+IvSweep explicit_curve(double leak_S, uint64_t draw) {
+  IvSweep sweep;
+  for (uint64_t i = 0; i <= 60; ++i) {
+    const double v = 0.011 * static_cast<double>(i);
+    const double exact = 2.0 - 2e-10 * std::expm1(v / 0.0285) - leak_S * v;
+    const double noise = std::sqrt(12.0) * (unit_interval(hash_words(17, draw, i)) - 0.5);
+    sweep.voltage_V.push_back(v);
+    sweep.current_A.push_back(exact * (1.0 + 1e-3 * noise));
+  }
+  return sweep;
+}
+
+// A lower limit of 95 % lies below the truth in 95 of 100 draws, and a leak that shows is a number.
+// 40 draws: with 95 % fewer than 34 have a chance of 3e-3 (binomial), and 40 of 40 is well possible
+// because where the leak shows there is a number with an error instead.
+TEST(PhotovoltaicFit, AShuntThatTheDataDoNotDetermineHasALowerLimit) {
+  constexpr double leak_S = 1.0 / 1500.0;  // less than the noise shows, 1e-3 of 2 A over 0.5 V
+  int limits = 0, right = 0;
+  for (uint64_t draw = 0; draw < 40; ++draw) {
+    const SweepFit fit = fit_sweeps(std::array{explicit_curve(leak_S, draw)}, {1e-3, 1e-7, 0.0});
+    if (!fit.diode.shunt_above_ohm) {
+      ++right;
+      continue;
+    }
+    ++limits;
+    right += *fit.diode.shunt_above_ohm < 1.0 / leak_S ? 1 : 0;
+    EXPECT_GT(*fit.diode.shunt_above_ohm, 20.0);
+  }
+  EXPECT_GE(limits, 20);
+  EXPECT_GE(right, 34);
+  const SweepFit leaks = fit_sweeps(std::array{explicit_curve(0.1, 1)}, {1e-3, 1e-7, 0.0});
+  EXPECT_FALSE(leaks.diode.shunt_above_ohm);
+  EXPECT_NEAR(leaks.diode.shunt_ohm.value, 10.0, 4.0 * leaks.diode.shunt_ohm.standard_error);
+  EXPECT_LT(leaks.diode.shunt_ohm.standard_error, 2.0);
+  // It has no series resistance: the 95 % limit lies above none, and 1 mA at 2 A shows milliohms.
+  ASSERT_TRUE(leaks.diode.series_below_ohm);
+  EXPECT_LT(*leaks.diode.series_below_ohm, 5e-3);
+}
+
+TEST(PhotovoltaicFit, ABoundThatIsReachedIsNamed) {
+  // Exactly no leak and no series resistance.
+  IvSweep sweep;
+  for (int i = 0; i <= 60; ++i) {
+    const double v = 0.011 * i;
+    sweep.voltage_V.push_back(v);
+    sweep.current_A.push_back(2.0 - 2e-10 * std::expm1(v / 0.0285) + 2e-3 * v);
+  }
+  // Current that rises with the voltage: what would be a negative leak.
+  const SweepFit fit = fit_sweeps(std::array{sweep}, {});
+  ASSERT_FALSE(fit.bounds.empty());
+  EXPECT_EQ(fit.bounds.back().key, "shunt_ohm");
+  EXPECT_EQ(fit.bounds.back().meaning, "the fit wants no leak at all");
+  EXPECT_GT(fit.bounds.back().value, 1e7);
+  EXPECT_TRUE(fit.diode.shunt_above_ohm);
+}
+
 const ivcurves::Truth rated_truth{8.0, 5e-10, 0.3, 400.0, 1.1, 60};
 
 std::vector<RatedPoint> rated_points() {

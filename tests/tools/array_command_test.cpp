@@ -55,6 +55,9 @@ TEST_F(ArrayCommand, ASheetWithStandardAndOperatingConditionsIsRead) {
     ASSERT_EQ(got.status, 0) << got.err;
     const size_t key = got.out.find("\"ideality\"");
     ASSERT_NE(key, std::string::npos);
+    // Neither a number in powers of ten nor an error of any size stands for no leak.
+    EXPECT_THAT(got.out, HasSubstr("\"shunt_above_ohm\""));
+    EXPECT_THAT(got.out, testing::Not(HasSubstr("\"shunt_ohm\"")));
     ideality.push_back(
         std::stod(got.out.substr(got.out.find(':', got.out.find("value", key)) + 1)));
   }
@@ -78,6 +81,46 @@ TEST_F(ArrayCommand, ACompressedCurveIsTheSameCurve) {
     said.push_back(got.out);
   }
   EXPECT_EQ(said[0], said[1]);
+}
+
+// 1 A and 0.6 V of one cell, in closed form: no series resistance and no leak, noise 1e-3.
+std::string tight_curve() {
+  std::string rows = "voltage_V,current_A\n";
+  for (int i = 0; i <= 60; ++i) {
+    const double volt = 0.01 * i;
+    const double exact = 1.0 - 1e-10 * std::expm1(volt / 0.0267);
+    rows += std::to_string(volt) + "," + std::to_string(exact * (1.0 + 1e-3 * std::sin(97.0 * i))) +
+            "\n";
+  }
+  return rows;
+}
+
+TEST_F(ArrayCommand, ALeakThatDoesNotShowIsALowerLimit) {
+  write("tight.csv", tight_curve());
+  write("fit.toml", "[fit]\ncurves = [\"tight.csv\"]\n");
+  const Outcome got = run("fit-cell " + at("fit.toml") + " --out " + at("out"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, testing::ContainsRegex("shunt_ohm +above [0-9.]+ \\(95 %\\)"));
+  EXPECT_THAT(got.out, HasSubstr("# a lower limit (95 %)"));
+  const std::string table = file_text(at("out/parameters.csv"));
+  EXPECT_THAT(table, HasSubstr("shunt_above_ohm,lower limit,"));
+  EXPECT_THAT(table, testing::Not(HasSubstr("shunt_ohm,value")));
+  EXPECT_THAT(file_text(at("out/summary.json")), HasSubstr("\"shunt_above_ohm\""));
+}
+
+TEST_F(ArrayCommand, CellsThatNoVoltageGoesWithAreRefused) {
+  write("tight.csv", tight_curve());
+  for (const auto& [cells, found] :
+       {std::pair{"100000", "100000"}, std::pair{"2000", "2000 cells, of 3.00×10⁻⁴ V each"}}) {
+    write("fit.toml",
+          std::string("[fit]\ncurves = [\"tight.csv\"]\ncells_in_series = ") + cells + "\n");
+    const Outcome got = run("fit-cell " + at("fit.toml") + " --out " + at("out"));
+    EXPECT_EQ(got.status, 2) << cells;
+    EXPECT_THAT(got.err, HasSubstr("fit.toml:3"));
+    EXPECT_THAT(got.err, HasSubstr("fit.cells_in_series"));
+    EXPECT_THAT(got.err, HasSubstr(found));
+    EXPECT_FALSE(fs::exists(at("out")));
+  }
 }
 
 TEST_F(ArrayCommand, WrongFitsAreOneLineAndLeaveNothing) {

@@ -62,6 +62,14 @@ CoveredMotion covered_by(const std::vector<Observation>& runs) {
         if (seen.gyro_rows[i][k] > 0.0) rate_rad_s[k] = seen.gyro_rad_s[i][k];
       }
       covered.rate_rad_s = std::max(covered.rate_rad_s, rate_rad_s.norm());
+      const auto scalar = [&](Scalar s) {
+        const bool is_read = seen.rows_of(i, vector_channels + static_cast<int>(s)) > 0.0;
+        return is_read ? std::abs(seen.scalar[static_cast<size_t>(s)].value[i]) : 0.0;
+      };
+      covered.rate_rad_s = std::max(covered.rate_rad_s, scalar(Scalar::rate_magnitude));
+      for (const Scalar lean : {Scalar::tilt, Scalar::roll, Scalar::pitch}) {
+        covered.tilt_rad = std::max(covered.tilt_rad, scalar(lean));
+      }
       if (!(seen.attitude_rows[i] > 0.0)) continue;
       const double up = (seen.attitude[i] * Vec3::UnitZ()).z();
       covered.tilt_rad = std::max(covered.tilt_rad, std::acos(std::clamp(up, -1.0, 1.0)));
@@ -74,6 +82,14 @@ CoveredMotion covered_by(const std::vector<Observation>& runs) {
 bool turns(const std::vector<Observation>& runs) {
   constexpr double far_rad = 0.3;
   return std::any_of(runs.begin(), runs.end(), [&](const Observation& seen) {
+    for (const ScalarReadings& read : seen.scalar) {
+      const auto [least, most] = std::minmax_element(read.value.begin(), read.value.end());
+      const auto s = static_cast<int>(&read - seen.scalar.data());
+      if (channel_traits(vector_channels + s).measures == Measures::angle && least != most &&
+          *most - *least > far_rad) {
+        return true;
+      }
+    }
     size_t first = 0;
     while (first < seen.blocks() && !(seen.attitude_rows[first] > 0.0)) ++first;
     for (size_t i = first; i < seen.blocks(); ++i) {

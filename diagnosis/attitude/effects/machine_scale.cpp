@@ -22,6 +22,11 @@ Vec3 rate_at(const Observation& seen, size_t i, size_t reach) {
       rate = rotation_vector(turn) / (seen.time_s[to] - seen.time_s[from]);
     }
   }
+  if (seen.rows_of(i, vector_channels + static_cast<int>(Scalar::rate_magnitude)) > 0.0) {
+    // About which axis is not known: as much about each.
+    const double magnitude = seen.scalar[static_cast<size_t>(Scalar::rate_magnitude)].value[i];
+    rate = magnitude / std::sqrt(3.0) * Vec3::Ones();
+  }
   for (int k = 0; k < 3; ++k) {
     if (seen.gyro_rows[i][k] > 0.0) rate[k] = seen.gyro_rad_s[i][k];
   }

@@ -10,13 +10,9 @@
 namespace photorque {
 namespace {
 
-constexpr const char* channel_names[] = {"attitude_x_arcsec", "attitude_y_arcsec",
-                                         "attitude_z_arcsec", "gyro_x_rad_s",
-                                         "gyro_y_rad_s",      "gyro_z_rad_s"};
-
 std::vector<Where::ChannelMisfit> channels(const std::vector<Prediction>& residuals) {
   std::vector<Where::ChannelMisfit> result;
-  for (Eigen::Index k = 0; k < 6; ++k) {
+  for (Eigen::Index k = 0; k < channel_count; ++k) {
     double sum = 0.0;
     int64_t count = 0;
     for (const Prediction& p : residuals) {
@@ -26,7 +22,9 @@ std::vector<Where::ChannelMisfit> channels(const std::vector<Prediction>& residu
         ++count;
       }
     }
-    if (count > 0) result.push_back({channel_names[k], sum / static_cast<double>(count)});
+    if (count > 0)
+      result.push_back(
+          {channel_traits(static_cast<int>(k)).name, sum / static_cast<double>(count)});
   }
   std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
     return a.chi2_per_sample > b.chi2_per_sample;
@@ -46,7 +44,7 @@ std::vector<Where::Interval> intervals(const Prediction& p, const Observation& s
     double sum = 0.0;
     int64_t count = 0;
     for (size_t i = first; i < last; ++i) {
-      for (Eigen::Index k = 0; k < 6; ++k) {
+      for (Eigen::Index k = 0; k < channel_count; ++k) {
         if (!std::isfinite(p.residual[i][k])) continue;
         sum += p.residual[i][k] * p.residual[i][k];
         ++count;
@@ -77,7 +75,7 @@ std::optional<Where::Interval> band(const Prediction& p, const Observation& seen
   std::vector<double> excess(lines, 0.0);
   double total = 0.0;
   for (size_t l = 0; l < lines; ++l) {
-    for (Eigen::Index k = 0; k < 6; ++k) {
+    for (Eigen::Index k = 0; k < channel_count; ++k) {
       std::complex<double> sum = 0.0;
       double count = 0.0;
       for (size_t i = 0; i < p.residual.size(); ++i) {

@@ -1,8 +1,9 @@
-#include "attitude/estimation/columns.h"
+#include "attitude/readings/columns.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/readings/angle_sequence.h"
 #include "core/errors.h"
 
 namespace photorque {
@@ -74,19 +75,53 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
     for (size_t k = 0; k < 3; ++k) euler_[k] = take(euler_names[k]);
     sees_axis_ = {true, true, true};
   }
-  if (has_attitude() || has_gyro()) return;
+  if (!platform.turns_about_one_axis()) take_scalars();
+  if (has_attitude() || has_gyro() || has_scalars()) return;
   throw InputError({name, 0}, "header",
                    platform.turns_about_one_axis() ? "no channel of an angle or a rate"
                                                    : "no channel q_w and no gyro",
                    platform.turns_about_one_axis()
                        ? "angle_rad, rate_rad_s, a gyro axis, or [recording.columns] that says "
                          "which column is one"
-                       : "the attitude q_w, q_x, q_y, q_z, or gyro_x_rad_s, gyro_y_rad_s, "
-                         "gyro_z_rad_s");
+                       : "the attitude q_w, q_x, q_y, q_z or roll_rad, pitch_rad, yaw_rad; or "
+                         "gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s; or any of tilt_rad, "
+                         "heading_rad, rate_magnitude_rad_s");
+}
+
+// What a whole attitude or three rates tell, one number beside them does not tell again.
+void MotionColumns::take_scalars() {
+  const auto put = [&](Scalar scalar, const char* column) {
+    const Channel*& place = scalars_[static_cast<size_t>(scalar)];
+    if (place == nullptr) place = take(column);
+  };
+  if (!(gyro_[0] != nullptr && gyro_[1] != nullptr && gyro_[2] != nullptr)) {
+    put(Scalar::rate_magnitude, "rate_magnitude_rad_s");
+    const Channel* rate = recording_.find("rate_rad_s");
+    const bool is_magnitude =
+        rate != nullptr &&
+        std::none_of(rate->values.begin(), rate->values.end(), [](double x) { return x < 0.0; });
+    if (is_magnitude) put(Scalar::rate_magnitude, "rate_rad_s");
+  }
+  for (int s = static_cast<int>(Scalar::accelerometer_x); s < scalar_count; ++s) {
+    put(static_cast<Scalar>(s), channel_traits(vector_channels + s).column);
+  }
+  if (has_attitude()) return;
+  for (const Scalar angle :
+       {Scalar::tilt, Scalar::heading, Scalar::roll, Scalar::pitch, Scalar::yaw}) {
+    put(angle, channel_traits(vector_channels + static_cast<int>(angle)).column);
+  }
+}
+
+bool MotionColumns::has_scalars() const {
+  return std::any_of(scalars_.begin(), scalars_.end(),
+                     [](const Channel* channel) { return channel != nullptr; });
 }
 
 std::string MotionColumns::first_name() const {
   for (const Channel* channel : {q_[0], angle_, euler_[0], gyro_[0], gyro_[1], gyro_[2]}) {
+    if (channel != nullptr) return channel->name;
+  }
+  for (const Channel* channel : scalars_) {
     if (channel != nullptr) return channel->name;
   }
   return "";
@@ -97,15 +132,23 @@ Quat MotionColumns::attitude(size_t row) const {
     return Quat(Eigen::AngleAxisd(cell(angle_, row), platform_.axis));
   }
   if (euler_[0] != nullptr) {
-    return Quat(Eigen::AngleAxisd(cell(euler_[2], row), Vec3::UnitZ()) *
-                Eigen::AngleAxisd(cell(euler_[1], row), Vec3::UnitY()) *
-                Eigen::AngleAxisd(cell(euler_[0], row), Vec3::UnitX()));
+    return attitude_of_angles(
+        recording_.angle_sequence.empty() ? angle_sequences[0] : recording_.angle_sequence,
+        angles_rad(row));
   }
   return Quat(cell(q_[0], row), cell(q_[1], row), cell(q_[2], row), cell(q_[3], row)).normalized();
 }
 
 double MotionColumns::rate_rad_s(size_t axis, size_t row) const {
   return cell(gyro_[axis], row);
+}
+
+Vec3 MotionColumns::angles_rad(size_t row) const {
+  return {cell(euler_[0], row), cell(euler_[1], row), cell(euler_[2], row)};
+}
+
+double MotionColumns::scalar(Scalar scalar, size_t row) const {
+  return cell(scalar_at(scalar), row);
 }
 
 bool MotionColumns::has_event(size_t row) const {

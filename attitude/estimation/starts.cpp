@@ -1,0 +1,227 @@
+#include "attitude/estimation/starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "attitude/readings/angle_sequence.h"
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+std::optional<double> first_of(const Observation& seen, Scalar scalar) {
+  if (!seen.has(scalar)) return std::nullopt;
+  const ScalarReadings& read = seen.scalar[static_cast<size_t>(scalar)];
+  for (size_t i = 0; i < read.rows.size(); ++i) {
+    if (read.rows[i] > 0.0) return read.value[i];
+  }
+  return std::nullopt;
+}
+
+// Attitudes of this tilt and heading that lean in eight directions; one where it stands upright.
+std::vector<Quat> leaning(double tilt_rad, double heading_rad) {
+  constexpr int directions = 8;
+  std::vector<Quat> all;
+  for (int d = 0; d < directions; ++d) {
+    const double towards = 2.0 * pi * d / directions;
+    const Quat lean(Eigen::AngleAxisd(tilt_rad, Vec3(-std::sin(towards), std::cos(towards), 0.0)));
+    // The lean turns body x a little, in the second order of the tilt.
+    double about_z = heading_rad;
+    Quat q;
+    for (int i = 0; i < 8; ++i) {
+      q = lean * Quat(Eigen::AngleAxisd(about_z, Vec3::UnitZ()));
+      const double now = scalar_reading(Scalar::heading, q, Vec3::Zero()).value;
+      about_z += scalar_difference(Scalar::heading, heading_rad, now);
+    }
+    all.push_back(q);
+    if (!(tilt_rad > 0.0)) break;
+  }
+  return all;
+}
+
+std::optional<Vec3> first_of_three(const Observation& seen, Scalar first) {
+  Vec3 all;
+  for (int k = 0; k < 3; ++k) {
+    const auto one = first_of(seen, static_cast<Scalar>(static_cast<int>(first) + k));
+    if (!one) return std::nullopt;
+    all[k] = *one;
+  }
+  return all;
+}
+
+// The attitude in which two directions of the lab lie as they are felt in the body (H. D. Black,
+// AIAA Journal 2 (1964) 1350): the first exactly, the second as far as it can.
+Quat attitude_from_two(const Vec3& first_lab, const Vec3& second_lab, const Vec3& first_body,
+                       const Vec3& second_body) {
+  const auto frame = [](const Vec3& a, const Vec3& b) {
+    Mat3 m;
+    m.col(0) = a.normalized();
+    m.col(1) = a.cross(b).normalized();
+    m.col(2) = m.col(0).cross(m.col(1));
+    return m;
+  };
+  return Quat(Mat3(frame(first_lab, second_lab) * frame(first_body, second_body).transpose()));
+}
+
+// By weight and field; without a field in four headings.
+std::vector<Quat> attitudes_by_fields(const AttitudeModel& model, const Observation& seen) {
+  const auto force = first_of_three(seen, Scalar::accelerometer_x);
+  const auto field = first_of_three(seen, Scalar::magnetometer_x);
+  const Vec3 field_lab = model.environment.magnetic_field_lab_T;
+  const Vec3 up_lab = -model.environment.gravity_lab_m_s2;
+  const bool has_weight = force && model.platform.has_bearing() && up_lab.norm() > 0.0;
+  const bool has_field = field && field_lab.norm() > 0.0;
+  if (has_weight && has_field) return {attitude_from_two(up_lab, field_lab, *force, *field)};
+  if (!has_weight && !has_field) return {};
+  const Quat found =
+      has_weight ? Quat::FromTwoVectors(*force, up_lab) : Quat::FromTwoVectors(*field, field_lab);
+  const Vec3 about = has_weight ? up_lab.normalized() : field_lab.normalized();
+  constexpr int headings = 4;
+  std::vector<Quat> all;
+  for (int i = 0; i < headings; ++i) {
+    all.push_back(Quat(Eigen::AngleAxisd(2.0 * pi * i / headings, about)) * found);
+  }
+  return all;
+}
+
+std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& seen,
+                               const Quat& otherwise) {
+  if (const auto by_fields = attitudes_by_fields(model, seen); !by_fields.empty()) {
+    return by_fields;
+  }
+  const auto roll = first_of(seen, Scalar::roll), pitch = first_of(seen, Scalar::pitch);
+  const auto tilt = first_of(seen, Scalar::tilt), heading = first_of(seen, Scalar::heading);
+  const double about_z = heading.value_or(first_of(seen, Scalar::yaw).value_or(0.0));
+  if (roll || pitch) {
+    return {attitude_of_angles("zyx", {roll.value_or(0.0), pitch.value_or(0.0), about_z})};
+  }
+  if (!tilt && !heading && !seen.has(Scalar::yaw)) return {otherwise};
+  return leaning(tilt.value_or(0.0), about_z);
+}
+
+// How fast an angle turns at the beginning: a line through its first blocks.
+double first_slope(const Observation& seen, Scalar scalar) {
+  if (!seen.has(scalar)) return 0.0;
+  constexpr int most = 10;
+  const ScalarReadings& read = seen.scalar[static_cast<size_t>(scalar)];
+  double n = 0.0, t = 0.0, x = 0.0, tt = 0.0, tx = 0.0;
+  for (size_t i = 0; i < read.rows.size() && n < most; ++i) {
+    if (!(read.rows[i] > 0.0)) continue;
+    const double since_s = seen.time_s[i] - seen.time_s.front();
+    n += 1.0;
+    t += since_s;
+    x += read.value[i];
+    tt += since_s * since_s;
+    tx += since_s * read.value[i];
+  }
+  const double spread = n * tt - t * t;
+  return spread > 0.0 ? (n * tx - t * x) / spread : 0.0;
+}
+
+// Rates of this magnitude along the axes that no gyro reads, in all directions; those that one
+// reads stay.
+std::vector<Vec3> rates_of(const Observation& seen, const Vec3& base, const Quat& attitude) {
+  std::array<bool, 3> is_read{};
+  for (int k = 0; k < 3; ++k) {
+    is_read[static_cast<size_t>(k)] = std::any_of(seen.gyro_rows.begin(), seen.gyro_rows.end(),
+                                                  [&](const Vec3& rows) { return rows[k] > 0.0; });
+  }
+  if (is_read[0] && is_read[1] && is_read[2]) return {base};
+  const auto magnitude = first_of(seen, Scalar::rate_magnitude);
+  Vec3 known = base;
+  for (int k = 0; k < 3; ++k) {
+    if (!is_read[static_cast<size_t>(k)]) known[k] = 0.0;
+  }
+  if (!magnitude) {
+    const double about_z = seen.has(Scalar::heading) ? first_slope(seen, Scalar::heading)
+                                                     : first_slope(seen, Scalar::yaw);
+    const Vec3 rate = attitude.conjugate() * Vec3(0.0, 0.0, about_z);
+    for (int k = 0; k < 3; ++k) {
+      if (!is_read[static_cast<size_t>(k)]) known[k] = rate[k];
+    }
+    return {known};
+  }
+  const double rest = std::sqrt(std::max(0.0, *magnitude * *magnitude - known.squaredNorm()));
+  std::vector<Vec3> all;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        const Vec3 towards(x, y, z);
+        bool is_free = towards.norm() > 0.0;
+        for (int k = 0; k < 3; ++k) {
+          is_free = is_free && !(is_read[static_cast<size_t>(k)] && towards[k] != 0.0);
+        }
+        if (is_free) all.emplace_back(known + rest * towards.normalized());
+      }
+    }
+  }
+  return all;
+}
+
+struct Begun {
+  RunStart start;
+  double chi2;
+};
+
+// The fit of the first blocks of one run alone.
+Begun begun_from(const Hypothesis& h, const RunStart& start, const Observation& seen) {
+  constexpr int iterations = 20;
+  Hypothesis one = h;
+  one.runs = {start};
+  FitSettings settings;
+  settings.windows = {0.1, 0.3, 1.0};
+  settings.max_iterations = iterations;
+  const Fit fitted = fit(one, {seen}, settings);
+  return {fitted.best.runs.empty() ? start : fitted.best.runs.front(), fitted.chi2};
+}
+
+// Leaning the other way, everything else turned with it: what a tilt and a heading cannot tell
+// apart where nothing but gravity tells directions, and what only priors decide.
+RunStart mirrored(RunStart start) {
+  const Quat half(Eigen::AngleAxisd(pi, Vec3::UnitZ()));
+  start.initial.lab_from_body = half * start.initial.lab_from_body * half.conjugate();
+  start.initial.rate_body_rad_s = half * start.initial.rate_body_rad_s;
+  return start;
+}
+
+RunStart best_start(const Hypothesis& h, const RunStart& given, const Observation& seen) {
+  constexpr size_t few_blocks = 200, more_blocks = 1000, most_kept = 4;
+  std::vector<RunStart> starts;
+  for (const Quat& attitude : attitudes_of(h.model, seen, given.initial.lab_from_body)) {
+    for (const Vec3& rate : rates_of(seen, given.initial.rate_body_rad_s, attitude)) {
+      RunStart start = given;
+      start.initial.lab_from_body = attitude;
+      start.initial.rate_body_rad_s = rate;
+      starts.push_back(start);
+    }
+  }
+  if (starts.size() == 1) return starts.front();
+  for (const size_t blocks : {few_blocks, more_blocks}) {
+    const Observation beginning = seen.part(0, std::min(blocks, seen.blocks()));
+    std::vector<Begun> all;
+    for (const RunStart& start : starts) all.push_back(begun_from(h, start, beginning));
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Begun& a, const Begun& b) { return a.chi2 < b.chi2; });
+    starts.clear();
+    for (size_t i = 0; i < std::min(most_kept, all.size()); ++i) starts.push_back(all[i].start);
+    if (blocks == few_blocks && seen.has(Scalar::tilt)) {
+      for (size_t i = 0; i < std::min(most_kept, all.size()); ++i) {
+        starts.push_back(mirrored(all[i].start));
+      }
+    }
+  }
+  return starts.front();
+}
+
+}  // namespace
+
+void choose_starts(Hypothesis& hypothesis, const std::vector<Observation>& runs) {
+  for (size_t run = 0; run < runs.size(); ++run) {
+    const Observation& seen = runs[run];
+    if (seen.sees_some_attitude() || !seen.has_scalars()) continue;
+    hypothesis.runs[run] = best_start(hypothesis, hypothesis.runs[run], seen);
+  }
+}
+
+}  // namespace photorque
