@@ -121,10 +121,36 @@ struct ChannelSeries {
   std::vector<double> residual_before, residual_after;  // measured − model
   double noise = 0.0;  // one standard deviation of one reading, residual_unit
 };
+// How the body stood over time, lab from body, where a recording says it. All vectors have the
+// length of `time_s`; those of the models are empty where light was diagnosed: there the motion is
+// exact.
+struct AttitudeSeries {
+  std::vector<double> time_s;
+  std::vector<Quat> measured;
+  // Rotation vectors about lab axes that take what the nominal model and what the chosen one would
+  // have the camera report to what it reported, and one standard error of theirs.
+  std::vector<Vec3> off_before_rad, off_after_rad, error_rad;
+};
+
+// Readings of a scan or of current-voltage sweeps beside both models, row by row: irradiance
+// [W/m²], current [A]. All vectors have the length of `measured`, or are empty.
+struct LightSeries {
+  std::string name;               // "irradiance_W_m2", "current_A"
+  std::vector<double> u_m, v_m;   // scans: map coordinates
+  std::vector<double> voltage_V;  // sweeps
+  std::vector<int> sweep;
+  std::vector<Quat> lab_from_body;
+  std::vector<double> measured, before, after;
+  std::vector<double> noise;  // one standard deviation; empty: unknown
+};
+
 struct RecordingSeries {
   std::string recording;  // file name
   std::vector<ChannelSeries> channels;
   std::vector<Where::Interval> held_out_s;  // never used in the fit
+  AttitudeSeries attitude = {};
+  std::optional<LightSeries> light = {};
+  bool is_held_out = false;  // all of it
 };
 
 // State and length of the first recording, so that improved.toml can propagate it again.

@@ -25,8 +25,24 @@ class Misreading {
         check(value, *declared, key, full);
       } else if (is_chosen(written, known)) {
         refuse(value, known, key, full);
+      } else if (const auto possible = of_every_choice(keys); find(possible, key) == nullptr) {
+        // Whatever was meant by the choice, it knows no such key.
+        refuse(value, possible, key, full);
       }
     }
+  }
+
+  // All keys that a table may have, with any choices.
+  static std::vector<const Key*> of_every_choice(const std::vector<Key>& keys) {
+    std::vector<const Key*> all;
+    for (const Key& key : keys) {
+      all.push_back(&key);
+      for (const Key::Choice& choice : key.choices) {
+        const std::vector<const Key*> brought = of_every_choice(choice.keys);
+        all.insert(all.end(), brought.begin(), brought.end());
+      }
+    }
+    return all;
   }
 
   // Whether every choice that brings keys is made, so that all keys are known.

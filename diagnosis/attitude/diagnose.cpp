@@ -104,6 +104,7 @@ void say_how_well(const Fit& before, const Trial& chosen, const RecordedData& da
   for (size_t run = 0; run < data.held.size(); ++run) {
     d.series.push_back(series_of(held_before, held_after, data.held[run], run));
     d.series.back().held_out_s = {{data.held[run].time_s.front(), data.held[run].time_s.back()}};
+    d.series.back().is_held_out = true;
   }
 }
 

@@ -21,7 +21,7 @@ void say_drift(const BiasHistory& history, std::vector<InstrumentFinding>& findi
     }
     const double off = history.bias_rad_s[at][axis], sigma = history.sigma_rad_s[at][axis];
     findings.push_back(
-        {channel_names[3 + axis], "bias_drift_rad_s", off, sigma,
+        {channel_traits(3 + axis).name, "bias_drift_rad_s", off, sigma,
          written("the bias of the gyro about body %c drifts: in %s it is (%.3g ± %.1g) rad/s off "
                  "its mean at %.0f s; the drift is taken out",
                  'x' + axis, name.c_str(), off, sigma, history.time_s[at])});

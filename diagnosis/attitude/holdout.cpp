@@ -1,5 +1,6 @@
 #include "diagnosis/attitude/holdout.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "attitude/estimation/noise.h"
@@ -39,6 +40,32 @@ std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
           std::sqrt(sum / static_cast<double>(count));
   }
   return result;
+}
+
+// Of the mean of a block's readings. What is correlated in time does not become less in it.
+Vec3 attitude_error_rad(const Observation& seen, size_t block) {
+  Vec3 error;
+  for (int k = 0; k < 3; ++k) {
+    const ChannelNoise noise = seen.noise.of(k);
+    const double rows = std::max(1.0, seen.rows_of(block, k));
+    error[k] = noise.level * std::sqrt(noise.coloured + (1.0 - noise.coloured) / rows);
+  }
+  return error;
+}
+
+AttitudeSeries attitude_of(const Prediction& before, const Prediction& after,
+                           const Observation& seen) {
+  AttitudeSeries series;
+  if (!seen.sees_attitude()) return series;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (!(seen.attitude_rows[i] > 0.0)) continue;
+    series.time_s.push_back(seen.time_s[i]);
+    series.measured.push_back(seen.attitude[i]);
+    series.off_before_rad.emplace_back(before.off[i].head<3>());
+    series.off_after_rad.emplace_back(after.off[i].head<3>());
+    series.error_rad.push_back(attitude_error_rad(seen, i));
+  }
+  return series;
 }
 
 }  // namespace
@@ -113,6 +140,7 @@ RecordingSeries series_of(const Fit& before, const Fit& after, const Observation
       }
       result.channels.push_back(std::move(c));
     }
+    result.attitude = attitude_of(a, b, seen);
   } catch (const NumericalError&) {
     result.channels.clear();
   }

@@ -8,6 +8,7 @@
 #include "diagnosis/light/account.h"
 #include "diagnosis/light/clean.h"
 #include "diagnosis/light/domain.h"
+#include "diagnosis/light/series.h"
 #include "diagnosis/verdict.h"
 #include "inference/decide.h"
 #include "inference/search.h"
@@ -208,55 +209,6 @@ void lead_with_chosen_law(const LightAnswer& answer, const LightTrial& about,
   }
 }
 
-// Readings and both models over time; only of runs, which have one.
-void add_series(const LightAnswer& answer, const std::vector<FittedRun>& runs, bool held_out,
-                Diagnosis& d) {
-  const LightState before = state_of(answer.trials.front(), answer.all),
-                   after = state_of(answer.chosen(), answer.all);
-  for (const FittedRun& run : runs) {
-    const LightRecording& r = run.run->recording();
-    if (r.kind != LightRecording::Kind::run) continue;
-    const auto a = run.run->expected(before), b = run.run->expected(after);
-    ChannelSeries voltage{"array_voltage_V",
-                          "Voltage of the array",
-                          "V",
-                          r.time_s,
-                          r.voltage_V,
-                          {},
-                          {},
-                          "V",
-                          {},
-                          {},
-                          run.run->lab().noise().voltage_V};
-    ChannelSeries current{"array_current_A",
-                          "Current of the array",
-                          "A",
-                          r.time_s,
-                          r.current_A,
-                          {},
-                          {},
-                          "A",
-                          {},
-                          {},
-                          run.run->lab().noise().current_A};
-    for (size_t i = 0; i < r.rows(); ++i) {
-      voltage.before.push_back(a[i].voltage_V);
-      voltage.after.push_back(b[i].voltage_V);
-      current.before.push_back(a[i].current_A);
-      current.after.push_back(b[i].current_A);
-      voltage.residual_before.push_back(r.voltage_V[i] - a[i].voltage_V);
-      voltage.residual_after.push_back(r.voltage_V[i] - b[i].voltage_V);
-      current.residual_before.push_back(r.current_A[i] - a[i].current_A);
-      current.residual_after.push_back(r.current_A[i] - b[i].current_A);
-    }
-    RecordingSeries series{r.name, {}, {}};
-    if (run.run->channels().size() > 1) series.channels.push_back(std::move(voltage));
-    series.channels.push_back(std::move(current));
-    if (held_out) series.held_out_s = {{r.time_s.front(), r.time_s.back()}};
-    d.series.push_back(std::move(series));
-  }
-}
-
 std::vector<Where::ChannelMisfit> misfits(const LightAnswer& answer,
                                           const std::vector<FittedRun>& runs) {
   std::map<std::string, std::pair<double, int64_t>> sums;
@@ -317,8 +269,8 @@ Diagnosis diagnose_light(const LightLab& lab, const LightState& nominal,
   d.chi2_per_sample_after = answer.chosen().fit.chi2_per_sample();
   d.samples = answer.trials.front().fit.samples;
   d.holdout = light_holdout(answer, data.held);
-  add_series(answer, data.train, false, d);
-  add_series(answer, data.held, true, d);
+  for (const FittedRun& run : data.train) d.series.push_back(light_series(answer, run, false));
+  for (const FittedRun& run : data.held) d.series.push_back(light_series(answer, run, true));
   d.data = data.quality;
   if (answer.decision.undecided) {
     d.warnings.push_back(

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/product.h"
@@ -33,6 +34,26 @@ struct PlotCursor {
   std::string plot;
   size_t axis = 0;
   double x_per_unit = 1.0;  // x of the plot over the value of the axis
+  double x_from = 0.0;      // x where the value is 0
+  // Only while another axis has this value.
+  std::optional<std::pair<size_t, double>> only_at = {};
+};
+
+// What a run concludes, in the strongest words of the page.
+struct PageVerdict {
+  enum class Face { good, found, open };
+  Face face = Face::good;
+  std::string words;     // "Missing physics found"
+  std::string sentence;  // that says which
+};
+
+// Something that was found, with its numbers.
+struct PageFinding {
+  std::string title;   // "magnetic dipole"
+  std::string remark;  // "probability 99 %"
+  std::vector<std::string> texts = {};
+  std::vector<PageFigure> figures = {};
+  bool from_zero = true;  // how many standard errors the figures are from zero means something
 };
 
 struct RunPage {
@@ -44,6 +65,11 @@ struct RunPage {
   std::vector<PageFigure> figures = {};
   std::string figures_file = "summary.json";  // that has them too
   std::vector<PowerStage> power = {};
+  std::optional<PageVerdict> verdict = {};
+  std::string findings_title = {};
+  std::vector<PageFinding> findings = {};
+  std::vector<std::string> next_steps = {};  // what would tell more
+  std::vector<BarChart> charts = {};
   std::vector<std::string> notes = {};
   std::optional<SceneStage> stage = {};
   std::vector<PlotCursor> cursors = {};

@@ -82,6 +82,8 @@ struct StageAxis {
   std::string unit;
   std::vector<double> values;  // rising
   bool plays = false;          // a time: states between two are turned evenly, and it can be played
+  // Of each value, shown instead of the number; empty: the numbers are.
+  std::vector<std::string> names = {};
 };
 
 struct StageFigure {

@@ -187,10 +187,13 @@ Json states_json(const SceneStage& stage) {
 Json axes_json(const std::vector<StageAxis>& axes) {
   Json list = Json::array();
   for (const StageAxis& axis : axes) {
+    Json names = Json::array();
+    for (const std::string& name : axis.names) names.push_back(clean_text(name));
     list.push_back({{"name", clean_text(axis.name)},
                     {"unit", clean_text(axis.unit)},
                     {"values", packed(std::span<const double>(axis.values))},
-                    {"plays", axis.plays}});
+                    {"plays", axis.plays},
+                    {"names", std::move(names)}});
   }
   return list;
 }

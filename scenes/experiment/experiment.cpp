@@ -70,6 +70,9 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   std::vector<Beam> beams;
   std::optional<std::vector<GltfLight>> lights;  // of the scene, once a source asks for one
   for (const Settings& written : file.sources) {
+    if (written.has("light") && file.cad) {
+      throw written.error("light", "a scene of STL or OBJ", "a glTF file, which may place lamps");
+    }
     if (written.has("light") && !lights) {
       lights = read_gltf_lights(*file.scene_file, file.metres_per_unit, file.may_leave_folder);
       for (GltfLight& light : *lights) light.position_m -= file.centre_of_rotation_m;
@@ -167,6 +170,18 @@ std::function<std::optional<std::string>(const std::string&)> files_beside(
   };
 }
 
+GltfModel read_model(const ExperimentFile& file, const PictureReader& picture) {
+  const GltfOptions options{.bands = file.bands,
+                            .materials = file.materials,
+                            .material_file = files_beside(file.path),
+                            .picture = file.textures ? picture : nullptr,
+                            .metres_per_unit = file.metres_per_unit,
+                            .origin_m = file.centre_of_rotation_m,
+                            .may_leave_folder = file.may_leave_folder};
+  return file.cad ? read_cad(*file.scene_file, *file.cad, options)
+                  : read_gltf(*file.scene_file, options);
+}
+
 void require_triangles(const Scene& scene, const std::filesystem::path& path) {
   const bool any = std::any_of(
       scene.instances.begin(), scene.instances.end(),
@@ -197,13 +212,7 @@ Experiment resolve_experiment(ExperimentFile file, const PictureReader& picture)
     throw file.settings.table("scene").error("textures", "true",
                                              "false: nobody here reads pictures");
   }
-  GltfModel model = read_gltf(*file.scene_file, {.bands = file.bands,
-                                                 .materials = file.materials,
-                                                 .material_file = files_beside(file.path),
-                                                 .picture = file.textures ? picture : nullptr,
-                                                 .metres_per_unit = file.metres_per_unit,
-                                                 .origin_m = file.centre_of_rotation_m,
-                                                 .may_leave_folder = file.may_leave_folder});
+  GltfModel model = read_model(file, picture);
   require_triangles(model.scene, *file.scene_file);
   turn_joints(model.scene, file.joints, file.joint_tables);
 

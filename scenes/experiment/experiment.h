@@ -18,6 +18,7 @@
 #include "raytrace/scene.h"
 #include "raytrace/tracing/tracer.h"
 #include "receivers/kind.h"
+#include "scenes/cad/model.h"
 #include "scenes/experiment/joints.h"
 #include "scenes/gltf/picture.h"
 
@@ -77,7 +78,8 @@ struct ExperimentFile {
 
   // Of an optical run; empty when the file has no [scene].
   std::optional<std::filesystem::path> scene_file;
-  double metres_per_unit = 1.0;  // [scene] metres_per_unit: of lengths in the scene's file
+  double metres_per_unit = 1.0;       // [scene] metres_per_unit: of lengths in the scene's file
+  std::optional<CadConventions> cad;  // [scene] unit and up, where the file is no glTF
   // [scene] centre_of_rotation_m: where the model has it, body axes
   Vec3 centre_of_rotation_m = Vec3::Zero();
   bool textures = false;          // [scene] textures: base colours from the model's pictures

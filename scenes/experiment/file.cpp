@@ -154,6 +154,28 @@ std::optional<DirectionGrid> read_light_directions(const Settings& root) {
                        read_direction_axis(table, "azimuth", pi)};
 }
 
+// Of an STL or OBJ file, which says neither; a glTF file does.
+std::optional<CadConventions> read_cad_conventions(const Settings& scene,
+                                                   const std::filesystem::path& file) {
+  if (!cad_format(file)) {
+    for (const char* key : {"unit", "up"}) {
+      if (!scene.has(key)) continue;
+      throw scene.error(
+          key, "a glTF file",
+          "an STL or OBJ file (glTF is in metres with y up; metres_per_unit scales it)");
+    }
+    return std::nullopt;
+  }
+  if (scene.has("metres_per_unit")) {
+    throw scene.error("metres_per_unit", "an STL or OBJ file", "its unit: unit = \"mm\"");
+  }
+  const std::vector<std::string> units = cad_units();
+  CadConventions conventions;
+  conventions.metres_per_unit = metres_of_unit(units[scene.choice("unit", units)]);
+  conventions.y_is_up = scene.choice_or("up", {"z", "y"}, 0) == 1;
+  return conventions;
+}
+
 }  // namespace
 
 std::vector<Settings> ExperimentFile::others(const std::string& key) const {
@@ -196,7 +218,9 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
   if (settings.has("scene")) {
     const Settings scene = settings.table("scene");
     file.scene_file = path.parent_path() / scene.text("file");
-    file.metres_per_unit = scene.number_or("metres_per_unit", 1.0, Range::positive());
+    file.cad = read_cad_conventions(scene, *file.scene_file);
+    if (!file.cad)
+      file.metres_per_unit = scene.number_or("metres_per_unit", 1.0, Range::positive());
     file.centre_of_rotation_m = scene.vector3_or("centre_of_rotation_m", Vec3::Zero());
     file.textures = scene.flag_or("textures", false);
     file.may_leave_folder = scene.flag_or("allow_outside", false);

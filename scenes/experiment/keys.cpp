@@ -19,14 +19,27 @@ std::vector<Key::Choice> choices_of(const std::vector<Kind>& kinds) {
   return choices;
 }
 
+std::vector<Key::Choice> unit_choices() {
+  std::vector<Key::Choice> choices;
+  for (const std::string& unit : cad_units()) choices.push_back({unit});
+  return choices;
+}
+
 Key scene_table() {
   return Key::table(
       "scene",
       {Key::text("file",
                  "glTF or GLB, beside the experiment; metres, +Y up: glTF (x, y, z) is body "
-                 "(x, −z, y)"),
+                 "(x, −z, y). Or STL or OBJ, with `unit`"),
+       Key::choice("unit", unit_choices(),
+                   "of lengths in an STL or OBJ file, which does not say it; required with these, "
+                   "wrong with glTF")
+           .optional(),
+       Key::choice_or("up", words({"z", "y"}), 0,
+                      "of an STL or OBJ file: the axis that is up at zero tilt; z: the file's axes "
+                      "are the body's, y: as in glTF"),
        Key::number_or("metres_per_unit", 1.0, Range::positive(),
-                      "scale of the file's lengths: 0.001 for a model in millimetres"),
+                      "scale of a glTF file's lengths: 0.001 for a model in millimetres"),
        Key::vector3_or("centre_of_rotation_m", Vec3::Zero(),
                        "where the model has the centre of rotation, in body axes (z up): the model "
                        "is moved so that this point is the origin"),

@@ -289,6 +289,99 @@ class Propagate(PageTest):
         self.assertGreater(self.colours(), 50)
 
 
+class Diagnose(PageTest):
+    def at(self, json_path, document):
+        """The value that a figure's key names: "effects[0].parameters.dipole_A_m2[1]"."""
+        *way, name = re.sub(r"\[(\d+)\]", r".\1", json_path).split(".")
+        for step in way:
+            document = document[int(step) if isinstance(document, list) else step]
+        return document[int(name) if isinstance(document, list) else name]
+
+    def assertFiguresAgree(self, found):
+        cells = self.browser.value("""[...document.querySelectorAll('#figures [data-key]')].map(
+          (e) => [e.dataset.key, Number(e.dataset.value), e.textContent])""")
+        self.assertIn("holdout.chi2_per_sample_after", [key for key, *_ in cells])
+        for key, value, text in cells:
+            self.assertEqual(value, self.at(key, found), key)
+            self.assertShown(text, value)
+
+    def test_motion_shows_measured_and_simulated_platform(self):
+        case, out = SOURCE / "tests/data/cases/01", self.folder / "motion"
+        run("diagnose", case / "experiment.toml", "--recording", case / "run1.csv.gz", "--holdout", case / "run2.csv.gz",
+            "--page", "--out", out, "--quiet")
+        self.open(out / "page.html")
+        found = json.loads((out / "diagnosis.json").read_text())
+        self.assertEqual(found["effects"][0]["kind"], "magnetic_dipole")
+        self.assertEqual(self.browser.value("document.querySelector('.verdict-words').textContent"),
+                         "\u25c6Missing physics found")
+        self.assertEqual(self.browser.value("document.querySelector('.finding h3').firstChild.textContent"), "magnetic dipole")
+        dipole = found["effects"][0]["parameters"]["dipole_A_m2"]
+        shown = self.browser.value("""[...document.querySelector('.finding').querySelectorAll('[data-key]')].map(
+          (e) => [Number(e.dataset.value), Number(e.dataset.error), e.textContent])""")
+        self.assertEqual([value for value, *_ in shown], dipole["value"])
+        self.assertEqual([error for _, error, _ in shown], dipole["sigma"])
+        self.assertFiguresAgree(found)
+        # The platform moves, and the readings of the residual become less by what was found.
+        before = self.stage()
+        self.browser.value("""(() => { const slider = document.getElementById('axis-0');
+          slider.value = 300; slider.dispatchEvent(new Event('input')); })()""")
+        self.assertNotEqual(before, self.stage())
+        readings = dict(self.readings())
+        self.assertIn("tilt, measured", readings)
+        nominal, found_off = (number(readings[f"measured \u2212 {which} [arcsec]"])[0] for which in ("nominal", "found"))
+        self.assertGreater(nominal, 0.0)
+        self.assertGreater(found_off, 0.0)
+        self.assertEqual(self.browser.value("document.querySelectorAll('.swatch').length"), 3)
+        # Curves are those of the recording that is shown; what lies under the pointer is read.
+        titles = "[...document.querySelectorAll('.chart')].filter((c) => !c.hidden).map((c) => c.firstChild.textContent)"
+        self.assertTrue(all(title.endswith("run1.csv.gz") for title in self.browser.value(titles)))
+        self.browser.value("document.getElementById('axis-1').focus()")
+        self.browser.key("ArrowRight")
+        self.assertTrue(all(title.endswith("run2.csv.gz") for title in self.browser.value(titles)))
+        self.assertEqual(len(self.browser.value(titles)), 6)
+        self.browser.value("[...document.querySelectorAll('.chart')].find((c) => !c.hidden).querySelector('svg').focus()")
+        self.browser.key("ArrowRight")
+        reading = self.browser.value("[...document.querySelectorAll('.chart')].find((c) => !c.hidden).querySelector('.reading').textContent")
+        self.assertIn("measured minus model with what was found: ", reading)
+
+    def test_a_scan_shows_its_readings_and_what_they_miss(self):
+        write_square(self.folder)
+        lab = self.folder / "scanned.toml"
+        lab.write_text(LAB + "[sensors.irradiance]\nnoise_W_m2 = 0.2\n")
+        run("trace", lab, "--out", self.folder / "believed", "--quiet")
+        # The lamp gives a fifth less than is believed; noise by a rule that Python and nobody else has.
+        scan, state = [], 1
+        for row in rows(self.folder / "believed/irradiance_board.csv"):
+            total = 0.0
+            for _ in range(12):  # the sum of twelve even draws: a variance of 1
+                state = (1103515245 * state + 12345) % 2**31
+                total += state / 2**31
+            scan.append((row["x_m"], row["y_m"], f"{0.8 * float(row['value_W_m2']) + 0.2 * (total - 6.0):.4f}"))
+        recording = self.folder / "scan.csv"
+        recording.write_text("u_m,v_m,irradiance_W_m2\n" + "".join(",".join(row) + "\n" for row in scan))
+        out = self.folder / "light"
+        run("diagnose", lab, "--recording", recording, "--page", "--out", out, "--quiet")
+        self.open(out / "page.html")
+        found = json.loads((out / "diagnosis.json").read_text())
+        self.assertEqual(found["verdict"], "missing_physics")
+        self.assertFiguresAgree(found)
+        self.assertGreater(self.colours(), 50)
+        names = self.browser.value("[...document.querySelectorAll('.map-section option')].map((o) => o.textContent)")
+        self.assertEqual([name.split(":")[0] for name in names],
+                         ["Measured", "Nominal model", "Measured minus nominal model", "Measured minus model with what was found"])
+        box = self.browser.value("""(() => {
+          const field = document.querySelector('.field');
+          field.scrollIntoView({ block: 'center' });
+          const b = field.getBoundingClientRect();
+          return [b.left, b.top, b.width, b.height];
+        })()""")
+        self.browser.point(box[0] + 0.525 * box[2], box[1] + 0.475 * box[3])  # of 20 x 20: the eleventh, from below too
+        text = self.browser.value("document.querySelector('.map-section .reading b').textContent")
+        value = next(float(v) for x, y, v in scan if abs(float(x) - 0.005) < 1e-6 and abs(float(y) - 0.005) < 1e-6)
+        shown, half = number(text)
+        self.assertLess(abs(shown - value), half + 1e-6 * value, text)
+
+
 class Hostile(PageTest):
     def test_names_of_files_are_never_markup(self):
         lab = write_square(self.folder)

@@ -17,6 +17,11 @@ void run_check(const CommandLine& line) {
     console.line(padded(command.name, 12) + command.what);
     console.line(padded("", 12) + "reads" + tables);
   }
+  for (const auto& [tables, verbs] : report.lacking) {
+    std::string names;
+    for (const std::string& verb : verbs) names += (names.empty() ? "" : ", ") + verb;
+    console.line("not " + names + ": without " + tables);
+  }
   for (const std::string& note : report.notes) console.line("note: " + note);
   if (report.mistakes.empty()) return;
   for (size_t i = 0; i + 1 < report.mistakes.size(); ++i) {

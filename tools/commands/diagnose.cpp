@@ -6,7 +6,9 @@
 #include "core/errors.h"
 #include "core/files.h"
 
+#include "tools/commands/page.h"
 #include "tools/commands/terminal.h"
+#include "tools/pages/diagnosis.h"
 
 namespace photorque {
 namespace {
@@ -61,7 +63,9 @@ void run_diagnose(const CommandLine& line) {
   const Console console = terminal(line);
   const DiagnosisRun run = diagnose_experiment(line, line.recordings, line.holdouts, console);
   print_diagnosis(console, run.diagnosis);
-  write_diagnosis(run, line.out_folder());
+  std::vector<RunFile> more;
+  if (line.page) more.push_back(diagnosis_page(run, line, page_head(line)));
+  write_diagnosis(run, line.out_folder(), more);
   console.line("Results in " + line.out_folder().string());
   if (!line.json) return;
   const std::string json = run.json();
@@ -76,6 +80,7 @@ Verb diagnose_verb() {
   verb.takes_recordings = true;
   verb.takes_holdouts = true;
   verb.takes_guess = true;
+  verb.draws_page = true;
   return verb;
 }
 

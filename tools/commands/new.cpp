@@ -1,12 +1,15 @@
 // photorque new: a first experiment, commented, for a model of one's own or for a platform alone.
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <set>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/numbers.h"
 #include "receivers/surface_grid.h"
+#include "scenes/cad/model.h"
+#include "scenes/experiment/toml_reader.h"
 #include "scenes/experiment/toml_writer.h"
 #include "scenes/gltf/reader.h"
 #include "tools/commands/terminal.h"
@@ -108,7 +111,57 @@ std::string listed(const std::string& what, const std::set<std::string>& names) 
   return text;
 }
 
-std::string light_text(const GltfModel& model, const std::string& file) {
+// What is to be known of a model before it can be read: of STL and OBJ its unit, by --set.
+struct SceneWords {
+  std::optional<CadConventions> cad;
+  std::string unit, up;
+};
+
+SceneWords scene_words(const CommandLine& line) {
+  SettingsNode root;
+  for (const std::string& assignment : line.overrides) apply_override(root, assignment);
+  const Settings settings(std::make_shared<const SettingsNode>(std::move(root)));
+  SceneWords words;
+  if (cad_format(*line.scene)) {
+    if (!settings.has("scene") || !settings.table("scene").has("unit")) {
+      throw InputError({line.scene->string()}, "scene.unit", "nothing",
+                       "the unit of its lengths, which the file does not say: --set scene.unit=mm");
+    }
+    const Settings scene = settings.table("scene");
+    const std::vector<std::string> units = cad_units(), axes = {"z", "y"};
+    words.unit = units[scene.choice("unit", units)];
+    words.up = axes[scene.choice_or("up", axes, 0)];
+    words.cad = CadConventions{metres_of_unit(words.unit), words.up == "y"};
+  }
+  settings.finish();
+  return words;
+}
+
+std::string scene_text(const SceneWords& words) {
+  if (!words.cad) {
+    return "   # metres, +Y up: glTF (x, y, z) is body (x, -z, y), its origin the centre of "
+           "rotation\n# metres_per_unit = 0.001            # of a model in millimetres\n\n";
+  }
+  return "\nunit = \"" + words.unit +
+         "\"                           # of lengths in the file\nup = \"" + words.up +
+         "\"                              # " +
+         (words.up == "y" ? "(x, y, z) is body (x, -z, y)" : "its axes are the body's") +
+         ", its origin the centre of rotation\n\n";
+}
+
+std::string materials_text(const SceneWords& words, const std::set<std::string>& materials) {
+  if (!words.cad) {
+    return listed("Materials whose optics may be given here instead of derived", materials) +
+           "# [[material]]\n# name = \"...\"\n# absorptance = 0.9\n# diffuse = 0.1\n\n";
+  }
+  std::string text = "# The file says nothing of optics: measure or look them up.\n";
+  for (const std::string& name : materials) {
+    text += "[[material]]\nname = " + quoted(name) + "\nabsorptance = 0.5\ndiffuse = 0.5\n\n";
+  }
+  return text;
+}
+
+std::string light_text(const GltfModel& model, const std::string& file, const SceneWords& words) {
   const Scene& scene = model.scene;
   std::set<std::string> nodes, materials;
   for (const Instance& instance : scene.instances) {
@@ -116,12 +169,7 @@ std::string light_text(const GltfModel& model, const std::string& file) {
     if (!instance.material.empty()) materials.insert(instance.material);
   }
   const double radius_m = scene.radius_m(), height_m = top_m(scene) + 2.0 * radius_m;
-  return "[scene]\nfile = " + quoted(file) +
-         "   # metres, +Y up: glTF (x, y, z) is body (x, -z, y), its origin the centre of "
-         "rotation\n"
-         "# metres_per_unit = 0.001            # of a model in millimetres\n\n" +
-         listed("Materials whose optics may be given here instead of derived", materials) +
-         "# [[material]]\n# name = \"...\"\n# absorptance = 0.9\n# diffuse = 0.1\n\n"
+  return "[scene]\nfile = " + quoted(file) + scene_text(words) + materials_text(words, materials) +
          "# ---- Light\n[[source]]\nkind = \"led\"                         # led | led_array | "
          "laser "
          "| sun | solar_simulator | ies | ray_file\npower_W = 10                          # "
@@ -152,10 +200,11 @@ void run_new(const CommandLine& line) {
       "docs/experiment.md has them all.\n# photorque check " +
       line.experiment.filename().string() + " says what can be done with it.\n\n";
   if (line.scene) {
-    const GltfModel model = read_gltf(*line.scene);
+    const SceneWords words = scene_words(line);
+    const GltfModel model = words.cad ? read_cad(*line.scene, *words.cad) : read_gltf(*line.scene);
     const fs::path file =
         fs::absolute(*line.scene).lexically_proximate(fs::absolute(line.experiment).parent_path());
-    text += light_text(model, file.generic_string());
+    text += light_text(model, file.generic_string(), words);
   } else {
     text += std::string(platform_text).substr(1);
   }
@@ -178,8 +227,10 @@ void run_new(const CommandLine& line) {
 }  // namespace
 
 Verb new_verb() {
-  Verb verb{"new", "A first experiment, commented: for a glTF model (--scene), or a platform alone",
-            run_new};
+  Verb verb{
+      "new",
+      "A first experiment, commented: for a model (--scene; glTF, STL, OBJ), or a platform alone",
+      run_new};
   verb.takes_scene = true;
   verb.writes = false;
   return verb;

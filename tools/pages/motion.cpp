@@ -103,25 +103,6 @@ void add_remark(SceneStage& stage, const std::string& remark) {
   stage.remark += (stage.remark.empty() ? "" : " ") + remark;
 }
 
-// The light of the experiment at instants evenly over the run; each state shows the nearest.
-void light_the_run(SceneStage& stage, const OpticalRun& run,
-                   const std::vector<PlatformState>& states) {
-  constexpr size_t most_lights = 12;
-  constexpr uint64_t rays = 1u << 18;  // direct light on flat maps is gathered without noise
-  const size_t lights = std::min(most_lights, states.size());
-  for (size_t i = 0; i < lights; ++i) {
-    const size_t middle = (2 * i + 1) * states.size() / (2 * lights);
-    const RigidTransform lab_from_body{states[middle].lab_from_body, Vec3::Zero()};
-    add_light(stage, run, lab_from_body, run.run(lab_from_body, {}, rays), lights);
-  }
-  for (size_t i = 0; i < states.size(); ++i) {
-    stage.light_of_state.push_back(std::min(i * lights / states.size(), lights - 1));
-  }
-  add_remark(stage, "Irradiance and rays are traced at " + std::to_string(lights) +
-                        " instants of the run, with all lamps at full power; shown are those of "
-                        "the nearest instant.");
-}
-
 // The optical half of an experiment that has one.
 std::optional<OpticalRun> optical_run(const MotionRun& run, const RunOptions& options) {
   if (!run.coupled->light) return std::nullopt;
@@ -161,7 +142,11 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
     stage.states.push_back(std::move(at));
   }
   stage.axes = {std::move(time)};
-  if (light) light_the_run(stage, *light, states);
+  if (light) {
+    std::vector<Quat> attitudes;
+    for (const PlatformState& state : states) attitudes.push_back(state.lab_from_body);
+    light_along(stage, *light, attitudes);
+  }
   if (const double turn_rad = largest_turn_rad(states); turn_rad > 0.5 * pi) {
     add_remark(stage, "Between two instants of this page the body turns by up to " +
                           show(std::round(turn_rad / degree_rad)) +

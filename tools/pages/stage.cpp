@@ -212,6 +212,28 @@ StageState lit_state(const OpticalRun& run, const RigidTransform& lab_from_body,
   return state;
 }
 
+PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver) {
+  const SurfaceGrid& grid = run.flux_map(run.flux_map_index(receiver)).grid();
+  return painted(run.experiment().scene, grid, receiver, "");
+}
+
+void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Quat>& lab_from_body) {
+  constexpr size_t most_lights = 12;
+  constexpr uint64_t rays = 1u << 18;  // direct light on flat maps is gathered without noise
+  const size_t states = lab_from_body.size(), lights = std::min(most_lights, states);
+  for (size_t i = 0; i < lights; ++i) {
+    const RigidTransform at{lab_from_body[(2 * i + 1) * states / (2 * lights)], Vec3::Zero()};
+    add_light(stage, run, at, run.run(at, {}, rays), lights);
+  }
+  for (size_t i = 0; i < states; ++i) {
+    stage.light_of_state.push_back(std::min(i * lights / states, lights - 1));
+  }
+  stage.remark += (stage.remark.empty() ? "" : " ") +
+                  ("Irradiance and rays are traced at " + std::to_string(lights)) +
+                  " instants of the run, with all lamps at full power; shown are those of the "
+                  "nearest instant.";
+}
+
 void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& lab_from_body,
                const OpticalResult& result, size_t lights) {
   // Of one light enough rays to see the beams, not so many that they hide the body; of many

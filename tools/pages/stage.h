@@ -24,6 +24,13 @@ StageState lit_state(const OpticalRun& run, const RigidTransform& lab_from_body,
 void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& lab_from_body,
                const OpticalResult& result, size_t lights);
 
+// The light at up to 12 of some attitudes of the body, evenly over them; each of them shows the
+// nearest, and the stage's remark says so.
+void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Quat>& lab_from_body);
+
+// The surface of a receiver's bins, to be painted with maps that the caller gives.
+PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver);
+
 // About so many rays as the lamps emit them, evenly over their beams: start and end of each in the
 // lab. Starts far away are brought close to the scene, and rays that meet nothing end beyond it.
 std::vector<float> shown_rays(const OpticalRun& run, const RigidTransform& lab_from_body,

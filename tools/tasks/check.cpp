@@ -58,6 +58,7 @@ class Checker {
     });
     if (file_) read_tables();
     for (CheckReport::Command& command : report_.commands) add_tables(command);
+    if (file_ && report_.mistakes.empty()) add_lacking();
     return std::move(report_);
   }
 
@@ -76,6 +77,29 @@ class Checker {
           std::ranges::find(table.commands, command.name) != table.commands.end()) {
         command.tables.push_back(table.name);
       }
+    }
+  }
+
+  // What each command starts from, where the file has none of it.
+  void add_lacking() {
+    static const std::vector<std::pair<std::string, std::vector<std::string>>> needs = {
+        {"[scene] and [[source]]", {"trace", "render", "torque-map"}},
+        {"[array]", {"power"}},
+        {"[platform]", {"budget", "propagate", "serve", "estimate"}},
+        {"[platform], [module] or [sensors] of light", {"diagnose"}},
+        {"[balance]", {"balance"}},
+        {"[sensors.camera] with markers", {"camera"}},
+        {"[supply_trade]", {"supply"}},
+        {"[sweep]", {"sweep", "optimise"}},
+        {"[fit]", {"fit-cell"}},
+        {"[prove]", {"prove"}}};
+    const auto runs = [&](const std::string& verb) {
+      return std::ranges::find(report_.commands, verb, &CheckReport::Command::name) !=
+             report_.commands.end();
+    };
+    for (const auto& [tables, verbs] : needs) {
+      // Beside a sweep no search, and the other way round: both read [sweep].
+      if (std::ranges::none_of(verbs, runs)) report_.lacking.emplace_back(tables, verbs);
     }
   }
 

@@ -16,6 +16,8 @@ struct CheckReport {
     std::vector<std::string> tables = {};  // of the file that it reads
   };
   std::vector<Command> commands;  // in the order of the program's
+  // Commands that cannot run with it, by what the file would have to hold: "[array]" → "power".
+  std::vector<std::pair<std::string, std::vector<std::string>>> lacking;
   // Every key that is unknown, of the wrong type or out of range; beside them, of tables without
   // such, the first that a run would end with.
   std::vector<InputError> mistakes;

@@ -167,12 +167,14 @@ std::string first_experiment(const std::vector<fs::path>& recordings, const fs::
   return text;
 }
 
-void write_diagnosis(const DiagnosisRun& run, const fs::path& folder) {
+void write_diagnosis(const DiagnosisRun& run, const fs::path& folder,
+                     const std::vector<RunFile>& more) {
   const std::string json = run.json(), improved = run.improved(folder), report = run.report();
   StagedFiles staged(folder);
   write_file_whole(staged.path() / "improved.toml", improved);
   write_file_whole(staged.path() / "report.html", report);
   write_file_whole(staged.path() / "diagnosis.json", json);
+  for (const RunFile& file : more) file.write(staged.path() / file.name);
   staged.publish_as("diagnose", run.provenance);
 }
 

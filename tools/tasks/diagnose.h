@@ -9,6 +9,7 @@
 #include "diagnosis/diagnosis.h"
 #include "tools/runs/console.h"
 #include "tools/runs/options.h"
+#include "tools/runs/result.h"
 
 namespace photorque {
 
@@ -37,7 +38,8 @@ DiagnosisRun diagnose_experiment(const RunOptions& options,
 std::string first_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& file);
 
-// improved.toml, report.html and diagnosis.json into a folder.
-void write_diagnosis(const DiagnosisRun& run, const std::filesystem::path& folder);
+// improved.toml, report.html and diagnosis.json into a folder, and what else is to stand there.
+void write_diagnosis(const DiagnosisRun& run, const std::filesystem::path& folder,
+                     const std::vector<RunFile>& more = {});
 
 }  // namespace photorque

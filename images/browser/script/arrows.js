@@ -7,7 +7,7 @@ import { palette } from './colours.js';
 
 const up = new Vector3(0, 0, 1);
 const colourOf = { force: palette.vermilion, torque: palette.purple, turn: palette.vermilion };
-const secondColour = palette.blue;
+const laterColours = [palette.blue, palette.purple];
 
 // Along z, one long; a cylinder of three.js stands along y.
 function straight(material) {
@@ -37,13 +37,13 @@ function ring(material) {
 }
 
 export class Arrow {
-  // `metres(value)`: how long it is drawn. `isSecond`: of two of a kind.
-  constructor(json, metres, isSecond) {
+  // `metres(value)`: how long it is drawn. `order`: how many of its kind come before it.
+  constructor(json, metres, order) {
     this.name = json.name;
     this.unit = json.unit;
     this.kind = json.kind;
     this.remark = json.remark;
-    this.colour = isSecond ? secondColour : colourOf[json.kind];
+    this.colour = order === 0 ? colourOf[json.kind] : laterColours[(order - 1) % 2];
     this.metres = metres;
     this.group = new Group();
     this.material = new MeshBasicMaterial({ color: this.colour, transparent: true, depthTest: false });

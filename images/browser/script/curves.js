@@ -144,7 +144,7 @@ export class Chart {
   }
 
   draw() {
-    const inner = this.panels.length > 1 ? 105 : 240;
+    const inner = this.panels.length > 1 ? 132 : 240;
     const all = this.panels.flatMap((panel) => panel.curves);
     const hasBars = all.some((curve) => curve.style === 'bars');
     let xRange = range(all.map((curve) => curve.x), this.json.x_log, false);
@@ -255,8 +255,12 @@ export class Chart {
   follow(values) {
     const { cursor } = this.json;
     if (!cursor) return;
-    const at = this.x.place(values[cursor.axis] * cursor.x_per_unit);
-    this.cursor.setAttribute('visibility', 'visible');
+    const { only_at: only } = cursor;
+    const place = this.x.place(values[cursor.axis] * cursor.x_per_unit + cursor.x_from);
+    const at = Math.min(Math.max(place, left), width - right);
+    this.isFollowed = !only || values[only.axis] === only.value;
+    this.body.hidden = !this.isFollowed;
+    this.cursor.setAttribute('visibility', this.isFollowed && Math.abs(at - place) < 1 ? 'visible' : 'hidden');
     this.cursor.setAttribute('x1', at);
     this.cursor.setAttribute('x2', at);
   }

@@ -3,6 +3,7 @@
 import { Chart } from './curves.js';
 import { read } from './data.js';
 import { element, section } from './elements.js';
+import { barChart, findings, verdict } from './findings.js';
 import { MapSection, readMap } from './maps.js';
 import { waterfall } from './power.js';
 import { StageSection } from './stage.js';
@@ -12,6 +13,7 @@ function header(run) {
   const warnings = run.provenance.warnings ?? [];
   return element('header', {},
     element('h1', {}, run.title, element('span', { class: 'verb' }, run.verb)),
+    run.verdict ? verdict(run.verdict) : null,
     run.headline ? element('p', { class: 'headline' }, run.headline) : null,
     warnings.map((text) => element('p', { class: 'warning', role: 'alert' }, element('b', {}, 'Do not trust: '), text)),
     run.headlines.length > 0 ? cards(run.headlines) : null);
@@ -21,7 +23,8 @@ const bodies = (charts) => element('div', { class: 'charts' }, charts.map((chart
 
 // Curves that carry the line of the slider; of many the first, and the others to be unfolded.
 function alongTheSlider(stage, charts) {
-  const atOnce = 4;
+  // Of several recordings only the curves of the one that is shown are to be seen.
+  const atOnce = charts.some((chart) => chart.json.cursor.only_at) ? charts.length : stage?.bodies.length > 1 ? 6 : 4;
   const title = stage?.axes.some((axis) => axis.plays) ? 'Over time' : 'Along the slider';
   const more = charts.slice(atOnce);
   return section(title, bodies(charts.slice(0, atOnce)), more.length === 0 ? null
@@ -35,6 +38,7 @@ function build(run) {
   const byName = new Map(maps.map((map) => [map.name, map]));
   const charts = run.plots.map((plot) => new Chart(plot));
   const mapSection = maps.length > 0 ? new MapSection(maps, run.colours) : null;
+  if (run.findings.length > 0 || run.next_steps.length > 0) main.append(findings(run));
   if (run.stage) {
     const stage = new StageSection(run.stage, byName, run.colours);
     stage.onmove = (at) => charts.forEach((chart) => chart.follow(at));
@@ -53,6 +57,7 @@ function build(run) {
   if (run.power.length > 1) pair.append(section('Where the power went', waterfall(run.power)));
   main.append(pair);
   if (others.length > 0) main.append(section('Curves', bodies(others)));
+  if (run.charts.length > 0) main.append(section('What the evidence says', element('div', { class: 'charts' }, run.charts.map(barChart))));
   if (run.figures.length > 0) main.append(section('Figures', ...figureTable(run.figures, run.figures_file)));
   if (run.tables.length > 0) main.append(section('Tables', ...run.tables.map(table)));
   if (run.notes.length > 0) {

@@ -78,7 +78,8 @@ export class Player {
         to += node * stride;
       }
       stride *= axis.values.length;
-      const text = withUnit(readable(this.at[i], 4).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, ''), axis.unit);
+      const name = axis.names[axis.values.indexOf(this.at[i])];
+      const text = name ?? withUnit(readable(this.at[i], 4).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, ''), axis.unit);
       this.outputs[i].textContent = text;
       this.sliders[i].setAttribute('aria-valuetext', text);
     });

@@ -5,7 +5,7 @@ import { numbers } from './data.js';
 import { check, choice, element, svg } from './elements.js';
 import { estimate, readable, withUnit } from './format.js';
 import { Player } from './player.js';
-import { StageView } from './view.js';
+import { StageView, bodyColours } from './view.js';
 
 const looks = [['above', [0, -1e-3, 1]], ['south', [0, -1, 0]], ['east', [1, 0, 0]]];
 
@@ -85,7 +85,9 @@ export class StageSection {
     }
     view.bodies.forEach((body, i) => {
       if (view.bodies.length > 1) {
-        items.push(check(this.stage.bodies[i].name, true, (on) => { body.visible = on; view.draw(); }));
+        const item = check(this.stage.bodies[i].name, true, (on) => { body.visible = on; view.draw(); });
+        item.append(element('i', { class: 'swatch', style: `--mark:${bodyColours[i] ?? palette.grey}` }));
+        items.push(item);
       }
     });
     const button = (name, says, act) =>

@@ -14,7 +14,7 @@ import { Rays, makeLamps } from './light.js';
 const upright = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(0, 1, 0));
 
 // Of the bodies in their order; the first is solid. The colours of the diagnosis: what was nominal, what was found.
-const seeThrough = [null, palette.vermilion, palette.blue];
+export const bodyColours = [palette.grey, palette.vermilion, palette.blue];
 
 const widest = 4 / 3;  // width over height for which the field of view is meant; wider ones show more
 
@@ -29,15 +29,15 @@ export class StageView {
     this.scene.background = new Color('#f4f6f8');
     this.scene.add(new HemisphereLight('#ffffff', '#b9c2cc', 2.1));
     this.makeCamera();
-    this.bodies = stage.bodies.map((_, i) => makeBody(stage.parts, i === 0 ? null : seeThrough[i] ?? palette.blue));
+    this.bodies = stage.bodies.map((_, i) => makeBody(stage.parts, i === 0 ? null : bodyColours[i] ?? palette.blue));
     this.scene.add(...this.bodies);
     this.paintings = stage.paintings.map((json) => new Painting(json, maps, colours));
     for (const painting of this.paintings) this.bodies[0].add(painting.group);
     this.lamps = makeLamps(stage.lamps, stage.radius);
     this.rays = new Rays();
     this.arrows = stage.arrows.map((json, i) => {
-      const isSecond = stage.arrows.slice(0, i).some((other) => other.kind === json.kind);
-      return new Arrow(json, this.lengthOf(json, i), isSecond);
+      const order = stage.arrows.slice(0, i).filter((other) => other.kind === json.kind).length;
+      return new Arrow(json, this.lengthOf(json, i), order);
     });
     for (const arrow of this.arrows) this.bodies[0].add(arrow.group);
     this.marker = new Mesh(new SphereGeometry(0.014 * stage.radius, 16, 12),

@@ -1,0 +1,37 @@
+// A model from CAD as its file has it: parts of triangles with names, without unit or optics.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "raytrace/scene.h"
+
+namespace photorque::cad {
+
+struct Part {
+  std::string name;
+  std::string material;
+  Mesh mesh;  // lengths in the file's unit, its axes
+};
+
+// Most that one file may hold, whatever its size says.
+inline constexpr size_t most_triangles = 50'000'000;
+
+// STL, as text or binary. Text: every `solid` is a part; binary: the whole is one. Corners at the
+// same place are one vertex. Normals, attributes and colours are not read: the order of the corners
+// says which side is the front. `file` is what messages call it, `name` the part's where the file
+// gives none. Source: 3D Systems, "StereoLithography Interface Specification" (1989).
+// Throws InputError with the line (of binary files the facet) for what is no number, not finite, or
+// not as the format says, and for a file without a triangle.
+std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
+                           const std::string& name);
+
+// Wavefront OBJ: vertices, faces with any number of corners (cut into triangles, hollow ones too),
+// objects and groups (together a part's name), materials by name (`usemtl`; a part for each).
+// Texture coordinates, normals, lines, points, smoothing and material files are not read. Throws
+// InputError as read_stl(), and for curves and surfaces (`curv`, `surf`), which are not read.
+// Source: Wavefront, "Object Files (.obj)", in the Advanced Visualizer manual, appendix B1.
+std::vector<Part> read_obj(std::string_view text, const std::string& file, const std::string& name);
+
+}  // namespace photorque::cad

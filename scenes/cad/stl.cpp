@@ -1,0 +1,205 @@
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <unordered_map>
+
+#include "core/text/lines.h"
+#include "core/text/numbers.h"
+#include "scenes/cad/part.h"
+
+namespace photorque::cad {
+namespace {
+
+constexpr size_t header_bytes = 80, count_bytes = 4, facet_bytes = 50;
+
+// Corners at the same place, to the bit, as one vertex.
+class CornerPool {
+ public:
+  explicit CornerPool(Mesh& mesh) : mesh_(mesh) {}
+
+  uint32_t add(const Vec3& at) {
+    std::string key(sizeof(double) * 3, '\0');
+    const Vec3 plain = at + Vec3::Zero();  // −0 is 0
+    std::memcpy(key.data(), plain.data(), key.size());
+    const auto [entry, is_new] =
+        places_.try_emplace(std::move(key), static_cast<uint32_t>(places_.size()));
+    if (is_new) mesh_.vertices_m.push_back(plain);
+    return entry->second;
+  }
+
+ private:
+  Mesh& mesh_;
+  std::unordered_map<std::string, uint32_t> places_;
+};
+
+uint32_t little_endian_32(std::string_view bytes, size_t at) {
+  uint32_t value = 0;
+  for (size_t i = 0; i < 4; ++i) {
+    value |= static_cast<uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
+  }
+  return value;
+}
+
+double float_at(std::string_view bytes, size_t at) {
+  const uint32_t bits = little_endian_32(bytes, at);
+  float value = 0.0f;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+// Many writers begin binary files with "solid" too: the length decides.
+bool has_binary_length(std::string_view bytes) {
+  if (bytes.size() < header_bytes + count_bytes) return false;
+  const uint64_t count = little_endian_32(bytes, header_bytes);
+  return bytes.size() == header_bytes + count_bytes + facet_bytes * count;
+}
+
+std::vector<Part> read_binary(std::string_view bytes, const std::string& file,
+                              const std::string& name) {
+  const uint32_t count = little_endian_32(bytes, header_bytes);
+  if (count > most_triangles) {
+    throw InputError({file}, "facets", std::to_string(count),
+                     "at most " + std::to_string(most_triangles));
+  }
+  Part part{name, name, {}};
+  CornerPool pool(part.mesh);
+  part.mesh.triangles.reserve(count);
+  for (uint32_t facet = 0; facet < count; ++facet) {
+    const size_t start = header_bytes + count_bytes + facet_bytes * facet;
+    std::array<uint32_t, 3> triangle{};
+    for (size_t corner = 0; corner < 3; ++corner) {
+      Vec3 at;
+      for (size_t k = 0; k < 3; ++k) {
+        // Behind the normal.
+        at[static_cast<Eigen::Index>(k)] = float_at(bytes, start + 12 + 12 * corner + 4 * k);
+      }
+      if (!at.allFinite()) {
+        throw InputError({file}, "facet " + std::to_string(facet + 1),
+                         "a corner that is not finite", "three numbers");
+      }
+      triangle[corner] = pool.add(at);
+    }
+    part.mesh.triangles.push_back(triangle);
+  }
+  return {std::move(part)};
+}
+
+// Reads the words of a text file one by one.
+class TextReader {
+ public:
+  TextReader(std::string_view text, const std::string& file, const std::string& name)
+      : lines_(lines_of(text)), name_(name), where_{file} {}
+
+  std::vector<Part> read() {
+    while (next_line()) {
+      const std::string_view word = words_[0];
+      if (word == "solid") {
+        begin();
+      } else if (word == "endsolid") {
+        end();
+      } else if (word == "facet") {
+        read_facet();
+      } else {
+        throw wrong("facet, solid or endsolid");
+      }
+    }
+    end();
+    return std::move(parts_);
+  }
+
+ private:
+  InputError wrong(const std::string& expected) const {
+    return {where_, "", words_.empty() ? "the end of the file" : in_quotes(words_[0]), expected};
+  }
+
+  // The next line that says something.
+  bool next_line() {
+    words_.clear();
+    while (line_ < lines_.size() && words_.empty()) {
+      words_ = words_of(trimmed(lines_[line_++]));
+      where_.line = static_cast<int>(line_);
+    }
+    return !words_.empty();
+  }
+
+  void begin() {
+    end();
+    std::string name;
+    for (size_t i = 1; i < words_.size(); ++i) {
+      name += (name.empty() ? "" : " ") + std::string(words_[i]);
+    }
+    part_.emplace(Part{name.empty() ? name_ : name, name_, {}});
+    pool_.emplace(part_->mesh);
+  }
+
+  void end() {
+    if (part_ && !part_->mesh.triangles.empty()) parts_.push_back(std::move(*part_));
+    pool_.reset();
+    part_.reset();
+  }
+
+  void expect_line(const char* first, const char* second = nullptr) {
+    if (!next_line() || words_[0] != first ||
+        (second != nullptr && (words_.size() < 2 || words_[1] != second))) {
+      throw wrong(std::string(first) + (second == nullptr ? "" : std::string(" ") + second));
+    }
+  }
+
+  Vec3 read_corner() {
+    expect_line("vertex");
+    if (words_.size() != 4) {
+      throw InputError(where_, "vertex", std::to_string(words_.size() - 1) + " values", "three");
+    }
+    Vec3 at;
+    for (size_t k = 0; k < 3; ++k) {
+      at[static_cast<Eigen::Index>(k)] = require_number(words_[k + 1], where_, "vertex");
+    }
+    return at;
+  }
+
+  void read_facet() {
+    if (!part_) throw wrong("solid");
+    expect_line("outer", "loop");
+    std::array<uint32_t, 3> triangle{};
+    for (uint32_t& corner : triangle) corner = pool_->add(read_corner());
+    expect_line("endloop");
+    expect_line("endfacet");
+    if (++triangles_ > most_triangles) {
+      throw InputError(where_, "facets", "more", "at most " + std::to_string(most_triangles));
+    }
+    part_->mesh.triangles.push_back(triangle);
+  }
+
+  std::vector<std::string_view> lines_, words_;
+  size_t line_ = 0, triangles_ = 0;
+  std::string name_;
+  InputLocation where_;
+  std::optional<Part> part_;
+  std::optional<CornerPool> pool_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace
+
+std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
+                           const std::string& name) {
+  std::vector<Part> parts;
+  if (has_binary_length(bytes)) {
+    parts = read_binary(bytes, file, name);
+  } else if (trimmed(bytes.substr(0, 1000)).starts_with("solid")) {
+    parts = TextReader(bytes, file, name).read();
+  } else {
+    const bool has_count = bytes.size() >= header_bytes + count_bytes;
+    throw InputError(
+        {file}, "", std::to_string(bytes.size()) + " bytes",
+        has_count ? "84 + 50 × " + std::to_string(little_endian_32(bytes, header_bytes)) +
+                        " bytes, the facets that the header counts, or text that begins with solid"
+                  : "an STL file: text that begins with solid, or at least 84 bytes");
+  }
+  if (parts.empty() || parts.front().mesh.triangles.empty()) {
+    throw InputError({file}, "", "no facet", "at least one");
+  }
+  return parts;
+}
+
+}  // namespace photorque::cad

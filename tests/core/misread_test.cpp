@@ -1,0 +1,47 @@
+// What is wrong with keys beside a choice.
+#include <gmock/gmock.h>
+
+#include "core/settings/keys.h"
+
+namespace photorque {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// A lamp is round with a radius or square with a side; both have a power.
+std::vector<Key> lamp_keys() {
+  return {Key::number("power_W", Range::positive(), "of all of it"),
+          Key::choice("kind",
+                      {{"round", "a disc", {Key::number("radius_m", Range::positive(), "its")}},
+                       {"square", "a tile", {Key::number("side_m", Range::positive(), "its")}}},
+                      "what it is")};
+}
+
+std::vector<std::string> mistakes(SettingsNode::Table table) {
+  std::vector<std::string> lines;
+  for (const InputError& error : misread_keys({std::move(table)}, lamp_keys(), "lamp")) {
+    lines.emplace_back(error.what());
+  }
+  return lines;
+}
+
+TEST(MisreadKeys, AWrongChoiceHidesNoMisspeltKey) {
+  EXPECT_THAT(mistakes({{"kind", {std::string("rund")}}, {"powr_W", {1.0}}, {"side_m", {0.1}}}),
+              ElementsAre(HasSubstr("lamp.kind: found \"rund\""),
+                          HasSubstr("lamp.powr_W: found an unknown key, expected a known key, "
+                                    "perhaps \"power_W\"")));
+}
+
+TEST(MisreadKeys, WithoutItsChoiceAKeyOfAnyChoiceMayStand) {
+  EXPECT_THAT(mistakes({{"radius_m", {0.1}}, {"power_W", {1.0}}}), ElementsAre());
+  EXPECT_THAT(mistakes({{"radus_m", {0.1}}}), ElementsAre(HasSubstr("perhaps \"radius_m\"")));
+}
+
+TEST(MisreadKeys, OfAChoiceOnlyItsOwnKeysAreKnown) {
+  EXPECT_THAT(mistakes({{"kind", {std::string("round")}}, {"side_m", {0.1}}}),
+              ElementsAre(HasSubstr("lamp.side_m: found an unknown key")));
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,266 @@
+// STL and OBJ: the same bodies as in other formats, with areas and volumes from geometry, and what
+// is wrong with a file in one line.
+#include <cmath>
+#include <fstream>
+#include <tuple>
+
+#include "core/constants.h"
+#include "gltf_test_model.h"
+#include "scenes/cad/model.h"
+#include "scenes/cad/polygon.h"
+#include "scenes/experiment/experiment.h"
+
+namespace photorque {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+const std::filesystem::path seeds =
+    std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "tests/fuzz/seeds/cad";
+
+GltfModel stl(const std::string& bytes, const CadConventions& how = {1.0}) {
+  return read_cad_bytes(bytes, "part.stl", CadFormat::stl, how);
+}
+
+GltfModel obj(const std::string& text, const CadConventions& how = {1.0},
+              const GltfOptions& options = {}) {
+  return read_cad_bytes(text, "part.obj", CadFormat::obj, how, options);
+}
+
+// Twice the area of a triangle is the length of this.
+Vec3 twice_area(const std::array<Vec3, 3>& p) {
+  return (p[1] - p[0]).cross(p[2] - p[0]);
+}
+
+struct Extent {
+  size_t triangles = 0;
+  double area_m2 = 0.0, volume_m3 = 0.0;  // volume by the divergence theorem: positive outwards
+  Vec3 area_vector_m2 = Vec3::Zero();
+};
+
+Extent extent_of(const Scene& scene) {
+  Extent extent;
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    for (size_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangles.size(); ++t) {
+      const auto p = body_corners(scene, i, t);
+      ++extent.triangles;
+      extent.area_m2 += 0.5 * twice_area(p).norm();
+      extent.area_vector_m2 += 0.5 * twice_area(p);
+      extent.volume_m3 += p[0].dot(p[1].cross(p[2])) / 6.0;
+    }
+  }
+  return extent;
+}
+
+// A unit tetrahedron at the origin: volume 1/6, area 3/2 + √3/2.
+std::string tetrahedron_stl() {
+  const std::array<std::array<std::array<float, 3>, 3>, 4> facets = {
+      {{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}},
+       {{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}},
+       {{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}}},
+       {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}};
+  std::string bytes(80, ' ');
+  bytes += word_bytes(4);
+  for (const auto& facet : facets) {
+    bytes += std::string(12, '\0');
+    for (const auto& corner : facet) {
+      bytes.append(reinterpret_cast<const char*>(corner.data()), sizeof corner);
+    }
+    bytes += std::string(2, '\0');
+  }
+  return bytes;
+}
+
+TEST(Stl, TetrahedronHasItsVolumeAndArea) {
+  const GltfModel model = stl(tetrahedron_stl(), {1e-3});
+  const Extent extent = extent_of(model.scene);
+  EXPECT_EQ(extent.triangles, 4u);
+  EXPECT_NEAR(extent.volume_m3, 1e-9 / 6.0, 1e-16);
+  EXPECT_NEAR(extent.area_m2, 1e-6 * (1.5 + std::sqrt(3.0) / 2.0), 1e-13);
+  EXPECT_NEAR(extent.area_vector_m2.norm(), 0.0, 1e-13);
+  // Corners at one place are one vertex, so the body is known to be closed.
+  ASSERT_EQ(model.scene.meshes.size(), 1u);
+  EXPECT_EQ(model.scene.meshes[0].vertices_m.size(), 4u);
+  EXPECT_TRUE(model.scene.meshes[0].encloses);
+  EXPECT_EQ(model.scene.instances[0].node, "part");
+  EXPECT_EQ(model.scene.instances[0].material, "part");
+  EXPECT_EQ(model.inputs.front().first, "part.stl");
+}
+
+TEST(Stl, TextAndBinaryOfOneBodyAreTheSame) {
+  const Extent binary = extent_of(read_cad(seeds / "tetrahedron_binary.stl", {1.0}).scene);
+  // The text has a second solid: a triangle of base 11 and height 1 at z = 0.25.
+  const GltfModel text = read_cad(seeds / "tetrahedron_text.stl", {1.0});
+  ASSERT_EQ(text.scene.instances.size(), 2u);
+  EXPECT_EQ(text.scene.instances[0].node, "tetra hedron");
+  EXPECT_EQ(text.scene.instances[1].node, "tetrahedron_text");
+  const Extent all = extent_of(text.scene);
+  EXPECT_NEAR(all.area_m2, binary.area_m2 + 5.5, 1e-12);
+  EXPECT_EQ(all.triangles, binary.triangles + 1);
+}
+
+TEST(Cad, AxesAndUnitsAreAsAsked) {
+  // One triangle with a normal along z of the file.
+  const std::string text = "v 0 0 0\nv 3 0 0\nv 0 4 0\nf 1 2 3\n";
+  EXPECT_NEAR((extent_of(obj(text).scene).area_vector_m2 - Vec3(0, 0, 6)).norm(), 0.0, 1e-12);
+  // As glTF: (x, y, z) is body (x, −z, y).
+  const Extent upright = extent_of(obj(text, {0.0254, true}).scene);
+  EXPECT_NEAR((upright.area_vector_m2 - 0.0254 * 0.0254 * Vec3(0, -6, 0)).norm(), 0.0, 1e-9);
+  EXPECT_EQ(metres_of_unit("mm"), 1e-3);
+  EXPECT_EQ(metres_of_unit("in"), 0.0254);  // NIST SP 811, appendix B
+  EXPECT_EQ(metres_of_unit("ft"), 0.3048);
+  EXPECT_EQ(metres_of_unit("furlong"), 0.0);
+}
+
+TEST(Obj, GroupsMaterialsAndIndicesAreRead) {
+  const GltfModel model = read_cad(seeds / "house.obj", {1.0});
+  std::vector<std::pair<std::string, std::string>> parts;
+  for (const Instance& instance : model.scene.instances) {
+    parts.emplace_back(instance.path, instance.material);
+  }
+  EXPECT_EQ(parts, (std::vector<std::pair<std::string, std::string>>{{"house/walls", "white wall"},
+                                                                     {"house/roof", "black"}}));
+  // Gable: (0,0) (2,0) (2,2) (1,3), then in to (1,1), then (0,2): by the shoelace formula 4.
+  const auto gable = extent_of(model.scene);
+  double walls = 0.0;
+  for (size_t t = 0; t < 4; ++t) walls += 0.5 * twice_area(body_corners(model.scene, 0, t)).norm();
+  EXPECT_NEAR(walls, 4.0, 1e-6);
+  EXPECT_EQ(gable.triangles, 4u + 2u + 1u);
+}
+
+TEST(Obj, PolygonsKeepTheirArea) {
+  // A comb of 50 teeth, 1 wide and 1 high with gaps of 1, on a back 1 high: 99 + 50.
+  std::vector<Vec3> comb = {{0, 0, 0}, {99, 0, 0}};
+  for (int tooth = 49; tooth >= 0; --tooth) {
+    const double x = 2.0 * tooth;
+    comb.insert(comb.end(), {{x + 1, 1, 0}, {x + 1, 2, 0}, {x, 2, 0}, {x, 1, 0}});
+  }
+  double area = 0.0;
+  for (const auto& [a, b, c] : cad::triangles_of(comb)) {
+    const Vec3 twice = twice_area({comb[a], comb[b], comb[c]});
+    EXPECT_GE(twice.z(), 0.0);  // none lies the other way round
+    area += 0.5 * twice.z();
+  }
+  EXPECT_NEAR(area, 149.0, 1e-9);
+  // A square ring as one outline with a slit: 9 − 1.
+  const std::vector<Vec3> ring = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 0},
+                                  {1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}, {1, 1, 0}};
+  area = 0.0;
+  for (const auto& [a, b, c] : cad::triangles_of(ring)) {
+    area += 0.5 * twice_area({ring[a], ring[b], ring[c]}).norm();
+  }
+  EXPECT_NEAR(area, 8.0, 1e-12);
+}
+
+TEST(Obj, ManyCornersTakeTheirSquareAtMost) {
+  // A spiral of 4000 corners, nearly none of them convex on its inner side.
+  std::vector<Vec3> spiral;
+  for (int i = 0; i < 2000; ++i) {
+    const double turn = 0.02 * i;
+    spiral.emplace_back((1.0 + turn) * std::cos(turn), (1.0 + turn) * std::sin(turn), 0.0);
+  }
+  for (int i = 1999; i >= 0; --i) {
+    const double turn = 0.02 * i;
+    spiral.emplace_back((0.5 + turn) * std::cos(turn), (0.5 + turn) * std::sin(turn), 0.0);
+  }
+  double shoelace = 0.0;
+  for (size_t i = 0; i < spiral.size(); ++i) {
+    const Vec3 &a = spiral[i], &b = spiral[(i + 1) % spiral.size()];
+    shoelace += 0.5 * (a.x() * b.y() - b.x() * a.y());
+  }
+  double area = 0.0;
+  for (const auto& [a, b, c] : cad::triangles_of(spiral)) {
+    area += 0.5 * twice_area({spiral[a], spiral[b], spiral[c]}).norm();
+  }
+  EXPECT_NEAR(area, std::abs(shoelace), 1e-9 * std::abs(shoelace));
+}
+
+TEST(Cad, MaterialsAreTheExperimentsOrSaid) {
+  const std::string text = "usemtl black\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_THAT(obj(text).notices, Contains(HasSubstr("'black': the file says nothing of optics")));
+  SettingsNode::Table table;
+  table["name"] = {std::string("black")};
+  table["absorptance"] = {1.0};
+  GltfOptions options;
+  options.materials = {Settings(std::make_shared<const SettingsNode>(SettingsNode{table}))};
+  const GltfModel model = obj(text, {1.0}, options);
+  EXPECT_EQ(model.scene.surfaces[model.scene.instances[0].front_surface].absorbed[0], 1.0);
+  for (const std::string& notice : model.notices) EXPECT_THAT(notice, Not(HasSubstr("optics")));
+}
+
+struct BrokenCad {
+  const char* name;
+  CadFormat format;
+  std::string bytes;
+  const char* says;
+};
+
+std::vector<BrokenCad> broken_cad_files() {
+  const std::string good = tetrahedron_stl();
+  std::string not_finite = good;
+  not_finite.replace(84 + 12, 4, word_bytes(0x7fc00000));  // NaN
+  const std::string facet =
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex ";
+  return {
+      {"torn", CadFormat::stl, good.substr(0, good.size() - 7),
+       "part.stl: found 277 bytes, expected 84 + 50 × 4 bytes"},
+      {"short", CadFormat::stl, "abc", "expected an STL file"},
+      {"empty", CadFormat::stl, "", "found 0 bytes"},
+      {"none", CadFormat::stl, "solid a\nendsolid a\n", "found no facet"},
+      {"no_number", CadFormat::stl, facet + "0 one 0\nendloop\nendfacet\nendsolid\n",
+       "part.stl:6: vertex: found \"one\""},
+      {"two_numbers", CadFormat::stl, facet + "0 1\n", "part.stl:6: vertex: found 2 values"},
+      {"huge", CadFormat::stl, facet + "0 1e999 0\n", "part.stl:6: vertex: found \"1e999\""},
+      {"ends", CadFormat::stl, facet + "0 1 0\nendloop\n", "found the end of the file"},
+      {"word", CadFormat::stl, "solid a\nfacett\n", "part.stl:2: found \"facett\""},
+      {"not_finite", CadFormat::stl, not_finite, "part.stl: facet 1: found a corner that is not"},
+      {"no_face", CadFormat::obj, "v 0 0 0\n", "found no face"},
+      {"index", CadFormat::obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n",
+       "part.obj:5: f: found \"4\", expected a vertex from 1 to 3"},
+      {"zero", CadFormat::obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n",
+       "part.obj:4: f: found \"0\""},
+      {"back", CadFormat::obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 1 2\n", "part.obj:4: f"},
+      {"half", CadFormat::obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1.5 1 2\n", "part.obj:4: f"},
+      {"text", CadFormat::obj, "v 0 x 0\n", "part.obj:1: v: found \"x\""},
+      {"few", CadFormat::obj, "v 0 0\n", "part.obj:1: v: found 2 values"},
+      {"line", CadFormat::obj, "v 0 0 0\nv 1 0 0\nf 1 2\n", "part.obj:3: f: found 2 corners"},
+      {"early", CadFormat::obj, "f 1 2 3\n", "expected vertices before their faces"},
+      {"curve", CadFormat::obj, "v 0 0 0\ncurv 0 1 1 2\n", "part.obj:2: found \"curv\""},
+      {"far", CadFormat::obj, "v 0 0 0\nv 1e20 0 0\nv 0 1e20 0\nf 1 2 3\n", "at most 1e9 m"},
+  };
+}
+
+TEST(Cad, WhatIsWrongIsSaidInOneLine) {
+  for (const BrokenCad& broken : broken_cad_files()) {
+    SCOPED_TRACE(broken.name);
+    const std::string file = broken.format == CadFormat::stl ? "part.stl" : "part.obj";
+    const std::string message =
+        refusal_of([&] { read_cad_bytes(broken.bytes, file, broken.format, {1.0}); });
+    EXPECT_THAT(message, HasSubstr(broken.says));
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+// Exit of a reader with the text of an experiment whose scene is one of the seeds.
+std::string refusal_of_scene(const std::string& keys) {
+  const std::string text = "[scene]\n" + keys +
+                           "\n[[source]]\nkind = \"laser\"\npower_W = 1\nwavelength_nm = 730\n"
+                           "waist_mm = 1\nposition_m = [0, 0, 9]\naim_m = [0, 0, 0]\n";
+  return refusal_of([&] { read_experiment_text(seeds / "lab.toml", text); });
+}
+
+TEST(Cad, ExperimentsSayTheUnit) {
+  EXPECT_THAT(refusal_of_scene("file = \"house.obj\""),
+              HasSubstr("scene.unit: found nothing, expected one of \"mm\""));
+  EXPECT_THAT(refusal_of_scene("file = \"house.OBJ\"\nunit = \"yd\""),
+              HasSubstr("lab.toml:3: scene.unit: found \"yd\""));
+  EXPECT_THAT(refusal_of_scene("file = \"house.obj\"\nmetres_per_unit = 0.001"),
+              HasSubstr("lab.toml:3: scene.metres_per_unit: found an STL or OBJ file"));
+  EXPECT_THAT(refusal_of_scene("file = \"house.gltf\"\nunit = \"mm\""),
+              HasSubstr("lab.toml:3: scene.unit: found a glTF file"));
+  EXPECT_THAT(refusal_of_scene("file = \"house.gltf\"\nup = \"z\""), HasSubstr("scene.up"));
+}
+
+}  // namespace
+}  // namespace photorque
