@@ -116,7 +116,7 @@ std::vector<Left> what_is_left(const Observation& seen, const Prediction* about)
       const PlatformState& state = about->states[i];
       all[i] = {{state.lab_from_body, state.lab_from_body * state.rate_body_rad_s},
                 about->off[i].head<3>(),
-                about->off[i].tail<3>()};
+                about->off[i].segment<3>(3)};
     }
     return all;
   }

@@ -36,8 +36,9 @@ struct Sensors {
   };
   // What `diagnose` compares and `propagate` does not write.
   struct Accelerometer {
-    double noise_m_s2 = 0.0;         // per reading and axis; 0: not stated
-    Vec3 position_m = Vec3::Zero();  // from the centre of rotation, or of mass where nothing carries it
+    double noise_m_s2 = 0.0;  // per reading and axis; 0: not stated
+    Vec3 position_m =
+        Vec3::Zero();  // from the centre of rotation, or of mass where nothing carries it
     Vec3 bias_m_s2 = Vec3::Zero();
   };
   struct Magnetometer {

@@ -13,7 +13,6 @@
 namespace photorque {
 namespace {
 
-
 InstrumentFinding level_finding(int k, const FoundNoise& found, double stated) {
   const double unit = k < 3 ? arcsecond_rad : 1.0;
   const double value = found.noise.level / unit;

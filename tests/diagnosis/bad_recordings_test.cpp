@@ -35,7 +35,8 @@ TEST(BadRecording, WithoutAttitudeNamesTheMissingChannel) {
   const Recording currents = recording_of("t_s,battery_current_A", "0.1", 100);
   EXPECT_EQ(refusal_of(currents),
             "run.csv: header: found no channel q_w and no gyro, expected the attitude q_w, q_x, "
-            "q_y, q_z, or gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s");
+            "q_y, q_z or roll_rad, pitch_rad, yaw_rad; or gyro_x_rad_s, gyro_y_rad_s, "
+            "gyro_z_rad_s; or any of tilt_rad, heading_rad, rate_magnitude_rad_s");
   const Recording three = recording_of("t_s,q_w,q_x,q_y", "1,0,0", 100);
   EXPECT_NE(refusal_of(three).find("no channel q_z"), std::string::npos);
 }

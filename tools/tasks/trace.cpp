@@ -67,8 +67,8 @@ TraceRun trace_experiment(const RunOptions& options, const Console& console, boo
   if (with_files) result.files = ray_files(*run, options.threads);
   print_trace(console, *run, light);
   result.product = run->product(light);
-  append(result.product, compare_published(published, experiment.file.attitude.tilt_rad,
-                                           result.product, console));
+  append(result.product,
+         compare_published(published, experiment.file.attitude.tilt_rad, result.product, console));
   result.provenance = run->provenance(light);
   result.cost = {light.wall_s, light.rays};
   return {run, std::move(light), std::move(result)};

@@ -60,7 +60,7 @@ void add_power(const Prediction& prediction, const Observation& seen, Spectrum& 
   std::array<std::vector<double>, 9> channels;
   for (size_t i = 0; i < prediction.residual.size(); ++i) {
     const WhiteRow& white = prediction.residual[i];
-    const Vec3 lab = prediction.states[i].lab_from_body * Vec3(white.tail<3>());
+    const Vec3 lab = prediction.states[i].lab_from_body * Vec3(white.segment<3>(3));
     for (Eigen::Index k = 0; k < 6; ++k) channels[static_cast<size_t>(k)].push_back(white[k]);
     for (Eigen::Index k = 0; k < 3; ++k) channels[static_cast<size_t>(6 + k)].push_back(lab[k]);
   }
