@@ -63,10 +63,11 @@ class Judge {
     return trial;
   }
 
-  // Whether the trial predicts what was held out.
+  // Whether the trial predicts what was held out. Where that was asked of the nominal model, one
+  // that was never asked has not shown it.
   bool predicts(size_t trial) const {
     const std::optional<Predictive>& p = trials_[trial].predictive;
-    return !p || p->sigma < limits_.max_predictive_sigma;
+    return p ? p->sigma < limits_.max_predictive_sigma : !trials_.front().predictive;
   }
 
   // Candidates with a name that no explanation as good does without.
