@@ -10,7 +10,7 @@ using namespace photorque::tree;
 
 std::vector<fs::path> documents() {
   std::vector<fs::path> all = {root / "ARCHITECTURE.md", root / "README.md"};
-  for (const auto& entry : fs::directory_iterator(root / "docs")) {
+  for (const auto& entry : fs::recursive_directory_iterator(root / "docs")) {
     if (entry.path().extension() == ".md") all.push_back(entry.path());
   }
   std::sort(all.begin(), all.end());

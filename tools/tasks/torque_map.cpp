@@ -1,5 +1,6 @@
 #include "tools/tasks/torque_map.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "core/constants.h"
@@ -9,6 +10,14 @@
 
 namespace photorque {
 namespace {
+
+// A cell of the table in the terminal, three blanks before it at least.
+std::string in_column(const std::string& text) {
+  constexpr size_t width = 28;
+  const auto shown = static_cast<size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));  // UTF-8
+  return std::string(3, ' ') + text + std::string(shown < width ? width - shown : 0, ' ');
+}
 
 // Power over the attitudes, one row per node in the order of the wrench table.
 class PowerTable {
@@ -109,15 +118,22 @@ TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<Opt
                                         "electric_power_over_tilt", "Electric power of the array"));
   }
   console.heading("Torque about the centre of rotation, body frame");
-  console.line("  tilt [deg]  heading [deg]   torque y");
+  std::string names = "  tilt [deg]  heading [deg]";
+  for (const char* name : {"torque x", "torque y", "torque z"}) names += in_column(name);
+  console.line(names);
   for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
     for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
       const size_t node = wrenches.node(h, t);
-      const Estimate y{wrenches.torque_body_N_m[node].y(), wrenches.torque_error_N_m[node].y()};
       char angles[64];
-      std::snprintf(angles, sizeof angles, "  %10g  %13g   ", grid.tilt_rad[t] / degree_rad,
+      std::snprintf(angles, sizeof angles, "  %10g  %13g", grid.tilt_rad[t] / degree_rad,
                     grid.heading_rad[h] / degree_rad);
-      console.line(angles + show(y, "N m"));
+      std::string line = angles;
+      for (int i = 0; i < 3; ++i) {
+        line += in_column(
+            show(Estimate{wrenches.torque_body_N_m[node][i], wrenches.torque_error_N_m[node][i]},
+                 "N m"));
+      }
+      console.line(line);
     }
   }
   warnings.print(console);
