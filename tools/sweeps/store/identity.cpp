@@ -1,9 +1,8 @@
 #include "tools/sweeps/store/identity.h"
 
-#include <nlohmann/json.hpp>
-
 #include "core/files.h"
 #include "core/provenance.h"
+#include "scenes/experiment/named_files.h"
 #include "scenes/experiment/toml_reader.h"
 #include "scenes/experiment/toml_writer.h"
 
@@ -11,67 +10,6 @@ namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr size_t longest_path = 4096;
-
-// The file that a text names from a folder; empty where it names none.
-fs::path named_file(const fs::path& folder, const std::string& text) {
-  if (text.empty() || text.size() > longest_path || text.find('\0') != std::string::npos) return {};
-  std::error_code failure;
-  const fs::path path = folder / text;
-  return fs::is_regular_file(path, failure) ? path : fs::path();
-}
-
-// "a%20b" is "a b" in a URI.
-std::string percent_decoded(const std::string& text) {
-  std::string decoded;
-  for (size_t i = 0; i < text.size(); ++i) {
-    unsigned byte = 0;
-    if (text[i] == '%' && i + 2 < text.size() &&
-        std::sscanf(text.substr(i + 1, 2).c_str(), "%2x", &byte) == 1) {
-      decoded += static_cast<char>(byte);
-      i += 2;
-    } else {
-      decoded += text[i];
-    }
-  }
-  return decoded;
-}
-
-// All texts of a JSON document.
-void collect_texts(const nlohmann::json& node, std::vector<std::string>& texts) {
-  if (node.is_string()) {
-    texts.push_back(node.get<std::string>());
-  } else if (node.is_structured()) {
-    for (const auto& item : node) collect_texts(item, texts);
-  }
-}
-
-// The JSON of a glTF or GLB file; empty for any other.
-std::string json_of(const fs::path& path, const std::string& bytes) {
-  constexpr size_t glb_head = 20;  // magic, version, length; length and type of the first chunk
-  if (path.extension() == ".gltf") return bytes;
-  if (path.extension() != ".glb" || bytes.size() < glb_head) return "";
-  size_t length = 0;
-  for (size_t i = 0; i < 4; ++i) {
-    length |= static_cast<size_t>(static_cast<unsigned char>(bytes[12 + i])) << (8 * i);
-  }
-  return bytes.substr(glb_head, length);
-}
-
-// What a model's file names in turn.
-std::vector<fs::path> files_named_in(const fs::path& path, const std::string& bytes) {
-  const auto json = nlohmann::json::parse(json_of(path, bytes), nullptr, false);
-  std::vector<std::string> texts;
-  if (!json.is_discarded()) collect_texts(json, texts);
-  std::vector<fs::path> files;
-  for (const std::string& text : texts) {
-    fs::path file = named_file(path.parent_path(), text);
-    if (file.empty()) file = named_file(path.parent_path(), percent_decoded(text));
-    if (!file.empty() && file != path) files.push_back(std::move(file));
-  }
-  return files;
-}
 
 void name_files_from(SettingsNode& node, const fs::path& from, const fs::path& to) {
   if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {

@@ -1,0 +1,94 @@
+#include "scenes/experiment/named_files.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core/files.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t longest_path = 4096;
+
+// "a%20b" is "a b" in a URI.
+std::string percent_decoded(const std::string& text) {
+  std::string decoded;
+  for (size_t i = 0; i < text.size(); ++i) {
+    unsigned byte = 0;
+    if (text[i] == '%' && i + 2 < text.size() &&
+        std::sscanf(text.substr(i + 1, 2).c_str(), "%2x", &byte) == 1) {
+      decoded += static_cast<char>(byte);
+      i += 2;
+    } else {
+      decoded += text[i];
+    }
+  }
+  return decoded;
+}
+
+// All texts of a JSON document.
+void collect_texts(const nlohmann::json& node, std::vector<std::string>& texts) {
+  if (node.is_string()) {
+    texts.push_back(node.get<std::string>());
+  } else if (node.is_structured()) {
+    for (const auto& item : node) collect_texts(item, texts);
+  }
+}
+
+// The JSON of a glTF or GLB file; empty for any other.
+std::string json_of(const fs::path& path, const std::string& bytes) {
+  constexpr size_t glb_head = 20;  // magic, version, length; length and type of the first chunk
+  if (path.extension() == ".gltf") return bytes;
+  if (path.extension() != ".glb" || bytes.size() < glb_head) return "";
+  size_t length = 0;
+  for (size_t i = 0; i < 4; ++i) {
+    length |= static_cast<size_t>(static_cast<unsigned char>(bytes[12 + i])) << (8 * i);
+  }
+  return bytes.substr(glb_head, length);
+}
+
+void collect_from(const SettingsNode& node, const fs::path& folder, std::set<fs::path>& files) {
+  if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    for (const auto& [key, item] : *table) collect_from(item, folder, files);
+  } else if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (const SettingsNode& item : *items) collect_from(item, folder, files);
+  } else if (const auto* text = std::get_if<std::string>(&node.value)) {
+    const fs::path file = named_file(folder, *text);
+    if (file.empty() || !files.insert(fs::absolute(file).lexically_normal()).second) return;
+    for (const fs::path& one : files_named_in(file, read_file(file))) {
+      files.insert(fs::absolute(one).lexically_normal());
+    }
+  }
+}
+
+}  // namespace
+
+fs::path named_file(const fs::path& folder, const std::string& text) {
+  if (text.empty() || text.size() > longest_path || text.find('\0') != std::string::npos) return {};
+  std::error_code failure;
+  const fs::path path = folder / text;
+  return fs::is_regular_file(path, failure) ? path : fs::path();
+}
+
+std::vector<fs::path> files_named_in(const fs::path& path, const std::string& bytes) {
+  const auto json = nlohmann::json::parse(json_of(path, bytes), nullptr, false);
+  std::vector<std::string> texts;
+  if (!json.is_discarded()) collect_texts(json, texts);
+  std::vector<fs::path> files;
+  for (const std::string& text : texts) {
+    fs::path file = named_file(path.parent_path(), text);
+    if (file.empty()) file = named_file(path.parent_path(), percent_decoded(text));
+    if (!file.empty() && file != path) files.push_back(std::move(file));
+  }
+  return files;
+}
+
+std::set<fs::path> all_named_files(const SettingsNode& root, const fs::path& folder) {
+  std::set<fs::path> files;
+  collect_from(root, folder, files);
+  return files;
+}
+
+}  // namespace photorque

@@ -1,0 +1,25 @@
+// The files that an experiment names, and those that these name in turn.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+// The file that a text names from a folder; empty where it names none.
+std::filesystem::path named_file(const std::filesystem::path& folder, const std::string& text);
+
+// What a model's file (glTF, GLB) names in turn: its buffers and pictures. `bytes` are the file's.
+std::vector<std::filesystem::path> files_named_in(const std::filesystem::path& path,
+                                                  const std::string& bytes);
+
+// Every file that a text of the tree names from `folder`, and what these name in turn: absolute
+// paths in normal form.
+std::set<std::filesystem::path> all_named_files(const SettingsNode& root,
+                                                const std::filesystem::path& folder);
+
+}  // namespace photorque

@@ -1,0 +1,77 @@
+// The platform as a co-simulation unit: a run of `propagate` that waits at every tick.
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tools/fmi/variables.h"
+#include "tools/runs/options.h"
+
+namespace photorque {
+
+// What an experiment says of itself as a unit.
+struct UnitDescription {
+  double rate_Hz = 0.0;  // ticks: [serve] rate_Hz
+  double max_torque_N_m = 0.0;
+  double start_s = 0.0, stop_s = 0.0;  // [propagate] initial_time_s, and duration_s after it
+  std::vector<UnitVariable> variables;
+};
+// InputError for what is wrong with the experiment's platform.
+UnitDescription describe_unit(const RunOptions& options);
+
+// One run. The propagation goes on in a thread of its own, which rests whenever a command is
+// awaited, so it is the same computation as that of `serve` in lockstep and of `propagate`: what a
+// command does depends on nothing but the ticks.
+class CoSimulation {
+ public:
+  CoSimulation(RunOptions options, double rate_Hz);
+  ~CoSimulation();
+  CoSimulation(const CoSimulation&) = delete;
+  CoSimulation& operator=(const CoSimulation&) = delete;
+
+  // Begins at `start_s`; commands beyond `stop_s` are not possible. Commands of an earlier run may
+  // be given, which are followed to the end before this returns. InputError and NumericalError of
+  // the run come out here and of advance_to(), and end it.
+  void begin(double start_s, double stop_s, std::vector<Vec3> commands = {});
+  // Holds the command over all ticks before `time_s`, until the last tick at or before it.
+  void advance_to(double time_s, const Vec3& command_body_N_m);
+
+  const UnitOutputs& outputs() const { return outputs_; }
+  // Of the last tick; of the run's end where it came earlier (the bearing's stop).
+  double tick_s() const { return tick_s_; }
+  // The platform has stopped by itself.
+  bool ended() const { return ended_; }
+  // What was commanded at every tick so far.
+  const std::vector<Vec3>& commands() const { return commands_; }
+  // What the run has said since it was asked last, a line each.
+  std::vector<std::string> take_words();
+
+ private:
+  enum class Turn { run, importer };
+  void run(double start_s, double stop_s);
+  ZeroOrderHold at_tick(const LiveRow& row);
+  void await_tick();
+  void abandon();
+
+  RunOptions options_;
+  double rate_Hz_, start_s_ = 0.0;
+  std::thread thread_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  // All below belongs to him whose turn it is.
+  Turn turn_ = Turn::importer;
+  bool abandoned_ = false, ended_ = false;
+  std::exception_ptr failure_;
+  UnitOutputs outputs_;
+  double tick_s_ = 0.0;
+  size_t given_ = 0;  // commands that are known beforehand
+  std::vector<Vec3> commands_;
+  std::vector<std::string> words_;
+};
+
+}  // namespace photorque
