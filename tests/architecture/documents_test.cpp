@@ -136,9 +136,9 @@ TEST(Documents, CommandsExistAndEachHasARow) {
       EXPECT_TRUE(verbs.contains(verb)) << document << " names photorque " << verb;
     }
   }
-  const std::vector<std::string> rows = matches(text_of(root / "README.md"), row, 1);
+  const std::vector<std::string> rows = matches(text_of(root / "docs/verbs.md"), row, 1);
   const std::set<std::string> told(rows.begin(), rows.end());
-  for (const std::string& verb : verbs) EXPECT_TRUE(told.contains(verb)) << "README.md: " << verb;
+  for (const std::string& verb : verbs) EXPECT_TRUE(told.contains(verb)) << "docs/verbs.md: " << verb;
 }
 
 TEST(Documents, EveryKindIsInItsTable) {
@@ -157,12 +157,12 @@ TEST(Documents, EveryKindIsInItsTable) {
   }
 }
 
-// tools/install and the table of dependencies in README.md name the same packages.
+// tools/install and the table of dependencies in docs/install.md name the same packages.
 TEST(Documents, EveryInstalledPackageHasALine) {
   static const std::regex list(R"(packages\+?=\(([^)]*)\))");
   static const std::regex name(R"([a-z0-9][a-z0-9+.-]+)");
   static const std::regex quoted(R"(`([a-z0-9][a-z0-9+.-]+)`)");
-  const std::string page = text_of(root / "README.md");
+  const std::string page = text_of(root / "docs/install.md");
   const size_t table = page.find("\n| dependency |");
   ASSERT_NE(table, std::string::npos);
   const std::vector<std::string> lines =
