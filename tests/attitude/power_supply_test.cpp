@@ -52,8 +52,9 @@ TEST(Filaments, MutualInductanceIsNeumannsIntegral) {
 }
 
 // Values as printed, with μ₀ = 4π 10⁻⁷: F. W. Grover, Inductance Calculations (1946), in the
-// examples of S. Babic and others, IEEE Trans. Magn. 46 (2010) 3591: coaxial circles of 20 and 25
-// cm at 10 cm, 248.787 nH; circles of 16 and 10 cm inclined by 60 deg, 13.611 nH.
+// examples of S. Babic and others, IEEE Trans. Magn. 46 (2010) 3591, quoted at second hand
+// (docs/supply.md): coaxial circles of 20 and 25 cm at 10 cm, 248.787 nH; circles of 16 and 10 cm
+// inclined by 60 deg, 13.611 nH.
 TEST(Filaments, MutualInductanceIsAsPublished) {
   const double units = 4e-7 * pi / vacuum_permeability_N_A2;
   const CircularFilament big{Vec3::Zero(), Vec3::UnitZ(), 0.2};
