@@ -12,5 +12,6 @@ void bind_platform(pybind11::module_& module);   // budget, balance
 void bind_diagnosis(pybind11::module_& module);  // diagnose
 void bind_check(pybind11::module_& module);      // check
 void bind_cell_fit(pybind11::module_& module);   // fit_cell
+void bind_tracking(pybind11::module_& module);   // camera, estimate
 
 }  // namespace photorque::python

@@ -27,5 +27,6 @@ PYBIND11_MODULE(_photorque, module) {
   python::bind_platform(module);
   python::bind_diagnosis(module);
   python::bind_cell_fit(module);
+  python::bind_tracking(module);
   python::bind_check(module);
 }

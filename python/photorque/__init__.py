@@ -7,9 +7,11 @@ NumericalError.
 """
 
 from photorque._photorque import (
+    AttitudeEstimate,
     Balance,
     Budget,
     BudgetEntry,
+    Camera,
     CellFit,
     CheckReport,
     Diagnosis,
@@ -28,8 +30,10 @@ from photorque._photorque import (
     __version__,
     balance,
     budget,
+    camera,
     check,
     diagnose,
+    estimate,
     fit_cell,
     git_hash,
     power,
@@ -39,9 +43,11 @@ from photorque._photorque import (
 )
 
 __all__ = [
+    "AttitudeEstimate",
     "Balance",
     "Budget",
     "BudgetEntry",
+    "Camera",
     "CellFit",
     "CheckReport",
     "Diagnosis",
@@ -60,8 +66,10 @@ __all__ = [
     "__version__",
     "balance",
     "budget",
+    "camera",
     "check",
     "diagnose",
+    "estimate",
     "fit_cell",
     "git_hash",
     "power",
