@@ -47,6 +47,18 @@ TEST(Decide, NothingThatDoesNotPredictIsSaid) {
   EXPECT_EQ(decided(nothing, mutant).finding, Finding::nothing_missing);
 }
 
+// More evidence than any other, and never held against what was held out, where the others were.
+TEST(Decide, WhatWasNeverAskedToPredictIsNotSaid) {
+  std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
+                                     explanation({0, 1}, 200.0, 1.0)};
+  trials[2].predictive.reset();
+  EXPECT_EQ(decided(trials).finding, Finding::unknown);
+  // Without a recording to predict nothing was asked of anybody.
+  for (Explanation& t : trials) t.predictive.reset();
+  EXPECT_EQ(decided(trials).finding, Finding::named);
+  EXPECT_EQ(decided(trials).chosen, 2u);
+}
+
 // 3 of log evidence are odds of 20 to 1 for the second name, and too few to say it.
 TEST(Decide, ANameThatIsHardlyMissedIsNotSaid) {
   const std::vector<Explanation> trials = {explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
