@@ -51,13 +51,16 @@ struct Parametrisation {
 // What must be there for an effect to show at all.
 enum class Requirement {
   none,
-  command,      // torques commanded
-  charge,       // a current
-  field,        // a magnetic field
-  gravity,      // weight on a support
-  bearing,      // something that carries the platform
-  air_bearing,  // and lets it turn about all axes
-  wheel,        // the measured speed of one
+  command,             // torques commanded
+  charge,              // a current
+  field,               // a magnetic field
+  gravity,             // weight on a support
+  bearing,             // something that carries the platform
+  air_bearing,         // and lets it turn about all axes
+  laboratory,          // that the attitude refers to: a bearing's, or round a free body at a stated
+                       // latitude
+  turning_laboratory,  // the same, seen by what turns about all axes
+  wheel,               // the measured speed of one
 };
 
 // What has to be scanned before a fit can find it.

@@ -37,14 +37,17 @@ inline std::string screening_text(const Screening& screening) {
   constexpr const char* scans[] = {"", "its instant is scanned", "its frequency is scanned",
                                    "its frequency and axis are scanned"};
   if (screening.scan != Scan::nothing) text += "; " + std::string(scans[int(screening.scan)]);
-  constexpr const char* needs[] = {"",
-                                   "commanded torques",
-                                   "a battery current",
-                                   "a magnetic field",
-                                   "weight on a bearing",
-                                   "a bearing",
-                                   "an air bearing",
-                                   "the measured speed of a wheel"};
+  constexpr const char* needs[] = {
+      "",
+      "commanded torques",
+      "a battery current",
+      "a magnetic field",
+      "weight on a bearing",
+      "a bearing",
+      "an air bearing",
+      "a bearing, or a free body's attitude in a laboratory of stated latitude",
+      "an air bearing, or a free body's attitude in a laboratory of stated latitude",
+      "the measured speed of a wheel"};
   if (screening.needs != Requirement::none) {
     text += "; needs " + std::string(needs[int(screening.needs)]);
   }

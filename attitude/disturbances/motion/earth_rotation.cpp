@@ -44,7 +44,7 @@ DisturbanceKind earth_rotation_kind() {
       .screening = {.parametrisations =
                         {{"the laboratory turns with the Earth: the platform and the gyro feel it",
                           {}}},
-                    .needs = Requirement::air_bearing},
+                    .needs = Requirement::turning_laboratory},
       .injection = {.draw = injected::nothing_to_draw(), .alter = plain_change}};
 }
 

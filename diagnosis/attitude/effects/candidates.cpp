@@ -117,6 +117,11 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
                           const Thresholds& limits) {
   const DisturbanceContext context{nominal.model.platform, nominal.model.environment};
   const CoveredMotion covered = covered_by(runs);
+  // A spacecraft's experiment says no latitude.
+  const bool floats_in_laboratory =
+      !context.platform.has_bearing() && context.environment.latitude_rad != 0.0 &&
+      std::any_of(runs.begin(), runs.end(),
+                  [](const Observation& seen) { return seen.sees_some_attitude(); });
   const auto has_channel = [&](Requirement channel) {
     switch (channel) {
       case Requirement::command:
@@ -131,6 +136,10 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         return context.platform.has_bearing();
       case Requirement::air_bearing:
         return context.platform.has_air_bearing();
+      case Requirement::laboratory:
+        return context.platform.has_bearing() || floats_in_laboratory;
+      case Requirement::turning_laboratory:
+        return context.platform.has_air_bearing() || floats_in_laboratory;
       case Requirement::wheel:
         return covered.has_wheel;
       case Requirement::none:
