@@ -80,8 +80,14 @@ std::vector<size_t> outliers(const std::vector<double>& residuals,
                              const Thresholds::Noise& limits) {
   std::vector<size_t> found;
   if (residuals.size() < limits.min_neighbourhood) return found;
+  std::vector<double> off;
   for (size_t n = 0; n < residuals.size(); ++n) {
-    if (std::abs(residuals[n] - expected(residuals, n)) > limits.outlier_sigma) found.push_back(n);
+    off.push_back(std::abs(residuals[n] - expected(residuals, n)));
+  }
+  // Where most readings are off by more than their noise, that is motion that is not understood.
+  const double scatter = std::max(1.0, median(off) / limits.usual_surprise);
+  for (size_t n = 0; n < off.size(); ++n) {
+    if (off[n] > limits.outlier_sigma * scatter) found.push_back(n);
   }
   return found;
 }

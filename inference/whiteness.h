@@ -31,7 +31,8 @@ Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds:
 std::optional<double> noise_correction(const Whiteness& found, size_t channel,
                                        const Thresholds::Noise& limits);
 
-// Indices of residuals of one channel that stand out from what their neighbours lead to.
+// Indices of residuals of one channel that stand out from what their neighbours lead to: by the
+// noise, and far more than most readings do.
 std::vector<size_t> outliers(const std::vector<double>& residuals, const Thresholds::Noise& limits);
 
 }  // namespace photorque::inference

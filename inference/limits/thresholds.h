@@ -40,6 +40,8 @@ struct Thresholds {
     // Standard deviations of noise from what its neighbours say, for a reading to be dropped. White
     // noise reaches it in one of five million readings (drawn).
     double outlier_sigma = 9.0;
+    // By how much the median reading of white noise differs from what its neighbours say (drawn).
+    double usual_surprise = 0.93;
     // Readings of a channel, to have neighbours on both sides.
     size_t min_neighbourhood = 5;
     // Readings of a channel, for the shape of their distribution; twice the logarithm of the

@@ -75,6 +75,12 @@ TEST(Whiteness, OutliersAreWhatNeighboursDoNotExpect) {
   Thresholds::Noise lax;
   lax.outlier_sigma = 100.0;
   EXPECT_TRUE(outliers(r, lax).empty());
+  // A prediction that is elsewhere turns by far more than the noise from one reading to the next:
+  // motion, and not outliers; what stands out of that is one.
+  for (size_t i = 0; i < r.size(); ++i) r[i] = 1e4 * std::sin(1.1 * static_cast<double>(i));
+  EXPECT_TRUE(outliers(r, {}).empty());
+  r[200] += 3e4;
+  EXPECT_EQ(outliers(r, {}), (std::vector<size_t>{200}));
 }
 
 }  // namespace
