@@ -10,8 +10,9 @@
 namespace photorque {
 namespace {
 
-// Readings averaged down to so many blocks: a bias is slow.
-constexpr size_t most_blocks = 1200;
+// Readings averaged down to so many blocks: a bias is slow. More where the body turns so fast that
+// the mean of a block's readings were not that of its motion; by how much it may turn in one.
+constexpr double usual_blocks = 1200.0, most_turn_rad = 0.1;
 constexpr double knot_distance_s = 60.0;
 constexpr size_t fewest_intervals = 2, most_intervals = 24;
 // Any torque goes: the spectral density of the angle's third derivative [rad²/s⁵].
@@ -92,8 +93,29 @@ void drop_far_ones(std::vector<double>& values) {
   }
 }
 
+double usual_rate_rad_s(const Observation& seen) {
+  std::vector<double> rates;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (seen.gyro_rows[i].minCoeff() > 0.0) rates.push_back(seen.gyro_rad_s[i].norm());
+  }
+  if (rates.empty()) return 0.0;
+  const auto middle = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2);
+  std::nth_element(rates.begin(), middle, rates.end());
+  return *middle;
+}
+
+// Between two rows a body that turns farther than this is not followed well enough.
+bool turns_slowly(const Observation& seen) {
+  return usual_rate_rad_s(seen) * seen.row_interval_s < most_turn_rad;
+}
+
+size_t blocks_of(const Observation& seen) {
+  const double turns = usual_rate_rad_s(seen) * seen.duration_s() / most_turn_rad;
+  return static_cast<size_t>(std::max(usual_blocks, turns));
+}
+
 void add_piece(const Observation& seen, const Span& span, Equations& sums) {
-  const KinematicRun run = kinematic_run(seen.averaged(most_blocks), nullptr);
+  const KinematicRun run = kinematic_run(seen.averaged(blocks_of(seen)), nullptr);
   const Eigen::Index own = 3 * span.knots(), columns = shared_count + own;
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(columns, columns);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(columns);
@@ -239,7 +261,7 @@ Vec3 BiasHistory::at(double t_s) const {
 
 std::vector<BiasHistory> bias_histories(const std::vector<const Observation*>& pieces) {
   const auto is_complete = [](const Observation* seen) {
-    return seen->has_gyro && seen->sees_attitude();
+    return seen->has_gyro && seen->sees_attitude() && turns_slowly(*seen);
   };
   if (pieces.empty() || !std::all_of(pieces.begin(), pieces.end(), is_complete)) return {};
   const std::vector<Span> spans = spans_of(pieces);

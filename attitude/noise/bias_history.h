@@ -20,7 +20,8 @@ struct BiasHistory {
   Vec3 at(double t_s) const;
 };
 
-// Empty where a constant bias does for each recording, or where one has no camera or no gyro.
+// Empty where a constant bias does for each recording, and where one has no camera or no gyro or
+// turns by more than 0.1 rad from row to row.
 // Otherwise a history for each recording (pieces of one name count as one), with a knot about every
 // minute. Scale, misalignment, a late camera and the turning of the laboratory, which all
 // recordings share, are fitted besides and take what they can.
