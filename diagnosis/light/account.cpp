@@ -15,10 +15,7 @@ namespace {
 bool is_dark(const LightTrial& trial, const LightCandidates& all, size_t which) {
   const LightCandidate& c = all[trial.candidates[which]];
   if (c.kind.name != "led_derated") return false;
-  const Eigen::Index column = columns_of(trial, all, which).front();
-  const double sigma = std::sqrt(std::max(0.0, trial.fit.shared_posterior()(column, column)));
-  constexpr double known_to = 0.1, within = 3.0;
-  return sigma < known_to && 1.0 + trial.x[which][0] < std::max(within * sigma, 1e-3);
+  return leaves_nothing(trial.x[which][0], trial.fit, columns_of(trial, all, which).front());
 }
 
 std::vector<std::string> light_kinds(const LightTrial& trial, const LightCandidates& all) {

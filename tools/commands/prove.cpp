@@ -14,6 +14,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/guards/child_process.h"
 #include "tools/proof/files.h"
+#include "tools/proof/light/files.h"
 #include "tools/scoring/document.h"
 #include "tools/scoring/replay.h"
 
@@ -24,10 +25,11 @@ namespace fs = std::filesystem;
 
 struct ProveSettings {
   InjectedPlan plan;
-  bool oracle = true;         // also diagnose with the truth told, for the held-out error
-  bool replay = true;         // also propagate every improved.toml
-  int at_once = 1;            // diagnoses side by side
-  double max_time_s = 900.0;  // for one diagnosis
+  std::optional<LightPlan> light;  // cases of light and power instead of motion
+  bool oracle = true;              // also diagnose with the truth told, for the held-out error
+  bool replay = true;              // also propagate every improved.toml
+  int at_once = 1;                 // diagnoses side by side
+  double max_time_s = 900.0;       // for one diagnosis
   size_t max_cases = 100000;
   std::optional<fs::path> document;  // whose section is renewed
   std::string section = "prove";
@@ -61,6 +63,17 @@ ProveSettings read_settings(const CommandLine& line) {
   if (s.has("rates_Hz")) plan.rates_Hz = s.numbers("rates_Hz", rate);
   if (plan.rates_Hz.empty()) throw s.error("rates_Hz", "[]", "at least one rate");
   plan.dirty_fraction = s.number_or("dirty_share", plan.dirty_fraction, Range::fraction());
+  if (s.choice_or("of", {"motion", "light"}, 0) == 1) {
+    LightPlan light;
+    light.seed = plan.seed;
+    light.per_kind = plan.per_kind;
+    light.none = plan.none;
+    light.pairs = plan.pairs;
+    light.outside = plan.outside;
+    light.below = static_cast<int>(s.integer_or("below", light.below, 0, most));
+    light.dirty_share = plan.dirty_fraction;
+    settings.light = light;
+  }
   settings.oracle = s.flag_or("oracle", settings.oracle);
   settings.replay = s.flag_or("replay", settings.replay);
   settings.at_once = static_cast<int>(s.integer_or("at_once", 1, 1, 1024));
@@ -82,10 +95,33 @@ bool is_case(const fs::path& folder) {
   return fs::exists(folder / "truth.json");
 }
 
+// What was recorded and what is held out: as the truth lists them, of motion run1 and run2.
+struct CaseFiles {
+  std::vector<std::string> recordings = {"run1.csv.gz"}, holdouts = {"run2.csv.gz"};
+  bool of_light = false;
+};
+
+CaseFiles files_of(const fs::path& case_folder) {
+  const auto truth = nlohmann::json::parse(read_file(case_folder / "truth.json"), nullptr, false);
+  CaseFiles files;
+  const auto list = [&](const char* key, std::vector<std::string>& names) {
+    if (!truth.is_object() || !truth.contains(key) || !truth[key].is_array()) return;
+    files.of_light = true;
+    names.clear();
+    for (const auto& name : truth[key]) {
+      if (name.is_string()) names.push_back(fs::path(name.get<std::string>()).filename().string());
+    }
+  };
+  list("recordings", files.recordings);
+  list("holdouts", files.holdouts);
+  return files;
+}
+
 // Makes the cases that are not there yet.
 std::vector<fs::path> make_cases(const ProveSettings& settings, const fs::path& folder, int threads,
                                  const Console& console) {
-  const size_t count = std::min(case_count(settings.plan), settings.max_cases);
+  const size_t all = settings.light ? light_case_count(*settings.light) : case_count(settings.plan);
+  const size_t count = std::min(all, settings.max_cases);
   std::vector<fs::path> folders(count);
   std::atomic<size_t> done = 0;
   const auto progress = console.progress("injecting");
@@ -93,7 +129,11 @@ std::vector<fs::path> make_cases(const ProveSettings& settings, const fs::path& 
     char number[16];
     std::snprintf(number, sizeof number, "%04zu", i + 1);
     folders[i] = folder / number;
-    if (!is_case(folders[i])) write_injected_case(draw_case(settings.plan, i), folders[i]);
+    if (!is_case(folders[i]) && settings.light) {
+      write_light_case(draw_light_case(*settings.light, i), folders[i]);
+    } else if (!is_case(folders[i])) {
+      write_injected_case(draw_case(settings.plan, i), folders[i]);
+    }
     ++done;
     if (progress) progress(static_cast<double>(done) / static_cast<double>(count));
   });
@@ -109,10 +149,14 @@ std::vector<fs::path> cases_in(const fs::path& folder) {
   }
   if (folders.empty()) {
     throw InputError({}, "--cases", "no case in " + folder.string(),
-                     "folders with experiment.toml, run1.csv.gz, run2.csv.gz and truth.json");
+                     "folders with experiment.toml, recordings and truth.json");
   }
   for (const fs::path& each : folders) {
-    for (const char* file : {"experiment.toml", "run1.csv.gz", "run2.csv.gz"}) {
+    const CaseFiles files = files_of(each);
+    std::vector<std::string> names = {"experiment.toml"};
+    names.insert(names.end(), files.recordings.begin(), files.recordings.end());
+    names.insert(names.end(), files.holdouts.begin(), files.holdouts.end());
+    for (const std::string& file : names) {
       if (!fs::is_regular_file(each / file)) {
         throw InputError({(each / file).string()}, "--cases", "no such file", "a complete case");
       }
@@ -161,16 +205,24 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
   fs::remove_all(blind);
   fs::create_directories(out);
   fs::copy_file(case_folder / experiment, blind / "experiment.toml");
-  fs::copy_file(case_folder / "run1.csv.gz", blind / "run1.csv.gz");
-  fs::copy_file(case_folder / "run2.csv.gz", blind / "run2.csv.gz");
-  const ChildResult result = run_child(
-      own_program(),
-      {"diagnose", "experiment.toml", "--recording", "run1.csv.gz", "--holdout", "run2.csv.gz",
-       "--out", "diagnosis", "--quiet", "--threads", std::to_string(threads)},
-      blind, settings.max_time_s);
+  const CaseFiles files = files_of(case_folder);
+  std::vector<std::string> words = {"diagnose", "experiment.toml"}, names;
+  for (const std::string& name : files.recordings) {
+    words.insert(words.end(), {"--recording", name});
+    names.push_back(name);
+  }
+  for (const std::string& name : files.holdouts) {
+    words.insert(words.end(), {"--holdout", name});
+    names.push_back(name);
+  }
+  words.insert(words.end(),
+               {"--out", "diagnosis", "--quiet", "--threads", std::to_string(threads)});
+  if (fs::exists(case_folder / "scene.gltf")) names.emplace_back("scene.gltf");
+  for (const std::string& name : names) fs::copy_file(case_folder / name, blind / name);
+  const ChildResult result = run_child(own_program(), words, blind, settings.max_time_s);
   fs::create_directories(out);
   nlohmann::json runs = {{"wall_s", result.wall_s}, {"exit_status", result.status}};
-  if (settings.replay && result.status == 0) {
+  if (settings.replay && result.status == 0 && !files.of_light) {
     runs.update(replayed(blind, camera_noise_arcsec(case_folder), settings));
   }
   write_file_whole(out / "runs.json", runs.dump(1) + "\n");
@@ -178,8 +230,7 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
     write_file_whole(out / "error.txt",
                      "exit " + std::to_string(result.status) + ": " + result.errors);
   }
-  fs::remove(blind / "run1.csv.gz");
-  fs::remove(blind / "run2.csv.gz");
+  for (const std::string& name : names) fs::remove(blind / name);
   write_file_whole(stamp, program_hash);
 }
 
@@ -249,13 +300,25 @@ void print_proof(const Console& console, const std::vector<CaseScore>& scores) {
   }
 }
 
+std::string counted(int count, const std::string& what) {
+  return count > 0 ? std::to_string(count) + " " + what + ", " : "";
+}
+
+std::string light_plan_text(const LightPlan& p) {
+  std::string text = counted(p.per_kind, "of every kind") + counted(p.pairs, "pairs") +
+                     counted(p.none, "with nothing missing") +
+                     counted(p.outside, "of every law outside the catalogue") +
+                     counted(p.below, "below what shows");
+  if (!text.empty()) text.replace(text.size() - 2, 2, "; ");
+  return text + show(100.0 * p.dirty_share) + " % of the files dirty; seed " +
+         std::to_string(p.seed) + ".";
+}
+
 std::string plan_text(const ProveSettings& s) {
+  if (s.light) return light_plan_text(*s.light);
   const InjectedPlan& p = s.plan;
   std::string rates;
   for (const double rate : p.rates_Hz) rates += (rates.empty() ? "" : ", ") + show(rate);
-  const auto counted = [](int count, const std::string& what) {
-    return count > 0 ? std::to_string(count) + " " + what + ", " : "";
-  };
   std::string text = counted(p.per_kind, "of every kind") + counted(p.pairs, "pairs") +
                      counted(p.triples, "triples") +
                      counted(p.known_unknown, "with a known effect and an unknown law") +

@@ -53,11 +53,14 @@ Key prove_table() {
   const Range seconds{20.0, 1e5, false, false};
   return Key::table(
       "prove",
-      {Key::integer_or("seed", 1, 0, INT64_MAX, "of all that is drawn"),
+      {Key::choice_or("of", {{"motion", "attitude and rates"}, {"light", "light and power"}}, 0,
+                      "what is diagnosed"),
+       Key::integer_or("seed", 1, 0, INT64_MAX, "of all that is drawn"),
        count("per_kind", "recordings of every kind of the catalogue"),
        count("none", "with nothing missing"),
        count("pairs", "with two effects at once"),
        count("triples", "with three"),
+       count("below", "of light, with one effect below what shows"),
        count("outside", "of every law outside the catalogue"),
        count("known_unknown", "with one effect of the catalogue and one law outside"),
        count("noise_none", "with nothing missing, noise not as stated"),

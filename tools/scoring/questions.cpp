@@ -177,6 +177,13 @@ std::vector<ProofRow> proof_rows(const std::vector<CaseScore>& scores) {
            scores, [](const CaseScore& s) { return s.maker.starts_with("second"); }, right),
        "≥ 95 %"},
   };
+  ProofRow index = {
+      "effects rightly named: index of lamp, cell, string or diode right", {}, "≥ 98 %"};
+  for (const CaseScore& s : scores) {
+    index.fraction.of += s.indices;
+    index.fraction.hits += s.indices_right;
+  }
+  rows.push_back(index);
   for (ProofRow& row : rows_of_answers(scores)) rows.push_back(std::move(row));
   std::erase_if(rows, [](const ProofRow& row) { return row.fraction.of == 0; });
   return rows;

@@ -98,6 +98,18 @@ void add_impossible(const Json& found, const std::string& nominal, CaseScore& sc
   }
 }
 
+// The index that an effect names, where truth says which are right.
+void judge_index(const Json& found, const Json& truth, CaseScore& score) {
+  const std::string kind = found.at("kind");
+  const Json accepted = truth.value("accept_index", Json::object());
+  const Json named = found.value("parameters", Json::object()).value("index", Json::object());
+  if (!accepted.contains(kind) || !named.contains("value")) return;
+  const auto right = numbers_of(accepted[kind]), value = numbers_of(named["value"]);
+  ++score.indices;
+  score.indices_right +=
+      !value.empty() && std::ranges::find(right, value.front()) != right.end() ? 1 : 0;
+}
+
 // Whether the set of names, each swapped for itself or one of its doubles, can be `wanted`.
 bool can_be(const std::vector<std::vector<std::string>>& doubles,
             const std::vector<std::string>& wanted) {
@@ -147,6 +159,7 @@ void judge(const Json& truth, const Json& diagnosis, const std::string& nominal,
     const bool known = acceptable.contains(kind);
     score.wrong_name = score.wrong_name || !known;
     score.claims.emplace_back(number_or_nan(effect, "probability"), known);
+    judge_index(effect, truth, score);
     for (const Json& t : truth.at("effects")) {
       if (t.at("kind") == kind) add_pulls(effect, t, score.pulls);
     }

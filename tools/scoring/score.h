@@ -29,6 +29,9 @@ struct CaseScore {
   bool wrong_name = false;        // an effect named that neither acts nor is accepted
   bool dependence_right = false;  // of an unknown law: the first variable named is the right one
   bool known_named = false;       // beside an unknown law: exactly the known effects were named
+  // Of effects on one lamp, cell, string or diode whose name is right: how many, and of how many
+  // the index is right too.
+  int indices = 0, indices_right = 0;
   std::vector<std::string> impossible;  // named numbers beyond the bounds of physics
   double confidence = 0.0;              // NaN: not stated
   std::vector<std::pair<double, bool>>

@@ -30,6 +30,16 @@ bool may_reach(const Vec3& centre, double radius, const Vec3& from, const Vec3& 
   return (from + t * d - centre).squaredNorm() < radius * radius;
 }
 
+// Whether a line from the point to a disc can pass a wall: point and disc do not lie on one side of
+// each of its triangles.
+bool may_pass(const LightWall& wall, const Vec3& point, const Vec3& disc, double radius) {
+  return std::ranges::any_of(wall.triangles, [&](const std::array<Vec3, 3>& t) {
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    const double from = normal.dot(point - t[0]), to = normal.dot(disc - t[0]);
+    return !(from * to > 0.0) || std::abs(to) < radius * normal.norm();
+  });
+}
+
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
@@ -125,7 +135,8 @@ double Obstacles::visible(const Vec3& point, const Vec3& lamp, const Vec3& side,
   near_boxes_.clear();
   for (size_t w = 0; w < lab_.walls().size(); ++w) {
     const LightWall& wall = lab_.walls()[w];
-    if (w != skipped && may_reach(wall.centre_m, wall.radius_m + radius, point, lamp)) {
+    if (w != skipped && may_reach(wall.centre_m, wall.radius_m + radius, point, lamp) &&
+        may_pass(wall, point, lamp, radius)) {
       near_walls_.push_back(w);
     }
   }

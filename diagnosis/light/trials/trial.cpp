@@ -135,6 +135,12 @@ std::vector<inference::Parameter> parameters_of(const LightCandidates& all,
   return parameters;
 }
 
+// A dead LED is one number dimmed to nothing, and likely in itself: no width of a prior is paid.
+bool is_point(const LightCandidate& c, const LightTrial& trial, size_t member,
+              Eigen::Index column) {
+  return c.kind.name == "led_derated" && leaves_nothing(trial.x[member][0], trial.fit, column);
+}
+
 // Laplace's approximation: the fit's own prior, which only keeps numbers from running away, is
 // replaced by that of each number.
 double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
@@ -154,7 +160,11 @@ double log_evidence_of(const LightTrial& trial, const LightCandidates& all) {
         result -= 0.5 * std::log(static_cast<double>(trial.fit.samples));
         continue;
       }
-      if (n.is_strength) {
+      if (n.is_strength && is_point(c, trial, i, at)) {
+        hessian.row(at).setZero();
+        hessian.col(at).setZero();
+        hessian(at, at) = 1.0;
+      } else if (n.is_strength) {
         strengths.at.push_back(at);
         strengths.owner.push_back(i);
         strengths.value.push_back(trial.x[i][k]);
@@ -211,6 +221,12 @@ void judge(LightTrial& trial, const LightCandidates& all) {
 }
 
 }  // namespace
+
+bool leaves_nothing(double derating, const inference::Fit& fit, Eigen::Index column) {
+  const double sigma = std::sqrt(std::max(0.0, fit.shared_posterior()(column, column)));
+  constexpr double known_to = 0.1, within = 3.0;
+  return sigma < known_to && 1.0 + derating < std::max(within * sigma, 1e-3);
+}
 
 LightState state_of(const LightTrial& trial, const LightCandidates& all) {
   return acted(all, trial.candidates, trial.x);

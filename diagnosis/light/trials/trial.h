@@ -19,6 +19,9 @@ struct LightStart {
   double gain = inference::infinity;  // fall of χ² that a scan predicts; infinite: none was made
 };
 
+// Whether a lamp's derating, fitted as `column`, leaves nothing of it.
+bool leaves_nothing(double derating, const inference::Fit& fit, Eigen::Index column);
+
 // The state that a trial says.
 LightState state_of(const LightTrial& trial, const LightCandidates& all);
 

@@ -1,0 +1,189 @@
+#include "tools/proof/light/readings.h"
+
+#include <algorithm>
+
+namespace photorque::injected {
+namespace {
+
+// Gauss's rule of four on (0, 1).
+constexpr std::array<double, 4> gauss_at = {0.06943184420297371, 0.3300094782075719,
+                                            0.6699905217924281, 0.9305681557970263};
+constexpr std::array<double, 4> gauss_share = {0.17392742256872692, 0.32607257743127308,
+                                               0.32607257743127308, 0.17392742256872692};
+
+// Cells of which part lies in shadow need many places; the others few.
+std::vector<std::array<double, 3>> places_of_cell(bool shadows) {
+  std::vector<std::array<double, 3>> places;  // u, v within the cell, share
+  if (!shadows) {
+    for (size_t i = 0; i < gauss_at.size(); ++i) {
+      for (size_t j = 0; j < gauss_at.size(); ++j) {
+        places.push_back({gauss_at[i], gauss_at[j], gauss_share[i] * gauss_share[j]});
+      }
+    }
+    return places;
+  }
+  constexpr int fine = 14;
+  for (int i = 0; i < fine; ++i) {
+    for (int j = 0; j < fine; ++j) {
+      places.push_back({(i + 0.5) / fine, (j + 0.5) / fine, 1.0 / (fine * fine)});
+    }
+  }
+  return places;
+}
+
+template <class T>
+std::vector<T> chosen(const std::vector<T>& all, const std::vector<size_t>& rows) {
+  std::vector<T> some;
+  for (const size_t row : rows) {
+    if (!all.empty()) some.push_back(all[row]);
+  }
+  return some;
+}
+
+size_t cell_at(const LightWorld& world, double u_m, double v_m) {
+  const InjectedPlate& p = world.light.plate;
+  const auto along = [](double x, double low, double high, int count) {
+    return static_cast<size_t>(
+        std::clamp(static_cast<int>((x - low) / (high - low) * count), 0, count - 1));
+  };
+  return along(v_m, p.v_low_m, p.v_high_m, world.circuit.rows) *
+             static_cast<size_t>(world.circuit.columns) +
+         along(u_m, p.u_low_m, p.u_high_m, world.circuit.columns);
+}
+
+double law_at(const LightWorld& world, const InjectedPlace& place) {
+  double factor = 1.0;
+  for (const auto& law : world.laws) factor *= law(place);
+  return factor;
+}
+
+std::vector<double> scanned(const LightWorld& world, const LightRows& rows) {
+  std::vector<double> readings;
+  for (size_t first = 0; first < rows.size();) {
+    size_t last = first;
+    std::vector<std::array<double, 2>> points;
+    while (last < rows.size() && rows.attitude[last] == rows.attitude[first]) {
+      points.push_back({rows.u_m[last], rows.v_m[last]});
+      ++last;
+    }
+    const auto light = injected_light(world.light, rows.attitude[first], points, false);
+    for (size_t k = 0; k < light.size(); ++k) {
+      const auto [u, v] = points[k];
+      readings.push_back(light[k] * world.circuit.cell_light[cell_at(world, u, v)] *
+                         world.detector_gain * law_at(world, {u, v, 0.0}));
+    }
+    first = last;
+  }
+  return readings;
+}
+
+}  // namespace
+
+LightRows LightRows::part(const std::vector<size_t>& which) const {
+  LightRows some = *this;
+  some.attitude = chosen(attitude, which);
+  some.tilt_deg = chosen(tilt_deg, which);
+  some.heading_deg = chosen(heading_deg, which);
+  some.u_m = chosen(u_m, which);
+  some.v_m = chosen(v_m, which);
+  some.voltage_V = chosen(voltage_V, which);
+  some.time_s = chosen(time_s, which);
+  some.temperature_K = chosen(temperature_K, which);
+  some.sweep = chosen(sweep, which);
+  return some;
+}
+
+std::vector<double> light_on_cells(const LightWorld& world, const Quaternion& attitude) {
+  const InjectedPlate& p = world.light.plate;
+  const bool shadows = !world.light.boxes.empty() || !world.light.walls.empty();
+  const auto places = places_of_cell(shadows);
+  const double width = (p.u_high_m - p.u_low_m) / world.circuit.columns,
+               height = (p.v_high_m - p.v_low_m) / world.circuit.rows;
+  std::vector<std::array<double, 2>> points;
+  for (int row = 0; row < world.circuit.rows; ++row) {
+    for (int column = 0; column < world.circuit.columns; ++column) {
+      for (const auto& at : places) {
+        points.push_back(
+            {p.u_low_m + (column + at[0]) * width, p.v_low_m + (row + at[1]) * height});
+      }
+    }
+  }
+  const auto light = injected_light(world.light, attitude, points, true);
+  std::vector<double> cells(world.circuit.cells(), 0.0);
+  for (size_t k = 0; k < light.size(); ++k) {
+    cells[k / places.size()] += places[k % places.size()][2] * light[k];
+  }
+  return cells;
+}
+
+std::vector<double> injected_readings(const LightWorld& world, const LightRows& rows,
+                                      bool voltage_is_set) {
+  if (rows.kind == LightRows::Kind::scan) return scanned(world, rows);
+  std::vector<double> readings, light;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (i == 0 || rows.attitude[i] != rows.attitude[i - 1]) {
+      light = light_on_cells(world, rows.attitude[i]);
+    }
+    std::vector<double> now = light;
+    if (rows.kind == LightRows::Kind::run) {
+      const double t = rows.time_s[i];
+      const double factor = (1.0 - world.droop_depth * (1.0 - std::exp(-t / world.droop_time_s))) *
+                            law_at(world, {0.0, 0.0, t});
+      for (double& x : now) {
+        x = (x - world.light.ambient_W_m2) * factor + world.light.ambient_W_m2;
+      }
+    }
+    const LitCircuit circuit(world.circuit, now, rows.temperature_K[i]);
+    if (rows.kind == LightRows::Kind::sweep) {
+      readings.push_back(circuit.current_A(rows.voltage_V[i]));
+      continue;
+    }
+    if (voltage_is_set) {
+      readings.push_back(rows.voltage_V[i]);
+      readings.push_back(circuit.current_A(rows.voltage_V[i]));
+      continue;
+    }
+    const auto maxima = circuit.maxima();
+    bool trapped = false;
+    for (const auto& [from_s, to_s] : world.trapped_s) {
+      trapped = trapped || (rows.first && rows.time_s[i] >= from_s && rows.time_s[i] <= to_s);
+    }
+    const size_t which = trapped && maxima.size() > 1 ? 1 : 0;
+    readings.push_back(maxima.empty() ? 0.0 : maxima[which].voltage_V);
+    readings.push_back(maxima.empty() ? 0.0 : maxima[which].current_A);
+  }
+  return readings;
+}
+
+std::vector<double> reading_errors(const LightWorld& world, const LightRows& rows,
+                                   const LightNoiseStated& noise,
+                                   const std::vector<double>& readings) {
+  std::vector<double> errors;
+  if (rows.kind == LightRows::Kind::scan) {
+    for (const double E : readings) {
+      errors.push_back(std::hypot(noise.irradiance_W_m2, noise.relative * E));
+    }
+    return errors;
+  }
+  const bool is_set = rows.kind == LightRows::Kind::sweep || noise.tracker_step_V > 0.0;
+  if (!is_set) {
+    for (size_t i = 0; i < rows.size(); ++i) {
+      errors.push_back(noise.voltage_V);
+      errors.push_back(noise.current_A);
+    }
+    return errors;
+  }
+  LightRows moved = rows;
+  constexpr double step_V = 1e-3;
+  for (double& v : moved.voltage_V) v += step_V;
+  const auto beside = injected_readings(world, moved, true);
+  const bool run = rows.kind == LightRows::Kind::run;
+  for (size_t k = 0; k < readings.size(); ++k) {
+    const double slope = (beside[k] - readings[k]) / step_V;
+    errors.push_back(run && k % 2 == 0 ? 1e9
+                                       : std::hypot(noise.current_A, slope * noise.voltage_V));
+  }
+  return errors;
+}
+
+}  // namespace photorque::injected
