@@ -8,6 +8,8 @@
 namespace photorque::injected {
 namespace {
 
+constexpr double far_A = 1000.0;  // backwards, beyond all that an array is driven to
+
 // Where a falling function crosses zero: bisection, and the false position (with Illinois's
 // halving) in between.
 template <class Function>
@@ -117,7 +119,7 @@ double LitCircuit::string_voltage_V(size_t string, double current_A) const {
 }
 
 double LitCircuit::string_current_A(size_t string, double voltage_V) const {
-  double low = -largest_A_ - 1.0;
+  double low = -far_A;
   const double high = 1.5 * largest_A_ + 1.0;
   if (circuit_->blocking) {
     if (string_voltage_V(string, 0.0) <= voltage_V) return 0.0;
@@ -149,7 +151,7 @@ double LitCircuit::open_voltage_V() const {
 double LitCircuit::current_A(double voltage_V) const {
   if (open_.empty()) return 0.0;
   if (open_.size() == 1) {
-    return crossing(circuit_->blocking ? 0.0 : -largest_A_ - 1.0, 1.5 * largest_A_ + 1.0,
+    return crossing(circuit_->blocking ? 0.0 : -far_A, 1.5 * largest_A_ + 1.0,
                     [&](double i) { return at(i).voltage_V - voltage_V; });
   }
   const double v = crossing(-60.0, 120.0, [&](double u) { return voltage_V - at(u).voltage_V; });
