@@ -1,5 +1,5 @@
-// Injected cases of light and power: lamps, plate and array as believed, what acts beside them, and
-// what was read.
+// Injected cases of light and power: lamps, plate and array of the nominal model, what acts beside
+// them, and what was read.
 #pragma once
 
 #include <cstdint>
@@ -59,12 +59,12 @@ namespace injected {
 // Lamps, plate, array, noise and recordings such that `kinds` can act.
 void draw_light_setting(RandomDraw& draw, LightCase& c, const std::vector<std::string>& kinds);
 
-// What the recordings can show of a case: chi² of the belief, and which other effects explain them
-// as well.
+// What the recordings can show of a case: chi² of the nominal model, and which other effects
+// explain them as well.
 class LightJudge {
  public:
   explicit LightJudge(const LightCase& c);
-  // chi² of the belief where these act.
+  // chi² of the nominal model where these act.
   double gain(const std::vector<LightEffect>& effects) const;
   // Fills accept and accept_index with what leaves less than `near` of chi², and returns what the
   // best single effect leaves; of laws outside the catalogue alone what all its numbers together

@@ -95,7 +95,8 @@ void act_outside(const LightEffect& e, LightWorld& world) {
   const auto number = [&](const char* key) { return e.numbers.at(key)[0]; };
   if (e.kind == "ripple") {
     const double depth = number("depth"), k = 2.0 * pi / number("period_m"),
-                 angle = number("direction_deg") * degree_rad, phase = number("phase");
+                 angle_deg = number("direction_deg"), angle = angle_deg * degree_rad,
+                 phase = number("phase");
     world.laws.push_back([=](const InjectedPlace& p) {
       return 1.0 +
              depth * std::cos(k * (p.u_m * std::cos(angle) + p.v_m * std::sin(angle)) + phase);
@@ -109,8 +110,8 @@ void act_outside(const LightEffect& e, LightWorld& world) {
     });
   } else if (e.kind == "hair") {
     const double u = e.numbers.at("through_m")[0], v = e.numbers.at("through_m")[1],
-                 angle = number("direction_deg") * degree_rad, half = 0.5 * number("width_m"),
-                 depth = number("depth");
+                 angle_deg = number("direction_deg"), angle = angle_deg * degree_rad,
+                 half = 0.5 * number("width_m"), depth = number("depth");
     world.laws.push_back([=](const InjectedPlace& p) {
       const double off = -(p.u_m - u) * std::sin(angle) + (p.v_m - v) * std::cos(angle);
       return std::abs(off) < half ? 1.0 - depth : 1.0;

@@ -155,7 +155,7 @@ double from_lamp(const Placed& at, const Placed::Lamp& lamp, const Triple& point
 // tried before most did not.
 const std::vector<double>& light_of(const Placed& at, const Placed::Lamp& lamp,
                                     const std::vector<std::array<double, 2>>& points, bool glass) {
-  thread_local std::map<std::vector<double>, std::vector<double>> known;
+  InjectedLight::Known& known = *at.world->known;
   constexpr size_t most = 3000;
   std::vector<double> key(at.lab_from_body.begin(), at.lab_from_body.end());
   const auto add = [&key](const auto& numbers) {

@@ -2,6 +2,8 @@
 // quadrature over the lamps' apertures, nothing shared with the program's own light.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -50,6 +52,10 @@ struct InjectedLight {
   double ambient_W_m2 = 0.0;
   std::array<double, 2> bias_rad = {0.0, 0.0};
   std::optional<double> glass_index;  // of a cover over the cells
+
+  // Per watt of one lamp, what was computed before; copies share it. Not for two threads at once.
+  using Known = std::map<std::vector<double>, std::vector<double>>;
+  std::shared_ptr<Known> known = std::make_shared<Known>();
 };
 
 // Irradiance [W/m²] on points of the plate (body x, y), at an attitude (lab from body). Through the
