@@ -1,5 +1,6 @@
 #include "images/writers/image_file.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "core/errors.h"
@@ -21,6 +22,7 @@ class ImageFile {
     output_->threads(1);
   }
 
+  void into(OIIO::Filesystem::IOProxy& bytes) { check(output_->set_ioproxy(&bytes)); }
   void open(const OIIO::ImageSpec& spec) { check(output_->open(temporary_, spec)); }
   void open_pages(const std::vector<OIIO::ImageSpec>& specs) {
     check(output_->open(temporary_, static_cast<int>(specs.size()), specs.data()));
@@ -101,6 +103,18 @@ void write_tiff(const fs::path& path, int width, int height,
     }
     file.close();
   });
+}
+
+std::string png_bytes(const Picture& picture, const ImageMetadata& metadata) {
+  OIIO::Filesystem::IOVecOutput bytes;
+  const fs::path name = "memory.png";
+  ImageFile file(name, name);
+  file.into(bytes);
+  file.open(
+      spec_of(picture.width, picture.height, {"R", "G", "B"}, OIIO::TypeDesc::UINT8, metadata));
+  file.write(OIIO::TypeDesc::UINT8, picture.rgb.data());
+  file.close();
+  return {bytes.buffer().begin(), bytes.buffer().end()};
 }
 
 void write_png(const fs::path& path, const Picture& picture, const ImageMetadata& metadata) {

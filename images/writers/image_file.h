@@ -40,6 +40,9 @@ void write_exr(const std::filesystem::path& path, int width, int height,
 void write_tiff(const std::filesystem::path& path, int width, int height,
                 const std::vector<ImageChannel>& channels, const ImageMetadata& metadata);
 
+// The bytes of a PNG file.
+std::string png_bytes(const Picture& picture, const ImageMetadata& metadata);
+
 void write_png(const std::filesystem::path& path, const Picture& picture,
                const ImageMetadata& metadata);
 

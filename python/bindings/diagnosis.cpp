@@ -6,22 +6,28 @@
 #include "python/bindings/bind.h"
 #include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
+#include "python/bindings/pages.h"
 #include "python/bindings/results.h"
+#include "tools/pages/diagnosis.h"
 #include "tools/tasks/diagnose.h"
 
 namespace photorque::python {
 namespace {
 
+struct DiagnosisHandle : DiagnosisRun {
+  RunOptions options;
+};
+
 using Paths = std::vector<std::filesystem::path>;
 
-std::shared_ptr<DiagnosisRun> diagnose_recordings(const ExperimentHandle& experiment,
-                                                  const Paths& recordings, const Paths& holdouts,
-                                                  int threads, const py::object& log) {
+std::shared_ptr<DiagnosisHandle> diagnose_recordings(const ExperimentHandle& experiment,
+                                                     const Paths& recordings, const Paths& holdouts,
+                                                     int threads, const py::object& log) {
   const RunOptions options = experiment.with(threads, py::none());
   const Call call(options.experiment, py::none(), log);
   return call.run([&] {
-    return std::make_shared<DiagnosisRun>(
-        diagnose_experiment(options, recordings, holdouts, call.console()));
+    return std::make_shared<DiagnosisHandle>(DiagnosisHandle{
+        diagnose_experiment(options, recordings, holdouts, call.console()), options});
   });
 }
 
@@ -51,12 +57,12 @@ void bind_effect(py::module_& module) {
 void bind_diagnosis(py::module_& module) {
   bind_effect(module);
   const auto of = [](auto Diagnosis::*member) {
-    return [member](const DiagnosisRun& run) { return run.diagnosis.*member; };
+    return [member](const DiagnosisHandle& run) { return run.diagnosis.*member; };
   };
-  py::class_<DiagnosisRun, std::shared_ptr<DiagnosisRun>>(
+  py::class_<DiagnosisHandle, std::shared_ptr<DiagnosisHandle>>(
       module, "Diagnosis", "What is missing from the experiment, and how sure that is.")
       .def_property_readonly(
-          "verdict", [](const DiagnosisRun& run) { return name_of(run.diagnosis.verdict); },
+          "verdict", [](const DiagnosisHandle& run) { return name_of(run.diagnosis.verdict); },
           "\"consistent\", \"missing_physics\" or \"unexplained\".")
       .def_property_readonly("confidence", of(&Diagnosis::confidence))
       .def_property_readonly("sentence", of(&Diagnosis::sentence))
@@ -64,21 +70,30 @@ void bind_diagnosis(py::module_& module) {
       .def_property_readonly("warnings", of(&Diagnosis::warnings))
       .def_property_readonly("chi2_per_sample_before", of(&Diagnosis::chi2_per_sample_before))
       .def_property_readonly("chi2_per_sample_after", of(&Diagnosis::chi2_per_sample_after))
-      .def_property_readonly("provenance",
-                             [](const DiagnosisRun& run) { return provenance_of(run.provenance); })
-      .def_property_readonly("json", &DiagnosisRun::json,
+      .def_property_readonly(
+          "provenance", [](const DiagnosisHandle& run) { return provenance_of(run.provenance); })
+      .def_property_readonly("json", &DiagnosisHandle::json,
                              "What the program writes as diagnosis.json.")
       .def(
           "improved",
-          [](const DiagnosisRun& run, const std::filesystem::path& folder) {
+          [](const DiagnosisHandle& run, const std::filesystem::path& folder) {
             return run.improved(folder);
           },
           py::arg("folder") = ".",
           "The experiment with what was found, as TOML, as it would stand in a folder.")
-      .def_property_readonly("report_html", &DiagnosisRun::report, "A page with charts.")
+      .def_property_readonly("report_html", &DiagnosisHandle::report, "A page with charts.")
+      .def(
+          "write_page",
+          [](const DiagnosisHandle& run, const std::filesystem::path& path) {
+            return write_alone(path, [&] {
+              return diagnosis_page(run, run.options, head_of(run.options, "diagnose"));
+            });
+          },
+          py::arg("path"),
+          "Measured and simulated platform together, as one HTML page; gives its path.")
       .def(
           "write",
-          [](const DiagnosisRun& run, const std::filesystem::path& folder) {
+          [](const DiagnosisHandle& run, const std::filesystem::path& folder) {
             const py::gil_scoped_release release;
             write_diagnosis(run, folder);
           },

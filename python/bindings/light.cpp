@@ -5,6 +5,7 @@
 #include "python/bindings/bind.h"
 #include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
+#include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/tasks/power.h"
 #include "tools/tasks/trace.h"
@@ -18,6 +19,7 @@ struct LightHandle {
   std::shared_ptr<const OpticalRun> run;
   OpticalResult light;
   RunResult result;
+  PageHead head;
   FluxMaps flux_maps = {};
   WrenchEstimate wrench = {};  // on the whole scene about the centre of rotation, body frame
 
@@ -52,7 +54,8 @@ std::shared_ptr<LightHandle> trace(const ExperimentHandle& experiment, int threa
   return call.run([&] {
     TraceRun traced = trace_experiment(options, call.console());
     auto handle = std::make_shared<LightHandle>(
-        LightHandle{std::move(traced.run), std::move(traced.light), std::move(traced.result)});
+        LightHandle{std::move(traced.run), std::move(traced.light), std::move(traced.result),
+                    head_of(options, "trace")});
     handle->evaluate();
     return handle;
   });
@@ -71,6 +74,7 @@ std::shared_ptr<PowerHandle> power(const ExperimentHandle& experiment, int threa
     handle->light = std::move(found.light);
     handle->result = std::move(found.result);
     handle->power = std::move(found.power);
+    handle->head = head_of(options, "power");
     handle->evaluate();
     return handle;
   });
@@ -144,7 +148,22 @@ void bind_runs(py::module_& module) {
       .def_property_readonly(
           "torque_standard_error_N_m",
           [](const LightHandle& self) { return copy_of(self.wrench.torque_error_N_m()); })
-      .def_property_readonly("rays", [](const LightHandle& self) { return self.light.rays; });
+      .def_property_readonly("rays", [](const LightHandle& self) { return self.light.rays; })
+      .def(
+          "write_page",
+          [](const LightHandle& self, const std::filesystem::path& path) {
+            return write_alone(
+                path, [&] { return light_page(*self.run, self.light, self.result, self.head); });
+          },
+          py::arg("path"), "The run as one HTML page to look at in a browser; gives its path.")
+      .def(
+          "write_baked",
+          [](const LightHandle& self, const std::filesystem::path& path) {
+            return write_alone(path,
+                               [&] { return baked_file(*self.run, self.light, self.result); });
+          },
+          py::arg("path"),
+          "The scene with the irradiance as textures and vertex colours (GLB); gives its path.");
   auto power = py::class_<PowerHandle, LightHandle, std::shared_ptr<PowerHandle>>(
       module, "Power", "A trace and what the solar array makes of it.");
   add_result(power, "power");

@@ -1,14 +1,20 @@
 // propagate(): the platform through its disturbances and in its light.
+#include "tools/pages/motion.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
 #include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
 #include "python/bindings/own_torque.h"
+#include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/tasks/propagate.h"
 
 namespace photorque::python {
 namespace {
+
+struct MotionHandle : MotionRun {
+  RunOptions options;
+};
 
 // The text of a function, where Python still has it.
 std::string source_of(const py::object& function) {
@@ -19,9 +25,9 @@ std::string source_of(const py::object& function) {
   }
 }
 
-std::shared_ptr<MotionRun> propagate_motion(const ExperimentHandle& experiment, int threads,
-                                            const py::object& seed, const py::dict& torques,
-                                            const py::object& progress, const py::object& log) {
+std::shared_ptr<MotionHandle> propagate_motion(const ExperimentHandle& experiment, int threads,
+                                               const py::object& seed, const py::dict& torques,
+                                               const py::object& progress, const py::object& log) {
   const RunOptions options = experiment.with(threads, seed);
   const Call call(options.experiment, progress, log);
   FurtherTorques further;
@@ -32,12 +38,13 @@ std::shared_ptr<MotionRun> propagate_motion(const ExperimentHandle& experiment, 
     further.inputs.emplace_back("torque " + text, content_hash(source_of(law)));
   }
   return call.run([&] {
-    return std::make_shared<MotionRun>(propagate_experiment(options, call.console(), further));
+    return std::make_shared<MotionHandle>(
+        MotionHandle{propagate_experiment(options, call.console(), further), options});
   });
 }
 
 const PropagationResult& motion_of(const py::object& self) {
-  return self.cast<const MotionRun&>().coupled->motion;
+  return self.cast<const MotionHandle&>().coupled->motion;
 }
 
 py::dict recording_of(const py::object& self) {
@@ -70,7 +77,7 @@ py::array attitude_of(const py::object& self) {
   return array;
 }
 
-py::list events_of(const MotionRun& run) {
+py::list events_of(const MotionHandle& run) {
   py::list events;
   for (const Event& event : run.coupled->motion.events) {
     events.append(py::make_tuple(event.name, event.time_s));
@@ -81,13 +88,13 @@ py::list events_of(const MotionRun& run) {
 }  // namespace
 
 void bind_motion(py::module_& module) {
-  auto type = py::class_<MotionRun, std::shared_ptr<MotionRun>>(
+  auto type = py::class_<MotionHandle, std::shared_ptr<MotionHandle>>(
       module, "Motion", "The motion of the platform: what happened and what instruments saw.");
   add_result(type, "propagate");
   type.def_property_readonly(
           "history",
           [](const py::object& self) {
-            return py::cast(table_called(self.cast<const MotionRun&>().result, "time_history"),
+            return py::cast(table_called(self.cast<const MotionHandle&>().result, "time_history"),
                             py::return_value_policy::reference_internal, self);
           },
           "Table over time: tilt, heading, rates, charge, every torque.")
@@ -108,6 +115,14 @@ void bind_motion(py::module_& module) {
                                return state_view(
                                    self, motion_of(self).states.front().rate_body_rad_s.data(), 3);
                              })
+      .def(
+          "write_page",
+          [](const MotionHandle& self, const std::filesystem::path& path) {
+            return write_alone(path, [&] {
+              return motion_page(self, self.options, head_of(self.options, "propagate"));
+            });
+          },
+          py::arg("path"), "The motion as one HTML page that plays it; gives its path.")
       .def_property_readonly("charge_drawn_C", [](const py::object& self) {
         return state_view(self, &motion_of(self).states.front().charge_drawn_C, 1);
       });

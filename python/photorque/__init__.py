@@ -41,6 +41,7 @@ from photorque._photorque import (
     torque_map,
     trace,
 )
+from photorque.sweeps import Sweep, sweep
 
 __all__ = [
     "AttitudeEstimate",
@@ -60,6 +61,7 @@ __all__ = [
     "Motion",
     "NumericalError",
     "Power",
+    "Sweep",
     "Table",
     "TorqueMap",
     "Trace",
@@ -74,6 +76,7 @@ __all__ = [
     "git_hash",
     "power",
     "propagate",
+    "sweep",
     "torque_map",
     "trace",
 ]

@@ -14,6 +14,14 @@ echo "== find_package"
 cmake -S "$source/tests/install/example" -B "$place/example" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
 cmake --build "$place/example"
+"$place/example/client"
+cat >"$place/CMakeLists.txt" <<'C'
+cmake_minimum_required(VERSION 3.24)
+project(other LANGUAGES CXX)
+find_package(photorque 0.1 REQUIRED COMPONENTS library gui)
+C
+if cmake -S "$place" -B "$place/other" -DCMAKE_PREFIX_PATH="$prefix" >"$place/other.log" 2>&1; then exit 1; fi
+grep -q 'gui' "$place/other.log"
 "$place/example/example" "$source/scenes/stasis/nominal.toml" | tee "$place/said"
 "$prefix/bin/photorque" trace "$prefix/share/photorque/scenes/stasis/nominal.toml" --set trace.rays=65536 \
   --out "$place/out" --quiet
@@ -48,15 +56,8 @@ export PKG_CONFIG_PATH
 pkg-config --modversion --cflags --libs-only-l photorque
 
 echo "== The C header of serve"
-cat >"$place/client.c" <<'C'
-#include <photorque_serve.h>
-int main(void) {
-  photorque_command_packet command = {0};
-  photorque_seal(&command.header, PHOTORQUE_COMMAND, sizeof command);
-  return command.header.size == 72 && sizeof(photorque_measurement_packet) == 256 ? 0 : 1;
-}
-C
-gcc -std=c99 -Wall -Wextra -Werror -pedantic -I "$prefix/include" -o "$place/client" "$place/client.c"
+gcc -std=c99 -Wall -Wextra -Werror -pedantic -I "$prefix/include" -o "$place/client" \
+  "$source/tests/install/example/client.c"
 "$place/client"
 
 echo "== Manual page and completions"

@@ -1,6 +1,7 @@
 """Files for other programs, read by their readers where these are installed."""
 
 import importlib.util
+import pathlib
 import unittest
 
 import numpy as np
@@ -59,6 +60,35 @@ class Formats(FolderTest):
         x, y, _ = image.GetPoint(0)
         self.assertAlmostEqual(x - dx / 2, x_low, places=12)
         self.assertAlmostEqual(y - dy / 2, y_low, places=12)
+
+
+    def test_page_and_baked_model(self):
+        page = pathlib.Path(self.power.write_page(self.folder / "look.html")).read_text()
+        self.assertTrue(page.startswith("<!doctype html>"))
+        self.assertIn(repr(self.power.power_W.value)[:9], page)
+        glb = pathlib.Path(self.power.write_baked(self.folder / "baked.glb")).read_bytes()
+        self.assertEqual((glb[:4], int.from_bytes(glb[8:12], "little")), (b"glTF", len(glb)))
+
+
+class Sweeps(unittest.TestCase):
+    def test_a_grid_is_its_runs(self):
+        experiment = photorque.Experiment(nominal, keys={"trace.rays": 25088})
+        told = []
+        axes = {"source[0].total_power_W": [88, 44], "attitude.tilt_deg": [0, 15, 30]}
+        swept = photorque.sweep(experiment, axes, photorque.trace, ["power_on_solar_array_W", "emitted_W"],
+                                progress=lambda task, done: told.append(done))
+        light = swept.figures["power_on_solar_array_W"]
+        self.assertEqual(light.shape, (2, 3))
+        alone = photorque.trace(experiment.with_keys({"source[0].total_power_W": 44, "attitude.tilt_deg": 15}))
+        figure = alone.figures["power_on_solar_array_W"]
+        self.assertEqual((light[1, 1], swept.standard_errors["power_on_solar_array_W"][1, 1]),
+                         (figure.value, figure.standard_error))
+        np.testing.assert_allclose(swept.figures["emitted_W"], [[88] * 3, [44] * 3], rtol=1e-12)
+        self.assertEqual(swept.best("power_on_solar_array_W"),
+                         {"source[0].total_power_W": 88, "attitude.tilt_deg": 0})
+        self.assertEqual((len(told), told[-1]), (6, 1.0))
+        with self.assertRaises(photorque.InputError):
+            photorque.sweep(experiment, {"source[0].colour": [1]}, photorque.trace)
 
 
 if __name__ == "__main__":

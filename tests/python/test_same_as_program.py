@@ -2,6 +2,7 @@
 
 import csv
 import io
+import pathlib
 import unittest
 
 import numpy as np
@@ -16,6 +17,12 @@ class SameAsProgram(FolderTest):
         files = self.run_program("trace", nominal, "--set", "trace.rays=65536")
         traced = photorque.trace(photorque.Experiment(nominal, keys=few_rays))
         self.assert_same_files(traced, files, 10)
+
+    def test_baked_model(self):
+        files = self.run_program("trace", nominal, "--set", "trace.rays=65536", "--bake")
+        traced = photorque.trace(photorque.Experiment(nominal, keys=few_rays))
+        baked = pathlib.Path(traced.write_baked(self.folder / "own.glb")).read_bytes()
+        self.assertTrue(baked == files["baked.glb"])
 
     def test_power_and_its_numbers(self):
         experiment = photorque.Experiment(nominal, keys=few_rays | {"attitude.tilt_deg": 30})

@@ -1,4 +1,7 @@
 // photorque check: planted mistakes are found with one line each, and what is shipped has none.
+#include <regex>
+#include <set>
+
 #include "tests/tools/command_test.h"
 #include "tools/keys/registry.h"
 
@@ -47,6 +50,27 @@ TEST_F(CheckCommand, SaysWhatEachCommandWouldDo) {
         "render      1280 × 960 pixels",
         "reads [scene] [source] [receiver] [attitude] [trace] [torque_map] [array]"}) {
     EXPECT_THAT(got.out, HasSubstr(line));
+  }
+}
+
+// Every command that reads experiments: what it would do, or what it lacks.
+TEST_F(CheckCommand, LeavesNoCommandOut) {
+  const std::string help = run("--help").out;
+  static const std::regex verb(R"(\n  ([a-z][a-z-]*)  )");
+  static const std::set<std::string> others = {"check", "new", "schema", "selftest"};
+  for (const char* file :
+       {"stasis/nominal.toml", "stasis/attitude.toml", "tabletop/tabletop.toml"}) {
+    const std::string said = run("check " + (shipped / file).string()).out;
+    size_t asked = 0;
+    for (std::sregex_iterator it(help.begin(), help.end(), verb), end; it != end; ++it) {
+      const std::string name = (*it)[1];
+      if (others.contains(name)) continue;
+      // Beside a sweep no search is said, as both read the same tables.
+      const std::regex told("(^|\n)(" + name + "  |not ([a-z-]+, )*" + name + "[,:])");
+      EXPECT_TRUE(std::regex_search(said, told)) << file << ": " << name;
+      ++asked;
+    }
+    EXPECT_GE(asked, 15u);
   }
 }
 

@@ -185,7 +185,11 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
          "\nfacing = [0, 0, 1]                    # only faces turned up\nbins = [100, 100]\n\n"
          "[[receiver]]\nkind = \"wrench\"                       # force and torque of light on the "
          "whole\nname = \"platform\"\n\n[attitude]\ntilt_deg = 0\nheading_deg = 0\n\n[trace]\nrays "
-         "= 1048576                        # standard errors fall with their root\n";
+         "= 1048576                        # standard errors fall with their root\n\n"
+         "[torque_map]                          # torque-map: the torque of light at every "
+         "attitude\n"
+         "tilt_deg = [0, 10, 20, 30]\nheading_deg = [0, 90, 180, 270]       # 0: leans towards +x\n"
+         "rays = 131072                         # at each\n";
 }
 
 void run_new(const CommandLine& line) {

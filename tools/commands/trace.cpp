@@ -11,6 +11,7 @@ void run_trace(const CommandLine& line) {
   const Console console = terminal(line);
   TraceRun run = trace_experiment(line, console, !line.take_result);
   if (line.page) run.result.files.push_back(trace_page(run, page_head(line)));
+  if (line.bake) run.result.files.push_back(baked_file(*run.run, run.light, run.result));
   write_results(line, console, run.result);
 }
 
@@ -21,6 +22,7 @@ Verb trace_verb() {
             "Irradiance on every receiver, where the power went, radiation force and torque",
             run_trace, true};
   verb.draws_page = true;
+  verb.bakes = true;
   return verb;
 }
 

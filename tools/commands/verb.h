@@ -30,6 +30,7 @@ struct CommandLine : RunOptions {
   std::optional<std::filesystem::path> scene;     // --scene, of a new experiment
   bool collect = false;                           // --collect, of a sweep
   bool page = false;                              // --page: also one HTML page to look at
+  bool bake = false;                              // --bake: also the lit scene as glTF
   std::string key;                                // --key, to be explained
   std::vector<std::filesystem::path> documents;   // --document, whose tables of keys are renewed
   Interruption* interruption = nullptr;           // the program's, when it is one
@@ -57,6 +58,7 @@ struct Verb {
   bool takes_shard = false;
   bool takes_scene = false;
   bool draws_page = false;
+  bool bakes = false;
   bool takes_keys = false;  // --out FILE, --key, --document
   bool takes_experiment = true;
   bool writes = true;  // into its output folder

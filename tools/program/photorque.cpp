@@ -155,11 +155,16 @@ int run(int argc, char** argv, Interruption& interruption) {
           ->allow_extra_args(false);
     }
     if (verb.takes_scene) {
-      command->add_option("--scene", line.scene, "A model (glTF or GLB) to be lit");
+      command->add_option("--scene", line.scene, "A model (glTF, GLB, STL or OBJ) to be lit");
     }
     if (verb.draws_page) {
       command->add_flag("--page", line.page,
                         "Write page.html too: scene, maps and curves to look at in a browser");
+    }
+    if (verb.bakes) {
+      command->add_flag("--bake", line.bake,
+                        "Write baked.glb too: the scene with the irradiance as textures and vertex "
+                        "colours, for viewers of glTF");
     }
     if (verb.takes_shard) {
       command->add_option("--shard", line.shard,

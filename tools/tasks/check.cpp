@@ -72,9 +72,11 @@ class Checker {
 
   // Those of the file that the command reads.
   void add_tables(CheckReport::Command& command) const {
+    // A unit for co-simulation propagates.
+    const std::string reader = command.name == "fmu" ? "propagate" : command.name;
     for (const Key& table : tables_) {
       if (file_->settings.has(table.name) &&
-          std::ranges::find(table.commands, command.name) != table.commands.end()) {
+          std::ranges::find(table.commands, reader) != table.commands.end()) {
         command.tables.push_back(table.name);
       }
     }
@@ -85,7 +87,7 @@ class Checker {
     static const std::vector<std::pair<std::string, std::vector<std::string>>> needs = {
         {"[scene] and [[source]]", {"trace", "render", "torque-map"}},
         {"[array]", {"power"}},
-        {"[platform]", {"budget", "propagate", "serve", "estimate"}},
+        {"[platform]", {"budget", "propagate", "serve", "fmu", "estimate"}},
         {"[platform], [module] or [sensors] of light", {"diagnose"}},
         {"[balance]", {"balance"}},
         {"[sensors.camera] with markers", {"camera"}},
@@ -185,7 +187,7 @@ class Checker {
       add("torque-map", counted(file_->light_directions->elevation_rad.size(), "elevation") +
                             " × " +
                             counted(file_->light_directions->azimuth_rad.size(), "azimuth"));
-    } else if (file_->settings.has("torque_map")) {
+    } else {
       add("torque-map", counted(grid.tilt_rad.size(), "tilt") + " × " +
                             counted(grid.heading_rad.size(), "heading"));
     }
@@ -221,6 +223,7 @@ class Checker {
       add("serve", show(serve.rate_Hz) + " Hz " +
                        (serve.by_shared_memory ? "in shared memory" : "at " + serve.address));
     });
+    add("fmu", "a unit for co-simulation by FMI 3.0");
     if (settings.has("supply_trade")) {
       attempt([&] { add("supply", supply_in_words(full)); });
     }

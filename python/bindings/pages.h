@@ -1,0 +1,28 @@
+// What runs show in a browser and in viewers of glTF, from Python.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tools/pages/runs.h"
+#include "tools/runs/options.h"
+
+namespace photorque::python {
+
+namespace py = pybind11;
+
+// Of the command `verb`, which gives the same.
+PageHead head_of(const RunOptions& options, const std::string& verb);
+
+// Writes one file of a run to a path of the caller's; `file` makes it, without the interpreter's
+// lock.
+template <class MakeFile>
+std::string write_alone(const std::filesystem::path& path, const MakeFile& file) {
+  const py::gil_scoped_release release;
+  file().write(path);
+  return path.string();
+}
+
+}  // namespace photorque::python
