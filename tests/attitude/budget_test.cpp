@@ -231,7 +231,8 @@ TEST(Budget, AnUnbentAppendageIsNoTorque) {
   const Budget budget = read_budget(settings_of(
       with_disturbances(experiment({{"tilt_deg", node(30)}, {"spin_rpm", node(1)}}), {wing})));
   EXPECT_EQ(entry(budget, "flexible_mode").torque_body_N_m.norm(), 0.0);
-  for (const Plot::Curve& curve : budget_product(budget).plots.front().curves) {
+  const Product product = budget_product(budget);
+  for (const Plot::Curve& curve : product.plots.front().curves) {
     EXPECT_NE(curve.label, "flexible_mode");
   }
 }
