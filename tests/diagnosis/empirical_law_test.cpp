@@ -147,5 +147,24 @@ TEST(EmpiricalLaw, PowerOfTheTiltFliesAgainWithItsExponent) {
   EXPECT_LT(exponent.sigma[0], 0.2);
 }
 
+// Where no friction acts it is fitted negative in half of the recordings; an experiment cannot
+// state that.
+TEST(FoundEffects, LieWithinTheirBounds) {
+  int beyond = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const Fitted f = fitted(
+        seed, [](const State&) { return Vec3(Vec3::Zero()); }, "dry_friction");
+    const std::vector<Disturbance>& all = f.trial.fit.best.model.disturbances;
+    const double torque_N_m = all[f.trial.disturbances.front()].parameters.front().value;
+    inference::Decision decision;
+    decision.probability = {1.0};
+    const std::vector<FoundEffect> found = found_effects(decision, {f.trial}, f.all);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found.front().parameters.front().value.front(), std::max(0.0, torque_N_m));
+    beyond += torque_N_m < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(beyond, 0);
+}
+
 }  // namespace
 }  // namespace photorque

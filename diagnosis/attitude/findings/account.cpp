@@ -94,6 +94,26 @@ std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbanc
   return result;
 }
 
+namespace {
+
+// What was fitted may lie beyond what physics allows by less than its error, as one that is no
+// effect at all does half of the time; an experiment cannot state it.
+void keep_within_bounds(const Candidate& c, std::vector<FittedParameter>& fitted) {
+  std::vector<double*> values;
+  for (FittedParameter& parameter : fitted) {
+    for (double& value : parameter.value) values.push_back(&value);
+  }
+  size_t k = 0;
+  for (size_t p = 0; p < c.scale.size() && k < values.size(); ++p) {
+    if (!c.is_fitted(p)) continue;
+    const double unit = unit_of_key(c.start.parameters[p].key).to_SI;
+    *values[k] = std::clamp(*values[k], c.lowest[p] / unit, c.highest[p] / unit);
+    ++k;
+  }
+}
+
+}  // namespace
+
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,
                                        const std::vector<Trial>& trials, const Candidates& all) {
   const Trial& chosen = trials[decision.chosen];
@@ -105,6 +125,7 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     effect.kind = c.effect.kind;
     effect.explanation = c.effect.explanation;
     effect.parameters = fitted_parameters(chosen, chosen.disturbances[i]);
+    keep_within_bounds(c, effect.parameters);
     for (size_t t = 0; t < trials.size(); ++t) {
       const std::vector<std::string> kinds = kinds_of(trials[t], all);
       if (std::find(kinds.begin(), kinds.end(), effect.kind) != kinds.end()) {
