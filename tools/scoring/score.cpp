@@ -47,7 +47,9 @@ Json parsed(const std::filesystem::path& path) {
 // Older cases write "attitude_latency_s" where the experiment's key is "latency_s".
 const Json* true_number(const Json& effect, const std::string& key) {
   if (effect.contains(key)) return &effect[key];
-  const std::string with_kind = effect.value("kind", "") + key.substr(key.find_last_of('_'));
+  const size_t unit = key.find_last_of('_');
+  if (unit == std::string::npos) return nullptr;
+  const std::string with_kind = effect.value("kind", "") + key.substr(unit);
   return effect.contains(with_kind) ? &effect[with_kind] : nullptr;
 }
 
