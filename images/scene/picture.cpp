@@ -19,8 +19,9 @@ void require_consistent(const SceneView& view) {
   }
   const auto samples =
       static_cast<size_t>(view.sample_columns()) * static_cast<size_t>(view.sample_rows());
-  for (const size_t count : {view.depth_m.size(), view.part.size(), view.normal_lab.size(),
-                             view.cos_view.size(), view.irradiance_W_m2.size()}) {
+  for (const size_t count :
+       {view.depth_m.size(), view.part.size(), view.normal_lab.size(), view.cos_view.size(),
+        view.irradiance_W_m2.size(), view.ray.empty() ? samples : view.ray.size()}) {
     if (count != samples) fail(std::to_string(count) + " samples", std::to_string(samples));
   }
   for (size_t i = 0; i < samples; ++i) {
@@ -112,10 +113,9 @@ Picture scene_picture(const SceneView& view, const SceneLabels& labels,
   return canvas.finish_pixels();
 }
 
-void write_scene_picture(const std::filesystem::path& path, const SceneView& view,
-                         const SceneLabels& labels, const Provenance& provenance) {
-  write_png(path, scene_picture(view, labels, provenance),
-            picture_metadata(labels.title, provenance));
+void write_scene_picture(const std::filesystem::path& path, const Picture& picture,
+                         const std::string& title, const Provenance& provenance) {
+  write_png(path, picture, picture_metadata(title, provenance));
 }
 
 }  // namespace photorque

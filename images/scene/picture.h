@@ -28,8 +28,8 @@ struct SceneLabels {
 Picture scene_picture(const SceneView& view, const SceneLabels& labels,
                       const Provenance& provenance);
 
-// The same, written as PNG with the provenance as metadata.
-void write_scene_picture(const std::filesystem::path& path, const SceneView& view,
-                         const SceneLabels& labels, const Provenance& provenance);
+// Written as PNG with the provenance as metadata.
+void write_scene_picture(const std::filesystem::path& path, const Picture& picture,
+                         const std::string& title, const Provenance& provenance);
 
 }  // namespace photorque

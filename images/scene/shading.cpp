@@ -100,7 +100,9 @@ Eigen::Vector3d sample_light(const SceneView& view, const ColourScale& scale, si
             : as_light(scale(irradiance));
   }
   const double weight = edge_darkening * static_cast<double>(edge);
-  return (1.0 - weight) * light + weight * as_light(edge_colour);
+  light = (1.0 - weight) * light + weight * as_light(edge_colour);
+  const double ray = view.ray.empty() ? 0.0 : view.ray[sample];
+  return (1.0 - ray) * light + ray * as_light(ray_colour);
 }
 
 }  // namespace

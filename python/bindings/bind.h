@@ -6,6 +6,7 @@
 namespace photorque::python {
 
 void bind_light(pybind11::module_& module);      // trace, power
+void bind_render(pybind11::module_& module);     // render
 void bind_wrenches(pybind11::module_& module);   // torque_map
 void bind_motion(pybind11::module_& module);     // propagate
 void bind_platform(pybind11::module_& module);   // budget, balance

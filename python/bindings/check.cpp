@@ -2,7 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "python/bindings/bind.h"
-#include "python/bindings/call.h"
+#include "python/bindings/exchange/call.h"
 #include "python/bindings/experiment.h"
 #include "tools/tasks/check.h"
 
@@ -13,6 +13,18 @@ std::shared_ptr<CheckReport> check_of(const ExperimentHandle& experiment) {
   const Call call(experiment.options.experiment, py::none(), py::none());
   return call.run(
       [&] { return std::make_shared<CheckReport>(check_experiment(experiment.options)); });
+}
+
+// What every run does beside its work: options, callbacks, the lock let go and taken.
+std::shared_ptr<RunOptions> nothing(const ExperimentHandle& experiment, int threads,
+                                    const py::object& seed, const py::object& progress,
+                                    const py::object& log) {
+  const RunOptions options = experiment.with(threads, seed);
+  const Call call(options.experiment, progress, log);
+  return call.run([&] {
+    const Console console = call.console();
+    return std::make_shared<RunOptions>(options);
+  });
 }
 
 }  // namespace
@@ -41,6 +53,11 @@ void bind_check(py::module_& module) {
       .def_readonly("notes", &CheckReport::notes);
   module.def("check", &check_of, py::arg("experiment"),
              "Reads the experiment as every command would, and runs nothing.");
+  // For the benchmark of calls.
+  py::class_<RunOptions, std::shared_ptr<RunOptions>>(module, "_Nothing");
+  module.def("_nothing", &nothing, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
+             py::arg("seed") = py::none(), py::arg("progress") = py::none(),
+             py::arg("log") = py::none());
 }
 
 }  // namespace photorque::python

@@ -1,10 +1,11 @@
 // trace() and power(): irradiance, radiation force and torque, the solar array.
 #include <pybind11/stl.h>
 
-#include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
-#include "python/bindings/call.h"
+#include "python/bindings/exchange/arrays.h"
+#include "python/bindings/exchange/call.h"
 #include "python/bindings/experiment.h"
+#include "python/bindings/own/lamp.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/tasks/power.h"
@@ -47,10 +48,11 @@ RunOptions options_of(const ExperimentHandle& experiment, int threads, const py:
 
 std::shared_ptr<LightHandle> trace(const ExperimentHandle& experiment, int threads,
                                    const py::object& seed, std::optional<double> target_error,
-                                   std::optional<double> max_time_s, const py::object& progress,
-                                   const py::object& log) {
-  const RunOptions options = options_of(experiment, threads, seed, target_error, max_time_s);
+                                   std::optional<double> max_time_s, const py::iterable& lamps,
+                                   const py::object& progress, const py::object& log) {
+  RunOptions options = options_of(experiment, threads, seed, target_error, max_time_s);
   const Call call(options.experiment, progress, log);
+  add_lamps(options, lamps, call);
   return call.run([&] {
     TraceRun traced = trace_experiment(options, call.console());
     auto handle = std::make_shared<LightHandle>(
@@ -63,10 +65,11 @@ std::shared_ptr<LightHandle> trace(const ExperimentHandle& experiment, int threa
 
 std::shared_ptr<PowerHandle> power(const ExperimentHandle& experiment, int threads,
                                    const py::object& seed, std::optional<double> target_error,
-                                   std::optional<double> max_time_s, const py::object& progress,
-                                   const py::object& log) {
-  const RunOptions options = options_of(experiment, threads, seed, target_error, max_time_s);
+                                   std::optional<double> max_time_s, const py::iterable& lamps,
+                                   const py::object& progress, const py::object& log) {
+  RunOptions options = options_of(experiment, threads, seed, target_error, max_time_s);
   const Call call(options.experiment, progress, log);
+  add_lamps(options, lamps, call);
   return call.run([&] {
     PowerRun found = power_of_experiment(options, call.console());
     auto handle = std::make_shared<PowerHandle>();
@@ -201,8 +204,8 @@ template <class Function>
 void def_light(py::module_& module, const char* name, Function function, const char* doc) {
   module.def(name, function, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
              py::arg("seed") = py::none(), py::arg("target_error") = py::none(),
-             py::arg("max_time_s") = py::none(), py::arg("progress") = py::none(),
-             py::arg("log") = py::none(), doc);
+             py::arg("max_time_s") = py::none(), py::arg("lamps") = py::list(),
+             py::arg("progress") = py::none(), py::arg("log") = py::none(), doc);
 }
 
 }  // namespace

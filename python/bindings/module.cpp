@@ -5,6 +5,7 @@
 #include "core/provenance.h"
 #include "python/bindings/bind.h"
 #include "python/bindings/experiment.h"
+#include "python/bindings/own/lamp.h"
 #include "python/bindings/results.h"
 
 PYBIND11_MODULE(_photorque, module) {
@@ -21,7 +22,9 @@ PYBIND11_MODULE(_photorque, module) {
       "The input is legal and the computation failed.";
   python::bind_experiment(module);
   python::bind_results(module);
+  python::bind_lamp(module);
   python::bind_light(module);
+  python::bind_render(module);
   python::bind_wrenches(module);
   python::bind_motion(module);
   python::bind_platform(module);

@@ -1,10 +1,10 @@
 // propagate(): the platform through its disturbances and in its light.
 #include "tools/pages/motion.h"
-#include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
-#include "python/bindings/call.h"
+#include "python/bindings/exchange/arrays.h"
+#include "python/bindings/exchange/call.h"
 #include "python/bindings/experiment.h"
-#include "python/bindings/own_torque.h"
+#include "python/bindings/own/torque.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/tasks/propagate.h"

@@ -1,27 +1,48 @@
 // torque_map(): the wrench of light over attitudes, or over directions of light.
-#include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
-#include "python/bindings/call.h"
+#include "python/bindings/exchange/arrays.h"
+#include "python/bindings/exchange/call.h"
 #include "python/bindings/experiment.h"
+#include "python/bindings/own/lamp.h"
+#include "python/bindings/pages.h"
 #include "python/bindings/results.h"
-#include "tools/tasks/torque_map.h"
+#include "tools/pages/torque_map.h"
 
 namespace photorque::python {
 namespace {
 
-std::shared_ptr<TorqueMapRun> torque_map(const ExperimentHandle& experiment, int threads,
-                                         const py::object& seed, const py::object& progress,
-                                         const py::object& log) {
-  const RunOptions options = experiment.with(threads, seed);
+struct TorqueMapHandle : TorqueMapRun {
+  std::optional<RunFile> page = {};
+};
+
+std::shared_ptr<TorqueMapHandle> torque_map(const ExperimentHandle& experiment, int threads,
+                                            const py::object& seed, const py::iterable& lamps,
+                                            bool page, const py::object& progress,
+                                            const py::object& log) {
+  RunOptions options = experiment.with(threads, seed);
   const Call call(options.experiment, progress, log);
+  add_lamps(options, lamps, call);
   return call.run([&] {
-    return std::make_shared<TorqueMapRun>(torque_map_of_experiment(options, call.console()));
+    TorqueMapStage stage;
+    auto handle = std::make_shared<TorqueMapHandle>(TorqueMapHandle{
+        torque_map_of_experiment(options, call.console(), page ? stage.watch() : NodeWatch())});
+    if (page)
+      handle->page = torque_map_page(*handle, std::move(stage), head_of(options, "torque-map"));
+    return handle;
   });
+}
+
+std::string write_page(const TorqueMapHandle& self, const std::filesystem::path& path) {
+  if (!self.page) {
+    throw InputError({}, "write_page", "a run that kept no light for a page",
+                     "torque_map(experiment, page=True)");
+  }
+  return write_alone(path, [&] { return *self.page; });
 }
 
 auto node_view(std::vector<Vec3> WrenchTable::*vectors) {
   return [vectors](const py::object& self) {
-    const WrenchTable& table = self.cast<const TorqueMapRun&>().wrenches;
+    const WrenchTable& table = self.cast<const TorqueMapHandle&>().wrenches;
     return view(table.*vectors,
                 {static_cast<py::ssize_t>(table.around_rad.size()),
                  static_cast<py::ssize_t>(table.polar_rad.size())},
@@ -29,7 +50,7 @@ auto node_view(std::vector<Vec3> WrenchTable::*vectors) {
   };
 }
 
-py::tuple wrench_between(const TorqueMapRun& run, double polar_rad, double around_rad) {
+py::tuple wrench_between(const TorqueMapHandle& run, double polar_rad, double around_rad) {
   const Wrench wrench = wrench_at(run.wrenches, {polar_rad, around_rad});
   return py::make_tuple(copy_of(wrench.force_N), copy_of(wrench.torque_N_m));
 }
@@ -37,14 +58,14 @@ py::tuple wrench_between(const TorqueMapRun& run, double polar_rad, double aroun
 }  // namespace
 
 void bind_wrenches(py::module_& module) {
-  auto type = py::class_<TorqueMapRun, std::shared_ptr<TorqueMapRun>>(
+  auto type = py::class_<TorqueMapHandle, std::shared_ptr<TorqueMapHandle>>(
       module, "TorqueMap",
       "Force and torque of light on the body over two angles, body frame: arrays of shape (around, "
       "polar, 3).");
   add_result(type, "torque-map");
   type.def_property_readonly(
           "angles",
-          [](const TorqueMapRun& run) {
+          [](const TorqueMapHandle& run) {
             const bool tilts = run.wrenches.angles == WrenchTable::Angles::tilt_heading;
             return tilts ? "tilt_heading" : "azimuth_elevation";
           },
@@ -52,12 +73,12 @@ void bind_wrenches(py::module_& module) {
           "direction towards the light: polar is the elevation, around the azimuth.")
       .def_property_readonly("polar_rad",
                              [](const py::object& self) {
-                               return view(self.cast<const TorqueMapRun&>().wrenches.polar_rad,
+                               return view(self.cast<const TorqueMapHandle&>().wrenches.polar_rad,
                                            self);
                              })
       .def_property_readonly("around_rad",
                              [](const py::object& self) {
-                               return view(self.cast<const TorqueMapRun&>().wrenches.around_rad,
+                               return view(self.cast<const TorqueMapHandle&>().wrenches.around_rad,
                                            self);
                              })
       .def_property_readonly("force_body_N", node_view(&WrenchTable::force_body_N))
@@ -65,11 +86,15 @@ void bind_wrenches(py::module_& module) {
       .def_property_readonly("torque_body_N_m", node_view(&WrenchTable::torque_body_N_m))
       .def_property_readonly("torque_standard_error_N_m", node_view(&WrenchTable::torque_error_N_m))
       .def("at", &wrench_between, py::arg("polar_rad"), py::arg("around_rad"),
-           "(force, torque) between the nodes, bilinear. NumericalError outside the grid.");
+           "(force, torque) between the nodes, bilinear. NumericalError outside the grid.")
+      .def("write_page", &write_page, py::arg("path"),
+           "The run as one HTML page with sliders over the attitudes; gives its path. Of runs with "
+           "page=True.");
   module.def("torque_map", &torque_map, py::arg("experiment"), py::kw_only(),
-             py::arg("threads") = 0, py::arg("seed") = py::none(), py::arg("progress") = py::none(),
-             py::arg("log") = py::none(),
-             "Force, torque and power over the attitudes or directions of [torque_map].");
+             py::arg("threads") = 0, py::arg("seed") = py::none(), py::arg("lamps") = py::list(),
+             py::arg("page") = false, py::arg("progress") = py::none(), py::arg("log") = py::none(),
+             "Force, torque and power over the attitudes or directions of [torque_map].\n\n"
+             "`page`: keeps the light of every attitude for write_page().");
 }
 
 }  // namespace photorque::python

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Any
 
@@ -9,6 +9,7 @@ Array = npt.NDArray[np.float64]
 Path = str | PathLike[str]
 Progress = Callable[[str, float], object] | None
 Torque = Callable[[Array, Array, Array], npt.ArrayLike]
+Emit = Callable[[Array], tuple[npt.ArrayLike, npt.ArrayLike]]
 Log = Callable[[str], object] | None
 
 __version__: str
@@ -106,6 +107,33 @@ class _Result:
     def summary_json(self) -> str: ...
     def write(self, folder: Path) -> list[str]: ...
 
+class Lamp:
+    def __init__(
+        self,
+        emit: Emit,
+        *,
+        power_W: float,
+        wavelength_nm: float,
+        position_m: npt.ArrayLike,
+        direction: npt.ArrayLike | None = None,
+        aim_m: npt.ArrayLike | None = None,
+        spectral_fwhm_nm: float = 0.0,
+        name: str = "lamp",
+    ) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def power_W(self) -> float: ...
+
+class Render:
+    @property
+    def pixels(self) -> npt.NDArray[np.uint8]: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def provenance(self) -> dict[str, Any]: ...
+    def write(self, folder: Path) -> str: ...
+
 class Trace(_Result):
     @property
     def flux_maps(self) -> dict[str, FluxMap]: ...
@@ -154,6 +182,7 @@ class TorqueMap(_Result):
     @property
     def torque_standard_error_N_m(self) -> Array: ...
     def at(self, polar_rad: float, around_rad: float) -> tuple[Array, Array]: ...
+    def write_page(self, path: Path) -> str: ...
 
 class Motion(_Result):
     @property
@@ -260,6 +289,7 @@ def trace(
     seed: int | None = None,
     target_error: float | None = None,
     max_time_s: float | None = None,
+    lamps: Iterable[Lamp] = ...,
     progress: Progress = None,
     log: Log = None,
 ) -> Trace: ...
@@ -270,14 +300,28 @@ def power(
     seed: int | None = None,
     target_error: float | None = None,
     max_time_s: float | None = None,
+    lamps: Iterable[Lamp] = ...,
     progress: Progress = None,
     log: Log = None,
 ) -> Power: ...
+def render(
+    experiment: Experiment,
+    *,
+    threads: int = 0,
+    seed: int | None = None,
+    target_error: float | None = None,
+    max_time_s: float | None = None,
+    lamps: Iterable[Lamp] = ...,
+    progress: Progress = None,
+    log: Log = None,
+) -> Render: ...
 def torque_map(
     experiment: Experiment,
     *,
     threads: int = 0,
     seed: int | None = None,
+    lamps: Iterable[Lamp] = ...,
+    page: bool = False,
     progress: Progress = None,
     log: Log = None,
 ) -> TorqueMap: ...

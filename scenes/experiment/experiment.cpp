@@ -64,7 +64,7 @@ void require_traceable(const Settings& source, const Beam& beam) {
 // Notices and the files that the sources read go to the model's.
 std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
   const Scene& scene = model.scene;
-  if (file.sources.empty())
+  if (file.sources.empty() && file.further_beams.empty())
     throw file.settings.error("source", "nothing", "at least one [[source]]");
   const std::vector<SourceKind> kinds = all_source_kinds();
   std::vector<Beam> beams;
@@ -97,6 +97,13 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
       beams.push_back(std::move(beam));
     }
     if (at_light) source.finish();
+  }
+  for (const Beam& beam : file.further_beams) {
+    const Settings lamp(std::make_shared<const SettingsNode>(SettingsNode::Table{}),
+                        "lamp \"" + beam.name + "\"");
+    require_spectrum_inside(lamp, beam, scene.bands);
+    require_traceable(lamp, beam);
+    beams.push_back(beam);
   }
   return beams;
 }
@@ -141,6 +148,8 @@ Camera read_camera(const ExperimentFile& file, double scene_radius_m) {
       settings.number_or("field_of_view_deg", camera.field_of_view_rad, {0.0, pi, true, true});
   camera.width = static_cast<int>(settings.integer_or("width", camera.width, 16, 16384));
   camera.height = static_cast<int>(settings.integer_or("height", camera.height, 16, 16384));
+  camera.lamps = settings.flag_or("lamps", camera.lamps);
+  camera.placed = settings.has("position_m") || settings.has("target_m");
   if ((camera.position_m - camera.target_m).norm() < 1e-9) {
     throw settings.error("position_m", "the target itself", "a point away from target_m");
   }

@@ -63,6 +63,8 @@ struct Camera {
   double field_of_view_rad = 0.6;  // across the width of the picture, in (0, π)
   int width = 1280;                // pixels
   int height = 960;
+  bool lamps = true;    // lamps and some of their rays are drawn
+  bool placed = false;  // the experiment says where it stands
 };
 
 // The camera that shows a whole scene of `radius_m` about the lab origin: from the south-east and
@@ -87,6 +89,7 @@ struct ExperimentFile {
   Bands bands;
   std::vector<Settings> materials;  // [[material]], overrides by name
   std::vector<Settings> sources;
+  std::vector<Beam> further_beams = {};  // lamps that no text describes, lab frame
   std::vector<Settings> receivers;
   std::vector<Settings> joint_tables;  // [[joint]]
   std::vector<Joint> joints;

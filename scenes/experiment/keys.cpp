@@ -166,15 +166,17 @@ Key torque_map_table() {
 
 Key camera_table() {
   const Camera usual;
-  return Key::table("camera",
-                    {Key::vector3("position_m", "lab axes, away from `target_m`")
-                         .usually_is("south-east of the scene"),
-                     Key::vector3_or("target_m", usual.target_m, "what is in the middle"),
-                     Key::number("field_of_view_deg", {0.0, pi, true, true}, "across the width")
-                         .usually_is("34.4"),
-                     Key::integer_or("width", usual.width, 16, 16384, "pixels"),
-                     Key::integer_or("height", usual.height, 16, 16384, "pixels")},
-                    "where the picture of the scene is taken from");
+  return Key::table(
+      "camera",
+      {Key::vector3("position_m", "lab axes, away from `target_m`")
+           .usually_is("south-east of the scene, where `render` also sees the lamps"),
+       Key::vector3_or("target_m", usual.target_m, "what is in the middle"),
+       Key::number("field_of_view_deg", {0.0, pi, true, true}, "across the width")
+           .usually_is("34.4"),
+       Key::integer_or("width", usual.width, 16, 16384, "pixels"),
+       Key::integer_or("height", usual.height, 16, 16384, "pixels"),
+       Key::flag_or("lamps", usual.lamps, "lamps near the scene and some rays are drawn")},
+      "where the picture of the scene is taken from");
 }
 
 }  // namespace

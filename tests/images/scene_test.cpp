@@ -1,7 +1,9 @@
 #include "images/scene/picture.h"
+#include "images/scene/pinhole.h"
 
 #include <gtest/gtest.h>
 
+#include "core/constants.h"
 #include "core/errors.h"
 #include "tests/images/sample_product.h"
 
@@ -122,6 +124,69 @@ TEST(EdgeStrength, MarksCreasesStepsAndBorders) {
   EXPECT_GT(with(base, Sample{1.0F, 0, Eigen::Vector3f::UnitX()}), 0.0F) << "crease";
   EXPECT_GT(with(base, Sample{1.5F}), 0.0F) << "step";
   EXPECT_GT(with(base, Sample{1.0F, 1}), 0.0F) << "border";
+}
+
+// Nothing in a view of 101 × 101 pixels but what is drawn into it.
+SceneView empty_view() {
+  SceneView view = view_of(101, 101, 1, [](int, int) { return Sample{}; });
+  view.part_colour.clear();
+  return view;
+}
+
+const Pinhole from_above = Pinhole::looking(Vec3(0.0, 0.0, 10.0), Vec3::Zero(), 0.2);
+
+TEST(DrawnLamps, AreRoundAndHideWhatIsBehindThem) {
+  SceneView view = empty_view();
+  draw_lamps(view, from_above,
+             {{Vec3::Zero(), Vec3::UnitZ(), 0.5}, {Vec3(0.0, 0.0, -1.0), -Vec3::UnitZ(), 0.5}});
+  size_t seen = 0;
+  for (size_t i = 0; i < view.depth_m.size(); ++i) {
+    if (!std::isfinite(view.depth_m[i])) continue;
+    ++seen;
+    EXPECT_EQ(view.part[i], 0) << "the lamp behind shows";
+    EXPECT_NEAR(view.depth_m[i], 10.0, 0.02);
+  }
+  // A disc of radius 0.5 m at 10 m: area in pixels of 20 tan(0.1)/101 m a side.
+  const double side_m = 20.0 * std::tan(0.1) / 101.0;
+  EXPECT_NEAR(static_cast<double>(seen), 0.25 * pi / (side_m * side_m), 25.0);
+  SceneView below = empty_view();
+  draw_lamps(below, from_above, {{Vec3::Zero(), -Vec3::UnitZ(), 0.5}});
+  EXPECT_EQ(below.part[50 * 101 + 50], 1) << "the side that does not shine";
+}
+
+TEST(DrawnRays, EndOnWhatTheyMeetAndHideBehindIt) {
+  const auto rays = [](float x) { return std::vector<float>{x, 0.5F, 0.0F, x, -0.5F, 0.0F}; };
+  SceneView view = empty_view();
+  draw_lamps(view, from_above, {{Vec3(0.0, 0.0, 1.0), Vec3::UnitZ(), 0.2}});
+  draw_rays(view, from_above, rays(0.0F));
+  EXPECT_EQ(view.ray[50 * 101 + 50], 0.0F) << "a lamp above hides it";
+  EXPECT_GT(view.ray[35 * 101 + 50], 0.2F);
+  EXPECT_GT(view.ray[65 * 101 + 50], 0.2F);
+  EXPECT_EQ(view.ray[50 * 101 + 60], 0.0F);
+  EXPECT_EQ(view.ray[10 * 101 + 50], 0.0F) << "beyond its end";
+  const ColourScale scale = colour_scale(0.0, 1.0, false);
+  EXPECT_NE(shaded(view, scale).pixel(50, 35), rgb_bytes(scene_background));
+  // Rays behind the camera, or through it, draw nothing wrong.
+  draw_rays(view, from_above, {0.0F, 0.0F, 20.0F, 0.0F, 0.0F, 30.0F});
+  draw_rays(view, from_above, {0.1F, 0.0F, 20.0F, 0.1F, 0.0F, -1.0F});
+  for (const float ray : view.ray) EXPECT_TRUE(ray >= 0.0F && ray < 1.0F);
+}
+
+TEST(Framing, HoldsEveryPointWithRoom) {
+  const std::vector<Vec3> points = {Vec3(0.3, 0.1, -0.2), Vec3(-0.4, 0.2, 0.1),
+                                    Vec3(0.0, -0.3, 1.5)};
+  const Pinhole camera =
+      framing(Pinhole::looking(Vec3(5.0, -7.0, 5.0), Vec3::Zero(), 0.6), points, 0.75);
+  double widest = 0.0;
+  for (const Vec3& at : points) {
+    const Vec3 from = at - camera.position_m;
+    const double along = -from.dot(camera.back);
+    ASSERT_GT(along, 0.0);
+    widest = std::max({widest, std::abs(from.dot(camera.right)) / along / camera.half_width,
+                       std::abs(from.dot(camera.up)) / along / (0.75 * camera.half_width)});
+  }
+  EXPECT_LT(widest, 0.95);
+  EXPECT_GT(widest, 0.8);
 }
 
 SceneView lit_square(int size) {

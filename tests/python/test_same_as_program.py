@@ -51,6 +51,39 @@ class SameAsProgram(FolderTest):
         np.testing.assert_array_equal(torque, table.torque_body_N_m[0, 1])
         np.testing.assert_array_equal(force, table.force_body_N[0, 1])
 
+    def test_page_of_a_torque_map(self):
+        keys = {"trace.rays": 25088, "torque_map.tilt_deg": [0, 30], "torque_map.heading_deg": [0]}
+        experiment = photorque.Experiment(nominal, keys=keys)
+        files = self.run_program("torque-map", nominal, "--set", "trace.rays=25088", "--set",
+                                 "torque_map.tilt_deg=[0, 30]", "--set", "torque_map.heading_deg=[0]", "--page")
+        table = photorque.torque_map(experiment, page=True)
+        written = pathlib.Path(table.write_page(self.folder / "own.html")).read_bytes()
+
+        def without_command(page):  # which the page names
+            return [line for line in page.split(b"\n") if b"photorque torque-map" not in line
+                    and b"photorque.torque_map" not in line]
+
+        self.assertGreater(len(written), 100000)
+        self.assertEqual(len(written.split(b"\n")), len(files["page.html"].split(b"\n")))
+        self.assertEqual(without_command(written), without_command(files["page.html"]))
+        with self.assertRaisesRegex(photorque.InputError, "page=True"):
+            photorque.torque_map(experiment).write_page(self.folder / "none.html")
+
+    def test_render(self):
+        small = {"trace.rays": 25088, "camera.width": 160, "camera.height": 120}
+        rendered = photorque.render(photorque.Experiment(nominal, keys=small))
+        files = self.run_program("render", nominal, *(word for key, value in small.items()
+                                                      for word in ("--set", f"{key}={value}")))
+        written = pathlib.Path(rendered.write(self.folder / "module")).read_bytes()
+        self.assertTrue(written == files["render.png"])
+        pixels = rendered.pixels
+        self.assertEqual((pixels.dtype, pixels.ndim, pixels.shape[2]), (np.uint8, 3, 3))
+        self.assertEqual(int.from_bytes(written[16:20], "big"), pixels.shape[1])  # of the PNG
+        self.assertEqual(int.from_bytes(written[20:24], "big"), pixels.shape[0])
+        self.assertTrue(np.shares_memory(pixels, rendered.pixels))
+        self.assertFalse(pixels.flags.writeable)
+        self.assertGreater(len(np.unique(pixels.reshape(-1, 3), axis=0)), 200)
+
     def test_budget(self):
         files = self.run_program("budget", attitude)
         budget = photorque.budget(photorque.Experiment(attitude))

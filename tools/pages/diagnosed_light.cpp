@@ -3,6 +3,7 @@
 
 #include "core/constants.h"
 #include "core/text/display.h"
+#include "raytrace/tracing/shown_rays.h"
 #include "tools/pages/diagnosed.h"
 #include "tools/pages/stage.h"
 
@@ -256,8 +257,9 @@ void show_scans(const std::vector<ScanGroup>& groups, const OpticalRun& run, boo
                      {rms_off(group, group.recording->light->before), 0.0}};
     if (found) state.figures.push_back({rms_off(group, group.recording->light->after), 0.0});
     stage.states.push_back(std::move(state));
-    stage.rays_of_light_lab_m.push_back(shown_rays(run, {group.lab_from_body, Vec3::Zero()},
-                                                   std::min<size_t>(400, 24'000 / groups.size())));
+    stage.rays_of_light_lab_m.push_back(
+        shown_rays(run.scene(), run.experiment().beams, {group.lab_from_body, Vec3::Zero()},
+                   stage.radius_m, std::min<size_t>(400, 24'000 / groups.size())));
   }
   if (groups.size() > 1) stage.axes = {std::move(axis)};
   stage.remark = "Painted are the readings at the places where they were taken.";

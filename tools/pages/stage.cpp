@@ -6,16 +6,14 @@
 #include <unordered_map>
 
 #include "core/constants.h"
-#include "core/numerics/sobol.h"
 #include "images/browser/content.h"
-#include "raytrace/tracing/view.h"
+#include "raytrace/tracing/shown_rays.h"
 #include "receivers/maps/grid_map.h"
 #include "receivers/maps/torque_map.h"
 
 namespace photorque {
 namespace {
 
-constexpr double far_radii = 20.0;  // of the scene: lamps beyond are not drawn
 constexpr size_t most_lamps = 2000;
 
 StagePart part_of(const Scene& scene, const Instance& instance) {
@@ -106,11 +104,6 @@ std::vector<Painting> paintings_of(const Experiment& experiment, StageMaps maps)
   return all;
 }
 
-bool is_far(const Beam& beam, double radius_m) {
-  return beam.lab_from_emitter.translation_m.norm() > far_radii * radius_m ||
-         (beam.aperture && std::isinf(beam.aperture->radius_m));
-}
-
 std::vector<StageLamp> lamps_of(const std::vector<Beam>& beams, double radius_m) {
   std::vector<StageLamp> lamps;
   const size_t stride = (beams.size() + most_lamps - 1) / most_lamps;
@@ -120,7 +113,7 @@ std::vector<StageLamp> lamps_of(const std::vector<Beam>& beams, double radius_m)
         {beam.name, beam.lab_from_emitter.translation_m,
          beam.lab_from_emitter.direction(Vec3::UnitZ()),
          beam.aperture && std::isfinite(beam.aperture->radius_m) ? beam.aperture->radius_m : 0.0,
-         is_far(beam, radius_m)});
+         stands_far(beam, radius_m)});
   }
   return lamps;
 }
@@ -130,60 +123,12 @@ StageCamera camera_of(const Experiment& experiment) {
           experiment.camera.field_of_view_rad / degree_rad};
 }
 
-// Start and end of a ray in the lab, for a point on it near the scene.
-void add_ray(std::vector<float>& rays, const Sight& sight, const VisiblePoint& seen,
-             const RigidTransform& lab_from_body, double radius_m) {
-  const bool is_near = sight.origin_m.norm() < far_radii * radius_m;
-  const double nearest_m = -sight.origin_m.dot(sight.direction);
-  const double reach_m = 3.0 * radius_m;
-  const double from_m = is_near ? 0.0 : std::max(0.0, nearest_m - reach_m);
-  const double to_m = seen.hit ? seen.distance_m : std::max(nearest_m, 0.0) + 0.5 * reach_m;
-  if (!seen.hit && (sight.origin_m + nearest_m * sight.direction).norm() > reach_m) return;
-  for (const double along_m : {from_m, to_m}) {
-    const Vec3 at = lab_from_body.point(sight.origin_m + along_m * sight.direction);
-    for (int k = 0; k < 3; ++k) rays.push_back(static_cast<float>(at[k]));
-  }
-}
-
 }  // namespace
 
 Rgb reflectance_grey(const OpticalSurface& surface) {
   const float reflectance = static_cast<float>(surface.specular[0] + surface.diffuse[0]);
   const float grey = 0.30f + 0.60f * std::sqrt(reflectance);
   return {grey, grey, grey};
-}
-
-std::vector<float> shown_rays(const OpticalRun& run, const RigidTransform& lab_from_body,
-                              size_t about) {
-  const Experiment& experiment = run.experiment();
-  const std::vector<Beam>& beams = experiment.beams;
-  if (beams.empty() || about == 0) return {};
-  const size_t stride = (beams.size() + about - 1) / about;
-  const size_t each = std::clamp<size_t>(about / beams.size(), 1, 100);
-  const RigidTransform body_from_lab = lab_from_body.inverse();
-  std::vector<Sight> sights;
-  SampleBlock samples;
-  RayBlock block;
-  for (size_t i = 0; i < beams.size(); i += stride) {
-    std::array<uint32_t*, sobol_dimensions> out;
-    for (size_t d = 0; d < out.size(); ++d) out[d] = samples.bits[d].data();
-    sobol_points({1, i, 0}, 0, out);
-    beams[i].emitter->emit(samples, block);
-    const RigidTransform body_from_emitter = body_from_lab * beams[i].lab_from_emitter;
-    for (size_t k = 0; k < each; ++k) {
-      const Vec3 origin(block.origin_m[0][k], block.origin_m[1][k], block.origin_m[2][k]);
-      const Vec3 direction(block.direction[0][k], block.direction[1][k], block.direction[2][k]);
-      sights.push_back(
-          {body_from_emitter.point(origin), body_from_emitter.direction(direction.normalized())});
-    }
-  }
-  const auto seen = look(run.scene(), sights.size(), [&](size_t i) { return sights[i]; });
-  std::vector<float> rays;
-  const double radius_m = experiment.scene.radius_m();
-  for (size_t i = 0; i < sights.size(); ++i) {
-    add_ray(rays, sights[i], seen[i], lab_from_body, radius_m);
-  }
-  return rays;
 }
 
 SceneStage stage_of(const OpticalRun& run, StageMaps maps) {
@@ -240,8 +185,9 @@ void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& l
   // together about half a megabyte, and so many bins that the page keeps them all.
   constexpr size_t most_rays = 400, most_rays_together = 24'000;
   constexpr size_t most_bins_together = 1u << 20;
-  stage.rays_of_light_lab_m.push_back(
-      shown_rays(run, lab_from_body, std::min(most_rays, most_rays_together / lights)));
+  stage.rays_of_light_lab_m.push_back(shown_rays(run.scene(), run.experiment().beams, lab_from_body,
+                                                 stage.radius_m,
+                                                 std::min(most_rays, most_rays_together / lights)));
   size_t surface = 0;
   const auto& receivers = run.experiment().receivers;
   for (size_t i = 0; i < receivers.size(); ++i) {

@@ -31,9 +31,4 @@ void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Qua
 // The surface of a receiver's bins, to be painted with maps that the caller gives.
 PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver);
 
-// About so many rays as the lamps emit them, evenly over their beams: start and end of each in the
-// lab. Starts far away are brought close to the scene, and rays that meet nothing end beyond it.
-std::vector<float> shown_rays(const OpticalRun& run, const RigidTransform& lab_from_body,
-                              size_t about);
-
 }  // namespace photorque

@@ -18,6 +18,10 @@ namespace {
 Experiment read(const RunOptions& options) {
   ExperimentFile file =
       read_experiment_text(options.experiment, options.experiment_text(), options.all_overrides());
+  for (const FurtherLamp& lamp : options.lamps) {
+    file.further_beams.push_back(lamp.beam);
+    file.inputs.emplace_back("lamp " + lamp.beam.name, lamp.hash);
+  }
   Experiment experiment = resolve_experiment(std::move(file), [](const std::string& bytes) {
     LinearPicture picture = read_picture(bytes);
     return BaseColours{picture.width, picture.height, std::move(picture.rgb)};

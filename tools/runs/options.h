@@ -7,7 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "raytrace/emitter.h"
+
 namespace photorque {
+
+// A lamp that no experiment file describes, and the hash of its light for the provenance.
+struct FurtherLamp {
+  Beam beam;
+  std::string hash;
+};
 
 struct RunOptions {
   // The experiment's file. With a text of its own it need not exist: it is what messages call the
@@ -21,6 +29,7 @@ struct RunOptions {
   std::optional<double> max_time_s;     // over [trace] max_time_s
   bool allow_outside = false;           // over [scene] allow_outside
   std::optional<double> max_memory_GB;  // most that the run may take; nothing: what is free
+  std::vector<FurtherLamp> lamps = {};  // that shine besides those of the experiment
 
   // The text, or that of the file.
   std::string experiment_text() const;

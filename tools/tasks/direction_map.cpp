@@ -23,11 +23,12 @@ struct SunLight {
 
 SunLight only_sun(const Experiment& experiment) {
   const std::vector<Settings>& sources = experiment.file.sources;
-  if (sources.size() != 1 || sources[0].text("kind") != "sun") {
+  const size_t lamps = sources.size() + experiment.file.further_beams.size();
+  if (lamps != 1 || sources.size() != 1 || sources[0].text("kind") != "sun") {
     throw experiment.file.settings.error(
         "torque_map",
-        "directions of light with " + std::to_string(sources.size()) +
-            (sources.size() == 1 ? " source that is no sun" : " sources"),
+        "directions of light with " + std::to_string(lamps) +
+            (lamps == 1 ? " source that is no sun" : " sources"),
         "one [[source]] of kind \"sun\" (lamps at a place have no single direction: use tilts)");
   }
   const double irradiance_W_m2 = sources[0].number_or("irradiance_W_m2", solar_irradiance_W_m2);

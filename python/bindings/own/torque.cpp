@@ -1,4 +1,4 @@
-#include "python/bindings/own_torque.h"
+#include "python/bindings/own/torque.h"
 
 #include <pybind11/numpy.h>
 

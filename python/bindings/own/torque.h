@@ -6,7 +6,7 @@
 #include <string>
 
 #include "attitude/model/disturbance.h"
-#include "python/bindings/call.h"
+#include "python/bindings/exchange/call.h"
 
 namespace photorque::python {
 

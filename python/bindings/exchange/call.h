@@ -31,6 +31,9 @@ class Call {
   using Failing = std::function<void(py::error_already_set)>;
   Failing failing() const;
 
+  // Throws what a callback raised, if one did.
+  void rethrow_python() const;
+
   // `work()` without the interpreter's lock. An error of the input that names no file gets that of
   // the experiment, as the program says it.
   template <class Work>
@@ -52,7 +55,6 @@ class Call {
 
  private:
   struct State;
-  void rethrow_python() const;
   InputError named(const InputError& error) const;
   std::shared_ptr<State> state_;
 };

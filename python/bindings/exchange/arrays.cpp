@@ -1,4 +1,4 @@
-#include "python/bindings/arrays.h"
+#include "python/bindings/exchange/arrays.h"
 
 namespace photorque::python {
 

@@ -1,4 +1,4 @@
-#include "python/bindings/document.h"
+#include "python/bindings/exchange/document.h"
 
 namespace photorque::python {
 namespace {

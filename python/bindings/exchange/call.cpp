@@ -1,4 +1,4 @@
-#include "python/bindings/call.h"
+#include "python/bindings/exchange/call.h"
 
 #include <atomic>
 #include <chrono>
