@@ -19,12 +19,13 @@ struct Answer {
 
 std::optional<Answer> answer_of(const TrackingCamera& camera, const Pose& pose) {
   std::vector<Eigen::Matrix<double, 6, 2>> weighted;
+  std::vector<Mat2> noise;
   Mat6 information = Mat6::Zero();
   for (size_t i = 0; i < camera.markers.size(); ++i) {
     const auto view = view_of(camera, i, pose);
     if (!view) continue;
-    const Mat2 weight =
-        centre_covariance_px2(spot_of(camera, *view), pixel_noise(camera)).inverse();
+    noise.push_back(centre_covariance_px2(spot_of(camera, *view), pixel_noise(camera)));
+    const Mat2 weight = camera.weighs_alike ? Mat2(Mat2::Identity()) : Mat2(noise.back().inverse());
     weighted.emplace_back(view->derivative.transpose() * weight);
     information += weighted.back() * view->derivative;
   }
@@ -44,6 +45,13 @@ std::optional<Answer> answer_of(const TrackingCamera& camera, const Pose& pose) 
   answer.covariance_rad2 = covariance.topLeftCorner<3, 3>();
   for (const auto& one : weighted) {
     answer.by_reading.emplace_back((covariance * one.topRows(unknowns)).topRows<3>());
+  }
+  if (camera.weighs_alike) {
+    answer.covariance_rad2.setZero();
+    for (size_t i = 0; i < noise.size(); ++i) {
+      const Eigen::Matrix<double, 3, 2>& by = answer.by_reading[i];
+      answer.covariance_rad2 += by * noise[i] * by.transpose();
+    }
   }
   return answer;
 }

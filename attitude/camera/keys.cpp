@@ -4,6 +4,19 @@
 #include "core/constants.h"
 
 namespace photorque {
+namespace {
+
+std::vector<double> read_study_span(const Settings& s, const std::string& key, double low,
+                                    double high) {
+  if (!s.has(key)) return {low, high};
+  const std::vector<double> span = s.numbers(key, Range::positive());
+  if (span.size() != 2 || !(span[0] < span[1])) {
+    throw s.error(key, std::to_string(span.size()) + " numbers", "[from, to]");
+  }
+  return span;
+}
+
+}  // namespace
 
 std::vector<Key> tracking_camera_keys() {
   const TrackingCamera usual;
@@ -31,6 +44,17 @@ std::vector<Key> tracking_camera_keys() {
       Key::number_or("transmittance", usual.transmittance, fraction, "of lens and filter"),
       Key::number_or("spot_px", usual.spot_px, {0.3, 50.0},
                      "standard deviation of a spot besides diffraction and motion"),
+      Key::numbers("distortion", {-10.0, 10.0},
+                   "of the lens as calibrated, which the pose knows: [k1, k2, p1, p2], radial and "
+                   "tangential, as OpenCV defines them")
+          .of_size(4)
+          .usually_is("none"),
+      Key::numbers(
+          "distortion_error", {-10.0, 10.0},
+          "that of the lens, less `distortion`: turns every attitude that is recorded, and "
+          "the filter does not know")
+          .of_size(4)
+          .usually_is("none"),
       of_camera(Key::number("pixel_um", {1e-7, 1e-3}, "of the sensor")),
       of_camera(
           Key::numbers("resolution", {8.0, 65536.0}, "of the sensor: [columns, rows]").of_size(2)),
@@ -50,7 +74,11 @@ std::vector<Key> tracking_camera_keys() {
       Key::choice_or("pose",
                      {{"about_centre", "the centre of rotation is known"},
                       {"free", "the position is found too"}},
-                     0, "what is known of the platform's place")};
+                     0, "what is known of the platform's place"),
+      Key::choice_or("pose_weights",
+                     {{"information", "the more a spot's image says of its centre"},
+                      {"equal", "as solvers do that know no errors"}},
+                     0, "how the pose weighs markers")};
 }
 
 Key camera_study_table() {
@@ -62,6 +90,10 @@ Key camera_study_table() {
                                      "of the platform while images are taken, body axes"),
                      Key::number_or("calibration_px", usual.calibration_px, Range::positive(),
                                     "error of calibration in the tables"),
+                     Key::numbers("distortion_error", {-10.0, 10.0},
+                                  "[k1, k2, p1, p2] that no calibration knows, in the tables")
+                         .of_size(4)
+                         .usually_is("[-0.1, 0, 1e-3, 1e-3]"),
                      Key::integer_or("images", usual.images, 10, 1'000'000,
                                      "simulated at each of four attitudes"),
                      Key::integer_or("grid", usual.grid, 5, 1000, "bins of the maps along a side"),
@@ -73,6 +105,38 @@ Key camera_study_table() {
                          .of_size(2)
                          .usually_is("[0.5, 2]")},
                     "what `camera` looks at");
+}
+
+CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera,
+                              std::optional<double> tilt_limit_rad) {
+  CameraStudy study;
+  study.camera = camera;
+  study.max_tilt_rad = tilt_limit_rad.value_or(study.max_tilt_rad);
+  study.focal_length_m = {0.75 * camera.focal_length_m, 1.5 * camera.focal_length_m};
+  study.board_scale = {0.5, 2.0};
+  if (!root.has("camera_study")) return study;
+  const Settings own(std::make_shared<const SettingsNode>(root.raw("camera_study")),
+                     root.table("camera_study").name());
+  study.max_tilt_rad =
+      own.number_or("max_tilt_deg", study.max_tilt_rad, {0.0, 0.5 * pi, true, true});
+  study.rate_body_rad_s = own.vector3_or("rate_rad_s", Vec3::Zero());
+  study.calibration_px = own.number_or("calibration_px", study.calibration_px, Range::positive());
+  if (own.has("distortion_error")) {
+    const std::vector<double> numbers = own.numbers("distortion_error", {-10.0, 10.0});
+    if (numbers.size() != 4) {
+      throw own.error("distortion_error", std::to_string(numbers.size()) + " numbers",
+                      "[k1, k2, p1, p2]");
+    }
+    study.distortion_error = {numbers[0], numbers[1], numbers[2], numbers[3]};
+  }
+  study.images = static_cast<int>(own.integer_or("images", study.images, 10, 1'000'000));
+  study.grid = static_cast<int>(own.integer_or("grid", study.grid, 5, 1000));
+  study.focal_length_m =
+      read_study_span(own, "focal_length_mm", study.focal_length_m[0], study.focal_length_m[1]);
+  study.board_scale =
+      read_study_span(own, "board_scale", study.board_scale[0], study.board_scale[1]);
+  own.finish();
+  return study;
 }
 
 }  // namespace photorque

@@ -59,8 +59,13 @@ std::optional<FoundPose> least_chi2_pose(const TrackingCamera& camera,
                                          const std::vector<MarkerReading>& readings,
                                          const Pose& first) {
   PoseResiduals<unknowns> residuals{camera, readings, first, {}};
+  Mat2 mean_px2 = Mat2::Zero();
   for (const MarkerReading& reading : readings) {
-    const Eigen::LLT<Mat2> factor(reading.covariance_px2);
+    mean_px2 += 0.5 * reading.covariance_px2.trace() * Mat2::Identity() /
+                static_cast<double>(readings.size());
+  }
+  for (const MarkerReading& reading : readings) {
+    const Eigen::LLT<Mat2> factor(camera.weighs_alike ? mean_px2 : reading.covariance_px2);
     residuals.whitener.push_back(factor.matrixL().solve(Mat2::Identity()));
   }
   using Solver = ceres::TinySolver<PoseResiduals<unknowns>>;

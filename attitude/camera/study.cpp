@@ -91,7 +91,8 @@ std::vector<double> tilts_of(const CameraStudy& study) {
 }
 
 Table degradation_table(const CameraStudy& study) {
-  const char* cases[] = {"all", "one_dark", "calibration", "principal_point", "free"};
+  const char* cases[] = {"all",    "one_dark",   "calibration", "principal_point",
+                         "radial", "tangential", "free"};
   std::vector<std::string> names = {"tilt_deg"};
   for (const char* one : cases) {
     names.push_back(std::string(one) + "_in_plane_arcsec");
@@ -108,11 +109,25 @@ Table degradation_table(const CameraStudy& study) {
   const auto principal_point = [&](const TrackingCamera& camera, const Pose& pose) {
     return principal_point_error_lab_rad2(camera, pose, study.calibration_px);
   };
+  const Distortion& d = study.distortion_error;
+  TrackingCamera radial = study.camera, tangential = study.camera;
+  radial.marker_error_body_m = tangential.marker_error_body_m = {};
+  radial.distortion_error = {d.k1, d.k2, 0.0, 0.0};
+  tangential.distortion_error = {0.0, 0.0, d.p1, d.p2};
+  // Of one attitude it is one turn, not a spread.
+  const auto square_of_bias = [](const TrackingCamera& camera,
+                                 const Pose& pose) -> std::optional<Mat3> {
+    const auto turn_rad = marker_bias_lab_rad(camera, pose);
+    if (!turn_rad) return {};
+    return Mat3(*turn_rad * turn_rad->transpose());
+  };
   for (const double tilt : tilts_of(study)) {
     const Pair pairs[] = {worst_at(study, study.camera, tilt, attitude_covariance_lab_rad2),
                           worst_with_one_dark(study, tilt),
                           worst_at(study, study.camera, tilt, calibration),
                           worst_at(study, study.camera, tilt, principal_point),
+                          worst_at(study, radial, tilt, square_of_bias),
+                          worst_at(study, tangential, tilt, square_of_bias),
                           worst_at(study, free, tilt, attitude_covariance_lab_rad2)};
     Table::Row row = table.row();
     row.set("tilt_deg", tilt / degree_rad);
@@ -136,10 +151,13 @@ Plot tilt_plot(const CameraStudy& study, const Table& degradation) {
   below.y_log = true;
   char error[16];
   std::snprintf(error, sizeof error, "%.3g px", study.calibration_px);
+  char radial[16];
+  std::snprintf(radial, sizeof radial, "%.3g", study.distortion_error.k1);
   const std::pair<const char*, std::string> curves[] = {
       {"all", "all markers"},
       {"one_dark", "the worst one dark"},
       {"calibration", std::string("markers' images off by ") + error},
+      {"radial", std::string("k₁ off by ") + radial},
       {"free", "centre not known"}};
   const std::vector<double>& tilt = degradation.column("tilt_deg").values;
   for (const auto& [name, label] : curves) {
@@ -148,7 +166,7 @@ Plot tilt_plot(const CameraStudy& study, const Table& degradation) {
     curve.label = label;
     curve.x = tilt;
     curve.y = degradation.column(stem + "_in_plane_arcsec").values;
-    curve.dashed = stem == "calibration";
+    curve.dashed = stem == "calibration" || stem == "radial";
     plot.curves.push_back(curve);
     curve.y = degradation.column(stem + "_out_of_plane_arcsec").values;
     below.curves.push_back(curve);
@@ -330,39 +348,7 @@ Table image_table(const CameraStudy& study, const std::function<void(double)>& p
   return table;
 }
 
-std::vector<double> read_span(const Settings& s, const std::string& key, double low, double high) {
-  if (!s.has(key)) return {low, high};
-  const std::vector<double> span = s.numbers(key, Range::positive());
-  if (span.size() != 2 || !(span[0] < span[1])) {
-    throw s.error(key, std::to_string(span.size()) + " numbers", "[from, to]");
-  }
-  return span;
-}
-
 }  // namespace
-
-CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera,
-                              std::optional<double> tilt_limit_rad) {
-  CameraStudy study;
-  study.camera = camera;
-  study.max_tilt_rad = tilt_limit_rad.value_or(study.max_tilt_rad);
-  study.focal_length_m = {0.75 * camera.focal_length_m, 1.5 * camera.focal_length_m};
-  study.board_scale = {0.5, 2.0};
-  if (!root.has("camera_study")) return study;
-  const Settings own(std::make_shared<const SettingsNode>(root.raw("camera_study")),
-                     root.table("camera_study").name());
-  study.max_tilt_rad =
-      own.number_or("max_tilt_deg", study.max_tilt_rad, {0.0, 0.5 * pi, true, true});
-  study.rate_body_rad_s = own.vector3_or("rate_rad_s", Vec3::Zero());
-  study.calibration_px = own.number_or("calibration_px", study.calibration_px, Range::positive());
-  study.images = static_cast<int>(own.integer_or("images", study.images, 10, 1'000'000));
-  study.grid = static_cast<int>(own.integer_or("grid", study.grid, 5, 1000));
-  study.focal_length_m =
-      read_span(own, "focal_length_mm", study.focal_length_m[0], study.focal_length_m[1]);
-  study.board_scale = read_span(own, "board_scale", study.board_scale[0], study.board_scale[1]);
-  own.finish();
-  return study;
-}
 
 Product camera_product(const CameraStudy& study, const std::function<void(double)>& progress) {
   Product product;

@@ -16,6 +16,8 @@ struct CameraStudy {
   double max_tilt_rad = 0.5235987756;
   Vec3 rate_body_rad_s = Vec3::Zero();  // of the platform while images are taken
   double calibration_px = 0.1;
+  // Beyond that of the camera's own error: uncalibrated, radial alone and tangential alone.
+  Distortion distortion_error = {-0.1, 0.0, 1e-3, 1e-3};
   int images = 1000;  // simulated at each attitude of take_images()
   uint64_t seed = 1;
   int threads = 0;                     // of the maps; 0: all
@@ -25,14 +27,14 @@ struct CameraStudy {
 };
 
 // Reads [camera_study], which may be absent: max_tilt_deg (the platform's stop, else 30),
-// rate_rad_s[3], calibration_px (0.1), images (1000), grid (61), focal_length_mm = [from, to],
-// board_scale = [from, to].
+// rate_rad_s[3], calibration_px (0.1), distortion_error ([-0.1, 0, 1e-3, 1e-3]), images (1000),
+// grid (61), focal_length_mm = [from, to], board_scale = [from, to].
 CameraStudy read_camera_study(const Settings& root, const TrackingCamera& camera,
                               std::optional<double> tilt_limit_rad);
 
 // Tables "markers" and "degradation" (by tilt: all markers, the worst one dark, error of
-// calibration, both about the centre and free), "images" (predicted against simulated images);
-// maps "in_plane_error", "out_of_plane_error" over the lean, "design_in_plane",
+// calibration, of distortion, both about the centre and free), "images" (predicted against
+// simulated images); maps "in_plane_error", "out_of_plane_error" over the lean, "design_in_plane",
 // "design_out_of_plane" over focal length and board; plots "error_over_tilt" and "design" (which
 // board and lens give the paper's errors); headline figures.
 Product camera_product(const CameraStudy& study, const std::function<void(double)>& progress = {});

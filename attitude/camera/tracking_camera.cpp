@@ -58,6 +58,7 @@ void read_place(const Settings& s, TrackingCamera& camera) {
   if (!(direction.norm() > 0.0)) throw s.error("aim_m", "position_m", "another point");
   camera.lab_from_camera = frame_looking_along(direction, position_m);
   camera.knows_centre = s.choice_or("pose", {"about_centre", "free"}, 0) == 0;
+  camera.weighs_alike = s.choice_or("pose_weights", {"information", "equal"}, 0) == 1;
 }
 
 // What the signal and the number of markers must be for a pose at zero tilt.
@@ -83,7 +84,52 @@ void check_view(const Settings& s, const TrackingCamera& camera) {
   }
 }
 
+Distortion read_distortion(const Settings& s, const char* key) {
+  if (!s.has(key)) return {};
+  const std::vector<double> numbers = s.numbers(key, {-10.0, 10.0});
+  if (numbers.size() != 4) {
+    throw s.error(key, std::to_string(numbers.size()) + " numbers", "[k1, k2, p1, p2]");
+  }
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+// The image must grow with the angle as far as the sensor's corners: beyond, places would be seen
+// twice.
+void check_distortion(const Settings& s, const char* key, const TrackingCamera& camera,
+                      const Distortion& distortion) {
+  const Vec2 corner =
+      0.5 * Vec2(camera.width, camera.height) * camera.pixel_m / camera.focal_length_m;
+  for (const double part : {0.25, 0.5, 0.75, 1.0}) {
+    for (const Vec2& at : {Vec2(corner), Vec2(corner.x(), -corner.y()), Vec2(corner.x(), 0.0),
+                           Vec2(0.0, corner.y())}) {
+      for (const double side : {part, -part}) {
+        const Eigen::Matrix2d slope = distortion.slope(side * at);
+        if (slope.determinant() > 0.0 && slope.trace() > 0.0) continue;
+        throw s.error(key, "a distortion that folds the image within the sensor",
+                      "an image that grows with the angle");
+      }
+    }
+  }
+}
+
 }  // namespace
+
+Vec2 Distortion::distorted(const Vec2& u) const {
+  const double r2 = u.squaredNorm(), radial = 1.0 + r2 * (k1 + r2 * k2);
+  return {u.x() * radial + 2.0 * p1 * u.x() * u.y() + p2 * (r2 + 2.0 * u.x() * u.x()),
+          u.y() * radial + p1 * (r2 + 2.0 * u.y() * u.y()) + 2.0 * p2 * u.x() * u.y()};
+}
+
+Eigen::Matrix2d Distortion::slope(const Vec2& u) const {
+  const double r2 = u.squaredNorm(), radial = 1.0 + r2 * (k1 + r2 * k2);
+  Eigen::Matrix2d d =
+      radial * Eigen::Matrix2d::Identity() + 2.0 * (k1 + 2.0 * r2 * k2) * u * u.transpose();
+  d(0, 0) += 2.0 * p1 * u.y() + 6.0 * p2 * u.x();
+  d(1, 1) += 6.0 * p1 * u.y() + 2.0 * p2 * u.x();
+  d(0, 1) += 2.0 * (p1 * u.x() + p2 * u.y());
+  d(1, 0) += 2.0 * (p1 * u.x() + p2 * u.y());
+  return d;
+}
 
 std::optional<TrackingCamera> read_tracking_camera(const Settings& settings) {
   if (!settings.has("markers_m")) return {};
@@ -95,6 +141,11 @@ std::optional<TrackingCamera> read_tracking_camera(const Settings& settings) {
       settings.number_or("transmittance", camera.transmittance, {0.0, 1.0, true, false});
   camera.spot_px = settings.number_or("spot_px", camera.spot_px, {0.3, 50.0});
   read_sensor(settings, camera);
+  camera.distortion = read_distortion(settings, "distortion");
+  camera.distortion_error = read_distortion(settings, "distortion_error");
+  check_distortion(settings, "distortion", camera, camera.distortion);
+  check_distortion(settings, "distortion_error", camera,
+                   camera.distortion + camera.distortion_error);
   read_place(settings, camera);
   check_view(settings, camera);
   return camera;
@@ -111,6 +162,8 @@ std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t index, co
   const Quat camera_from_lab = camera.lab_from_camera.rotation.conjugate();
   const double scale = camera.focal_length_m / camera.pixel_m;
   const Vec3 arm_lab_m = pose.lab_from_body * place_body_m;
+  const Distortion lens =
+      in_truth ? camera.distortion + camera.distortion_error : camera.distortion;
   MarkerView view;
   view.marker = index;
   Vec3 arm_m = arm_lab_m, seen_m;
@@ -121,7 +174,7 @@ std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t index, co
     arm_m = turn_by(late_s * pose.rate_lab_rad_s) * arm_lab_m;
     seen_m = camera_from_lab * (arm_m + pose.centre_m - camera.lab_from_camera.translation_m);
     if (!(seen_m.z() > camera.focal_length_m)) return {};
-    view.pixel = scale * seen_m.head<2>() / seen_m.z();
+    view.pixel = scale * lens.distorted(seen_m.head<2>() / seen_m.z());
   }
   // The whole spot must fall onto the sensor.
   const double margin_px = 4.5 * spot_sigma_px(camera) + 1.0;
@@ -143,7 +196,7 @@ std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t index, co
                    camera.exposure_s * camera.quantum_efficiency / photon_J;
   Eigen::Matrix<double, 2, 3> by_place;
   by_place << 1.0, 0.0, -seen_m.x() / seen_m.z(), 0.0, 1.0, -seen_m.y() / seen_m.z();
-  by_place *= scale / seen_m.z();
+  by_place = scale / seen_m.z() * lens.slope(seen_m.head<2>() / seen_m.z()) * by_place;
   const Eigen::Matrix<double, 2, 3> by_shift = by_place * camera_from_lab.toRotationMatrix();
   view.derivative << -by_shift * skew(arm_m), by_shift;
   view.smear_px = by_shift * pose.rate_lab_rad_s.cross(arm_m) * camera.exposure_s;

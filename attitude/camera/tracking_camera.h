@@ -1,9 +1,9 @@
 // A camera that reads the platform's attitude from light-emitting diodes on it, from its geometry.
 //
-// Pinhole model (R. Hartley, A. Zisserman, Multiple View Geometry, 2nd ed., eq. 6.2) without
-// distortion, which is taken as calibrated; what calibration leaves is calibration_error() of
-// attitude/camera/accuracy.h. Camera axes: z along the optical axis, image x (columns) along camera
-// x, image y (rows) along camera y, the origin of the image in its middle.
+// Pinhole model (R. Hartley, A. Zisserman, Multiple View Geometry, 2nd ed., eq. 6.2) with the
+// lens's distortion. What calibration leaves of it is `distortion_error`, or calibration_error() of
+// attitude/camera/accuracy.h, other for every marker. Camera axes: z along the optical axis, image
+// x (columns) along camera x, image y (rows) along camera y, the origin of the image in its middle.
 #pragma once
 
 #include <functional>
@@ -22,6 +22,22 @@ struct Marker {
   bool is_lit = true;
 };
 
+// A lens's distortion by Brown and Conrady (D. Brown, Photogrammetric Engineering 32 (1966) 444),
+// in OpenCV's convention: of x, y, the image over the focal length, r² = x² + y²,
+//   x (1 + k₁r² + k₂r⁴) + 2 p₁xy + p₂(r² + 2x²),  y (1 + k₁r² + k₂r⁴) + p₁(r² + 2y²) + 2 p₂xy.
+struct Distortion {
+  double k1 = 0.0, k2 = 0.0;  // radial
+  double p1 = 0.0, p2 = 0.0;  // tangential
+
+  bool is_none() const { return k1 == 0.0 && k2 == 0.0 && p1 == 0.0 && p2 == 0.0; }
+  Distortion operator+(const Distortion& other) const {
+    return {k1 + other.k1, k2 + other.k2, p1 + other.p1, p2 + other.p2};
+  }
+  Vec2 distorted(const Vec2& undistorted) const;
+  // Its derivative by the undistorted place.
+  Eigen::Matrix2d slope(const Vec2& undistorted) const;
+};
+
 struct TrackingCamera {
   std::vector<Marker> markers;
   // Where the markers are in truth, beside where the pose takes them to be; one each, or empty.
@@ -34,6 +50,8 @@ struct TrackingCamera {
   double f_number = 4.0;        // focal length over the diameter of the opening
   double transmittance = 0.85;  // of lens and filter
   double spot_px = 0.6;         // standard deviation of the spot besides diffraction and motion
+  Distortion distortion;        // as it was calibrated: the pose knows it
+  Distortion distortion_error;  // that of the lens, less that
 
   double pixel_m = 4.8e-6;
   int width = 1280, height = 1024;
@@ -48,16 +66,23 @@ struct TrackingCamera {
   // The pose turns about the centre of the bearing, whose place is known; else position and
   // attitude are both found.
   bool knows_centre = true;
+  // The pose weighs all markers alike, as solvers do that know no errors; else by the information
+  // of their spots.
+  bool weighs_alike = false;
   // Whether the platform stands between a marker and the camera; empty: it never does.
   std::function<bool(size_t marker, const Quat& lab_from_body)> is_hidden;
+
+  // Whether the pose is wrong beyond noise.
+  bool is_biased() const { return !marker_error_body_m.empty() || !distortion_error.is_none(); }
 };
 
 // Reads the geometry of [sensors.camera]; nothing where there are no `markers_m`. Keys: markers_m
 // (body axes), marker_normal ([0, 0, 1]), marker_error_m, intensity_W_sr, half_angle_deg (60),
 // wavelength_nm (630), focal_length_mm, f_number (4), transmittance (0.85), spot_px (0.6),
+// distortion ([k1, k2, p1, p2], none), distortion_error (likewise),
 // pixel_um, resolution, exposure_s, line_time_s (0), quantum_efficiency (0.5),
 // read_noise_electrons (10), background_electrons (0), full_well_electrons (10000), position_m
-// (lab), aim_m ([0, 0, 0]), pose ("about_centre", "free").
+// (lab), aim_m ([0, 0, 0]), pose ("about_centre", "free"), pose_weights ("information", "equal").
 // InputError for what cannot be: fewer markers than the pose needs, a spot that fills its pixels.
 std::optional<TrackingCamera> read_tracking_camera(const Settings& settings);
 
@@ -79,8 +104,8 @@ struct Pose {
   Vec3 centre_m = Vec3::Zero();  // of rotation, in the lab
 };
 
-// Of a marker, where the pose takes it to be or, `in_truth`, where it is; nothing where it is dark,
-// hidden, turned away or outside the image.
+// Of a marker, where the pose takes it to be or, `in_truth`, where it is and as the lens shows it;
+// nothing where it is dark, hidden, turned away or outside the image.
 std::optional<MarkerView> view_of(const TrackingCamera& camera, size_t marker, const Pose& pose,
                                   bool in_truth = false);
 

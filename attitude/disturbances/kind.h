@@ -12,10 +12,13 @@
 
 namespace photorque {
 
+struct TrackingCamera;  // attitude/camera/tracking_camera.h
+
 // What a reader may look at besides its own settings.
 struct DisturbanceContext {
   const Platform& platform;
   const Environment& environment;
+  const TrackingCamera* camera = nullptr;  // that sees markers; null: there is none
 };
 
 // What `budget` says about a kind.

@@ -22,6 +22,7 @@ struct EffectKey {
   bool searched = false;  // enters nonlinearly: several starts are tried
   // Start and scale are multiples of the platform's mean moment of inertia.
   bool times_inertia = false;
+  bool is_fixed = false;  // says which law it is; not fitted
 
   // A strength of either sign, one that cannot be negative, and one for each body axis.
   static EffectKey number(const std::string& key, double scale) { return {key, {0.0}, scale}; }
@@ -30,6 +31,11 @@ struct EffectKey {
   }
   static EffectKey vector(const std::string& key, double scale) {
     return {key, {0.0, 0.0, 0.0}, scale};
+  }
+  static EffectKey fixed_at(const std::string& key, double value) {
+    EffectKey fixed{key, {value}, 0.0};
+    fixed.is_fixed = true;
+    return fixed;
   }
   static EffectKey vector_not_negative(const std::string& key, double scale) {
     return {key, {0.0, 0.0, 0.0}, scale, 0.0};
@@ -86,10 +92,16 @@ struct LeastSum {
   std::string objection;  // what the report says of a model that does
 };
 
+struct DisturbanceContext;  // attitude/disturbances/kind.h
+
 struct Screening {
   // How `diagnose` fits the effect; none: it does not, for the reason that follows.
   std::vector<Parametrisation> parametrisations = {};
   std::string reason_against = {};
+  // In place of these, where they follow from the experiment: none if it has nothing of the kind;
+  // and what documents say of them.
+  std::vector<Parametrisation> (*of_experiment)(const DisturbanceContext&) = nullptr;
+  std::string widths = {};
   Requirement needs = Requirement::none;
   Scan scan = Scan::nothing;
   bool fast = false;           // acts within averages of the readings: fitted to all of them

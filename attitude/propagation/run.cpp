@@ -208,6 +208,11 @@ Disturbance uncertain_inertia(const Mat3& sigma_kg_m2, const DisturbanceContext&
 
 }  // namespace
 
+DisturbanceContext NominalModel::context() const {
+  const bool sees_markers = sensors.camera && sensors.camera->geometry;
+  return {model.platform, model.environment, sees_markers ? &*sensors.camera->geometry : nullptr};
+}
+
 NominalModel read_attitude_model(const Settings& root) {
   const Settings platform = own_table(root, "platform", true);
   const Settings environment = own_table(root, "environment", false);
@@ -220,7 +225,10 @@ NominalModel read_attitude_model(const Settings& root) {
   if (!model.platform.has_bearing() && !environment.has("gravity_m_s2")) {
     model.environment.gravity_lab_m_s2 = Vec3::Zero();
   }
-  const DisturbanceContext context{model.platform, model.environment};
+  // Who reads the camera later complains about its keys.
+  std::optional<TrackingCamera> camera;
+  if (sensors.has("camera")) camera = read_tracking_camera(sensors.table("camera"));
+  const DisturbanceContext context{model.platform, model.environment, camera ? &*camera : nullptr};
   model.disturbances = read_own_disturbances(root, context);
   if (const Mat3 sigma = inertia_sigma_kg_m2(platform); sigma.maxCoeff() > 0.0) {
     nominal.uncertain_inertia = model.disturbances.size();

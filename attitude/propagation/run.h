@@ -45,6 +45,9 @@ struct NominalModel {
   Sensors sensors;
   // The disturbance by which the sigmas of [platform] inertia_kg_m2 stand in the model.
   std::optional<size_t> uncertain_inertia = {};
+
+  // What readers of more disturbances may look at; for as long as this lives.
+  DisturbanceContext context() const;
 };
 NominalModel read_attitude_model(const Settings& root);
 

@@ -54,9 +54,9 @@ void read_camera_noise(const Settings& s, Sensors::Camera& camera) {
   camera.noise_rad = covariance->diagonal().cwiseSqrt();
 }
 
-// What wrong marker positions turn the reading by.
+// What wrong marker positions and distortion turn the reading by.
 Quat marker_bias(const TrackingCamera& geometry, const Pose& pose) {
-  if (geometry.marker_error_body_m.empty()) return Quat::Identity();
+  if (!geometry.is_biased()) return Quat::Identity();
   return turn(marker_bias_lab_rad(geometry, pose).value_or(Vec3::Zero()));
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "attitude/camera/tracking_camera.h"
 #include "attitude/disturbances/kind.h"
 #include "attitude/model/dynamics.h"
 #include "attitude/propagation/propagator.h"
@@ -29,12 +30,32 @@ inline AttitudeModel bench_model() {
   return model;
 }
 
+// A camera a metre above five markers.
+inline const TrackingCamera& bench_camera() {
+  static const TrackingCamera camera = [] {
+    TrackingCamera c;
+    for (const Vec3& at_m : {Vec3(0, 0, 0.0255), Vec3(0.08, 0, 0.0255), Vec3(-0.08, 0, 0.0255),
+                             Vec3(0, 0.08, 0.0255), Vec3(0, -0.08, 0.0255)}) {
+      c.markers.push_back({at_m});
+    }
+    c.radiant_intensity_W_sr = 17e-6;
+    c.exposure_s = 45e-6;
+    c.lab_from_camera = frame_looking_along(-Vec3::UnitZ(), Vec3::UnitZ());
+    return c;
+  }();
+  return camera;
+}
+
+inline DisturbanceContext context_of(const AttitudeModel& model) {
+  return {model.platform, model.environment, &bench_camera()};
+}
+
 inline Disturbance make(const AttitudeModel& model, const std::string& kind,
                         const std::vector<std::pair<std::string, SettingsNode>>& entries) {
   std::vector<std::pair<std::string, SettingsNode>> all = entries;
   all.emplace_back("kind", node(kind.c_str()));
   const Settings settings = settings_of(table(all));
-  Disturbance disturbance = read_disturbance(settings, {model.platform, model.environment});
+  Disturbance disturbance = read_disturbance(settings, context_of(model));
   settings.finish();
   return disturbance;
 }

@@ -99,6 +99,7 @@ std::map<std::string, Entries> examples() {
         {"largest_rate_rad_s", node(500)},
         {"viscous_N_m_s", node(1e-6)}}},
       {"camera_misalignment", {{"misalignment_rad", numbers({1e-3, 2e-3, -1e-3})}}},
+      {"marker_positions", {{"marker", node(2)}, {"error_m", numbers({2e-4, -1e-4, 3e-4})}}},
       {"empirical_torque",
        {{"axes", list({node("lean"), node("rate")})},
         {"tilt_exponent", node(1.7)},

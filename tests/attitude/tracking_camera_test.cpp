@@ -66,6 +66,106 @@ TEST(SpotCentre, SuffersFromMotionAlongItAlone) {
   EXPECT_NEAR(after(1, 1) / before(1, 1), 1.0, 0.1);
 }
 
+// Numbers of OpenCV 4.6.0: cv2.projectPoints of points in the camera's frame, with its camera
+// matrix of a focal length of 8 mm over 4.8 µm and the distortion k1, k2, p1, p2.
+TEST(Distortion, IsThatOfOpenCv) {
+  struct Case {
+    Distortion lens;
+    Vec2 first_px, second_px;
+  };
+  const Case cases[] = {
+      {{-0.21, 0.08, 1.3e-3, -7e-4},
+       {215.78716752188862, -557.5657606112438},
+       {-75.28787387225167, 301.06368557165126}},
+      {{0.0, 0.0, 2e-3, 0.0},
+       {221.91604938271604, -572.8283950617284},
+       {-75.81267217630855, 303.36776859504135}},
+      {{0.3, -0.1, 0.0, 1e-3},
+       {231.18993463056103, -596.6533016364939},
+       {-76.48107457679039, 306.15845808677585}},
+  };
+  const double focal_px = 8e-3 / 4.8e-6;
+  for (const Case& c : cases) {
+    const Vec2 first = focal_px * c.lens.distorted(Vec2(0.12, -0.31) / 0.9),
+               second = focal_px * c.lens.distorted(Vec2(-0.05, 0.2) / 1.1);
+    EXPECT_LT((first - c.first_px).norm(), 1e-9);
+    EXPECT_LT((second - c.second_px).norm(), 1e-9);
+  }
+}
+
+// The image's derivatives by the pose against differences, of a lens that distorts.
+TEST(Distortion, IsInTheDerivativesOfTheImage) {
+  TrackingCamera camera = cross_camera();
+  camera.distortion = {-0.3, 0.1, 2e-3, -1e-3};
+  const Pose pose = leaning_by(20.0, 30.0);
+  constexpr double step = 1e-5;
+  for (size_t marker = 0; marker < camera.markers.size(); ++marker) {
+    const auto view = view_of(camera, marker, pose);
+    ASSERT_TRUE(view);
+    for (int k = 0; k < 6; ++k) {
+      const auto moved = [&](double by) {
+        Pose other = pose;
+        if (k < 3) {
+          other.lab_from_body = turn_by(by * Vec3::Unit(k)) * pose.lab_from_body;
+        } else {
+          other.centre_m[k - 3] += by;
+        }
+        return view_of(camera, marker, other)->pixel;
+      };
+      const Vec2 expected = (moved(step) - moved(-step)) / (2.0 * step);
+      EXPECT_LT((view->derivative.col(k) - expected).norm(), 1e-6 * (1.0 + expected.norm()));
+    }
+  }
+}
+
+// A lens that is calibrated turns nothing, however much it distorts; uncalibrated, images of a
+// cross seen along its axis grow or shrink and turn nothing either, by their symmetry. What is off
+// the axis is drawn aside: by k₁ r³ f, here along the direction of the lean, so that the board
+// seems to lean by the mean of that, weighed by height, over the mean height.
+TEST(Distortion, TurnsThePoseWhereItIsNotCalibrated) {
+  TrackingCamera camera = cross_camera();
+  camera.distortion = {-0.3, 0.1, 2e-3, -1e-3};
+  const Pose lean = leaning_by(15.0, 0.0);
+  EXPECT_LT(marker_bias_lab_rad(camera, lean)->norm(), 1e-9);
+  camera.distortion_error = {-0.1, 0.0, 0.0, 0.0};
+  camera.distortion = {};
+  EXPECT_LT(marker_bias_lab_rad(camera, leaning_by(0.0, 0.0))->norm(), 1e-7);
+  camera.weighs_alike = true;
+  const Vec3 found = *marker_bias_lab_rad(camera, lean);
+  // Least squares about lab y alone, by symmetry: a turn δ moves the image of (x, y, z) by
+  // f ∂u/∂δ, u = (x, y)/(1 − z).
+  double normal = 0.0, right = 0.0;
+  for (const Marker& m : camera.markers) {
+    const Vec3 p = lean.lab_from_body * m.position_body_m;
+    const double depth = 1.0 - p.z();
+    const Vec2 u = p.head<2>() / depth;
+    // dp = δ (z, 0, −x)
+    const Vec2 by_turn(p.z() / depth - u.x() * p.x() / depth, -u.y() * p.x() / depth);
+    normal += by_turn.squaredNorm();
+    right += by_turn.dot(-0.1 * u.squaredNorm() * u);
+  }
+  EXPECT_NEAR(found.y(), right / normal, 0.02 * std::abs(found.y()));
+  EXPECT_LT(Vec2(found.x(), found.z()).norm(), 0.02 * std::abs(found.y()));
+  EXPECT_GT(std::abs(found.y()), 10.0 * arcsecond_rad);
+}
+
+// Solvers that know no errors lose little where all spots are about as bright, and their images
+// agree with the covariance that is predicted of them.
+TEST(Distortion, AndEqualWeightsAgreeWithTheirImages) {
+  TrackingCamera camera = cross_camera();
+  camera.distortion = {-0.3, 0.1, 2e-3, -1e-3};
+  camera.markers[2].normal_body = Vec3(0.0, 0.9, 0.45).normalized();  // dimmer
+  const Pose pose = leaning_by(10.0, 40.0);
+  const Mat3 best = *attitude_covariance_lab_rad2(camera, pose);
+  camera.weighs_alike = true;
+  const Mat3 alike = *attitude_covariance_lab_rad2(camera, pose);
+  EXPECT_GT(alike.trace(), 1.01 * best.trace());
+  constexpr int images = 4000;
+  const ImageStatistics seen = take_images(camera, pose, images, 3, alike);
+  EXPECT_EQ(seen.failed, 0);
+  EXPECT_NEAR(seen.chi2, 1.0, 4.0 * std::sqrt(2.0 / (3.0 * images)));
+}
+
 // Far away the image is a parallel projection: a turn about the optical axis moves a marker at a
 // distance r from it by r, one across it moves a marker at a height z by z, so that with equal
 // errors s of all images the attitude's are s/√Σr² and s/√Σz².

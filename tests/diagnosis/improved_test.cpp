@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "attitude/propagation/run.h"
 #include "scenes/experiment/toml_reader.h"
 #include "tests/diagnosis/sample_diagnosis.h"
@@ -125,6 +127,11 @@ TEST(Improved, LeavesAFlightOfTheUsersAlone) {
 
 // Every effect that a diagnosis may name, as it would be written.
 TEST(Improved, HoldsEveryKindWithNumbers) {
+  const std::string seen_by_markers = std::regex_replace(
+      written, std::regex("noise_arcsec = .*"),
+      "markers_m = [[0, 0, 0.03], [0.08, 0, 0.03], [0, 0.08, 0.03]]\nintensity_W_sr = 17e-6\n"
+      "focal_length_mm = 8\npixel_um = 4.8\nresolution = [1280, 1024]\nexposure_s = 45e-6\n"
+      "position_m = [0, 0, 1]");
   const std::vector<std::pair<std::string, std::vector<FittedParameter>>> found = {
       {"static_unbalance", {{"offset_m", {1e-6, 2e-6, 3e-6}, {1e-8, 1e-8, 1e-8}}}},
       {"mass_shift", {{"time_s", {31.0}, {0.1}}, {"offset_m", {1e-6, 0, 0}, {1e-8, 1e-8, 1e-8}}}},
@@ -162,11 +169,12 @@ TEST(Improved, HoldsEveryKindWithNumbers) {
       {"gyro_scale", {{"scale", {1e-3, 0, 0}, {1e-5, 1e-5, 1e-5}}}},
       {"gyro_misalignment", {{"misalignment_rad", {1e-3, 0, 0}, {1e-5, 1e-5, 1e-5}}}},
       {"camera_misalignment", {{"misalignment_rad", {1e-3, 0, 0}, {1e-5, 1e-5, 1e-5}}}},
+      {"marker_positions", {{"marker", {2}, {}}, {"error_m", {1e-4, 0, 0}, {1e-5, 1e-5, 1e-5}}}},
   };
   for (const auto& [kind, parameters] : found) {
     Diagnosis d = sample_diagnosis();
     d.effects = {{kind, 0.9, parameters, {}, ""}};
-    const std::string text = improved_experiment(written, d, ".");
+    const std::string text = improved_experiment(seen_by_markers, d, ".");
     EXPECT_NO_THROW({
       const AttitudeModel model = read_attitude_model(read(text)).model;
       EXPECT_EQ(model.disturbances.at(1).kind, kind);

@@ -24,9 +24,9 @@ const Names not_screened = {"empirical_torque",     "helmholtz_cage", "orbit",
                             "planet_light",         "power_balance",  "radiation_pressure",
                             "stepper_quantization", "wheel_control"};
 // Instruments exert no torque; an orbit is where others do, in which alone a planet shines.
-const Names not_ranked = {"attitude_latency",  "camera_misalignment", "gyro_bias",
-                          "gyro_misalignment", "gyro_scale",          "orbit",
-                          "planet_light"};
+const Names not_ranked = {
+    "attitude_latency", "camera_misalignment", "gyro_bias", "gyro_misalignment",
+    "gyro_scale",       "marker_positions",    "orbit",     "planet_light"};
 
 Names all_names() {
   Names names;
@@ -41,7 +41,8 @@ Names without(Names names, const Names& some) {
 
 TEST(KindRegistry, DiagnoseScreensAllButTheExceptions) {
   Names screened;
-  for (const Effect& effect : catalogue(bench_model().platform)) screened.insert(effect.kind);
+  const AttitudeModel model = bench_model();
+  for (const Effect& effect : catalogue(context_of(model))) screened.insert(effect.kind);
   EXPECT_EQ(screened, without(all_names(), not_screened));
 }
 
@@ -50,14 +51,16 @@ TEST(KindRegistry, ProveInjectsWhatDiagnoseScreens) {
   for (const injected::Recipe& recipe : injected::recipes()) {
     if (!recipe.outside) drawn.insert(recipe.kind);
   }
-  // No maker records the speed of a wheel.
-  EXPECT_EQ(drawn, without(without(all_names(), not_screened), {"wheel_momentum"}));
+  // No maker records the speed of a wheel, or has a camera that sees markers.
+  EXPECT_EQ(drawn,
+            without(without(all_names(), not_screened), {"marker_positions", "wheel_momentum"}));
 }
 
 TEST(KindRegistry, EveryExceptionHasAReasonAndNothingElse) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
     const Screening& s = kind.screening;
-    EXPECT_NE(s.parametrisations.empty(), s.reason_against.empty()) << kind.name;
+    const bool is_screened = !s.parametrisations.empty() || s.of_experiment != nullptr;
+    EXPECT_NE(is_screened, !s.reason_against.empty()) << kind.name;
     EXPECT_NE(kind.injection.draw == nullptr, kind.injection.reason_against.empty()) << kind.name;
     EXPECT_EQ(!kind.budget.reason_against.empty(), not_ranked.contains(kind.name)) << kind.name;
   }
@@ -74,13 +77,13 @@ TEST(KindRegistry, LikenessesNameKinds) {
 // What a fit assumes fits the law: its keys make the disturbance, and each starts within bounds.
 TEST(KindRegistry, TheKeysOfAFitAreThoseOfTheLaw) {
   const AttitudeModel model = bench_model();
-  for (const Effect& effect : catalogue(model.platform)) {
-    const Disturbance d = disturbance_of(effect, {model.platform, model.environment});
+  for (const Effect& effect : catalogue(context_of(model))) {
+    const Disturbance d = disturbance_of(effect, context_of(model));
     size_t numbers = 0;
     for (const EffectKey& key : effect.keys) {
       numbers += key.start.size();
       EXPECT_NO_THROW(index_of(d, key.key)) << effect.kind << "." << key.key;
-      EXPECT_GT(key.scale, 0.0) << effect.kind << "." << key.key;
+      EXPECT_EQ(key.scale > 0.0, !key.is_fixed) << effect.kind << "." << key.key;
       for (const double start : key.start) {
         EXPECT_GE(start, key.lowest) << effect.kind << "." << key.key;
         EXPECT_LE(start, key.highest) << effect.kind << "." << key.key;
@@ -96,7 +99,8 @@ TEST(KindRegistry, ExamplesHaveTheKeysOfAFit) {
   injected::RandomDraw draw(1, 1);
   const injected::ExampleConditions conditions{
       400.0, {{{0.11, 0, 0}, {0, 0.12, 0}, {0, 0, 0.19}}}, 2.5};
-  const std::vector<Effect> effects = catalogue(bench_model().platform);
+  const AttitudeModel model = bench_model();
+  const std::vector<Effect> effects = catalogue(context_of(model));
   for (const injected::Recipe& recipe : injected::recipes()) {
     if (recipe.outside) continue;
     const auto effect = std::ranges::find(effects, recipe.kind, &Effect::kind);
@@ -122,9 +126,9 @@ TEST(KindRegistry, ExamplesHaveTheKeysOfAFit) {
 TEST(KindRegistry, BudgetRanksAllButTheExceptions) {
   AttitudeModel model = bench_model();
   Names made;
-  for (const Effect& effect : catalogue(model.platform)) {
+  for (const Effect& effect : catalogue(context_of(model))) {
     if (!made.insert(effect.kind).second) continue;
-    model.disturbances.push_back(disturbance_of(effect, {model.platform, model.environment}));
+    model.disturbances.push_back(disturbance_of(effect, context_of(model)));
   }
   Names ranked;
   const PlatformState state = Dynamics(model).initial_state();

@@ -268,6 +268,13 @@ def check_states(folder):
     other = Unit(folder)
     again = ctypes.c_void_p()
     expect(other.call("fmi3DeserializeFMUState", stored, size, ctypes.byref(again)) == OK, "fmi3DeserializeFMUState")
+    ended = ctypes.create_string_buffer(bytes(stored))  # as a text: one byte more, which is zero
+    as_text = ctypes.c_void_p()
+    expect(
+        other.call("fmi3DeserializeFMUState", ended, ctypes.c_size_t(size.value + 1), ctypes.byref(as_text)) == OK,
+        "a state as a text",
+    )
+    other.call("fmi3FreeFMUState", ctypes.byref(as_text))
     expect(other.call("fmi3SetFMUState", again) == OK, "a state of another instance")
     expect(drive(other, 15, first=20) == on, "the run of another instance from a state")
     stored[7] = 0x7f  # a mode of 1e300

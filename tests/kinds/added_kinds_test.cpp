@@ -29,7 +29,8 @@ TEST(AddedDisturbance, IsReadFromAnExperiment) {
 }
 
 TEST(AddedDisturbance, IsScreened) {
-  const std::vector<Effect> all = catalogue(bench_model().platform);
+  const AttitudeModel bench = bench_model();
+  const std::vector<Effect> all = catalogue(context_of(bench));
   const auto effect = std::ranges::find(all, added, &Effect::kind);
   ASSERT_NE(effect, all.end());
   EXPECT_EQ(effect->explanation, "something grows with the charge drawn");

@@ -28,6 +28,7 @@ inline std::string widths_text(const Parametrisation& p) {
 }
 
 inline std::string screening_text(const Screening& screening) {
+  if (screening.of_experiment != nullptr) return screening.widths;
   if (screening.parametrisations.empty()) return "no: " + screening.reason_against;
   std::string text;
   for (const Parametrisation& p : screening.parametrisations) {

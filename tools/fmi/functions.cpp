@@ -335,7 +335,8 @@ PHOTORQUE_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance handle, const f
   return guarded(handle, "fmi3DeserializeFMUState", [&](Instance& instance) {
     std::vector<double> all(size / sizeof(double));
     std::memcpy(all.data(), bytes, all.size() * sizeof(double));
-    bool is_right = all.size() >= 7 && all.size() % 3 == 1 && size % sizeof(double) == 0;
+    // Some importers hand the bytes on as a text, with one that ends it.
+    bool is_right = all.size() >= 7 && all.size() % 3 == 1 && size % sizeof(double) <= 1;
     for (const double value : all) is_right = is_right && std::isfinite(value);
     if (!is_right || !(all[0] >= 0.0 && all[0] <= 3.0)) {
       return instance.refuse("these bytes are no state of this unit");

@@ -115,7 +115,7 @@ bool needs_attitude(const Candidate& c, AttitudeModel model) {
 
 Candidates all_candidates(const NominalModel& nominal, const std::vector<Observation>& runs,
                           const Thresholds& limits) {
-  const DisturbanceContext context{nominal.model.platform, nominal.model.environment};
+  const DisturbanceContext context = nominal.context();
   const CoveredMotion covered = covered_by(runs);
   // A spacecraft's experiment says no latitude.
   const bool floats_in_laboratory =
@@ -151,7 +151,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   for (const Observation& seen : runs) {
     all.longest_run_s = std::max(all.longest_run_s, seen.duration_s());
   }
-  for (const Effect& effect : catalogue(nominal.model.platform)) {
+  for (const Effect& effect : catalogue(context)) {
     if (!has_channel(effect.how.needs)) continue;
     // A law without parameters acts already or not.
     const auto& acting = nominal.model.disturbances;

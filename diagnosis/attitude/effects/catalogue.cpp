@@ -12,11 +12,15 @@ EffectKey scaled(EffectKey key, double inertia_kg_m2) {
 
 }  // namespace
 
-std::vector<Effect> catalogue(const Platform& platform) {
+std::vector<Effect> catalogue(const DisturbanceContext& context) {
+  const Platform& platform = context.platform;
   const double inertia_kg_m2 = platform.inertia_kg_m2.trace() / 3.0;
   std::vector<Effect> all;
   for (const DisturbanceKind& kind : disturbance_kinds()) {
-    for (const Parametrisation& p : kind.screening.parametrisations) {
+    const auto own = kind.screening.of_experiment;
+    const std::vector<Parametrisation> ways =
+        own != nullptr ? own(context) : kind.screening.parametrisations;
+    for (const Parametrisation& p : ways) {
       if (p.of_free_bodies && platform.has_bearing()) continue;
       Effect effect{kind.name, {}, p.explanation, kind.screening, p.of_free_bodies};
       for (const EffectKey& key : p.keys) effect.keys.push_back(scaled(key, inertia_kg_m2));

@@ -18,8 +18,8 @@ struct Effect {
   bool of_free_bodies = false;  // as in its parametrisation
 };
 
-// All effects that can be missing from this platform's model, scaled to its mass and inertia.
-std::vector<Effect> catalogue(const Platform& platform);
+// All effects that can be missing from the model of this platform, scaled to its mass and inertia.
+std::vector<Effect> catalogue(const DisturbanceContext& context);
 
 // The disturbance with every parameter at its start.
 Disturbance disturbance_of(const Effect& effect, const DisturbanceContext& context);

@@ -126,6 +126,9 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     effect.explanation = c.effect.explanation;
     effect.parameters = fitted_parameters(chosen, chosen.disturbances[i]);
     keep_within_bounds(c, effect.parameters);
+    for (const EffectKey& key : c.effect.keys) {
+      if (key.is_fixed) effect.parameters.insert(effect.parameters.begin(), {key.key, key.start});
+    }
     for (size_t t = 0; t < trials.size(); ++t) {
       const std::vector<std::string> kinds = kinds_of(trials[t], all);
       if (std::find(kinds.begin(), kinds.end(), effect.kind) != kinds.end()) {

@@ -56,10 +56,18 @@ void print_camera(const Console& console, const CameraRun& run) {
                {"out", "calibration_out_of_plane_arcsec"},
                {"middle in", "principal_point_in_plane_arcsec"},
                {"out", "principal_point_out_of_plane_arcsec"},
+               {"radial in", "radial_in_plane_arcsec"},
+               {"out", "radial_out_of_plane_arcsec"},
+               {"tangential in", "tangential_in_plane_arcsec"},
+               {"out", "tangential_out_of_plane_arcsec"},
                {"free in", "free_in_plane_arcsec"},
                {"out", "free_out_of_plane_arcsec"}});
   console.line("  calibration: each marker's image off by " + show(run.study.calibration_px) +
                " px, independently; middle: all alike (principal point); free: centre not known");
+  const Distortion& lens = run.study.distortion_error;
+  console.line("  radial, tangential: the turn by a distortion that is not calibrated, k1, k2 " +
+               show(lens.k1) + ", " + show(lens.k2) + "; p1, p2 " + show(lens.p1) + ", " +
+               show(lens.p2));
   console.heading("Simulated images against the prediction [arcsec]");
   print_table(console, camera_table(product, "images"),
               {{"tilt [deg]", "tilt_deg"},
