@@ -223,19 +223,30 @@ const TrackingCamera& camera_of(const Settings& settings, const DisturbanceConte
   return *context.camera;
 }
 
+// Of markers that are elsewhere altogether the law is not the pose's.
+PlacedParameters read_error_m(const Settings& settings, size_t size, int first) {
+  constexpr double most_m = 0.1;
+  PlacedParameters group = array_parameter(settings, error_key, size, first);
+  for (const Parameter& p : group.parameters) {
+    if (std::abs(p.value) <= most_m) continue;
+    throw settings.error(error_key, std::to_string(p.value) + " m", "at most 0.1 m either way");
+  }
+  return group;
+}
+
 Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   const TrackingCamera& camera = camera_of(settings, context);
   const auto count = static_cast<int64_t>(camera.markers.size());
   if (!settings.has(marker_key)) {
     return make_disturbance<MarkerPositions>(
-        {array_parameter(settings, error_key, static_cast<size_t>(3 * count))}, Stage::measurement,
-        {}, camera, std::optional<size_t>{});
+        {read_error_m(settings, static_cast<size_t>(3 * count), 0)}, Stage::measurement, {}, camera,
+        std::optional<size_t>{});
   }
   const int64_t which = settings.integer(marker_key, 1, count);
   const double value[] = {static_cast<double>(which)};
   return make_disturbance<MarkerPositions>(
-      {fixed_parameter(marker_key, value), array_parameter(settings, error_key, 3, 1)},
-      Stage::measurement, {}, camera, std::optional<size_t>(static_cast<size_t>(which - 1)));
+      {fixed_parameter(marker_key, value), read_error_m(settings, 3, 1)}, Stage::measurement, {},
+      camera, std::optional<size_t>(static_cast<size_t>(which - 1)));
 }
 
 // One of them alone, and all together where none alone does it.
@@ -276,7 +287,7 @@ DisturbanceKind marker_positions_kind() {
                                 "which of `markers_m`, the first is 1; without it all, with three "
                                 "numbers of `error_m` for each")
                        .optional(),
-                   Key::numbers(error_key, {},
+                   Key::numbers(error_key, {-0.1, 0.1},
                                 "where it is in truth, less where `markers_m` says, body axes; "
                                 "[sensors.camera] `marker_error_m` says the same of a recording "
                                 "that is made")
