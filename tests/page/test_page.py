@@ -101,6 +101,16 @@ def number(text):
     return float(plain) * 10.0 ** exponent, 0.5001 * 10.0 ** (exponent - decimals)
 
 
+def linear(encoded):
+    """Of sRGB, IEC 61966-2-1."""
+    return encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
+
+
+def cube_root(luminance):
+    """Of CIE 1976 lightness."""
+    return luminance ** (1 / 3) if luminance > 216 / 24389 else (24389 / 27 * luminance + 16) / 116
+
+
 class PageTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -139,6 +149,27 @@ class PageTest(unittest.TestCase):
         shown, half = number(text)
         self.assertLessEqual(abs(shown - value), half + 1e-12 * abs(value), f"{text} for {value}")
 
+    def every_control_is_reached(self):
+        """By the tab key, and what has the focus is outlined."""
+        asked = "a[href], button, select, input, summary, [tabindex='0']"
+        wanted = self.browser.value(f"""(() => {{
+          window.wanted = [...document.querySelectorAll("{asked}")].filter((e) => e.checkVisibility() && !e.disabled);
+          return window.wanted.length;
+        }})()""")
+        self.assertGreater(wanted, 10)
+        reached = set()
+        for _ in range(wanted + 2):
+            self.browser.key("Tab")
+            at, style, width = self.browser.value("""(() => {
+              const e = document.activeElement, style = getComputedStyle(e);
+              return [window.wanted.indexOf(e), style.outlineStyle, parseFloat(style.outlineWidth)];
+            })()""")
+            if at < 0:
+                continue
+            reached.add(at)
+            self.assertTrue(style != "none" and width >= 2, f"control {at} does not show its focus")
+        self.assertEqual(len(reached), wanted)
+
     def readings(self):
         """The readings beside the stage, in order: [label, value]."""
         return self.browser.value("""[...document.querySelectorAll('.readings dt')].map(
@@ -171,12 +202,38 @@ class Trace(PageTest):
 
     def test_stands_within_five_megabytes_and_shows_the_scene(self):
         self.assertLess(self.page.stat().st_size, 5e6)
-        for width, height in ((1440, 900), (1024, 768), (390, 844)):
+        for width, height in ((2560, 1440), (1366, 768), (390, 844)):
             self.browser.size(width, height)
             self.assertLess(self.open(self.page), 30.0)
             self.assertGreater(self.colours(), 200, "the stage is empty")
             self.assertLessEqual(self.browser.value("document.documentElement.scrollWidth"), width)
         self.browser.size(1440, 900)
+
+    def test_every_control_is_reached_by_tab_and_shows_it(self):
+        self.open(self.page)
+        self.every_control_is_reached()
+
+    def test_colours_are_told_apart_without_red_or_green(self):
+        """The ramp of the bar as eyes without red or green cones see it: G. M. Machado et al., "A Physiologically-based
+        Model for Simulation of Color Vision Deficiency", IEEE TVCG 15 (2009), severity 1, in linear light."""
+        self.open(self.page)
+        ramp = self.browser.value("""(() => {
+          const canvas = document.querySelector('.colour-bar canvas');
+          return [...canvas.getContext('2d').getImageData(0, 0, 1, canvas.height).data];
+        })()""")
+        colours = [[linear(value / 255) for value in ramp[i:i + 3]] for i in range(0, len(ramp), 4)]
+        self.assertEqual(len(colours), 256)
+        for name, matrix in {
+                "protanopia": ((0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216), (-0.003882, -0.048116, 1.051998)),
+                "deuteranopia": ((0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413), (-0.011820, 0.042940, 0.968881)),
+        }.items():
+            seen = [[sum(m * v for m, v in zip(row, colour)) for row in matrix] for colour in colours]
+            lightness = [116 * cube_root(0.2126 * r + 0.7152 * g + 0.0722 * b) - 16 for r, g, b in seen]
+            # From the largest value down: ever darker, over most of the range of lightness, in even steps.
+            steps = [above - below for above, below in zip(lightness, lightness[1:])]
+            self.assertGreater(min(steps), -0.05, name)
+            self.assertGreater(lightness[0] - lightness[-1], 60, name)
+            self.assertLess(max(steps), 1.5, name)
 
     def test_map_is_read_by_pointer_and_keys(self):
         self.open(self.page)
@@ -221,6 +278,7 @@ class TorqueMap(PageTest):
         run("torque-map", NOMINAL, "--set", "torque_map.rays=100000", "--set", "torque_map.tilt_deg=[0,15,30]",
             "--set", "torque_map.heading_deg=[0,90]", "--page", "--out", out, "--quiet")
         self.open(out / "page.html")
+        self.every_control_is_reached()
         upright = self.stage()
         self.browser.value("document.getElementById('axis-0').focus()")
         self.browser.key("ArrowRight")

@@ -47,7 +47,7 @@ TEST_F(CheckCommand, SaysWhatEachCommandWouldDo) {
   for (const std::string line :
        {"trace       12845056 rays of 49 lamps, 88 W, onto solar_array",
         "power       16 cells on solar_array", "torque-map  7 tilts × 8 headings",
-        "render      1280 × 960 pixels",
+        "render      1000 × 1080 pixels",
         "reads [scene] [source] [receiver] [attitude] [trace] [torque_map] [array]"}) {
     EXPECT_THAT(got.out, HasSubstr(line));
   }

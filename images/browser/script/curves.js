@@ -7,10 +7,19 @@ import { estimate, readable, tickLabels, ticks } from './format.js';
 
 const width = 640, left = 78, right = 22, gap = 14, foot = 44;
 
+// The colour of a curve, and dashes once all colours are taken.
+function lookOf(json, order) {
+  const repeats = json.style === 'line' && !palette[json.colour] && order >= curveColours.length;
+  return {
+    stroke: palette[json.colour] ?? curveColours[order % curveColours.length],
+    style: repeats ? 'dashed' : json.style,
+  };
+}
+
 function readCurve(json, order) {
   return {
     ...json, x: numbers(json.x), y: numbers(json.y), error: json.error ? numbers(json.error) : null,
-    stroke: palette[json.colour] ?? curveColours[order % curveColours.length],
+    ...lookOf(json, order),
   };
 }
 
@@ -42,9 +51,9 @@ class Scale {
     const f = (place - this.from) / (this.to - this.from);
     return this.log ? this.low * (this.high / this.low) ** f : this.low + f * (this.high - this.low);
   }
-  ticks(most) {
+  ticks(most, label = '') {
     if (!this.log) {
-      const { values, step } = ticks(this.low, this.high, most);
+      const { values, step } = ticks(this.low, this.high, most, label.endsWith('[deg]') ? 'deg' : '');
       return { values, ...tickLabels(values, step) };
     }
     const values = [];
@@ -126,13 +135,7 @@ let clips = 0;
 export class Chart {
   constructor(json) {
     this.json = json;
-    let order = 0;
-    this.panels = json.panels.map((panel) => ({ ...panel, curves: panel.curves.map((curve) => readCurve(curve, order++)) }));
-    if (this.panels.length > 1) {  // each pair of axes counts its colours anew
-      for (const panel of this.panels) panel.curves.forEach((curve, i) => {
-        curve.stroke = palette[curve.colour] ?? curveColours[i % curveColours.length];
-      });
-    }
+    this.panels = json.panels.map((panel) => ({ ...panel, curves: panel.curves.map(readCurve) }));
     this.reading = element('p', { class: 'reading', 'aria-live': 'polite' }, this.hint());
     this.body = element('figure', { class: 'chart' }, element('figcaption', {}, json.title), this.draw(), this.legend(), this.reading);
   }
@@ -188,7 +191,7 @@ export class Chart {
       const x1 = Math.max(this.x.place(from), left), x2 = Math.min(this.x.place(to), width - right);
       if (x2 > x1) group.append(svg('rect', { class: 'shade', x: x1, width: x2 - x1, y: top, height: bottom - top }));
     }
-    const { values, labels, power } = y.ticks(bottom - top > 200 ? 6 : 4);
+    const { values, labels, power } = y.ticks(bottom - top > 200 ? 6 : 4, panel.y_label);
     values.forEach((value, i) => {
       const at = y.place(value);
       group.append(svg('line', { class: 'grid', x1: left, x2: width - right, y1: at, y2: at }),
@@ -202,7 +205,7 @@ export class Chart {
   }
 
   xAxis(y) {
-    const { values, labels, power } = this.x.ticks(7);
+    const { values, labels, power } = this.x.ticks(7, this.json.x_label);
     const name = power ? `${this.json.x_label} ${power}` : this.json.x_label;
     return svg('g', { class: 'frame' },
       values.map((value, i) => svg('text', { x: this.x.place(value), y: y + 12, 'text-anchor': 'middle' }, labels[i])),

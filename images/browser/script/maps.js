@@ -31,7 +31,7 @@ function picture(map, scale) {
 }
 
 function axis(low, high, label, upright) {
-  const { values, step } = ticks(low, high, 6);
+  const { values, step } = ticks(low, high, 6, parts(label).unit);
   const { labels, power } = tickLabels(values, step);
   const place = (value) => {
     const fraction = 100 * (value - low) / (high - low);

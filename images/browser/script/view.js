@@ -70,11 +70,11 @@ export class StageView {
     this.canvas.addEventListener('keydown', (event) => this.key(event));
     this.field = camera.field_of_view_deg;
     this.near = { position: new Vector3(...camera.position), target: new Vector3(...camera.target) };
-    this.far = this.framing();
+    this.far = this.near;
   }
 
   // From where body and lamps are seen together, in the direction of the experiment's own camera.
-  framing() {
+  framing(aspect) {
     const { lamps, radius } = this.stage;
     const near = lamps.filter((lamp) => !lamp.far).map((lamp) => new Vector3(...lamp.position))
       .filter((at) => at.length() < 10 * radius);
@@ -90,7 +90,7 @@ export class StageView {
     const half = Math.tan(this.field / 2 * Math.PI / 180);
     const distance = Math.max(...points.map((point) => {
       const from = point.clone().sub(target);
-      return from.dot(back) + 1.08 * Math.max(Math.abs(from.dot(right)) / half, Math.abs(from.dot(up)) / half * widest);
+      return from.dot(back) + 1.08 * Math.max(Math.abs(from.dot(right)) / half, Math.abs(from.dot(up)) / half * aspect);
     }));
     return { position: target.clone().addScaledVector(back, distance), target };
   }
@@ -117,6 +117,7 @@ export class StageView {
     const half = Math.tan(this.field / 2 * Math.PI / 180) / Math.min(this.camera.aspect, widest);
     this.camera.fov = 2 * Math.atan(half) * 180 / Math.PI;
     this.camera.updateProjectionMatrix();
+    this.far = this.framing(Math.min(this.camera.aspect, widest));
     if (!this.placed) this.reset();
     this.draw();
   }
