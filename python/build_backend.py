@@ -64,6 +64,19 @@ def get_requires_for_build_wheel(config_settings=None):
     return []
 
 
+def _wheel_text():
+    return f"Wheel-Version: 1.0\nGenerator: photorque\nRoot-Is-Purelib: false\nTag: {_tag()}\n"
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """What an installer asks before it builds; without it, it would build twice."""
+    info = pathlib.Path(metadata_directory) / f"photorque-{_version()}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(_metadata(), encoding="utf-8")
+    (info / "WHEEL").write_text(_wheel_text(), encoding="utf-8")
+    return info.name
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     package = _compile()
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
@@ -71,8 +84,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
              if file.name.endswith(suffix) or file.suffix in (".py", ".pyi", ".typed")}
     info = f"photorque-{_version()}.dist-info"
     files[f"{info}/METADATA"] = _metadata().encode()
-    files[f"{info}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: photorque\n"
-                              f"Root-Is-Purelib: false\nTag: {_tag()}\n").encode()
+    files[f"{info}/WHEEL"] = _wheel_text().encode()
     files[f"{info}/LICENSE"] = (root / "LICENSE").read_bytes()
     record = ""
     for name, content in files.items():

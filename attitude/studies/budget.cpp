@@ -180,19 +180,22 @@ PaperLight read_light(const Settings& settings) {
 Table budget_table(const Budget& budget) {
   std::map<std::string, PaperFigure> paper;
   for (const PaperFigure& figure : paper_figures()) paper[figure.quantity] = figure;
-  Table table = Table::of("budget", "Disturbance torques at the state, largest first",
-                          {"disturbance", "paper_figure", "torque_x_N_m", "torque_y_N_m",
-                           "torque_z_N_m", "torque_N_m", "share_of_sum", "angle_1_min_deg",
-                           "angle_1_h_deg", "angle_1_day_deg", "paper_N_m", "ratio"});
+  std::vector<std::string> columns = {"disturbance",     "torque_x_N_m",  "torque_y_N_m",
+                                      "torque_z_N_m",    "torque_N_m",    "share_of_sum",
+                                      "angle_1_min_deg", "angle_1_h_deg", "angle_1_day_deg"};
+  if (budget.beside_paper) {
+    columns.insert(columns.begin() + 1, "paper_figure");
+    columns.insert(columns.end(), {"paper_N_m", "ratio"});
+  }
+  Table table = Table::of("budget", "Disturbance torques at the state, largest first", columns);
   double sum_N_m = 0.0;
   for (const BudgetEntry& e : budget.entries) sum_N_m += e.torque_body_N_m.norm();
   for (const BudgetEntry& e : budget.entries) {
     const double torque_N_m = e.torque_body_N_m.norm();
     const std::string figure = traits_of(e.kind).paper_figure;
     const double paper_N_m = figure.empty() ? std::nan("") : paper.at(figure).published;
-    table.row()
-        .set("disturbance", e.name)
-        .set("paper_figure", figure.empty() ? "-" : figure)
+    Table::Row row = table.row();
+    row.set("disturbance", e.name)
         .set("torque_x_N_m", e.torque_body_N_m.x())
         .set("torque_y_N_m", e.torque_body_N_m.y())
         .set("torque_z_N_m", e.torque_body_N_m.z())
@@ -200,7 +203,9 @@ Table budget_table(const Budget& budget) {
         .set("share_of_sum", sum_N_m > 0.0 ? torque_N_m / sum_N_m : 0.0)
         .set("angle_1_min_deg", e.angle_after_minute_rad / degree_rad)
         .set("angle_1_h_deg", e.angle_after_hour_rad / degree_rad)
-        .set("angle_1_day_deg", e.angle_after_day_rad / degree_rad)
+        .set("angle_1_day_deg", e.angle_after_day_rad / degree_rad);
+    if (!budget.beside_paper) continue;
+    row.set("paper_figure", figure.empty() ? "-" : figure)
         .set("paper_N_m", paper_N_m)
         .set("ratio", torque_N_m / paper_N_m);
   }
@@ -246,7 +251,7 @@ Plot tilt_plot(const Budget& budget) {
 }  // namespace
 
 Budget make_budget(AttitudeModel model, const PlatformState& state) {
-  Budget budget{std::move(model), state, {}, {}, {}, {}};
+  Budget budget{std::move(model), state, {}, {}, {}, true, {}};
   const std::vector<Acting> acting = acting_within_a_second(budget.model, state);
   const std::vector<std::string> names = names_of(budget.model.disturbances);
   const Mat3 inverse_inertia = budget.model.platform.inertia_kg_m2.inverse();
@@ -272,6 +277,7 @@ Budget read_budget(const Settings& root) {
     const PlatformState upright = Dynamics(model).initial_state();
     Budget budget = make_budget(std::move(model), upright);
     budget.air_parts = read_own_air_parts(root);
+    budget.beside_paper = false;
     return budget;
   }
   const Settings settings = root.table("budget");
@@ -279,6 +285,7 @@ Budget read_budget(const Settings& root) {
   Budget budget = make_budget(std::move(model), state);
   budget.catalogue = read_catalogue(settings);
   budget.light = read_light(settings);
+  budget.beside_paper = settings.has("light") || settings.has("bearing");
   budget.air_parts = read_own_air_parts(root);
   settings.finish();
   return budget;
@@ -287,7 +294,7 @@ Budget read_budget(const Settings& root) {
 Product budget_product(const Budget& budget) {
   PaperInputs inputs;
   inputs.light = budget.light;
-  Product product = paper_product(inputs);
+  Product product = budget.beside_paper ? paper_product(inputs) : Product();
   product.tables.insert(product.tables.begin(), budget_table(budget));
   if (!budget.air_parts.empty()) {
     const Environment& room = budget.model.environment;

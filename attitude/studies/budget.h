@@ -31,6 +31,7 @@ struct Budget {
   std::vector<BudgetEntry> entries;  // largest torque first
   std::vector<BearingDatasheet> catalogue;
   PaperLight light = {};
+  bool beside_paper = true;        // the paper's figures belong to the tables: this is its platform
   std::vector<AirPart> air_parts;  // of the experiment's air_friction and air_pressure_drag
 };
 
@@ -44,6 +45,7 @@ struct Budget {
 //     (30);
 //   [budget.light]: what power printed of the scene, for the comparison with the paper:
 //     source_to_cell, conversion (fractions), power_W, power_at_30_deg_W, torque_at_30_deg_N_m[3].
+// Only with one of the last two are the paper's figures told: other platforms are not its own.
 // The load on the bearing is the platform's weight. InputError for what is missing or unknown in
 // these tables.
 Budget read_budget(const Settings& root);
@@ -52,10 +54,10 @@ Budget read_budget(const Settings& root);
 Budget make_budget(AttitudeModel model, const PlatformState& state);
 
 // The tables "budget" (by rank), "external_air" (Reynolds number and validity of the experiment's
-// own parts at the state's rate, where it has any) and those of paper_product(), the plots
-// "torque_by_tilt" (every disturbance from upright to the tilt limit, 30 deg without one, towards
-// the state's heading) and the paper's figure 5, and as quantities the total torque and, with a
-// catalogue, its comparison.
+// own parts at the state's rate, where it has any) and, beside the paper, those of
+// paper_product(), the plots "torque_by_tilt" (every disturbance from upright to the tilt limit, 30
+// deg without one, towards the state's heading) and the paper's figure 5, and as quantities the
+// total torque and, with a catalogue, its comparison.
 Product budget_product(const Budget& budget);
 
 }  // namespace photorque

@@ -115,6 +115,19 @@ TEST_F(AttitudeCommands, BudgetRanksAndComparesWithThePaper) {
   }
 }
 
+// The paper's figures are those of its own platform.
+TEST_F(AttitudeCommands, BudgetOfAnotherPlatformIsNotComparedWithThePaper) {
+  const std::string orbit = (source / "scenes/spacecraft/orbit.toml").string();
+  const Outcome got = run("budget " + orbit + " --out " + at("o"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("Disturbance torques, largest first"));
+  EXPECT_THAT(got.out, testing::Not(HasSubstr("paper")));
+  const auto all = files("o");
+  EXPECT_TRUE(all.contains("budget.csv"));
+  EXPECT_FALSE(all.contains("paper_figures.csv"));
+  EXPECT_THAT(all.at("budget.csv"), testing::Not(HasSubstr("paper")));
+}
+
 TEST_F(AttitudeCommands, WrongInputIsOneLineAndExitTwo) {
   struct Case {
     const char *from, *to, *message;

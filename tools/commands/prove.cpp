@@ -334,6 +334,12 @@ std::string plan_text(const ProveSettings& s) {
          ".";
 }
 
+// Of out/light/cases "light": that its folder holds cases is said already.
+std::string name_of_cases(const std::filesystem::path& folder) {
+  const std::filesystem::path whole = std::filesystem::absolute(folder / ".").parent_path();
+  return (whole.filename() == "cases" ? whole.parent_path() : whole).filename().string();
+}
+
 void run_prove(const CommandLine& line) {
   const Console console = terminal(line);
   const ProveSettings settings = read_settings(line);
@@ -350,7 +356,7 @@ void run_prove(const CommandLine& line) {
   provenance.seed = settings.plan.seed;
   provenance.inputs = {{line.experiment.filename().string(), settings.hash}};
   const ProofSet set{
-      line.cases ? "Cases of " + line.cases->filename().string() : "Cases made by this command",
+      line.cases ? "Cases of " + name_of_cases(*line.cases) : "Cases made by this command",
       line.cases ? std::to_string(scores.size()) + " cases." : plan_text(settings), scores};
   const std::string text = proof_markdown(set);
   const Product product = proof_product(scores);

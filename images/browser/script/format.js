@@ -59,7 +59,7 @@ export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);
 export function ticks(low, high, most, unit = '') {
   const raw = (high - low) / Math.max(1, most);
   const power = 10 ** Math.floor(Math.log10(raw));
-  const turns = unit === 'deg' && raw > 5 && raw <= 90 ? [15, 30, 45, 90] : [];
+  const turns = unit === 'deg' && raw > 10 && raw <= 90 ? [15, 30, 45, 90] : [];
   const step = [...turns, ...[1, 2, 5, 10].map((m) => m * power)].find((s) => s >= raw * (1 - 1e-9));
   const values = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) values.push(i * step);

@@ -40,6 +40,20 @@ void print_air(const Console& console, const Table& parts) {
                {"law holds", "law_holds"}});
 }
 
+void print_paper(const Console& console, const Product& product) {
+  const Table& figures = table_named(product, "paper_figures");
+  console.heading("Figures of the paper beside ours");
+  print_table(console, figures,
+              {{"quantity", "quantity"},
+               {"section", "section"},
+               {"paper", "published"},
+               {"ours", "ours"},
+               {"ratio", "ratio"},
+               {"as published", "ours_as_published"}});
+  print_reasons(console, figures);
+  print_air(console, table_named(product, "paper_external_air"));
+}
+
 void run_budget(const CommandLine& line) {
   const Console console = terminal(line);
   const BudgetRun run = budget_of_experiment(line);
@@ -61,24 +75,15 @@ void run_budget(const CommandLine& line) {
                {"paper [N m]", "paper_N_m"},
                {"ours/paper", "ratio"}});
   if (const Table* air = find_table(product, "external_air")) print_air(console, *air);
-  const Table& figures = table_named(product, "paper_figures");
-  console.heading("Figures of the paper beside ours");
-  print_table(console, figures,
-              {{"quantity", "quantity"},
-               {"section", "section"},
-               {"paper", "published"},
-               {"ours", "ours"},
-               {"ratio", "ratio"},
-               {"as published", "ours_as_published"}});
-  print_reasons(console, figures);
-  print_air(console, table_named(product, "paper_external_air"));
+  if (run.budget.beside_paper) print_paper(console, product);
   write_results(line, console, run.result);
 }
 
 }  // namespace
 
 Verb budget_verb() {
-  return {"budget", "Every disturbance torque at one state, ranked, beside published figures",
+  return {"budget",
+          "Every disturbance torque at one state, ranked; of STASIS beside published figures",
           run_budget};
 }
 
