@@ -23,8 +23,27 @@ Ticks ticks_for(const AxisRange& range, bool log, int at_most) {
              : linear_ticks(range.low, range.high, at_most);
 }
 
+// Of angles over more than 60 deg: multiples of 15, 30, 45 or 90 deg; nothing for other axes.
+std::optional<Ticks> turn_ticks(const AxisRange& range, const std::string& label, int at_most) {
+  const double span = range.high - range.low;
+  if (!label.ends_with("[deg]") || !(span > 60.0) || span > 720.0) return std::nullopt;
+  for (const int step : {15, 30, 45, 90}) {
+    Ticks ticks;
+    const double slack = 1e-9 * span / step;
+    for (double n = std::ceil(range.low / step - slack); n * step <= range.high + slack * step;
+         ++n) {
+      const int value = static_cast<int>(std::lround(n * step));
+      ticks.values.push_back(value);
+      ticks.labels.push_back((value < 0 ? "−" : "") + std::to_string(std::abs(value)));
+    }
+    if (static_cast<int>(ticks.values.size()) <= at_most) return ticks;
+  }
+  return std::nullopt;
+}
+
 Axis axis_with(const AxisRange& range, bool log, const std::string& label, int at_most) {
   Axis axis{range, log, ticks_for(range, log, at_most), ""};
+  if (!log) axis.ticks = turn_ticks(range, label, std::max(at_most, 5)).value_or(axis.ticks);
   axis.label = label_with_power(label, axis.ticks.exponent);
   return axis;
 }

@@ -139,10 +139,11 @@ std::vector<uint32_t> smooth_pixels(const Map& map, const ColourScale& scale, in
   return pixels;
 }
 
-}  // namespace
+// Paler than any colour of a signed scale, and darker than its middle.
+constexpr Rgb unsure_grey = {0.74, 0.74, 0.74};
 
-std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int columns, int rows) {
-  if (map.smooth) return smooth_pixels(map, scale, columns, rows);
+std::vector<uint32_t> plain_pixels(const Map& map, const ColourScale& scale, int columns,
+                                   int rows) {
   std::vector<uint32_t> pixels(static_cast<size_t>(columns) * rows, 0u);
   for (int row = 0; row < rows; ++row) {
     const Cells map_rows = cells_under(rows - 1 - row, rows, map.height);
@@ -150,6 +151,38 @@ std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int c
       const double value = mean_of(map, cells_under(column, columns, map.width), map_rows);
       if (!std::isnan(value))
         pixels[static_cast<size_t>(row) * columns + column] = opaque(scale(value));
+    }
+  }
+  return pixels;
+}
+
+}  // namespace
+
+bool is_unsure(const Map& map, size_t bin) {
+  if (!map.signed_values || map.standard_error.empty()) return false;
+  const double error = map.standard_error[bin];
+  return error > 0.0 && std::abs(map.value[bin]) < 2.0 * error;
+}
+
+std::vector<uint32_t> map_pixels(const Map& map, const ColourScale& scale, int columns, int rows) {
+  std::vector<uint32_t> pixels = map.smooth ? smooth_pixels(map, scale, columns, rows)
+                                            : plain_pixels(map, scale, columns, rows);
+  if (!map.signed_values || map.standard_error.empty()) return pixels;
+  Map errors = map;
+  errors.value = map.standard_error;
+  for (int row = 0; row < rows; ++row) {
+    const Cells map_rows = cells_under(rows - 1 - row, rows, map.height);
+    for (int column = 0; column < columns; ++column) {
+      const auto at = [&](const Map& of) {
+        if (!of.smooth) return mean_of(of, cells_under(column, columns, of.width), map_rows);
+        return smooth_value(of, (column + 0.5) * (of.width - 1) / columns,
+                            (rows - row - 0.5) * (of.height - 1) / rows);
+      };
+      uint32_t& pixel = pixels[static_cast<size_t>(row) * columns + column];
+      const double error = at(errors);
+      if (pixel != 0u && error > 0.0 && std::abs(at(map)) < 2.0 * error) {
+        pixel = opaque(unsure_grey);
+      }
     }
   }
   return pixels;

@@ -36,6 +36,24 @@ PageBox grid_size(const Map& map) {
   return {0.0, 0.0, std::round(width), std::round(width / ratio)};
 }
 
+// Whether the bins are things that are counted, few enough to carry their numbers.
+bool are_cells(const Map& map) {
+  constexpr int most_a_side = 16;
+  return map.x_label.starts_with("cell ") && map.x_low == 0.0 && map.x_high == map.width &&
+         map.y_low == 0.0 && map.y_high == map.height && map.width <= most_a_side &&
+         map.height <= most_a_side;
+}
+
+// Counts from 0, as the numbers of cells do, at the middles of the cells.
+Ticks cell_ticks(int cells) {
+  Ticks ticks;
+  for (int i = 0; i < cells; ++i) {
+    ticks.values.push_back(i + 0.5);
+    ticks.labels.push_back(std::to_string(i));
+  }
+  return ticks;
+}
+
 MapLayout map_layout(const Map& map, const Provenance& provenance) {
   MapLayout layout;
   layout.grid = grid_size(map);
@@ -46,6 +64,10 @@ MapLayout map_layout(const Map& map, const Provenance& provenance) {
                              layout.grid.width);
   layout.y = vertical_axis({map.y_low + half_y, map.y_high - half_y}, false, map.y_label,
                            layout.grid.height);
+  if (are_cells(map)) {
+    layout.x.ticks = cell_ticks(map.width);
+    layout.y.ticks = cell_ticks(map.height);
+  }
   layout.bar_height = std::max(layout.grid.height, shortest_colour_bar);
   layout.bar = colour_bar(colour_scale(map), map.unit, layout.bar_height);
   layout.grid.x = std::ceil(page_margin + vertical_axis_width(layout.y));
@@ -59,6 +81,26 @@ MapLayout map_layout(const Map& map, const Provenance& provenance) {
   layout.body_height =
       std::max(grid_bottom, layout.bar_y + layout.bar_height + 6.0) - layout.text.body_top();
   return layout;
+}
+
+// The value of every cell in it, dark on light and light on dark.
+void draw_cell_numbers(Canvas& canvas, const Map& map, const ColourScale& scale,
+                       const PageBox& grid) {
+  const double width = grid.width / map.width, height = grid.height / map.height;
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column) {
+      const double value = map.value[static_cast<size_t>(row) * map.width + column];
+      if (!std::isfinite(value)) continue;
+      TextStyle style{.size = std::clamp(0.2 * std::min(width, height), 6.5, 12.0)};
+      style.colour = lab_from_rgb(scale(value)).lightness > 55.0 ? ink : Rgb{1.0, 1.0, 1.0};
+      style.align = TextAlign::centre;
+      style.level = TextLevel::middle;
+      const TextBlock text = fitted_text(readable_number(value, 3), width - 3.0, style, 5.0, 1);
+      canvas.text(text.lines.front(),
+                  {grid.x + (column + 0.5) * width, grid.bottom() - (row + 0.5) * height},
+                  text.style);
+    }
+  }
 }
 
 // Of the finite values.
@@ -100,6 +142,7 @@ MapPicture map_picture(const Map& map, const Provenance& provenance) {
   if (!map.smooth) draw_hatching(canvas, layout.grid);
   canvas.image(layout.grid, result.grid_width, result.grid_height,
                map_pixels(map, layout.bar.scale, result.grid_width, result.grid_height));
+  if (are_cells(map)) draw_cell_numbers(canvas, map, layout.bar.scale, layout.grid);
   // Around the cells, not over them.
   canvas.outline(
       {layout.grid.x - 0.4, layout.grid.y - 0.4, layout.grid.width + 0.8, layout.grid.height + 0.8},
@@ -135,6 +178,11 @@ std::string map_caption(const Map& map) {
   if (!map.standard_error.empty()) {
     caption +=
         " · standard error " + readable_number(root_mean_square(map.standard_error), 2) + " (rms)";
+  }
+  for (size_t bin = 0; bin < map.value.size(); ++bin) {
+    if (!is_unsure(map, bin)) continue;
+    caption += " · grey: within two standard errors of zero";
+    break;
   }
   if (map.smooth) return caption;
   return count == map.value.size() ? caption : caption + " · hatched: no value";

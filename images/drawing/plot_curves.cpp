@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "core/text/display.h"
 #include "images/drawing/page_layout.h"
 
 namespace photorque {
@@ -104,8 +105,10 @@ void draw_dots(Canvas& canvas, const ChartPanel& panel, const Plot::Curve& curve
 
 // The bar over the i-th point; nothing for values that cannot be shown.
 std::optional<PageBox> bar_of(const ChartPanel& panel, const Plot::Curve& curve, size_t i) {
+  const double from = hangs(curve) ? curve.y[0] : panel.y.log ? panel.y.range.low : 0.0;
+  if (hangs(curve)) i = 1;
   const PagePoint top = panel.at(curve.x[i] - bar_half_width, curve.y[i]);
-  const PagePoint foot = panel.at(curve.x[i] + bar_half_width, panel.y.log ? panel.y.range.low : 0);
+  const PagePoint foot = panel.at(curve.x[i] + bar_half_width, from);
   if (!drawable_point(top) || !drawable_point(foot)) return std::nullopt;
   return PageBox{top.x, std::min(top.y, foot.y), foot.x - top.x, std::abs(foot.y - top.y)};
 }
@@ -133,6 +136,21 @@ bool meets(const PageBox& box, const PagePoint& a, const PagePoint& b) {
     return enter <= leave;
   };
   return clip(a.x, b.x - a.x, box.x, box.right()) && clip(a.y, b.y - a.y, box.y, box.bottom());
+}
+
+// What a hanging bar amounts to, over it.
+void draw_bar_numbers(Canvas& canvas, const ChartPanel& panel) {
+  TextStyle style = tick_style;
+  style.align = TextAlign::centre;
+  for (const Plot::Curve& curve : panel.curves) {
+    if (!hangs(curve)) continue;
+    const auto bar = bar_of(panel, curve, 1);
+    if (!bar) continue;
+    const double size = curve.y[1] - curve.y[0];
+    std::string text = readable_number(std::abs(size), 3);
+    if (size < 0.0) text = "−" + text;
+    canvas.text(text, {bar->centre().x, bar->y - 5.0}, style);
+  }
 }
 
 bool covers_a_curve(const ChartPanel& panel, const PageBox& box) {
@@ -255,11 +273,21 @@ void draw_curves(Canvas& canvas, const ChartPanel& panel) {
         draw_lines(canvas, panel, curve, stroke);
       }
     }
+    draw_bar_numbers(canvas, panel);
   });
+}
+
+bool hangs(const Plot::Curve& curve) {
+  return curve.bars && curve.x.size() == 2 && curve.x[0] == curve.x[1];
+}
+
+bool names_stand_under_bars(const std::vector<Plot::Curve>& curves) {
+  return !curves.empty() && std::ranges::all_of(curves, hangs);
 }
 
 Legend legend_of(const std::vector<Plot::Curve>& curves, double widest) {
   Legend legend;
+  if (names_stand_under_bars(curves)) return legend;
   for (size_t i = 0; i < curves.size(); ++i) {
     if (curves[i].label.empty() || curves[i].x.empty()) continue;
     legend.curves.push_back(i);
@@ -289,13 +317,18 @@ void draw_legend(Canvas& canvas, const ChartPanel& panel, const Legend& legend,
                  const PagePoint& top_left) {
   canvas.fill(PageBox{top_left.x, top_left.y, legend.width, legend.height}, {1.0, 1.0, 1.0}, 0.85);
   const double text_x = top_left.x + legend_sample + 2.0 * legend_padding;
+  const double room = top_left.x + legend.width - 0.5 * legend_padding - text_x;
+  TextStyle style = tick_style;
+  style.level = TextLevel::middle;
+  // All as small as the longest must be.
+  for (const size_t index : legend.curves) {
+    style.size = std::min(style.size,
+                          fitted_text(panel.curves[index].label, room, style, 8.0, 1).style.size);
+  }
   double y = top_left.y + 0.6 * legend_padding + 0.5 * legend_row;
   for (const size_t index : legend.curves) {
     const Plot::Curve& curve = panel.curves[index];
     draw_sample(canvas, curve, curve_stroke(curve, index), {top_left.x + legend_padding, y});
-    TextStyle style = tick_style;
-    style.level = TextLevel::middle;
-    const double room = top_left.x + legend.width - 0.5 * legend_padding - text_x;
     const TextBlock label = fitted_text(curve.label, room, style, 8.0, 1);
     canvas.text(label.lines.front(), {text_x, y}, label.style);
     y += legend_row;

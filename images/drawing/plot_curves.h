@@ -39,6 +39,13 @@ inline constexpr double bar_half_width = 0.4;
 // Curves with their error bands or bars, clipped to the frame.
 void draw_curves(Canvas& canvas, const ChartPanel& panel);
 
+// Whether a bar goes from one value to another instead of from zero: two points at one x. It shows
+// its number.
+bool hangs(const Plot::Curve& curve);
+
+// Whether all curves are such bars: then their labels stand under them, and no legend is needed.
+bool names_stand_under_bars(const std::vector<Plot::Curve>& curves);
+
 // The box of a legend. Empty when no curve has a label.
 struct Legend {
   std::vector<size_t> curves;  // those with labels and points

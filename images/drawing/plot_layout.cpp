@@ -91,6 +91,38 @@ double usual_height(const std::vector<Plot::Panel>& panels) {
   return height;
 }
 
+// The names under bars, each in the room of its bar.
+std::vector<TextBlock> names_of(const ChartPanel& panel) {
+  if (!names_stand_under_bars(panel.curves)) return {};
+  TextStyle style = tick_style;
+  style.align = TextAlign::centre;
+  const double room = panel.frame.width / (panel.x.range.high - panel.x.range.low) - 6.0;
+  std::vector<TextBlock> names;
+  for (const Plot::Curve& curve : panel.curves) {
+    names.push_back(fitted_text(curve.label, room, style, 7.5, 5));
+  }
+  return names;
+}
+
+double names_height(const ChartPanel& panel) {
+  double height = 0.0;
+  for (const TextBlock& name : names_of(panel)) height = std::max(height, name.height() + 8.0);
+  return height;
+}
+
+void draw_names(Canvas& canvas, const ChartPanel& panel) {
+  const std::vector<TextBlock> names = names_of(panel);
+  for (size_t i = 0; i < names.size(); ++i) {
+    const double x =
+        panel.frame.x + panel.frame.width * panel.x.fraction(panel.curves[i].x.front());
+    double y = panel.frame.bottom() + 4.0 + names[i].style.size;
+    for (const std::string& line : names[i].lines) {
+      canvas.text(line, {x, y}, names[i].style);
+      y += names[i].line_height();
+    }
+  }
+}
+
 // Puts the frames `legend_width` short of the right edge.
 void place_frames(PlotLayout& layout, const PlotRoom& room, const Axis& x_axis,
                   double legend_width) {
@@ -102,7 +134,8 @@ void place_frames(PlotLayout& layout, const PlotRoom& room, const Axis& x_axis,
     panel.x = x_axis;
     y += panel.frame.height + gap_between_panels;
   }
-  layout.bottom = y - gap_between_panels + horizontal_axis_height(x_axis);
+  layout.bottom = y - gap_between_panels +
+                  std::max(horizontal_axis_height(x_axis), names_height(layout.panels.back()));
 }
 
 void draw_grid(Canvas& canvas, const ChartPanel& panel) {
@@ -176,8 +209,9 @@ PlotLayout plot_layout(const Plot& plot, const PlotRoom& room) {
   const auto place = [&](double legend_width) {
     const double length =
         room.right - legend_width - (room.left + layout.axis_width) - gap_right_of_frame;
-    place_frames(layout, room, horizontal_axis(range, plot.x_log, plot.x_label, length),
-                 legend_width);
+    Axis x_axis = horizontal_axis(range, plot.x_log, plot.x_label, length);
+    if (names_stand_under_bars(panels.front().curves)) x_axis.ticks = {};
+    place_frames(layout, room, x_axis, legend_width);
   };
   place(0.0);
   double legend_width = 0.0;
@@ -202,6 +236,7 @@ void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout) {
     canvas.outline(panel.frame, {ink, 0.8});
     draw_vertical_axis(canvas, panel.frame, panel.y, layout.axis_width);
     if (i + 1 == layout.panels.size()) draw_horizontal_axis(canvas, panel.frame, panel.x);
+    draw_names(canvas, panel);
     if (layout.legends[i].curves.empty()) continue;
     const PagePoint outside{panel.frame.right() + 6.0, panel.frame.y};
     draw_legend(canvas, panel, layout.legends[i],

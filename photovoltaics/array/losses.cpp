@@ -49,8 +49,15 @@ Product loss_product(const std::vector<LossStage>& stages) {
   Product product;
   Table table = Table::of("losses", "From the light to the load",
                           {"stage", "lost_to", "power_W", "lost_W", "kept"});
-  Plot plot{
-      "loss_waterfall", "Power left after each loss", "stage", "power [W]", {}, false, false, {}};
+  Plot plot{"loss_waterfall", "From the light to the load", "", "power [W]", {}, false, false, {}};
+  // A bar from one power to another, its name under it.
+  const auto add_bar = [&](const std::string& label, double from_W, double to_W,
+                           Plot::Colour colour) {
+    const auto place = static_cast<double>(plot.curves.size() + 1);
+    Plot::Curve bar{label, {place, place}, {from_W, to_W}, {}, false, true};
+    bar.colour = colour;
+    plot.curves.push_back(std::move(bar));
+  };
   for (size_t i = 0; i < stages.size(); ++i) {
     const LossStage& stage = stages[i];
     const double before_W = i == 0 ? stage.power_W : stages[i - 1].power_W;
@@ -60,13 +67,14 @@ Product loss_product(const std::vector<LossStage>& stages) {
         .set("power_W", stage.power_W)
         .set("lost_W", before_W - stage.power_W)
         .set("kept", before_W > 0 ? stage.power_W / before_W : 0.0);
-    const std::string number = std::to_string(i + 1);
-    plot.curves.push_back({number + " " + stage.name,
-                           {static_cast<double>(i + 1)},
-                           {stage.power_W},
-                           {},
-                           false,
-                           true});
+    if (i == 0) {
+      add_bar(stage.name, 0.0, stage.power_W, Plot::Colour::blue);
+    } else {
+      add_bar(stage.loss, before_W, stage.power_W, Plot::Colour::vermilion);
+    }
+  }
+  if (stages.size() > 1) {
+    add_bar(stages.back().name, 0.0, stages.back().power_W, Plot::Colour::blue);
   }
   product.tables.push_back(table);
   product.plots.push_back(plot);

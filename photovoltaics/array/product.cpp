@@ -1,4 +1,5 @@
 // The results of an array as tables, curves and maps.
+#include "core/text/display.h"
 #include "photovoltaics/array/array.h"
 
 namespace photorque {
@@ -66,6 +67,11 @@ void add_plots(const ArrayResult& result, const Table& iv, Product& product) {
   Plot current{"iv_curve", "Current of the array", "voltage [V]", "current [A]", {}, false, false,
                {}};
   current.curves.push_back({"array", v, iv.column("current_A").values, {}, false});
+  current.curves.push_back({"maximum, " + readable_number(result.power_W.value) + " W",
+                            {result.voltage_V.value},
+                            {result.current_A.value},
+                            {},
+                            true});
   Plot power{"pv_curve", "Power of the array", "voltage [V]", "power [W]", {}, false, false, {}};
   power.curves.push_back({"array", v, iv.column("power_W").values, {}, false});
   Plot::Curve peaks{"local maxima", {}, {}, {}, true};

@@ -194,6 +194,7 @@ TEST(MapPicture, SignedZeroIsTheNeutralMiddle) {
   map.value.assign(map.value.size(), 0.0);
   map.value[0] = -2e-9;
   map.value[1] = 1e-9;
+  map.standard_error.clear();
   const MapPicture drawn = map_picture(map, {});
   const auto [red, green, blue] = pixel_of_bin(drawn, map, 3, 3);
   EXPECT_NEAR(red, green, 4);
@@ -202,6 +203,23 @@ TEST(MapPicture, SignedZeroIsTheNeutralMiddle) {
   const auto positive = pixel_of_bin(drawn, map, 1, 0);
   EXPECT_GT(negative[2], negative[0]) << "negative is blue";
   EXPECT_GT(positive[0], positive[2]) << "positive is red";
+}
+
+// Red and blue mean a sign that is known: what is within two standard errors of zero has none.
+TEST(MapPicture, SignedValuesThatAreNotSignificantAreGrey) {
+  Map map = sample_map();
+  map.signed_values = true;
+  map.value.assign(map.value.size(), 1.0);
+  map.standard_error.assign(map.value.size(), 0.49);
+  map.standard_error[1] = 0.51;
+  const MapPicture drawn = map_picture(map, {});
+  const auto sure = pixel_of_bin(drawn, map, 0, 0), unsure = pixel_of_bin(drawn, map, 1, 0);
+  EXPECT_GT(sure[0], sure[2] + 50);
+  EXPECT_EQ(unsure[0], unsure[1]);
+  EXPECT_EQ(unsure[1], unsure[2]);
+  EXPECT_THAT(map_caption(map), testing::HasSubstr("grey: within two standard errors of zero"));
+  map.standard_error.assign(map.value.size(), 0.49);
+  EXPECT_THAT(map_caption(map), testing::Not(testing::HasSubstr("grey")));
 }
 
 TEST(MapPicture, KeepsTheRatioOfTheSides) {

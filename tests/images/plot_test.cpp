@@ -24,6 +24,35 @@ std::vector<PagePoint> noisy_line(size_t count, unsigned seed) {
   return line;
 }
 
+// A waterfall: what is lost hangs between what was there before it and what is left.
+TEST(Plot, BarsHangBetweenTwoValuesWithTheirNamesUnderThem) {
+  Plot plot{"falls", "Falls", "", "power [W]", {}, false, false, {}};
+  const auto bar = [&](const std::string& name, double x, double from, double to) {
+    Plot::Curve curve{name, {x, x}, {from, to}, {}, false, true};
+    plot.curves.push_back(curve);
+  };
+  bar("emitted", 1, 0, 80);
+  bar("lost on the way", 2, 80, 60);
+  bar("left", 3, 0, 60);
+  const std::string html = plot_html(plot);
+  for (const char* text : {"80.0", "−20.0", "60.0", "emitted", "left"}) {
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  }
+  const PlotLayout layout = plot_layout(plot, {.left = 0.0, .right = 600.0, .top = 0.0});
+  EXPECT_TRUE(layout.legends.front().curves.empty());
+  EXPECT_TRUE(layout.panels.front().x.ticks.values.empty());
+  EXPECT_GT(layout.bottom, layout.panels.front().frame.bottom() + 15.0) << "room for names";
+}
+
+TEST(Axis, OfAngleCountsPartsOfATurn) {
+  EXPECT_THAT(horizontal_axis({-180.0, 180.0}, false, "azimuth [deg]", 440.0).ticks.values,
+              testing::ElementsAre(-180, -135, -90, -45, 0, 45, 90, 135, 180));
+  EXPECT_THAT(vertical_axis({-90.0, 90.0}, false, "elevation [deg]", 220.0).ticks.labels,
+              testing::ElementsAre("−90", "−60", "−30", "0", "30", "60", "90"));
+  EXPECT_THAT(horizontal_axis({0.0, 30.0}, false, "tilt [deg]", 440.0).ticks.values,
+              testing::ElementsAre(0, 5, 10, 15, 20, 25, 30));
+}
+
 TEST(Thinned, KeepsTheExtremesOfEveryColumn) {
   const std::vector<PagePoint> line = noisy_line(200000, 1);
   const std::vector<PagePoint> kept = thinned(line, 0.5);

@@ -1,5 +1,6 @@
 #include "tools/cells/words.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -115,6 +116,20 @@ void print_cell(const Console& console, const SingleDiode& d, const FitTask& tas
   console.line("  reference_area_m2 =   # to be filled in: the area of one cell");
 }
 
+// What the fitted curve leaves of each measured point, between the curve's own points straight.
+Plot::Curve residuals_of(const Plot::Curve& measured, const Plot::Curve& fitted) {
+  Plot::Curve left{"", measured.x, {}, {}, true};
+  for (size_t i = 0; i < measured.x.size(); ++i) {
+    const auto above = std::upper_bound(fitted.x.begin(), fitted.x.end(), measured.x[i]);
+    const auto last = static_cast<std::ptrdiff_t>(fitted.x.size()) - 1;
+    const auto k =
+        static_cast<size_t>(std::clamp<std::ptrdiff_t>(above - fitted.x.begin(), 1, last));
+    const double t = (measured.x[i] - fitted.x[k - 1]) / (fitted.x[k] - fitted.x[k - 1]);
+    left.y.push_back(measured.y[i] - (1.0 - t) * fitted.y[k - 1] - t * fitted.y[k]);
+  }
+  return left;
+}
+
 void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
                   const std::vector<ArrayPoint>& maxima, Product& product) {
   Plot plot{"fit", "Measured and fitted", "voltage [V]", "current [A]", {}, false, false, {}};
@@ -147,6 +162,9 @@ void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
   power.curves = {times_voltage(measured), times_voltage(line), peaks};
   plot.curves = {measured, line};
   plot.below.push_back(power);
+  if (line.x.size() > 1) {
+    plot.below.push_back({"left [A]", {residuals_of(measured, line)}, false, {0.0}});
+  }
   product.plots.push_back(plot);
 }
 
