@@ -252,7 +252,9 @@ TEST(Budget, StateIsTiltHeadingAndRate) {
 
 TEST(Budget, ProductHoldsTheTablesAndPlots) {
   const Budget budget =
-      read_budget(settings_of(experiment({{"tilt_deg", node(10)}, {"spin_rpm", node(1)}})));
+      read_budget(settings_of(experiment({{"tilt_deg", node(10)},
+                                          {"spin_rpm", node(1)},
+                                          {"light", table({{"power_W", node(25.8)}})}})));
   const Product product = budget_product(budget);
   const Table& ranked = table_named(product, "budget");
   EXPECT_EQ(column(ranked, "disturbance").texts.size(), 5u);
