@@ -286,6 +286,7 @@ DisturbanceKind marker_positions_kind() {
           .keys = {Key::integer(marker_key, 1, 1'000'000,
                                 "which of `markers_m`, the first is 1; without it all, with three "
                                 "numbers of `error_m` for each")
+                       .range_that_varies()
                        .optional(),
                    Key::numbers(error_key, {-0.1, 0.1},
                                 "where it is in truth, less where `markers_m` says, body axes; "
