@@ -179,6 +179,8 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
                           judge.predicts_far_better(empirical) &&
                           excess_sigma(empirical) < limits.max_excess_sigma;
     if (law_does) d.beside_law = judge.indispensable(empirical);
+    // The law is an approximation, and several effects take up together what it leaves.
+    if (d.beside_law.size() > 1) d.beside_law.clear();
     d.confidence = probability_of(d.probability, [&](size_t i) { return judge.is_empirical(i); });
     if (structure_left || !predicts) {
       d.confidence = std::max(d.confidence, limits.structure_confidence);

@@ -24,7 +24,7 @@ struct Decision {
   // Why something unknown acts, for a person: "the held-out recording is not predicted".
   std::string because = {};
   // Candidates of the chosen trial that act beyond doubt beside a law without a name, where such a
-  // law is the finding: whatever else was tried without one of them is far less likely.
+  // law is the finding: whatever else was tried without it is far less likely. One at most.
   std::vector<size_t> beside_law = {};
   std::vector<double> probability;  // of each trial
 };

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,10 +58,11 @@ struct Explanation {
 };
 
 // How patiently is fitted: the fractions of each run that are fitted in turn, and the iterations
-// of each.
+// of each; a fit to whole runs may end where it will not come below `worth_chi2`.
 struct Effort {
   std::vector<double> windows = {1.0};
   int max_iterations = 25;
+  double worth_chi2 = std::numeric_limits<double>::infinity();
 };
 
 // A candidate with the start of its fit.

@@ -13,6 +13,13 @@ inline Effort patient(const Thresholds& limits) {
   return {.max_iterations = limits.fitting.patient_iterations};
 }
 
+// As long as it may still come near the best on the same runs.
+template <class Trial>
+Effort within_reach(Effort effort, const Trial& best, const Thresholds& limits) {
+  effort.worth_chi2 = best.fit.chi2 + limits.leaders.near_chi2;
+  return effort;
+}
+
 // Whether a trial explains nearly as much as the best on the same runs: where even the nominal
 // model has diverged, most others are no leaders, however few they are.
 template <class Trial>
@@ -27,7 +34,8 @@ void learn(const D& domain, const std::vector<typename D::Run>& runs, const type
   const Thresholds& limits = domain.limits();
   if (trial.fit.chi2 < best.fit.chi2 + limits.leaders.worth_a_fit) return;
   const Effort brief{.max_iterations = limits.fitting.brief_iterations};
-  const Effort effort = is_near(trial, best, limits) ? patient(limits) : brief;
+  const Effort effort =
+      within_reach(is_near(trial, best, limits) ? patient(limits) : brief, best, limits);
   typename D::Trial again = domain.refit_near(trial, best, runs, effort);
   if (again.log_evidence > trial.log_evidence) trial = std::move(again);
 }
@@ -58,7 +66,8 @@ void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, i
   std::erase_if(leaders, [&](size_t i) { return !is_near(found[i], first, limits); });
   parallel_for(leaders.size(), threads, [&](size_t i) {
     Trial& trial = found[leaders[i]];
-    Trial again = domain.refit(trial, runs, domain.begins_of(trial), patient(limits));
+    Trial again = domain.refit(trial, runs, domain.begins_of(trial),
+                               within_reach(patient(limits), first, limits));
     if (again.log_evidence > trial.log_evidence) trial = std::move(again);
   });
   const Trial best = found[by_evidence(found).front()];

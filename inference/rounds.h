@@ -29,15 +29,17 @@ class Rounds {
         threads_(threads),
         trials_{base} {}
 
-  // All trials that were fitted, the base first; `from`: where the rounds begin, fitted to the set.
-  std::vector<Trial> run(const Trial& from) {
+  // All trials that were fitted, the base first; `from`: where the rounds begin, fitted to the set;
+  // `scans`: whether what only a scan finds is looked for as well.
+  std::vector<Trial> run(const Trial& from, bool scans = true) {
     if (!from.candidates.empty()) trials_.push_back(from);
     Trial at = from;
-    bool scan = false;
+    bool scan = false, scans_base = false;
     for (int round = 0; round < limits_.search.max_rounds; ++round) {
       std::vector<Trial> found = scan ? scanned(at) : predicted(at, round == 0);
-      // Slow effects may stand in for one that is fast: the scan also begins without them.
-      if (scan && may_be_stand_ins(at)) {
+      // Slow effects may stand in for one that is fast: once the scan also begins without them.
+      if (scan && !scans_base && may_be_stand_ins(at)) {
+        scans_base = true;
         for (Trial& t : scanned(trials_.front())) found.push_back(std::move(t));
       }
       if (scan) {
@@ -63,7 +65,7 @@ class Rounds {
         if (!has_empirical(at)) break;
       }
       // What needs a scan is looked for where nothing predicted gains any more.
-      if (!gained && (scan || !is_worth_a_scan(at))) break;
+      if (!gained && (scan || !scans || !is_worth_a_scan(at))) break;
       if (scan && set_.pieces > 1) break;
       scan = !gained;
     }
@@ -260,16 +262,24 @@ class Rounds {
                             const Runs& averages) const {
     const Effort effort{.max_iterations = limits_.fitting.trial_iterations};
     std::vector<Trial> found(chosen.size());
-    parallel_for(chosen.size(), threads_,
-                 [&](size_t i) { found[i] = domain_.assemble(at, chosen[i], averages, effort); });
     if (found.empty()) return found;
-    const double rough = domain_.refit(at, averages, domain_.begins_of(at), {}).log_evidence;
-    for (Trial& t : found) t.log_evidence += at.log_evidence - rough;
+    const Trial rough = domain_.refit(at, averages, domain_.begins_of(at), {});
+    parallel_for(chosen.size(), threads_, [&](size_t i) {
+      found[i] = domain_.assemble(at, chosen[i], averages, within_reach(effort, rough, limits_));
+    });
+    for (Trial& t : found) t.log_evidence += at.log_evidence - rough.log_evidence;
     found = without_twins(std::move(found));
     sort_by_evidence(found);
-    const size_t refits = std::min(limits_.search.max_refits_of_averages, found.size());
+    // What diverged where the best did not is not worth all readings.
+    const bool best_is_near = !has_diverged(found.front(), limits_);
+    size_t refits = 0;
+    while (refits < std::min(limits_.search.max_refits_of_averages, found.size()) &&
+           !(best_is_near && has_diverged(found[refits], limits_))) {
+      ++refits;
+    }
     parallel_for(refits, threads_, [&](size_t i) {
-      found[i] = domain_.refit(found[i], set_.runs, domain_.begins_of(found[i]), {});
+      const Effort effort = set_.pieces == 1 ? within_reach(Effort{}, at, limits_) : Effort{};
+      found[i] = domain_.refit(found[i], set_.runs, domain_.begins_of(found[i]), effort);
     });
     keep_below(found, refits);
     return found;

@@ -144,7 +144,10 @@ class Weighing {
     const auto nominal =
         std::find_if(leaders_.begin(), leaders_.end(), [](const Leader& l) { return l.at == 0; });
     Rounds<D> rounds(domain_, {all_runs_}, nominal->joint, limits_.search.max_effects, threads_);
-    std::vector<Trial> found = rounds.run(from.joint);
+    // About a law without a name the train runs were scanned for what acts fast.
+    const bool is_law = std::any_of(from.joint.candidates.begin(), from.joint.candidates.end(),
+                                    [&](size_t c) { return domain_.candidates()[c].is_empirical; });
+    std::vector<Trial> found = rounds.run(from.joint, !is_law);
     size_t added = 0;
     for (const size_t i : by_evidence(found)) {
       if (found[i].log_evidence < from.joint.log_evidence + limits_.search.min_log_evidence_gain ||
@@ -154,7 +157,7 @@ class Weighing {
       if (!found[i].objection.empty() || leads(found[i].candidates)) continue;
       Trial joint =
           domain_.refit(found[i], all_runs_, domain_.begins_of(found[i]), patient(limits_));
-      Trial train = assembled(joint, domain_.terms_of(joint));
+      Trial train = assembled(joint, domain_.terms_of(joint), patient(limits_));
       add_leader(std::move(train), std::move(joint));
       ++added;
     }
@@ -184,19 +187,24 @@ class Weighing {
     if (leads(candidates)) return;
     // Without it the rest may have to go far: nominal values that it stood in for, to begin with.
     const Effort growing{limits_.fitting.diverged_windows, limits_.fitting.patient_iterations};
-    Trial joint = domain_.assemble(from.joint, members, all_runs_, growing);
-    Trial train = assembled(joint, domain_.terms_of(joint));
+    Trial joint = domain_.assemble(from.joint, members, all_runs_,
+                                   within_reach(growing, from.joint, limits_));
+    const bool is_lost = !is_near(joint, from.joint, limits_);
+    Trial train = assembled(
+        joint, domain_.terms_of(joint),
+        is_lost ? Effort{.max_iterations = limits_.fitting.brief_iterations} : patient(limits_));
     add_leader(std::move(train), std::move(joint));
   }
 
   // Fitted to the train runs from where a fit to all ended.
-  Trial assembled(const Trial& joint, const std::vector<Term<typename D::Start>>& terms) const {
+  Trial assembled(const Trial& joint, const std::vector<Term<typename D::Start>>& terms,
+                  const Effort& effort) const {
     const std::vector<typename D::Begin> begins = domain_.begins_of(joint);
     const Trial start = domain_.with_begins(
         joint, {begins.begin(), begins.begin() + static_cast<std::ptrdiff_t>(train_.size())});
     Members<typename D::Start> members;
     for (const auto& term : terms) members.push_back({term});
-    return domain_.assemble(start, members, train_, patient(limits_));
+    return domain_.assemble(start, members, train_, effort);
   }
 
   void add_leader(Trial train, Trial joint) {

@@ -357,7 +357,7 @@ Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const
   PropagationOptions propagation = options.propagation;
   // A trial of parameters that make the motion run away is not worth its steps.
   // What rubs and stops needs thousands in a short time.
-  constexpr int64_t steps_at_least = 60000;
+  constexpr int64_t steps_at_least = 20000;
   constexpr double steps_per_second = 40.0;
   propagation.max_steps =
       steps_at_least +

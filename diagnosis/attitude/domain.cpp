@@ -28,6 +28,7 @@ FitSettings settings_of(const inference::Effort& effort) {
   FitSettings settings;
   settings.windows = effort.windows;
   settings.max_iterations = effort.max_iterations;
+  settings.worth_chi2 = effort.worth_chi2;
   return settings;
 }
 

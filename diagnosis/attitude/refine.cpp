@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "attitude/estimation/averaging.h"
+#include "attitude/estimation/noise.h"
 #include "core/constants.h"
 #include "core/errors.h"
 
@@ -94,13 +95,16 @@ class Refinement {
  public:
   Refinement(const Trial& chosen, size_t which, Candidates& all,
              const std::vector<Observation>& runs)
-      : which_(which), all_(all), runs_(runs), best_(chosen) {}
+      : which_(which),
+        all_(all),
+        runs_(runs),
+        worth_chi2_(chosen.fit.chi2 + all.limits.leaders.near_chi2),
+        best_(chosen) {}
 
   Trial exchanged(const Trial& trial, const EmpiricalLaw& law, const Disturbance& start,
                   const std::vector<Observation>& runs) {
     all_.list.push_back(candidate_of(law));
-    FitSettings settings;
-    settings.max_iterations = 40;
+    FitSettings settings = patient();
     if (trial.fit.chi2_per_sample() > all_.limits.diverged_chi2_per_sample) {
       settings.windows = all_.limits.fitting.diverged_windows;
     }
@@ -144,9 +148,18 @@ class Refinement {
   const Trial& best() const { return best_; }
 
  private:
+  // Until the fit converges, as long as it may come near what the law explained before.
+  FitSettings patient() const {
+    FitSettings settings;
+    settings.max_iterations = 40;
+    settings.worth_chi2 = worth_chi2_;
+    return settings;
+  }
+
   size_t which_;
   Candidates& all_;
   const std::vector<Observation>& runs_;
+  double worth_chi2_;
   Trial best_;
 };
 
@@ -243,10 +256,16 @@ void Refinement::consider_simpler(const Trial& table, size_t laws) {
   std::ranges::sort(found, {}, [](const auto& f) { return f.second.left; });
   for (size_t k = 0; k < std::min(most, found.size()); ++k) {
     const auto& [c, regression] = found[k];
-    FitSettings settings;
-    settings.max_iterations = 40;
-    consider(exchange(table, all_, which_, c, regression.start, runs_, settings));
+    consider(exchange(table, all_, which_, c, regression.start, runs_, patient()));
   }
+}
+
+// A formula that leaves nothing but noise needs no other.
+bool is_formula_that_explains(const Trial& trial, const EmpiricalLaw& law,
+                              const std::vector<Observation>& runs, const Thresholds& limits) {
+  return law.shape.functions.front().form == FunctionForm::decay &&
+         trial.fit.chi2_per_sample() < limits.held_out.max_noise &&
+         excess_sigma(trial.fit, runs, limits.noise) < limits.search.explained_sigma;
 }
 
 }  // namespace
@@ -259,6 +278,7 @@ Trial refined_in_time(const Trial& chosen, Candidates& all, const std::vector<Ob
     for (const Observation& seen : runs) duration_s = std::max(duration_s, seen.time_s.back());
     // What it was weighed with besides these runs is the same for all.
     Trial before = refit(chosen, all, runs, chosen.fit.best.runs);
+    if (is_formula_that_explains(before, law, runs, all.limits)) return chosen;
     const double weighed = chosen.log_evidence - before.log_evidence;
     const size_t laws = all.size();
     Refinement refinement(before, i, all, runs);

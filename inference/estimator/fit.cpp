@@ -67,6 +67,35 @@ Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& par
   return step;
 }
 
+// Whether χ², as fast as it falls, comes below what is worth the fit.
+class Outlook {
+ public:
+  Outlook(double worth_chi2, int max_iterations)
+      : worth_chi2_(worth_chi2), max_iterations_(max_iterations) {}
+
+  // After a step that was taken. What fell by a factor in the last steps may fall by its square in
+  // as many that are left, but not by more.
+  bool is_lost(double chi2, int iteration) {
+    constexpr size_t memory = 6;
+    constexpr double acceleration = 2.0;
+    if (!(worth_chi2_ < infinity)) return false;
+    fallen_.push_back(chi2);
+    if (fallen_.size() <= memory || !(chi2 > worth_chi2_)) return false;
+    const double fall = std::log(fallen_[fallen_.size() - 1 - memory] / chi2) / memory;
+    const double left = static_cast<double>(max_iterations_ - iteration);
+    return std::log(chi2 / worth_chi2_) > acceleration * fall * left;
+  }
+
+ private:
+  double worth_chi2_;
+  int max_iterations_;
+  std::vector<double> fallen_;
+};
+
+// A window that is not the whole only brings the start of the next one near.
+constexpr int iterations_of_first_windows = 20;
+constexpr double gain_in_first_windows = 1.0;
+
 class Fitter {
  public:
   Fitter(const ForwardModel& model, const Eigen::VectorXd& start, const Options& options)
@@ -74,9 +103,12 @@ class Fitter {
 
   Fit run() {
     Fit result;
-    for (const double window : options_.windows) result.termination = fit_window(window);
-    const bool is_hopeless =
-        options_.max_start_chi2 < infinity && result.termination == Termination::not_evaluable;
+    // What cannot be evaluated in a window cannot be in a longer one.
+    bool is_hopeless = false;
+    for (size_t w = 0; w < options_.windows.size() && !is_hopeless; ++w) {
+      result.termination = fit_window(options_.windows[w]);
+      is_hopeless = result.termination == Termination::not_evaluable;
+    }
     const Request whole{!is_hopeless, 1.0, is_hopeless ? 0.0 : infinity};
     Evaluation last = ended_at_ ? std::move(*ended_at_) : evaluate(model_, now_, whole);
     result.parameters = model_.parameters(now_);
@@ -115,7 +147,12 @@ class Fitter {
   Termination iterate(Evaluation& now, double window) {
     double damping = options_.initial_damping;
     DampingScale scale(options_.keep_largest_scale);
-    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+    const bool is_whole = window == 1.0;
+    const int most = is_whole ? options_.max_iterations
+                              : std::min(options_.max_iterations, iterations_of_first_windows);
+    const double least_gain = is_whole ? options_.min_gain : gain_in_first_windows;
+    Outlook outlook(is_whole ? options_.worth_chi2 : infinity, most);
+    for (int iteration = 0; iteration < most; ++iteration) {
       if (!std::isfinite(now.sums.chi2)) return Termination::not_evaluable;
       ++iterations_;
       const Parameters parameters = model_.parameters(now_);
@@ -127,8 +164,7 @@ class Fitter {
       }
       const double predicted_gain = step.dot(2.0 * now.sums.gradient - now.sums.matrix * step);
       // Not "<": a perfect fit has nothing to gain and asks for nothing.
-      if (!(predicted_gain >
-            std::max(options_.min_gain, options_.min_gain_fraction * now.sums.chi2))) {
+      if (!(predicted_gain > std::max(least_gain, options_.min_gain_fraction * now.sums.chi2))) {
         if (options_.polish) polish(step, predicted_gain, damping, window, now);
         return Termination::converged;
       }
@@ -144,6 +180,7 @@ class Fitter {
           at.sums.chi2 < now.sums.chi2 - 0.25 * predicted_gain ? damping * 0.1 : damping * 3.0;
       damping = std::max(damping, options_.min_damping);
       now = evaluate(model_, now_, {true, window});
+      if (outlook.is_lost(now.sums.chi2, iteration)) return Termination::out_of_reach;
     }
     return Termination::max_iterations;
   }

@@ -15,6 +15,8 @@ const char* words_of(Termination termination) {
       return "no step lowers chi2 any more";
     case Termination::max_iterations:
       return "stopped at the largest number of iterations";
+    case Termination::out_of_reach:
+      return "given up: too far from what is worth a fit";
     case Termination::not_evaluable:
       return "the model cannot be evaluated";
   }

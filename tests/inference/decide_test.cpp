@@ -116,8 +116,9 @@ TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   // Where the law leaves structure, the names may make up for it.
   EXPECT_TRUE(judged(20.0, limits).beside_law.empty());
   Thresholds::Decision mutant = limits;
+  // Two that the law needs may together be what it leaves.
   mutant.min_log_odds_beside_law = 3.0;
-  EXPECT_EQ(judged(0.0, mutant).beside_law, (std::vector<size_t>{0, 1}));
+  EXPECT_TRUE(judged(0.0, mutant).beside_law.empty());
 }
 
 // Two explanations as likely as one another, each weak without what was held out: where nothing at

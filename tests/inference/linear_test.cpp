@@ -282,6 +282,29 @@ TEST(Options, ValuesOutsideTheirRangesAreRefused) {
   EXPECT_NO_THROW(Options::to_rounding().check());
 }
 
+// χ² = 100 + x²; slopes that claim twenty times too much make every step too short.
+TEST(Fit, EndsWhereItFallsTooSlowlyToBeWorthIt) {
+  const ResidualModel model({{"x", "", 100.0}},
+                            [](const Eigen::VectorXd& at, Eigen::Index, Eigen::VectorXd& residuals,
+                               Eigen::MatrixXd* slopes) {
+                              residuals = Eigen::Vector2d(10.0, at[0]);
+                              if (slopes != nullptr) *slopes = Eigen::Vector2d(0.0, -20.0);
+                            });
+  Options options;
+  options.max_iterations = 60;
+  const Fit patient = fit(model, model.start(), options);
+  EXPECT_EQ(patient.termination, Termination::converged);  // far from the minimum of 100
+  options.worth_chi2 = 50.0;                               // below any that the model has
+  const Fit lost = fit(model, model.start(), options);
+  EXPECT_EQ(lost.termination, Termination::out_of_reach);
+  EXPECT_LT(lost.iterations, patient.iterations);
+  EXPECT_GT(lost.iterations, 6);
+  options.worth_chi2 = 1.1 * patient.chi2;  // what patience reaches
+  const Fit worth = fit(model, model.start(), options);
+  EXPECT_EQ(worth.iterations, patient.iterations);
+  EXPECT_EQ(worth.chi2, patient.chi2);
+}
+
 TEST(Fit, AModelThatCannotBeEvaluatedIsInfinitelyBad) {
   const ResidualModel model({{"a", "", 1.0}},
                             [](const Eigen::VectorXd&, Eigen::Index, Eigen::VectorXd& residuals,

@@ -429,7 +429,11 @@ Trial refit_near(const Trial& trial, const Trial& other, const Candidates& all,
     const std::vector<double>& own = from.fit.best.runs[run].initial.extra;
     if (extra.size() != own.size()) extra = own;
   }
-  return refit(from, all, runs, starts, settings);
+  // From a start that is far worse than where the trial is, it would only come back.
+  FitSettings near = settings;
+  near.max_start_chi2 = std::max(all.limits.fitting.max_start_growth * trial.fit.chi2,
+                                 all.limits.diverged_chi2_per_sample * trial.fit.samples);
+  return refit(from, all, runs, starts, near);
 }
 
 }  // namespace photorque
