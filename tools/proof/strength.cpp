@@ -132,14 +132,6 @@ bool stays_physical(const InjectedCase& c) {
   // Between two readings of the camera, so that no turn is missed.
   const double max_turn_rad = 0.8;
   if (!is_body(injected_inertia_kg_m2(c.world))) return false;
-  // A gyro that is off by more than half of what it reads, or reads backwards, is no slight error.
-  constexpr double max_gyro_scale = 0.5;
-  for (const InjectedEffect& effect : c.world.effects) {
-    if (effect.kind != "gyro_scale") continue;
-    for (const double scale : effect.parameters.at("scale")) {
-      if (std::abs(scale) > max_gyro_scale) return false;
-    }
-  }
   for (const InjectedRun& run : c.runs) {
     std::vector<double> times_s;
     for (double t = 0.0; t < run.duration_s; t += 0.5) times_s.push_back(t);

@@ -39,6 +39,7 @@ DisturbanceKind gyro_scale_kind() {
                     .alter = plain_change,
                     .strength = scale.name,
                     .step = 1e-5,
+                    .max_factor = 20.0,  // beyond a fifth it is no slight error
                     .pairs = true},
       .budget = {.reason_against = "an error of an instrument: no torque"},
       .instrument = "gyro",
