@@ -36,6 +36,20 @@ std::shared_ptr<py::object> shared_function(const py::object& function) {
           }};
 }
 
+// The first rays of a lamp, block by block: `rays` is a multiple of a block.
+template <class Use>
+void for_first_rays(const Emitter& emitter, uint32_t rays, const Use& use) {
+  SampleBlock samples;
+  std::array<uint32_t*, sobol_dimensions> columns;
+  for (size_t d = 0; d < sobol_dimensions; ++d) columns[d] = samples.bits[d].data();
+  RayBlock block;
+  for (uint32_t first = 0; first < rays; first += sobol_block) {
+    sobol_points({}, first, columns);
+    emitter.emit(samples, block);
+    use(block);
+  }
+}
+
 class OwnLamp final : public Emitter {
  public:
   OwnLamp(const LampHandle& lamp, Call::Failing failing)
@@ -114,18 +128,12 @@ class OwnLamp final : public Emitter {
   void find_intensity() {
     constexpr uint32_t rays = 256 * sobol_block;
     std::vector<double> angles_rad;
-    SampleBlock samples;
-    std::array<uint32_t*, sobol_dimensions> columns;
-    for (size_t d = 0; d < sobol_dimensions; ++d) columns[d] = samples.bits[d].data();
-    RayBlock block;
-    for (uint32_t first = 0; first < rays; first += sobol_block) {
-      sobol_points({}, first, columns);
-      emit(samples, block);
+    for_first_rays(*this, rays, [&](const RayBlock& block) {
       for (size_t i = 0; i < ray_block; ++i) {
         angles_rad.push_back(std::atan2(std::hypot(block.direction[0][i], block.direction[1][i]),
                                         block.direction[2][i]));
       }
-    }
+    });
     std::sort(angles_rad.begin(), angles_rad.end());
     edges_rad_ = {0.0};
     for (size_t cone = 0; cone < cones; ++cone) {
@@ -158,16 +166,10 @@ std::string hash_of(const Beam& beam) {
   const auto add = [&](const void* from, size_t size) {
     bytes.append(static_cast<const char*>(from), size);
   };
-  SampleBlock samples;
-  std::array<uint32_t*, sobol_dimensions> columns;
-  for (size_t d = 0; d < sobol_dimensions; ++d) columns[d] = samples.bits[d].data();
-  RayBlock block;
-  for (uint32_t first = 0; first < rays; first += sobol_block) {
-    sobol_points({}, first, columns);
-    beam.emitter->emit(samples, block);
+  for_first_rays(*beam.emitter, rays, [&](const RayBlock& block) {
     add(block.origin_m.data(), sizeof block.origin_m);
     add(block.direction.data(), sizeof block.direction);
-  }
+  });
   const double power_W = beam.emitter->power_W();
   add(&power_W, sizeof power_W);
   add(&beam.spectrum.centre_m, sizeof(double));
