@@ -148,9 +148,11 @@ class Fitter {
     double damping = options_.initial_damping;
     DampingScale scale(options_.keep_largest_scale);
     const bool is_whole = window == 1.0;
-    const int most = is_whole ? options_.max_iterations
-                              : std::min(options_.max_iterations, iterations_of_first_windows);
-    const double least_gain = is_whole ? options_.min_gain : gain_in_first_windows;
+    // Patience in the first windows is for what must be fitted, however poor its start.
+    const bool is_brief = !is_whole && options_.worth_chi2 < infinity;
+    const int most = is_brief ? std::min(options_.max_iterations, iterations_of_first_windows)
+                              : options_.max_iterations;
+    const double least_gain = is_brief ? gain_in_first_windows : options_.min_gain;
     Outlook outlook(is_whole ? options_.worth_chi2 : infinity, most);
     for (int iteration = 0; iteration < most; ++iteration) {
       if (!std::isfinite(now.sums.chi2)) return Termination::not_evaluable;

@@ -31,8 +31,8 @@ namespace photorque::inference {
 
 struct Options {
   std::vector<double> windows = {1.0};  // fractions of each run that are fitted in turn, in (0, 1]
-  int max_iterations = 25;              // > 0, of whole runs; 20 at most in each window before
-  // Whole runs are done when the next step predicts to lower χ² by less than the larger of these.
+  int max_iterations = 25;              // > 0, in each window
+  // A window is done when the next step predicts to lower χ² by less than the larger of these.
   // In units of χ²: a parameter is then within √min_gain of its standard error of the minimum.
   double min_gain = 0.01;
   double min_gain_fraction = 1e-6;  // of χ²: what a bad fit could hardly show
@@ -41,7 +41,8 @@ struct Options {
   bool polish = false;
   // A start whose χ² is larger is not worth its derivatives: it counts as not evaluable.
   double max_start_chi2 = infinity;
-  // A fit of whole runs ends where χ² falls too slowly to come below this; infinite: it does not.
+  // A fit of whole runs ends where χ² falls too slowly to come below this, and windows before only
+  // bring their start near, in 20 iterations at most. Infinite: neither.
   double worth_chi2 = infinity;
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;  // ≥ 0: keeps combinations that nothing determines where they are
