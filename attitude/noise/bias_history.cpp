@@ -158,10 +158,21 @@ Equations equations_of(const std::vector<Span>& spans) {
   for (const Span& span : spans) {
     for (const Observation* piece : span.pieces) add_piece(*piece, span, sums);
   }
-  // Where a motion does not tell them apart, the bias is the culprit rather than these: scale and
-  // misalignment, the camera's delay, the turning of the laboratory.
-  Eigen::VectorXd widths = Eigen::VectorXd::Constant(size, 0.1);
-  widths.head<shared_count>() << Eigen::VectorXd::Constant(9, 0.01), 0.05, Vec3::Constant(7e-5);
+  return sums;
+}
+
+// Scale and misalignment of a gyro: its nine numbers, by rows, come first of the shared columns.
+constexpr Eigen::Index of_matrix = 9;
+constexpr std::array<Eigen::Index, 3> scales = {0, 4, 8};
+// What is usual of each, and beyond what no gyro's scale is off: there it is something else.
+constexpr double usual_matrix_error = 0.01, most_scale_error = 0.3;
+
+// Where a motion does not tell them apart, the bias is the culprit rather than what all recordings
+// share: scale and misalignment, of these widths, the camera's delay, the turning of the
+// laboratory.
+Equations with_priors(Equations sums, const Eigen::VectorXd& matrix_errors) {
+  Eigen::VectorXd widths = Eigen::VectorXd::Constant(sums.right.size(), 0.1);
+  widths.head<shared_count>() << matrix_errors, 0.05, Vec3::Constant(7e-5);
   sums.matrix.diagonal() += widths.cwiseAbs2().cwiseInverse();
   return sums;
 }
@@ -232,6 +243,26 @@ Solution solved(Bias model, const std::vector<Span>& spans, const Equations& sum
   return s;
 }
 
+// What a gyro's scale and misalignment may be. A scale more than is usual where the motion shows it
+// whatever the bias does: held to what is usual it would be taken for a drift. Not so the
+// misalignments: where axes are turned far the first order does not hold, and these numbers would
+// take up only half of what it leaves.
+Eigen::VectorXd matrix_errors(const std::vector<Span>& spans, const Equations& sums) {
+  constexpr double clear_sigma = 3.0;
+  const Solution free =
+      solved(Bias::lines, spans,
+             with_priors(sums, Eigen::VectorXd::Constant(of_matrix, most_scale_error)));
+  Eigen::VectorXd errors = Eigen::VectorXd::Constant(of_matrix, usual_matrix_error);
+  for (const Eigen::Index k : scales) {
+    const double found = std::abs(free.numbers[k]);
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(free.numbers.size(), k);
+    const double sigma = std::sqrt(std::max(0.0, unit.dot(free.solver.solve(unit))));
+    const bool is_clear = found > 3.0 * usual_matrix_error && found > clear_sigma * sigma;
+    if (is_clear && found < most_scale_error) errors[k] = found;
+  }
+  return errors;
+}
+
 // Of every second knot; `wider`: what noise is over what was stated of it.
 BiasHistory history_of(const Span& span, const Solution& s, double wider) {
   BiasHistory history{span.name, {}, {}, {}};
@@ -265,8 +296,9 @@ std::vector<BiasHistory> bias_histories(const std::vector<const Observation*>& p
   };
   if (pieces.empty() || !std::all_of(pieces.begin(), pieces.end(), is_complete)) return {};
   const std::vector<Span> spans = spans_of(pieces);
-  const Equations sums = equations_of(spans);
-  if (!sums.matrix.allFinite() || !sums.right.allFinite()) return {};
+  const Equations seen = equations_of(spans);
+  if (!seen.matrix.allFinite() || !seen.right.allFinite()) return {};
+  const Equations sums = with_priors(seen, matrix_errors(spans, seen));
   const Solution constant = solved(Bias::constant, spans, sums),
                  lines = solved(Bias::lines, spans, sums), finer = solved(Bias::finer, spans, sums);
   // Noise that is louder or more correlated than stated gains more than one a number, in knots that
