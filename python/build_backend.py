@@ -44,15 +44,19 @@ def _tag():
     return f"{python}-{python}-{platform}"
 
 
+def _has_pybind11_of_debian():
+    """CMake finds that one by itself."""
+    return any(pathlib.Path(f"/usr/{place}/cmake/pybind11").exists() for place in ("lib", "share"))
+
+
 def _compile():
     """The folder of the package with the compiled module."""
     build = pathlib.Path(os.environ.get("PHOTORQUE_BUILD", root / "build"))
     configure = ["cmake", "--preset", "release", "-B", str(build), "-DPHOTORQUE_PYTHON=ON"]
     # Not that of an environment, which may be gone when the build folder is used again.
     configure.append(f"-DPython_EXECUTABLE={sys._base_executable}")
-    # CMake finds Debian's pybind11 by itself; that of pip's own environment is gone after the build.
-    if not any(pathlib.Path(f"/usr/{place}/cmake/pybind11").exists() for place in ("lib", "share")):
-        import pybind11
+    if not _has_pybind11_of_debian():
+        import pybind11  # in pip's own environment, which is gone after the build
 
         configure.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
     subprocess.run(configure, cwd=root, check=True)
@@ -61,7 +65,8 @@ def _compile():
 
 
 def get_requires_for_build_wheel(config_settings=None):
-    return []
+    """Nothing on a machine that has Debian's pybind11, so that no index is asked there."""
+    return [] if _has_pybind11_of_debian() else ["pybind11>=2.10"]
 
 
 def _wheel_text():
