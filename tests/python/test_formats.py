@@ -2,6 +2,9 @@
 
 import importlib.util
 import pathlib
+import re
+import shutil
+import subprocess
 import unittest
 
 import numpy as np
@@ -37,6 +40,18 @@ class Formats(FolderTest):
                     else:
                         np.testing.assert_array_equal(found[:], values)
             self.assertEqual(file.attrs["git_hash"].decode(), photorque.git_hash)
+
+    @unittest.skipUnless(shutil.which("h5dump"), "no h5dump (hdf5-tools)")
+    def test_h5dump_reads_a_figure_and_a_map(self):
+        def dumped(path, *more):
+            text = subprocess.run(["h5dump", "-m", "%.17g", "-y", "-w", "1", "-d", path, *more, self.folder / "run.h5"],
+                                  check=True, capture_output=True, text=True).stdout
+            return [float(x) for x in re.search(r"DATA \{(.*?)\}", text, re.S).group(1).split(",")]
+
+        power = self.power.figures["array_power_W"]
+        self.assertEqual(dumped("/figures/array_power_W"), [power.value, power.standard_error])
+        some = dumped("/maps/irradiance_solar_array/value", "-s", "7,5", "-c", "1,10")
+        self.assertEqual(some, list(self.power.maps["irradiance_solar_array"].value[7, 5:15]))
 
     @unittest.skipUnless(there("vtk"), "no VTK (python3-vtk9)")
     def test_vtk_reads_the_maps(self):
