@@ -50,9 +50,11 @@ class SmoothMotion {
       fastest_rad_s =
           std::max(fastest_rad_s, turn.norm() / (seen.time_s[at_[n + 1]] - seen.time_s[at_[n]]));
     }
-    const double turns_s = 1.2 / fastest_rad_s, interval_s = reading_interval_s(seen, 0);
+    const double turns_s = 1.2 / fastest_rad_s;
+    const double block_s = (seen.time_s[at_.back()] - seen.time_s[at_.front()]) /
+                           std::max(1.0, static_cast<double>(at_.size()) - 1.0);
     const size_t stride = std::clamp<size_t>(
-        static_cast<size_t>(std::min(2.0, turns_s) / std::max(interval_s, 1e-6)), 6, 60);
+        static_cast<size_t>(std::min(2.0, turns_s) / std::max(block_s, 1e-6)), 6, 60);
     for (size_t n = 0; n < at_.size(); n += stride) add_knot(seen, n, stride / 2 + 1);
     if (time_s_.back() < seen.time_s[at_.back()]) add_knot(seen, at_.size() - 1, stride / 2 + 1);
   }
