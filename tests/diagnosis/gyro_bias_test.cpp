@@ -4,6 +4,7 @@
 
 #include "attitude/estimation/nominal_model.h"
 #include "attitude/noise/bias_history.h"
+#include "attitude/noise/kinematics.h"
 #include "tests/diagnosis/noisy_recording.h"
 
 namespace photorque {
@@ -129,6 +130,24 @@ TEST(BiasHistory, IsSilentWhereAScaleIsFarOff) {
       for (double& rate : r.recording.channels[gyro_x_channel + k].values) rate *= 0.84;
     }
     EXPECT_TRUE(histories_of({r}).empty()) << seed;
+  }
+}
+
+// A pendulum of a quarter of a minute, five readings in a block: what is left about its motion is
+// noise (37 arcsec, 2e-4 rad, of one reading), not a part of the swing of 15 deg.
+TEST(KinematicRun, FollowsASwingInBlocksOfReadings) {
+  const auto bottom_heavy = [](const State& s) {
+    return 2e-2 * (s.lab_from_body.conjugate() * Vec3::UnitZ()).cross(Vec3::UnitZ()).eval();
+  };
+  Session session;
+  session.interval_s = 0.05;
+  session.rate_rad_s = Vec3(0.1, -0.06, 0.17);
+  const NamedRecording r = recorded_with(1, session, bottom_heavy);
+  const KinematicRun run = kinematic_run(observe(r.recording, r.name).averaged(1200), nullptr);
+  for (const KinematicSeries& series : run.axis) {
+    double square = 0.0;
+    for (const double angle : series.angle_rad) square += angle * angle;
+    EXPECT_LT(std::sqrt(square / static_cast<double>(series.blocks())), 3e-4);
   }
 }
 
