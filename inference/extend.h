@@ -87,23 +87,29 @@ std::vector<typename D::Trial> extend_by_tasks(const D& domain, const typename D
   return best;
 }
 
-// The pieces of the runs in which the parent stays near the readings, or the shortest that can be,
-// and the parent fitted to them.
+// The pieces of the runs in which the parent stays near the readings, and the parent fitted to
+// them. Where it does so in none, however short, what is missing acts fast and is seen best in long
+// ones: the longest that leave little more than the shortest do, whole runs included.
 template <Domain D>
 std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
                                                     const typename D::Trial& parent,
                                                     const std::vector<typename D::Run>& runs) {
-  std::pair<RunSet<D>, typename D::Trial> result{{runs}, parent};
-  auto& [pieces, near] = result;
+  constexpr double little_more = 3.0;
+  std::vector<std::pair<RunSet<D>, typename D::Trial>> tried{{{runs}, parent}};
   for (const size_t count : domain.limits().search.pieces) {
     std::vector<typename D::Run> shorter = domain.cut(runs, count);
     // Too few readings to be cut.
     if (shorter.empty()) break;
-    pieces = {std::move(shorter), count};
-    near = domain.refit(parent, pieces.runs, domain.seen_begins(parent, pieces.runs), {});
-    if (near.fit.chi2_per_sample() < domain.limits().diverged_chi2_per_sample) break;
+    RunSet<D> pieces{std::move(shorter), count};
+    typename D::Trial near =
+        domain.refit(parent, pieces.runs, domain.seen_begins(parent, pieces.runs), {});
+    tried.emplace_back(std::move(pieces), std::move(near));
+    if (!has_diverged(tried.back().second, domain.limits())) return std::move(tried.back());
   }
-  return result;
+  const double enough = little_more * tried.back().second.fit.chi2_per_sample();
+  return std::move(*std::find_if(tried.begin(), tried.end(), [&](const auto& one) {
+    return !(one.second.fit.chi2_per_sample() > enough);
+  }));
 }
 
 }  // namespace photorque::inference

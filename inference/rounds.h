@@ -74,7 +74,9 @@ class Rounds {
 
  private:
   bool may_be_stand_ins(const Trial& at) const {
-    if (at.candidates.empty() || has_diverged(trials_.front(), limits_)) return false;
+    if (at.candidates.empty()) return false;
+    // About a base that is elsewhere a scan says nothing, if something leads back to the readings.
+    if (has_diverged(trials_.front(), limits_) && !has_diverged(at, limits_)) return false;
     return at.candidates.size() > 1 ||
            domain_.excess_sigma(at, set_.runs) > limits_.search.explained_sigma;
   }

@@ -20,7 +20,9 @@ class Search {
     const Trial nominal = trials_.front();
     Trial from = nominal;
     if (has_diverged(nominal, limits_)) {
-      for (Trial& t : by_pieces(nominal)) trials_.push_back(std::move(t));
+      auto [pieces, near] = near_pieces(domain_, nominal, runs_);
+      if (pieces.pieces == 1) return about(nominal, from);
+      for (Trial& t : by_pieces(nominal, pieces, near)) trials_.push_back(std::move(t));
       // Nothing can be predicted about a prediction that is elsewhere. One that pieces led to the
       // readings, all but a part that is still unknown or noise that is more than stated, says
       // more.
@@ -33,10 +35,7 @@ class Search {
       }
       from = best;
     }
-    auto found = rounds({runs_}, nominal).run(from);
-    for (size_t i = 1; i < found.size(); ++i) trials_.push_back(std::move(found[i]));
-    trials_.front() = std::move(found.front());
-    return without_twins(std::move(trials_));
+    return about(nominal, from);
   }
 
  private:
@@ -44,11 +43,19 @@ class Search {
     return Rounds<D>(domain_, set, base, limits_.search.max_effects, threads_);
   }
 
+  // All trials, with those of the rounds over whole runs.
+  std::vector<Trial> about(const Trial& nominal, const Trial& from) {
+    auto found = rounds({runs_}, nominal).run(from);
+    for (size_t i = 1; i < found.size(); ++i) trials_.push_back(std::move(found[i]));
+    trials_.front() = std::move(found.front());
+    return without_twins(std::move(trials_));
+  }
+
   // A prediction far from the readings says little about why, so the runs are cut into pieces, each
   // with a begin of its own, in which it stays near them; what explains the pieces best is then
   // fitted to the whole (multiple shooting).
-  std::vector<Trial> by_pieces(const Trial& nominal) const {
-    const auto [pieces, near] = near_pieces(domain_, nominal, runs_);
+  std::vector<Trial> by_pieces(const Trial& nominal, const RunSet<D>& pieces,
+                               const Trial& near) const {
     std::vector<Trial> found = rounds(pieces, near).run(near);
     found.erase(found.begin());
     if (found.empty()) return found;  // nothing explains the pieces either
