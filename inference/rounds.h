@@ -174,7 +174,8 @@ class Rounds {
       if (members.empty()) continue;
       // More names than the trial has must promise something.
       if (s.log_evidence < of_trial && is_enlarged(candidates_of(members), at)) continue;
-      if (was_tried(members, at.log_evidence + s.log_evidence - of_trial)) continue;
+      const double expected = at.log_evidence + s.log_evidence - of_trial;
+      if (was_tried(members, expected) || is_refused(members, expected)) continue;
       if (is_leader) ++sets;
       if (is_known) ++known_sets;
       chosen.push_back(std::move(members));
@@ -256,6 +257,19 @@ class Rounds {
       return same_candidates(t.candidates, candidates) &&
              !(expected > t.log_evidence + limits_.search.min_log_evidence_gain &&
                std::isfinite(expected));
+    });
+  }
+
+  // Whether a part of it was fitted and refused (a wrong sign), and it promises nothing beyond that
+  // part: it would be refused as well, in the place of one that is not.
+  bool is_refused(const Members<typename D::Start>& members, double expected) const {
+    const std::vector<size_t> candidates = candidates_of(members);
+    return std::any_of(trials_.begin(), trials_.end(), [&](const Trial& t) {
+      const bool is_part = std::all_of(t.candidates.begin(), t.candidates.end(), [&](size_t c) {
+        return std::find(candidates.begin(), candidates.end(), c) != candidates.end();
+      });
+      return !t.objection.empty() && is_part && t.candidates.size() < candidates.size() &&
+             expected < t.log_evidence + limits_.decision.min_log_odds;
     });
   }
 
