@@ -29,9 +29,12 @@ struct Platform {
   // Of a one_axis platform: x, y or z, in body and lab axes alike, because it turns about nothing
   // else.
   Vec3 axis = Vec3::UnitZ();
+  // The experiment names an effect that only a bearing has (its drag): then it stands on one,
+  // whatever the topology.
+  bool has_effects_of_bearing = false;
 
   bool turns_about_one_axis() const { return topology == Topology::one_axis; }
-  bool has_bearing() const { return topology != Topology::free; }
+  bool has_bearing() const { return topology != Topology::free || has_effects_of_bearing; }
   // It floats on air, about all three axes.
   bool has_air_bearing() const { return has_bearing() && !turns_about_one_axis(); }
 };

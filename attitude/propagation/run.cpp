@@ -15,12 +15,27 @@ namespace {
 
 constexpr double max_run_s = 1e10;  // three centuries
 
+// [[disturbance]] alone: who reads the rest of the file complains about its keys.
+Settings disturbances_of(const Settings& root) {
+  SettingsNode holder;
+  holder.value = SettingsNode::Table{{"disturbance", root.raw("disturbance")}};
+  return Settings(std::make_shared<const SettingsNode>(std::move(holder)));
+}
+
+bool names_effect_of_bearing(const Settings& root) {
+  if (!root.has("disturbance")) return false;
+  const std::vector<Settings> all = disturbances_of(root).tables("disturbance");
+  return std::any_of(all.begin(), all.end(), [](const Settings& disturbance) {
+    const DisturbanceKind* kind = find_kind(disturbance.text_or("kind", ""));
+    return kind != nullptr && (kind->screening.needs == Requirement::bearing ||
+                               kind->screening.needs == Requirement::air_bearing);
+  });
+}
+
 std::vector<Disturbance> read_own_disturbances(const Settings& root,
                                                const DisturbanceContext& context) {
   if (!root.has("disturbance")) return {};
-  SettingsNode holder;
-  holder.value = SettingsNode::Table{{"disturbance", root.raw("disturbance")}};
-  const Settings own(std::make_shared<const SettingsNode>(std::move(holder)));
+  const Settings own = disturbances_of(root);
   std::vector<Disturbance> disturbances = read_disturbances(own, context);
   own.finish();
   return disturbances;
@@ -220,6 +235,7 @@ NominalModel read_attitude_model(const Settings& root) {
   NominalModel nominal;
   AttitudeModel& model = nominal.model;
   model.platform = read_platform(platform);
+  model.platform.has_effects_of_bearing = names_effect_of_bearing(root);
   model.environment = read_environment(environment);
   // What falls freely feels no weight.
   if (!model.platform.has_bearing() && !environment.has("gravity_m_s2")) {

@@ -58,6 +58,38 @@ INSTANTIATE_TEST_SUITE_P(All, CaseOfAnotherProgram,
                                          "11", "12"),
                          [](const auto& one) { return std::string(one.param); });
 
+// Strong friction, which `propagate` made of the true model: the belief lacks it. Platforms that
+// the experiment calls free, and that rest on something because it names a bearing's drag.
+std::set<std::string> names_found(const std::string& name, const std::vector<std::string>& runs) {
+  const fs::path folder = outside::reference_data("faults") / name;
+  const Settings settings(std::make_shared<const SettingsNode>(read_toml(folder / "belief.toml")));
+  std::vector<std::vector<NamedRecording>> sets(2);
+  for (size_t i = 0; i < runs.size(); ++i) {
+    sets[i].push_back({runs[i], read_recording(folder / runs[i])});
+  }
+  const Diagnosis found = diagnose(read_attitude_model(settings), sets[0], sets[1]);
+  EXPECT_EQ(found.verdict, Verdict::missing_physics) << found.sentence;
+  std::set<std::string> names;
+  for (const FoundEffect& effect : found.effects) names.insert(effect.kind);
+  return names;
+}
+
+using Names = std::set<std::string>;
+
+TEST(StrongFriction, OfATabletop) {
+  EXPECT_EQ(names_found("dry_strong", {"run.csv.gz"}), Names({"dry_friction"}));
+}
+
+TEST(StrongFriction, OfAPendulum) {
+  EXPECT_EQ(names_found("dry_pendulum", {"run.csv.gz"}), Names({"dry_friction"}));
+}
+
+// Each alone has the wrong sign beside the drag that is believed.
+TEST(StrongFriction, BesideADragThatBothStandInFor) {
+  EXPECT_EQ(names_found("spin_pair", {"run1.csv.gz", "run2.csv.gz"}),
+            Names({"air_pressure_drag", "dry_friction"}));
+}
+
 // A plan with one case of every kind and shorter runs than docs/proof.md has.
 InjectedPlan short_plan() {
   InjectedPlan plan;
