@@ -99,13 +99,23 @@ Vec2 to_cells(const SurfaceGrid& grid, const Vec2& uv) {
 
 void measure_areas(SurfaceGrid& grid, const Scene& scene, std::span<const SurfaceFace> faces) {
   grid.area_m2.assign(static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), 0.0);
+  std::vector<double> seen_m2 = grid.area_m2;  // along the normal
   for (const SurfaceFace& face : faces) {
     const double area_m2 = face.area_body_m2.norm();
+    const double face_seen_m2 = std::abs(face.area_body_m2.dot(grid.normal_body));
     split_over_cells(corners_in_bins(grid, scene, face), grid.width, grid.height,
                      [&](int column, int row, double fraction) {
-                       grid.area_m2[static_cast<size_t>(row) * static_cast<size_t>(grid.width) +
-                                    static_cast<size_t>(column)] += fraction * area_m2;
+                       const size_t bin =
+                           static_cast<size_t>(row) * static_cast<size_t>(grid.width) +
+                           static_cast<size_t>(column);
+                       grid.area_m2[bin] += fraction * area_m2;
+                       seen_m2[bin] += fraction * face_seen_m2;
                      });
+  }
+  if (grid.over == SurfaceGrid::Over::plane) {
+    const double bin_m2 =
+        (grid.u_high - grid.u_low) * (grid.v_high - grid.v_low) / static_cast<double>(grid.bins());
+    for (const double seen : seen_m2) grid.overlapping_m2 += std::max(0.0, seen - bin_m2);
   }
   // Where an edge of the surface lies on a line of the grid, rounding spills a sliver over it; that
   // is no surface.

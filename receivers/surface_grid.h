@@ -56,6 +56,10 @@ struct SurfaceGrid {
   // where there is no surface.
   std::vector<double> area_m2;
 
+  // plane only: by how much the surface, seen along the normal, is more than the bins have room
+  // for: layers that lie above each other, whose light and area share bins.
+  double overlapping_m2 = 0.0;
+
   size_t bins() const { return area_m2.size(); }
   double total_area_m2() const;
 };

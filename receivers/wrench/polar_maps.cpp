@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/constants.h"
+#include "core/estimate.h"
 
 namespace photorque {
 namespace {
@@ -33,7 +34,8 @@ class SmoothComponent {
     return SmoothComponent(table, std::move(around), axis);
   }
 
-  double operator()(double polar_rad, double around_rad) const {
+  // The value with its standard error: it is a weighted sum of the values at the nodes.
+  Estimate operator()(double polar_rad, double around_rad) const {
     // The four nodes about the angle, perhaps beyond a pole.
     const std::vector<double>& polar = table_.polar_rad;
     const auto count = static_cast<int>(polar.size());
@@ -43,16 +45,22 @@ class SmoothComponent {
     for (int i = first; i < first + 4; ++i) {
       if (const auto node = node_at(i, count)) nodes.push_back(*node);
     }
-    double sum = 0.0;
+    std::vector<double> weights(table_.nodes(), 0.0);
     for (size_t i = 0; i < nodes.size(); ++i) {  // Lagrange
       double weight = 1.0;
       for (size_t k = 0; k < nodes.size(); ++k) {
         if (k == i) continue;
         weight *= (polar_rad - nodes[k].at_rad) / (nodes[i].at_rad - nodes[k].at_rad);
       }
-      sum += weight * round(nodes[i].index, around_rad + (nodes[i].opposite ? pi : 0.0));
+      add_round(nodes[i].index, around_rad + (nodes[i].opposite ? pi : 0.0), weight, weights);
     }
-    return sum;
+    double sum = 0.0, variance = 0.0;
+    for (size_t node = 0; node < weights.size(); ++node) {
+      sum += weights[node] * table_.torque_body_N_m[node][axis_];
+      const double error = weights[node] * table_.torque_error_N_m[node][axis_];
+      variance += error * error;
+    }
+    return {sum, std::sqrt(variance)};
   }
 
  private:
@@ -84,11 +92,10 @@ class SmoothComponent {
     return std::nullopt;
   }
 
-  // The trigonometric polynomial through the values of one polar angle.
+  // The trigonometric polynomial through the values of one polar angle: `weight` of it.
   // Source: A. Zygmund, Trigonometric Series, chapter X (its Dirichlet kernels).
-  double round(size_t polar, double at_rad) const {
+  void add_round(size_t polar, double at_rad, double weight, std::vector<double>& weights) const {
     const auto count = static_cast<double>(around_rad_.size());
-    double sum = 0.0;
     for (size_t i = 0; i < around_rad_.size(); ++i) {
       const double half = 0.5 * std::remainder(at_rad - around_rad_[i], 2.0 * pi);
       double kernel = 1.0;
@@ -96,9 +103,8 @@ class SmoothComponent {
         kernel = std::sin(count * half) /
                  (count * (around_rad_.size() % 2 == 0 ? std::tan(half) : std::sin(half)));
       }
-      sum += kernel * table_.torque_body_N_m[table_.node(i, polar)][axis_];
+      weights[table_.node(i, polar)] += weight * kernel;
     }
-    return sum;
   }
 
   const WrenchTable& table_;
@@ -121,8 +127,10 @@ Map disc(double reach, const Value& value) {
       const double x = reach * (2.0 * column / (side - 1.0) - 1.0);
       const double y = reach * (2.0 * row / (side - 1.0) - 1.0);
       const double distance = std::hypot(x, y);
-      map.value.push_back(distance > reach * (1.0 + 1e-12) ? nan
-                                                           : value(distance, std::atan2(y, x)));
+      const Estimate at =
+          distance > reach * (1.0 + 1e-12) ? Estimate{nan, nan} : value(distance, std::atan2(y, x));
+      map.value.push_back(at.value);
+      map.standard_error.push_back(at.standard_error);
     }
   }
   return map;
@@ -137,7 +145,9 @@ std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
     const auto component = SmoothComponent::of(table, axis);
     if (!component) return maps;
     const std::string stem = std::string("torque_") + "xyz"[axis] + "_" + name;
-    const std::string title = std::string("Torque about body ") + "xyz"[axis] + " on " + name;
+    // A whole body needs no name.
+    const std::string title = std::string("Torque of light about body ") + "xyz"[axis] +
+                              (name == "body" ? "" : " on " + name);
     if (table.angles == WrenchTable::Angles::tilt_heading) {
       if (table.polar_rad.front() > same) return maps;
       Map map = disc(table.polar_rad.back() / degree_rad, [&](double tilt_deg, double heading_rad) {

@@ -199,6 +199,11 @@ void erase_other_units(SettingsNode::Table& table, const std::string& key) {
 }  // namespace
 
 SettingsNode parse_toml(const std::string& text, const std::string& name) {
+  for (const char* ending : {".stl", ".obj", ".gltf", ".glb"}) {
+    if (!name.ends_with(ending)) continue;
+    throw InputError({name}, "", "a model of a scene",
+                     "an experiment (photorque new EXPERIMENT.toml --scene MODEL makes one)");
+  }
   require_text(text, {name, 1});
   require_shallow(text, name);
   try {

@@ -146,6 +146,19 @@ TEST(SurfaceGrid, RingHasAHoleWithoutSurface) {
   }
 }
 
+// A quarter of a square metre above a square metre: what bins have no room for.
+TEST(SurfaceGrid, SaysHowMuchLiesInLayers) {
+  Mesh mesh = plate(-0.5, 0.5, -0.5, 0.5);
+  EXPECT_NEAR(grid_over(scene_of(mesh), 20, 20).overlapping_m2, 0.0, 1e-12);
+  const auto below = static_cast<uint32_t>(mesh.vertices_m.size());
+  const Mesh above = plate(-0.25, 0.25, -0.25, 0.25, 0.1);
+  mesh.vertices_m.insert(mesh.vertices_m.end(), above.vertices_m.begin(), above.vertices_m.end());
+  for (const auto& t : above.triangles) {
+    mesh.triangles.push_back({t[0] + below, t[1] + below, t[2] + below});
+  }
+  EXPECT_NEAR(grid_over(scene_of(mesh), 20, 20).overlapping_m2, 0.25, 1e-12);
+}
+
 TEST(SurfaceGrid, CurvedSurfaceKeepsItsTrueArea) {
   const Mesh mesh = unit_sphere(48, 24);
   Mesh upper = mesh;

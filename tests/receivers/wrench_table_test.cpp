@@ -51,6 +51,17 @@ TEST(WrenchTableProduct, DiscsOfTiltAndHeadingPassThroughTheNodes) {
     const auto row = static_cast<size_t>((y_deg - disc.y_low) / step_deg);
     return disc.value[row * static_cast<size_t>(disc.width) + column];
   };
+  // At a node its own error, (0.5, 0.25, 0.125) of the axes.
+  const auto middle_of = [&](double y_deg) {
+    const double step_deg = (disc.y_high - disc.y_low) / disc.height;
+    return static_cast<size_t>((y_deg - disc.y_low) / step_deg) * static_cast<size_t>(disc.width) +
+           static_cast<size_t>(disc.width / 2);
+  };
+  EXPECT_NEAR(disc.standard_error[middle_of(30)], 0.25, 1e-9);
+  // Half way between heading 45 and 135 deg of the four: no more than the nodes', by the weights
+  // that add up to one (a tenth less where they share it).
+  EXPECT_LT(disc.standard_error[middle_of(22.5)], 0.25);
+  EXPECT_GT(disc.standard_error[middle_of(22.5)], 0.1);
   EXPECT_NEAR(at(0, 30), -50.0, 1e-9);    // heading 90 deg, tilt 30 deg: node 1·3 + 2
   EXPECT_NEAR(at(-15, 0), -70.0, 1e-9);   // heading 180 deg, tilt 15 deg
   EXPECT_NEAR(at(0, -30), -110.0, 1e-9);  // heading 270 deg

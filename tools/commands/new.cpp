@@ -118,6 +118,13 @@ struct SceneWords {
 };
 
 SceneWords scene_words(const CommandLine& line) {
+  std::string ending = line.scene->extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending != ".gltf" && ending != ".glb" && !cad_format(*line.scene)) {
+    throw InputError({line.scene->string()}, "", "a model \"" + ending + "\"",
+                     "glTF, STL or OBJ (.gltf, .glb, .stl, .obj): others are converted to one of "
+                     "them, as docs/files.md says");
+  }
   SettingsNode root;
   for (const std::string& assignment : line.overrides) apply_override(root, assignment);
   const Settings settings(std::make_shared<const SettingsNode>(std::move(root)));
@@ -188,7 +195,8 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
          "= 1048576                        # standard errors fall with their root\n\n"
          "[torque_map]                          # torque-map: the torque of light at every "
          "attitude\n"
-         "tilt_deg = [0, 10, 20, 30]\nheading_deg = [0, 90, 180, 270]       # 0: leans towards +x\n"
+         "tilt_deg = [0, 10, 20, 30]\nheading_deg = [0, 45, 90, 135, 180, 225, 270, 315]   # 0: "
+         "leans towards +x\n"
          "rays = 131072                         # at each\n";
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/display.h"
 #include "diagnosis/light/apply.h"
 #include "images/writers/read_picture.h"
 #include "sources/profiles/beam_shape.h"
@@ -14,6 +15,21 @@
 
 namespace photorque {
 namespace {
+
+// Of maps on surfaces in layers: the light of all shares its bins.
+void add_notices_of_layers(Experiment& experiment) {
+  constexpr double noticeable = 1e-3;
+  for (const NamedReceiver& receiver : experiment.receivers) {
+    if (!receiver.flux_map) continue;
+    const SurfaceGrid& grid = receiver.flux_map->grid();
+    if (!(grid.overlapping_m2 > noticeable * grid.total_area_m2())) continue;
+    experiment.notices.push_back(
+        receiver.name + ": " + readable_number(grid.overlapping_m2, 3) + " of " +
+        readable_number(grid.total_area_m2(), 3) +
+        " m² lie above each other, seen along its normal; such bins hold the light of all layers "
+        "over the area of all: give a layer of interest a node (a part) of its own");
+  }
+}
 
 Experiment read(const RunOptions& options) {
   ExperimentFile file =
@@ -29,6 +45,7 @@ Experiment read(const RunOptions& options) {
   for (std::string& notice : apply_written_effects(experiment)) {
     experiment.notices.push_back(std::move(notice));
   }
+  add_notices_of_layers(experiment);
   return experiment;
 }
 

@@ -41,6 +41,25 @@ std::string inside_of(const Experiment& experiment, const InsideLightReceiver& i
   return "";
 }
 
+// Whether the faces of a part look into it: the volume that they enclose is then negative (the sum
+// of the tetrahedra from the origin to each face).
+bool is_turned_inwards(const Scene& scene, const std::string& path) {
+  double six_volumes_m3 = 0.0;
+  for (const Instance& instance : scene.instances) {
+    if (instance.path != path) continue;
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    // A mirrored instance is traced with its winding swapped.
+    const double sign = instance.body_from_mesh.linear().determinant() < 0.0 ? -1.0 : 1.0;
+    for (const auto& face : mesh.triangles) {
+      const auto corner = [&](size_t k) {
+        return Vec3(instance.body_from_mesh * mesh.vertices_m[face[k]]);
+      };
+      six_volumes_m3 += sign * corner(0).dot(corner(1).cross(corner(2)));
+    }
+  }
+  return six_volumes_m3 < 0.0;
+}
+
 double lit_W(const NamedReceiver& receiver, const BinSums& sums) {
   return receiver.flux_map->flux_map(sums).incident.power_W.value;
 }
@@ -62,7 +81,11 @@ std::vector<InputError> light_mistakes(const OpticalRun& run) {
         trace(run.scene(), experiment.lab_from_body, beams, few.receivers, few.options);
     const double emitted_W = result.power_balance.emitted_W;
     const std::string part = inside_of(experiment, few.inside, result.sums.back(), emitted_W);
-    if (!part.empty()) {
+    if (!part.empty() && is_turned_inwards(experiment.scene, part)) {
+      mistakes.push_back({source.where(), "scene.file",
+                          "\"" + part + "\", whose faces look inwards: light falls on their backs",
+                          "faces that look outwards (turn them where the model was made)"});
+    } else if (!part.empty()) {
       mistakes.push_back(
           source.error("position_m", "a place inside of \"" + part + "\"", "one outside of it"));
     } else if (result.power_balance.escaped_W.value >= (1.0 - rounding) * emitted_W) {
