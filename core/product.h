@@ -32,6 +32,8 @@ struct Map {
   // Values are those at the middles of the bins of a field that is smooth between them: drawn
   // interpolated, with contour lines.
   bool smooth = false;
+  // Of each value in the mean (the area of surface in each bin); empty where all count alike.
+  std::vector<double> weight = {};
 };
 
 // Columns of equal length; the name of a column ends in its unit. Text columns (labels) come first.

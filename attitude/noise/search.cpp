@@ -95,44 +95,62 @@ class NoiseSearch {
     double best_value = now - limits_.min_colour_gain;
     bool found = false;
     Minimum best;
+    const std::array<AngleNoise, 3>* beside = nullptr;
     const auto try_beside = [&](const std::array<AngleNoise, 3>& cameras) {
       const Minimum next = likeliest_gyro(cameras);
       if (!(next.value < best_value)) return;
       best_value = next.value;
       best = next;
+      beside = &cameras;
       found = true;
     };
     try_beside(as_found);
     if (any_colour()) try_beside(camera_alone);
     if (!found) return;
-    use_gyro(best);
+    use_gyro(with_white_part(best, *beside));
     find_cameras();
   }
 
-  // ln(level over the stated), ln(time), ln(roughness over the present).
-  Minimum likeliest_gyro(const std::array<AngleNoise, 3>& cameras) const {
+  // Minus twice the logarithm of the likelihood of all axes. `x`: ln(level over the stated),
+  // ln(time), ln(roughness over the present) and, where there are four, the logit of the coloured
+  // fraction, else one.
+  double of_gyro(const std::array<AngleNoise, 3>& cameras, const Eigen::VectorXd& x) const {
     // Neighbours correlated by less than a third change no level much, and roughness looks like it.
     double shortest_s = 0.05;
+    constexpr double longest_s = 12.0;
     for (const KinematicRun& run : left_) {
       shortest_s = std::max(shortest_s, run.axis[0].gyro_interval_s);
     }
-    const auto of = [&](const Eigen::VectorXd& x) -> double {
-      constexpr double longest_s = 12.0;
-      if (x[1] < std::log(shortest_s) || x[1] > std::log(longest_s)) return INFINITY;
-      if (std::abs(x[0]) > 5.0 || std::abs(x[2]) > 40.0) return INFINITY;
-      double sum = 0.0;
-      for (size_t k = 0; k < 3; ++k) {
-        AngleNoise noise = cameras[k];
-        noise.gyro_rad_s = std::exp(x[0]) * stated_.gyro_rad_s;
-        noise.gyro_coloured = 1.0;
-        noise.gyro_time_s = std::exp(x[1]);
-        noise.roughness *= std::exp(x[2]);
-        for (const KinematicSeries* run : axis_of_all(k)) {
-          sum += minus_two_log_likelihood(*run, noise);
-        }
+    if (x[1] < std::log(shortest_s) || x[1] > std::log(longest_s)) return INFINITY;
+    if (std::abs(x[0]) > 5.0 || std::abs(x[2]) > 40.0) return INFINITY;
+    double sum = 0.0;
+    for (size_t k = 0; k < 3; ++k) {
+      AngleNoise noise = cameras[k];
+      noise.gyro_rad_s = std::exp(x[0]) * stated_.gyro_rad_s;
+      noise.gyro_coloured = coloured_fraction(x);
+      noise.gyro_time_s = std::exp(x[1]);
+      noise.roughness *= std::exp(x[2]);
+      for (const KinematicSeries* run : axis_of_all(k)) {
+        sum += minus_two_log_likelihood(*run, noise);
       }
-      return std::isfinite(sum) ? sum : INFINITY;
-    };
+    }
+    return std::isfinite(sum) ? sum : INFINITY;
+  }
+
+  static double coloured_fraction(const Eigen::VectorXd& x) {
+    return x.size() > 3 ? 1.0 / (1.0 + std::exp(-x[3])) : 1.0;
+  }
+
+  // A gyro that reads in coarse steps has a white part beside a correlated one.
+  Minimum with_white_part(const Minimum& pure, const std::array<AngleNoise, 3>& cameras) const {
+    const auto of = [&](const Eigen::VectorXd& x) { return of_gyro(cameras, x); };
+    const Eigen::Vector4d start(pure.at[0], pure.at[1], pure.at[2], 1.5);
+    const Minimum mixed = simplex_minimum(of, start, Eigen::Vector4d(0.1, 0.5, 0.7, 1.5), 0.3, 200);
+    return pure.value - mixed.value < limits_.min_mixture_gain ? pure : mixed;
+  }
+
+  Minimum likeliest_gyro(const std::array<AngleNoise, 3>& cameras) const {
+    const auto of = [&](const Eigen::VectorXd& x) { return of_gyro(cameras, x); };
     Minimum start{Eigen::Vector3d::Zero(), INFINITY};
     for (const double time_s : {0.2, 0.8, 3.0}) {
       for (const double rougher : {0.0, -6.0, -14.0}) {
@@ -151,14 +169,14 @@ class NoiseSearch {
     const double factor = std::exp(likeliest.at[0]);
     const bool off = is_off(likeliest.at[0], log_sigma, limits_);
     gyro_.gyro_rad_s = (off ? factor : 1.0) * stated_.gyro_rad_s;
-    gyro_.gyro_coloured = 1.0;
+    gyro_.gyro_coloured = coloured_fraction(likeliest.at);
     gyro_.gyro_time_s = std::exp(likeliest.at[1]);
     for (int k = 0; k < 3; ++k) {
       FoundNoise& found = result_.channel[static_cast<size_t>(3 + k)];
       found.level_found = off;
       found.level_sigma = log_sigma;
       found.colour_found = true;
-      found.noise = {gyro_.gyro_rad_s[k], 1.0, gyro_.gyro_time_s};
+      found.noise = {gyro_.gyro_rad_s[k], gyro_.gyro_coloured, gyro_.gyro_time_s};
       found.time_sigma_s = log_sigma * gyro_.gyro_time_s;
     }
   }

@@ -24,6 +24,7 @@ void require_consistent(const Map& map) {
   if (!map.standard_error.empty()) {
     require_count(map.name, "standard errors", map.standard_error.size(), bins);
   }
+  if (!map.weight.empty()) require_count(map.name, "weights", map.weight.size(), bins);
 }
 
 void require_consistent(const Table& table) {

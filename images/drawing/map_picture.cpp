@@ -158,21 +158,24 @@ MapPicture map_picture(const Map& map, const Provenance& provenance) {
 std::string map_caption(const Map& map) {
   double smallest = std::numeric_limits<double>::infinity();
   double largest = -smallest;
-  double sum = 0.0;
+  double sum = 0.0, weights = 0.0;
   size_t count = 0;
-  for (const double value : map.value) {
+  for (size_t bin = 0; bin < map.value.size(); ++bin) {
+    const double value = map.value[bin], weight = map.weight.empty() ? 1.0 : map.weight[bin];
     if (!std::isfinite(value)) continue;
     smallest = std::min(smallest, value);
     largest = std::max(largest, value);
-    sum += value;
+    sum += weight * value;
+    weights += weight;
     ++count;
   }
   const std::string bins =
       map.smooth ? "interpolated, contour lines at even steps"
                  : std::to_string(map.width) + " × " + std::to_string(map.height) + " bins";
   if (count == 0) return "no values · " + bins;
-  std::string caption = "min " + readable_number(smallest) + " · mean " +
-                        readable_number(sum / static_cast<double>(count)) + " · max " +
+  // Nodes of a smooth field need not stand for equal parts of it.
+  const std::string mean = map.smooth ? "" : "mean " + readable_number(sum / weights) + " · ";
+  std::string caption = "min " + readable_number(smallest) + " · " + mean + "max " +
                         readable_number(largest) + (map.unit.empty() ? "" : " " + map.unit) +
                         " · " + bins;
   if (!map.standard_error.empty()) {

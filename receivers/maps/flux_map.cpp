@@ -86,14 +86,21 @@ std::string band_label(const Bands& bands, size_t band) {
   return nm(low_m) + "-" + nm(high_m) + "nm";
 }
 
+// A map whose mean is over the surface: bins at its edge hold little of it.
+Map density_map(const SurfaceGrid& grid, const FluxLayer& layer, const std::string& name,
+                const std::string& title) {
+  Map map = grid_map(grid, layer.per_bin_W_m2, name, title, "W/m²");
+  map.weight = grid.area_m2;
+  return map;
+}
+
 void add_layers(Product& product, const FluxMap& map, const std::string& name, const FluxLayer& in,
                 const FluxLayer& kept) {
   product.quantities.push_back({"power_on_" + name + "_W", in.power_W});
   product.quantities.push_back({"power_absorbed_by_" + name + "_W", kept.power_W});
+  product.maps.push_back(density_map(map.grid, in, "irradiance_" + name, "Irradiance on " + name));
   product.maps.push_back(
-      grid_map(map.grid, in.per_bin_W_m2, "irradiance_" + name, "Irradiance on " + name, "W/m²"));
-  product.maps.push_back(grid_map(map.grid, kept.per_bin_W_m2, "absorbed_" + name,
-                                  "Power absorbed by " + name, "W/m²"));
+      density_map(map.grid, kept, "absorbed_" + name, "Power absorbed by " + name));
 }
 
 void add_statistics(Product& product, const FluxStatistics& statistics, const std::string& name) {

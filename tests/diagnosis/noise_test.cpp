@@ -126,6 +126,31 @@ TEST(NoiseSearch, MeasuresTheCorrelationTime) {
   }
 }
 
+// A gyro that rounds correlated noise to coarse steps: rounding adds a white part of step²/12
+// (Widrow and Kollár, Quantization Noise, 2008, chapter 4), and the time is that of the rest.
+TEST(NoiseSearch, ToldApartAreCorrelatedNoiseAndRounding) {
+  const double time_s = 0.8, level = 0.7, step = 1.2;
+  Session session;
+  session.gyro = {.level = level, .time_s = time_s};
+  session.interval_s = 0.05;
+  NamedRecording recorded = recorded_with(5, session, nothing_more);
+  const double step_rad_s = step * observed(5, session).noise.of(3).level;
+  for (Channel& channel : recorded.recording.channels) {
+    if (channel.name.rfind("gyro_", 0) != 0) continue;
+    for (double& reading : channel.values) {
+      reading = step_rad_s * std::round(reading / step_rad_s);
+    }
+  }
+  const NoiseFindings found = found_in(observe(recorded.recording, "run"));
+  const double white = step * step / 12.0, variance = level * level + white;
+  for (size_t k = 3; k < 6; ++k) {
+    const FoundNoise& c = found.channel[k];
+    ASSERT_TRUE(c.colour_found) << k;
+    EXPECT_NEAR(c.noise.coloured, level * level / variance, 0.08);
+    EXPECT_NEAR(std::log(c.noise.time_s / time_s), 0.0, 0.3);
+  }
+}
+
 TEST(NoiseSearch, MeasuresALevelThatIsNotAsStated) {
   for (const double level : {0.6, 2.0}) {
     Session session;

@@ -248,6 +248,25 @@ TEST(MapPicture, MeansOfManyBinsShareAPixel) {
   }
 }
 
+// A bin at the edge of the surface, which holds a tenth of a bin of it, counts a tenth.
+TEST(MapCaption, MeanIsOverTheSurface) {
+  Map map = sample_map();
+  map.value.assign(map.value.size(), 2.0);
+  map.weight.assign(map.value.size(), 1.0);
+  map.value[3] = 37.0;
+  map.weight[3] = 0.1;  // (34 · 2 + 0.1 · 37) / 34.1
+  EXPECT_THAT(map_caption(map), testing::HasSubstr("mean 2.103 ·"));
+  map.value[0] = std::nan("");  // (33 · 2 + 3.7) / 33.1
+  EXPECT_THAT(map_caption(map), testing::HasSubstr("mean 2.106 ·"));
+}
+
+// Nodes of a disc crowd nowhere in particular: their mean would be another number than the table's.
+TEST(MapCaption, SmoothFieldHasNoMean) {
+  Map map = sample_map();
+  map.smooth = true;
+  EXPECT_THAT(map_caption(map), testing::Not(testing::HasSubstr("mean")));
+}
+
 TEST(MapCaption, GivesExtremesMeanAndError) {
   Map map = sample_map();
   map.value.assign(map.value.size(), 2.0);
