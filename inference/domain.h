@@ -39,6 +39,8 @@ struct CandidateTraits {
   bool is_fast = false;
   // Whether its size is a number of standard errors, so that its significance can be asked.
   bool has_strength = true;
+  // Whether it stands at a place of which one recording alone may leave several open.
+  bool has_place = false;
   size_t parameters = 0;
 };
 
@@ -158,6 +160,11 @@ std::vector<size_t> by_evidence(const std::vector<T>& trials) {
 // Whether two sets of candidates are the same, in whatever order.
 inline bool same_candidates(const std::vector<size_t>& a, const std::vector<size_t>& b) {
   return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
+}
+
+// Whether one of these stands at a place.
+inline bool has_place(const std::vector<size_t>& among, const std::vector<CandidateTraits>& all) {
+  return std::any_of(among.begin(), among.end(), [&](size_t c) { return all[c].has_place; });
 }
 
 // Whether one of `among` is the same term as `candidate`.

@@ -317,8 +317,9 @@ class Rounds {
   // what has one is taken out, with what may have made up for it, and looked for again.
   std::vector<Trial> relocated(const Trial& at) const {
     std::vector<Trial> found;
-    if (at.candidates.size() < 2 || (explains(at) && !has_empirical(at))) return found;
     const std::vector<CandidateTraits>& all = domain_.candidates();
+    const bool is_alone = at.candidates.size() < 2 && !has_place(at.candidates, all);
+    if (is_alone || (explains(at) && !has_empirical(at))) return found;
     const Runs averages = slow_runs(domain_, at, set_);
     const Terms<D> terms = domain_.terms_of(at);
     for (const Term<typename D::Start>& term : terms) {

@@ -154,7 +154,9 @@ class Weighing {
           added == limits_.held_out.max_effects) {
         break;
       }
-      if (!found[i].objection.empty() || leads(found[i].candidates)) continue;
+      if (!found[i].objection.empty()) continue;
+      const bool is_elsewhere = has_place(found[i].candidates, domain_.candidates());
+      if (leads(found[i].candidates) && !is_elsewhere) continue;
       Trial joint =
           domain_.refit(found[i], all_runs_, domain_.begins_of(found[i]), patient(limits_));
       Trial train = assembled(joint, domain_.terms_of(joint), patient(limits_));

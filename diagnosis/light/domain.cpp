@@ -18,6 +18,7 @@ inference::CandidateTraits traits_of_light(const LightCandidate& c) {
   traits.is_empirical = c.is_empirical();
   traits.is_linear = c.is_linear() && c.has_strength();
   traits.has_strength = c.has_strength();
+  traits.has_place = c.kind.scan == LightEffectKind::Scan::shadow;
   traits.parameters = c.fitted();
   return traits;
 }

@@ -277,6 +277,31 @@ size_t LightLab::points_of_rule() const {
   return ratio < 1.1 ? 4 : ratio < 2.2 ? 6 : 12;
 }
 
+double LightLab::narrowest_edge_m() const {
+  const Vec3 middle =
+      point_body_m(0.5 * (grid_->u_low + grid_->u_high), 0.5 * (grid_->v_low + grid_->v_high));
+  constexpr int steps = 100;
+  constexpr double widest_rad = 1.5, steepest_of_gaussian = 0.60653;  // e^(−1/2)
+  double narrowest_m = 1e300;
+  for (size_t l = 0; l < lamps(); ++l) {
+    const double away_m = (lamps_->beams[l].lab_from_emitter.translation_m - middle).norm();
+    const double reach_m =
+        2.0 * away_m * std::tan(std::min(widest_rad, lamps_->lights[l]->half_flux_rad()));
+    double last = 0.0, brightest = 0.0, steepest = 0.0;
+    for (int k = 0; k <= steps; ++k) {
+      const double E =
+          lamps_->tables[l]->irradiance_W_m2({reach_m * k / steps, 0.0, away_m}, -Vec3::UnitZ());
+      if (k > 0) steepest = std::max(steepest, std::abs(E - last) * steps / reach_m);
+      brightest = std::max(brightest, E);
+      last = E;
+    }
+    if (steepest > 0.0) {
+      narrowest_m = std::min(narrowest_m, steepest_of_gaussian * brightest / steepest);
+    }
+  }
+  return narrowest_m;
+}
+
 size_t LightLab::strings() const {
   return design_ ? design_->wiring.strings.size() : 0;
 }

@@ -69,6 +69,9 @@ class LightLab {
   // The point of the receiver at map coordinates u, v.
   Vec3 point_body_m(double u_m, double v_m) const;
   Vec3 normal_body() const { return grid_->normal_body; }
+  // Over which the light of the sharpest lamp falls off on the receiver: the standard deviation of
+  // the Gaussian spot that is as bright and as steep.
+  double narrowest_edge_m() const;
 
   // The lamps with all beams' widths multiplied, > 0.
   std::shared_ptr<const LampSet> lamps_with(double divergence) const;

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -95,6 +96,8 @@ class LightRun {
   void find_circumstances();
   void number_samples();
   bool is_trapped(const LightState& state, size_t row) const;
+  // χ² of a reading about a maximum.
+  std::function<double(const LitNetwork::Maximum&)> off(size_t row) const;
   double current_law(const LightState& state, size_t row, double voltage_V) const;
   std::vector<double> photocurrents(const std::vector<double>& signals, size_t row) const;
 

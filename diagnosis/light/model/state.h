@@ -71,7 +71,7 @@ struct LightState {
     double from_s = 0.0, to_s = 0.0;
     int recording = 0;  // in which
   };
-  std::vector<Interval> trapped;  // the tracker stands at the second highest maximum
+  std::vector<Interval> trapped;  // the tracker stands at a maximum that is not the highest
 
   // Nothing acts.
   LightState(size_t lamps, size_t cells, size_t strings, size_t bypasses)

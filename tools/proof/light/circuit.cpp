@@ -161,7 +161,7 @@ double LitCircuit::current_A(double voltage_V) const {
 std::vector<InjectedPoint> LitCircuit::maxima() const {
   std::vector<InjectedPoint> found;
   if (open_.empty()) return found;
-  constexpr int steps = 240;
+  constexpr int steps = 800;
   const double low = 0.0;
   const double high = open_.size() == 1 ? 1.001 * largest_A_ : open_voltage_V();
   std::vector<double> power(steps + 1);

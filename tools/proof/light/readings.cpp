@@ -15,14 +15,20 @@ constexpr std::array<double, 4> gauss_share = {0.17392742256872692, 0.3260725774
 std::vector<std::array<double, 3>> places_of_cell(bool shadows) {
   std::vector<std::array<double, 3>> places;  // u, v within the cell, share
   if (!shadows) {
-    for (size_t i = 0; i < gauss_at.size(); ++i) {
-      for (size_t j = 0; j < gauss_at.size(); ++j) {
-        places.push_back({gauss_at[i], gauss_at[j], gauss_share[i] * gauss_share[j]});
+    // In each half: beams may be narrower than a cell.
+    std::vector<std::array<double, 2>> along;
+    for (const double half : {0.0, 0.5}) {
+      for (size_t i = 0; i < gauss_at.size(); ++i) {
+        along.push_back({half + 0.5 * gauss_at[i], 0.5 * gauss_share[i]});
       }
+    }
+    for (const auto& u : along) {
+      for (const auto& v : along) places.push_back({u[0], v[0], u[1] * v[1]});
     }
     return places;
   }
-  constexpr int fine = 14;
+  // Two lamps' edges of shadow across a cell: 14 erred by 0.3 %.
+  constexpr int fine = 42;
   for (int i = 0; i < fine; ++i) {
     for (int j = 0; j < fine; ++j) {
       places.push_back({(i + 0.5) / fine, (j + 0.5) / fine, 1.0 / (fine * fine)});
