@@ -8,52 +8,14 @@
 // implicitly: ∂V_s/∂I_k = 1/D′(V_d) where the cell's substring is not clamped, else 0.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
-#include "photovoltaics/cell/model.h"
-#include "photovoltaics/cell/table.h"
+#include "diagnosis/light/model/lit_cells.h"
 #include "photovoltaics/network/wiring.h"
 
 namespace photorque {
-
-// V_d(j) and its derivatives of one kind of cell at one temperature.
-class LitDiode {
- public:
-  LitDiode(const CellParameters& parameters, double extra_shunt_S);
-  // From a table, where many points are asked for at one temperature.
-  LitDiode(const CellParameters& parameters, std::shared_ptr<const DiodeVoltageTable> table);
-  double series_ohm() const { return series_ohm_; }
-
-  struct Point {
-    double value_V = 0.0, slope_ohm = 0.0, curvature_V_A2 = 0.0;
-  };
-  // At a dark current of either sign.
-  Point at(double dark_A) const;
-
- private:
-  CellCurve curve_;
-  double saturation_A_, scale_V_, shunt_S_;
-  double series_ohm_;
-  bool is_plain_;  // one diode, no breakdown
-  std::shared_ptr<const DiodeVoltageTable> table_;
-};
-
-struct NetworkSettings {
-  double series_ohm = 0.0;                        // of the whole array
-  double shunt_S = 0.0;                           // across every cell, beside its own
-  double cell_offset_V = 0.0;                     // added to every cell's voltage
-  std::vector<bool> string_open, bypass_shorted;  // may be empty
-};
-
-// The kinds of cells of an array at one temperature, without effects on them.
-struct LitCells {
-  std::vector<LitDiode> kinds;
-  std::vector<int> kind_of_cell;
-};
-// `tabulated`: worth its time where hundreds of points follow.
-LitCells lit_cells(const CellModel& cell, const std::vector<double>& area_m2, double temperature_K,
-                   double extra_shunt_S, bool tabulated);
 
 // The array under given light.
 class LitNetwork {
@@ -96,6 +58,8 @@ class LitNetwork {
   double short_circuit_A() const;
 
  private:
+  static constexpr double unlimited = std::numeric_limits<double>::infinity();
+
   struct Substring {
     std::vector<int> cells;
     double clamp_V = 0.0;  // largest voltage backwards; infinite without a diode

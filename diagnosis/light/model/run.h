@@ -70,7 +70,8 @@ class LightRun {
   // Of the residuals, by a change of the signals.
   Eigen::VectorXd moved(const SignalSlopes& slopes, const std::vector<double>& change) const;
 
-  // Of runs: by how much χ² of each row falls if the tracker stands at the second highest maximum.
+  // Of runs: by how much χ² of each row falls if the tracker stands at a maximum that is not the
+  // highest.
   std::vector<double> gain_if_trapped(const LightState& state,
                                       const std::vector<double>& signals) const;
 

@@ -33,7 +33,7 @@ std::vector<LightStart> shadow_starts(const LightTrial& parent, const LightCandi
 std::vector<LightStart> wave_starts(const LightCandidate& wave, const std::vector<LeftOfRun>& left,
                                     const Thresholds::Scoring& limits);
 
-// The interval over which the second highest maximum explains most, {from_s, to_s, recording}; of
+// The interval over which maxima other than the highest explain most, {from_s, to_s, recording}; of
 // no length where it explains nothing.
 std::vector<double> trapped_interval(const LightTrial& parent, const LightCandidates& all,
                                      const std::vector<FittedRun>& runs);
