@@ -276,9 +276,10 @@ double InjectedLamp::on_axis_per_sr() const {
   return 1.0 / (2.0 * pi * sum);
 }
 
-std::vector<double> injected_light(const InjectedLight& world, const Quaternion& attitude,
-                                   const std::vector<std::array<double, 2>>& points_m,
-                                   bool into_cells) {
+namespace {
+
+// Every lamp in body axes.
+Placed all_placed(const InjectedLight& world, const Quaternion& attitude) {
   const Quaternion q =
       product(quaternion_of({world.bias_rad[0], world.bias_rad[1], 0.0}), attitude);
   Placed at{&world, q, {}};
@@ -292,6 +293,27 @@ std::vector<double> injected_light(const InjectedLight& world, const Quaternion&
     if (!again) on_axis = lamp.on_axis_per_sr();
     at.lamps.push_back(placed_lamp(lamp, q, on_axis));
   }
+  return at;
+}
+
+}  // namespace
+
+std::vector<bool> may_be_shaded(const InjectedLight& world, const Quaternion& attitude,
+                                const std::vector<std::array<double, 2>>& points_m) {
+  const Placed at = all_placed(world, attitude);
+  std::vector<bool> shaded;
+  for (const auto& [u, v] : points_m) {
+    shaded.push_back(std::ranges::any_of(at.lamps, [&, u = u, v = v](const Placed::Lamp& lamp) {
+      return may_be_hidden(at, lamp, {u, v, world.plate.z_m});
+    }));
+  }
+  return shaded;
+}
+
+std::vector<double> injected_light(const InjectedLight& world, const Quaternion& attitude,
+                                   const std::vector<std::array<double, 2>>& points_m,
+                                   bool into_cells) {
+  const Placed at = all_placed(world, attitude);
   std::vector<double> light(points_m.size(), world.ambient_W_m2);
   const bool glass = into_cells && world.glass_index.has_value();
   for (const auto& lamp : at.lamps) {

@@ -63,5 +63,8 @@ struct InjectedLight {
 std::vector<double> injected_light(const InjectedLight& world, const Quaternion& attitude,
                                    const std::vector<std::array<double, 2>>& points_m,
                                    bool into_cells);
+// At which points some lamp may be hidden in part.
+std::vector<bool> may_be_shaded(const InjectedLight& world, const Quaternion& attitude,
+                                const std::vector<std::array<double, 2>>& points_m);
 
 }  // namespace photorque::injected
