@@ -1,6 +1,6 @@
 // The tracker stands at a maximum that is not the highest from one instant to another,
-// interval_s[2], of one recording (counted from 0). At which of them, every reading says for itself:
-// as the platform turns, maxima change places and vanish.
+// interval_s[2], of one recording (counted from 0). At which of them, every reading says for
+// itself: as the platform turns, maxima change places and vanish.
 #include "diagnosis/light/effects/kind.h"
 
 namespace photorque {
