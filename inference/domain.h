@@ -39,9 +39,9 @@ struct CandidateTraits {
   bool is_fast = false;
   // Whether its size is a number of standard errors, so that its significance can be asked.
   bool has_strength = true;
+  size_t parameters = 0;
   // Whether it stands at a place of which one recording alone may leave several open.
   bool has_place = false;
-  size_t parameters = 0;
 };
 
 // What a trial says, without what was fitted.

@@ -354,7 +354,7 @@ inline Term polynomial(Eigen::Index degree) {
 // Sine and cosine of a frequency that is scanned.
 inline Term tone() {
   Term t;
-  t.traits = {"tone", false, false, true, true, false, 2};
+  t.traits = {"tone", false, false, true, true, 2};
   t.grid.clear();
   for (int k = 8; k <= 60; ++k) t.grid.push_back(k);
   t.shape = [](const Series& run, double periods) {
@@ -369,7 +369,7 @@ inline Term tone() {
 // A smooth function without a law: bumps side by side.
 inline Term smooth(Eigen::Index bumps) {
   Term t;
-  t.traits = {"smooth", true, true, false, true, false, static_cast<size_t>(bumps)};
+  t.traits = {"smooth", true, true, false, true, static_cast<size_t>(bumps)};
   t.shape = [bumps](const Series& run, double) -> Eigen::MatrixXd {
     const Eigen::VectorXd x = grid(samples);
     const double width = 1.0 / static_cast<double>(bumps);
