@@ -86,9 +86,19 @@ TraceEffort read_effort(const Settings& root) {
   return effort;
 }
 
+// Without the table a first look: tilts to 30 deg towards all sides.
+AttitudeGrid usual_torque_map() {
+  AttitudeGrid grid;
+  for (int tilt = 0; tilt <= 30; tilt += 10) grid.tilt_rad.push_back(tilt * degree_rad);
+  for (int heading = 0; heading < 360; heading += 45) {
+    grid.heading_rad.push_back(heading * degree_rad);
+  }
+  return grid;
+}
+
 AttitudeGrid read_torque_map(const Settings& root, const Attitude& attitude) {
+  if (!root.has("torque_map")) return usual_torque_map();
   AttitudeGrid grid{{attitude.tilt_rad}, {attitude.heading_rad}};
-  if (!root.has("torque_map")) return grid;
   const Settings table = root.table("torque_map");
   if (table.has("tilt_deg")) {
     grid.tilt_rad = table.numbers("tilt_deg", {0.0, pi});

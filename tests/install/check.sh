@@ -74,4 +74,9 @@ bash -n "$prefix/share/bash-completion/completions/photorque"
 (source "$prefix/share/bash-completion/completions/photorque"
  COMP_WORDS=(photorque pro) COMP_CWORD=1 && _photorque && [[ "${COMPREPLY[*]}" == "propagate prove" ]]
  COMP_WORDS=(photorque trace x.toml --tar) COMP_CWORD=3 && _photorque && [[ "${COMPREPLY[*]}" == "--target-error" ]])
+if command -v zsh >/dev/null; then
+  completed() { timeout 60 zsh -f "$source/tests/install/completes.zsh" "$prefix/share/zsh/vendor-completions" "$1"; }
+  [[ "$(completed 'photorque prop')" == "photorque propagate " ]]
+  [[ "$(completed 'photorque trace x.toml --targ')" == "photorque trace x.toml --target-error " ]]
+fi
 echo "$(wc -w <<<"$verbs") commands"

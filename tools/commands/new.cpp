@@ -1,5 +1,6 @@
 // photorque new: a first experiment, commented, for a model of one's own or for a platform alone.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <set>
@@ -79,6 +80,18 @@ double upward_area_m2(const Scene& scene, uint32_t instance) {
     area += face.area_body_m2.z();
   }
   return area;
+}
+
+// The middle, seen from above, of all parts of that name.
+Vec3 middle_m(const Scene& scene, const std::string& path) {
+  Eigen::AlignedBox3d box;
+  for (const Instance& instance : scene.instances) {
+    if (instance.path != path) continue;
+    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
+      box.extend(Vec3(instance.body_from_mesh * vertex));
+    }
+  }
+  return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
 }
 
 // The part that light from above most likely is meant for: one whose name says so, else the one
@@ -176,6 +189,10 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
     if (!instance.material.empty()) materials.insert(instance.material);
   }
   const double radius_m = scene.radius_m(), height_m = top_m(scene) + 2.0 * radius_m;
+  const std::string lit = lit_node(scene);
+  const Vec3 above_m = middle_m(scene, lit);
+  // No digits of a middle that is the model's own but for rounding.
+  const auto small = [&](double x_m) { return std::abs(x_m) < 1e-4 * radius_m ? 0.0 : x_m; };
   return "[scene]\nfile = " + quoted(file) + scene_text(words) + materials_text(words, materials) +
          "# ---- Light\n[[source]]\nkind = \"led\"                         # led | led_array | "
          "laser "
@@ -184,11 +201,11 @@ std::string light_text(const GltfModel& model, const std::string& file, const Sc
          "aperture_diameter_m = " +
          number(0.1 * radius_m) +
          "\nprofile = \"gaussian\"\nfwhm_deg = 10                         # of the radiant "
-         "intensity\nwavelength_nm = 730\nposition_m = [0, 0, " +
-         number(height_m) +
-         "]              # lab: z up\ndirection = [0, 0, -1]\n\n# ---- What is measured\n" +
-         listed("Parts", nodes) +
-         "[[receiver]]\nkind = \"flux_map\"\nnode = " + quoted(lit_node(scene)) +
+         "intensity\nwavelength_nm = 730\nposition_m = [" +
+         number(small(above_m.x())) + ", " + number(small(above_m.y())) + ", " + number(height_m) +
+         "]              # lab: z up; above the part that is measured\ndirection = [0, 0, -1]\n\n# "
+         "---- What is measured\n" +
+         listed("Parts", nodes) + "[[receiver]]\nkind = \"flux_map\"\nnode = " + quoted(lit) +
          "\nfacing = [0, 0, 1]                    # only faces turned up\nbins = [100, 100]\n\n"
          "[[receiver]]\nkind = \"wrench\"                       # force and torque of light on the "
          "whole\nname = \"platform\"\n\n[attitude]\ntilt_deg = 0\nheading_deg = 0\n\n[trace]\nrays "

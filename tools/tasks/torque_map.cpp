@@ -75,6 +75,9 @@ TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<Opt
     for (const std::string& notice : array->notices) console.line("note: " + notice);
   }
   const AttitudeGrid& grid = run.experiment().file.torque_map;
+  if (!run.experiment().file.settings.has("torque_map")) {
+    console.line("note: no [torque_map]: tilts to 30 deg towards eight headings");
+  }
   const size_t flux_map = array ? array->flux_map : run.flux_map_index("");
 
   WrenchTable wrenches =
