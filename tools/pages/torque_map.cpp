@@ -1,5 +1,7 @@
 #include "tools/pages/torque_map.h"
 
+#include <algorithm>
+
 #include "receivers/wrench/table_product.h"
 #include "tools/pages/stage.h"
 
@@ -41,6 +43,9 @@ NodeWatch TorqueMapStage::watch() {
 
 RunFile torque_map_page(const TorqueMapRun& run, TorqueMapStage stage, const PageHead& head) {
   RunPage page = page_of(run.result, head.title, head.verb, head.command, {"largest_", "max_"});
+  // The torque is what the map is made for: the first that is shown.
+  std::ranges::stable_partition(page.product.maps,
+                                [](const Map& map) { return map.title.starts_with("Torque"); });
   const WrenchTable& table = run.wrenches;
   const bool by_tilt = table.angles == WrenchTable::Angles::tilt_heading;
   page.stage = stage.take();

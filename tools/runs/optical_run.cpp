@@ -328,6 +328,9 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
     if (!receiver.flux_map) continue;
     const FluxMap map = receiver.flux_map->flux_map(result.sums[i]);
     row("on " + receiver.name, map.incident.power_W);
+    if (map.incident.power_W.value > (1.0 + 1e-6) * power_balance.emitted_W) {
+      console.line("  note: more than is emitted: light that it reflects comes back to it");
+    }
   }
   const WrenchEstimate body =
       wrench_about(run.wrench().total(result.sums[run.wrench_index()]), Vec3::Zero());

@@ -111,10 +111,20 @@ export class StageSection {
     });
     view.ondraw = () => {
       axes.update();
+      const placed = [];
       view.arrows.forEach((arrow, i) => {
-        arrowLabels[i].hidden = !arrow.group.visible || !view.bodies[0].visible;
-        const [x, y] = view.onScreen(arrow.tip);
-        arrowLabels[i].style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+        const label = arrowLabels[i];
+        label.hidden = !arrow.group.visible || !view.bodies[0].visible;
+        if (label.hidden) return;
+        const [x, tipY] = view.onScreen(arrow.tip);
+        const width = label.offsetWidth, height = label.offsetHeight;
+        // Below those that it would cover.
+        const y = placed.reduce((free, other) => (
+          x < other.x + other.width && other.x < x + width && Math.abs(free - other.y) < height ? other.y + height : free
+        ), tipY);
+        placed.push({ x, y, width });
+        placed.sort((a, b) => a.y - b.y);
+        label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
       });
     };
     this.canvas.addEventListener('pointermove', (event) => this.hover(event));
