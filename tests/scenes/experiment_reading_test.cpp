@@ -139,13 +139,22 @@ TEST(ExperimentFile, TablesOfOthersKeepTheirOwnRecordOfKeys) {
   EXPECT_TRUE(file.others("sensors").empty());
 }
 
-TEST(ExperimentFile, WithoutTorqueMapItsOnlyAttitudeIsTheExperimentsOwn) {
+TEST(ExperimentFile, WithoutTorqueMapTiltsToAllSidesAreLookedAt) {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tilted.toml";
-  std::ofstream(path) << "[attitude]\ntilt_deg = 20\nheading_deg = -90\n";
-  const ExperimentFile file = read_experiment_file(path);
-  ASSERT_EQ(file.torque_map.tilt_rad.size(), 1u);
-  EXPECT_DOUBLE_EQ(file.torque_map.tilt_rad[0], 20 * degree_rad);
-  EXPECT_DOUBLE_EQ(file.torque_map.heading_rad[0], -90 * degree_rad);
+  const std::string attitude = "[attitude]\ntilt_deg = 20\nheading_deg = -90\n";
+  std::ofstream(path) << attitude;
+  const AttitudeGrid all = read_experiment_file(path).torque_map;
+  ASSERT_EQ(all.tilt_rad.size(), 4u);
+  EXPECT_EQ(all.tilt_rad.front(), 0.0);
+  EXPECT_DOUBLE_EQ(all.tilt_rad.back(), 30 * degree_rad);
+  ASSERT_EQ(all.heading_rad.size(), 8u);
+  EXPECT_DOUBLE_EQ(all.heading_rad.back(), 315 * degree_rad);
+  // An axis that the table leaves out is the experiment's own attitude.
+  std::ofstream(path) << attitude << "[torque_map]\ntilt_deg = [0, 10]\n";
+  const AttitudeGrid stated = read_experiment_file(path).torque_map;
+  EXPECT_EQ(stated.tilt_rad.size(), 2u);
+  ASSERT_EQ(stated.heading_rad.size(), 1u);
+  EXPECT_DOUBLE_EQ(stated.heading_rad[0], -90 * degree_rad);
 }
 
 // The sphere that holds the scene fills the picture's smaller side and stays inside.

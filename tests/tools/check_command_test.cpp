@@ -196,5 +196,18 @@ TEST_F(CheckCommand, NewWritesWhatRuns) {
   EXPECT_EQ(file_text(free), before);
 }
 
+// A narrow lamp over the origin would miss a part that stands aside.
+TEST_F(CheckCommand, NewLightsThePartThatItMeasures) {
+  write("aside.obj",
+        "o panel\nv 1.0 0.4 0\nv 1.2 0.4 0\nv 1.2 0.6 0\nv 1.0 0.6 0\nf 1 2 3 4\n"
+        "o foot\nv -1 -1 -1\nv -0.99 -1 -1\nv -0.99 -0.99 -1\nf 5 6 7\n");
+  const std::string experiment = at("aside.toml");
+  const Outcome made =
+      run("new " + experiment + " --scene " + at("aside.obj") + " --set scene.unit=m");
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(file_text(experiment), HasSubstr("position_m = [1.1, 0.5, "));
+  EXPECT_THAT(file_text(experiment), HasSubstr("node = \"panel\""));
+}
+
 }  // namespace
 }  // namespace photorque

@@ -31,18 +31,6 @@ void add_notices_of_layers(Experiment& experiment) {
   }
 }
 
-// Of models whose size nobody would build: millimetres that were read as metres, or the reverse.
-void add_notice_of_size(Experiment& experiment) {
-  constexpr double tiny_m = 1e-3, huge_m = 200.0;
-  if (experiment.scene.instances.empty()) return;
-  const double across_m = 2.0 * experiment.scene.radius_m();
-  if (across_m > tiny_m && across_m < huge_m) return;
-  experiment.notices.push_back(
-      "the model is " + readable_number(across_m, 3) +
-      " m across: are its lengths in the unit that is stated (scene.unit of STL and OBJ, "
-      "scene.metres_per_unit of glTF)?");
-}
-
 Experiment read(const RunOptions& options) {
   ExperimentFile file =
       read_experiment_text(options.experiment, options.experiment_text(), options.all_overrides());
@@ -58,7 +46,6 @@ Experiment read(const RunOptions& options) {
     experiment.notices.push_back(std::move(notice));
   }
   add_notices_of_layers(experiment);
-  add_notice_of_size(experiment);
   return experiment;
 }
 
