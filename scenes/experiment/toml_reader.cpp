@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <sstream>
 
@@ -196,6 +197,38 @@ void erase_other_units(SettingsNode::Table& table, const std::string& key) {
   });
 }
 
+// Line `number` of a text, from one, without blanks around it and without a comment.
+std::string bare_line(const std::string& text, int number) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int i = 0; i < number && std::getline(lines, line); ++i) {
+  }
+  return std::string(trimmed(std::string_view(line).substr(0, line.find('#'))));
+}
+
+// What TOML expects instead of a line that it cannot read: the usual slips by name.
+std::string expected_line(const std::string& line) {
+  const size_t equals = line.find('=');
+  if (equals == std::string::npos) return "TOML";
+  const std::string key(trimmed(std::string_view(line).substr(0, equals)));
+  const std::string value(trimmed(std::string_view(line).substr(equals + 1)));
+  if (key.empty()) return "TOML";
+  if (value.empty()) return "TOML, a value behind " + key + " =";
+  const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  const bool is_word = is_letter(value[0]) || value[0] == '/' || value[0] == '.';
+  if (is_word && value.find('"') == std::string::npos) {
+    return "TOML, text in quotes: " + key + " = \"" + value + "\"";
+  }
+  const bool is_number = value.find_first_not_of("+-0123456789.,eE") == std::string::npos;
+  const size_t comma = value.find(',');
+  if (is_number && comma != std::string::npos && comma == value.rfind(',')) {
+    std::string with_point = value;
+    with_point[comma] = '.';
+    return "TOML, a decimal point: " + key + " = " + with_point;
+  }
+  return "TOML";
+}
+
 }  // namespace
 
 SettingsNode parse_toml(const std::string& text, const std::string& name) {
@@ -211,7 +244,7 @@ SettingsNode parse_toml(const std::string& text, const std::string& name) {
   } catch (const toml::parse_error& error) {
     const InputLocation where{name, static_cast<int>(error.source().begin.line)};
     throw InputError(where, "", "a syntax error (" + std::string(error.description()) + ")",
-                     "TOML");
+                     expected_line(bare_line(text, where.line)));
   }
 }
 

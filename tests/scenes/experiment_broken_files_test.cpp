@@ -95,7 +95,9 @@ const Broken cases[] = {
     // TOML
     {"unclosed_text", 5, "kind = \"led", ":5", "syntax error"},
     {"unclosed_array", 12, "position_m = [0, 0, 1", ":13", "syntax error"},
-    {"no_value", 6, "power_W =", ":6", "syntax error"},
+    {"no_value", 6, "power_W =", ":6", "a value behind power_W ="},
+    {"no_quotes", 5, "kind = led", ":5", "text in quotes: kind = \"led\""},
+    {"decimal_comma", 6, "power_W = 2,5", ":6", "a decimal point: power_W = 2.5"},
     {"key_twice", 7, "power_W = 2", ":7", "syntax error"},
     {"not_utf8", 8, "profile = \"\xff\"", ":8", "syntax error"},
     {"binary", -1, std::string("glTF\x02\x00\x00\x00", 8), ":1", "bytes that are no text"},
