@@ -55,6 +55,15 @@ std::optional<double> to_number(std::string_view cell) {
   return number_in(cell);
 }
 
+// "0,25": a number of somebody whose numbers have a comma.
+bool has_decimal_comma(std::string_view cell) {
+  const size_t comma = cell.find(',');
+  if (comma == std::string_view::npos) return false;
+  std::string with_point(cell);
+  with_point[comma] = '.';
+  return number_in(with_point).has_value();
+}
+
 // One column of the file: the channel it fills and the factor to SI.
 struct FileColumn {
   std::string name;
@@ -143,12 +152,19 @@ class RecordingReader {
     ++report.rows_read;
     split_cells(line, separator_, cells_);
     if (cells_.size() != columns_.size()) {
-      ++report.malformed_rows;
+      if (++report.malformed_rows == 1) {
+        first_malformed_ = error(
+            "", "a row of " + std::to_string(cells_.size()) + " cells",
+            std::to_string(columns_.size()) + ", as in the header; numbers have a point, no comma");
+      }
       return;
     }
     const std::optional<double> time = to_number(cells_[time_column_]);
     if (!time || std::isnan(*time)) {
-      ++report.rows_without_time;
+      if (!time) require_decimal_points(time_column_);
+      if (++report.rows_without_time == 1) {
+        first_without_time_ = error("t_s", in_quotes(cells_[time_column_]), "a number");
+      }
       return;
     }
     const double time_s = *time * columns_[time_column_].to_SI;
@@ -171,6 +187,7 @@ class RecordingReader {
       if (i == time_column_) continue;
       std::optional<double> value = to_number(cells_[i]);
       if (!value) {
+        require_decimal_points(i);
         ++report.unreadable_cells;
         value = empty_cell;
       } else if (std::isnan(*value)) {
@@ -180,10 +197,26 @@ class RecordingReader {
     }
   }
 
+  // Emptied like other cells without a number, such numbers would leave a recording of whole ones.
+  void require_decimal_points(size_t column) const {
+    if (!has_decimal_comma(cells_[column])) return;
+    throw error(columns_[column].name, in_quotes(cells_[column]), "a decimal point, no comma");
+  }
+
+  // A few damaged rows are left out; where most are, something else is wrong with the file.
+  void require_mostly_whole() const {
+    const RecordingReport& report = recording_.report;
+    if (first_malformed_ && report.malformed_rows > report.rows_kept) throw *first_malformed_;
+    if (first_without_time_ && report.rows_without_time > report.rows_kept) {
+      throw *first_without_time_;
+    }
+  }
+
   void finish() {
     recording_.angle_sequence = options_.angle_sequence;
     RecordingReport& report = recording_.report;
     report.rows_kept = static_cast<int64_t>(recording_.rows());
+    require_mostly_whole();
     if (report.backward_times > report.rows_kept) {
       throw InputError({path_.string(), static_cast<int>(report.first_backward_line)}, "t_s",
                        "times that fall in " + std::to_string(report.backward_times) + " rows",
@@ -215,6 +248,7 @@ class RecordingReader {
   size_t time_column_ = 0;
   char separator_ = ',';
   int64_t kept_cells_ = 0;
+  std::optional<InputError> first_malformed_, first_without_time_;
 };
 
 std::string cell_text(double value) {

@@ -9,7 +9,7 @@
 namespace photorque {
 namespace {
 
-constexpr size_t chunk = 1 << 18;
+constexpr size_t chunk = 1 << 16;
 constexpr size_t max_line_length = 1 << 20;
 
 }  // namespace
@@ -20,7 +20,7 @@ struct TextLines::File {
 
 TextLines::TextLines(const std::filesystem::path& path) : path_(path) {
   require_plain_file(path);
-  file_ = std::make_unique<File>(gzopen(path.c_str(), "rb"));
+  file_ = std::make_unique<File>(File{gzopen(path.c_str(), "rb")});
   if (file_->handle == nullptr) {
     throw InputError({path.string(), 0}, "", "no file that can be read", "a recording");
   }

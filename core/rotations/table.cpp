@@ -87,7 +87,7 @@ struct ByteReader {
       return;
     }
     values.resize(count);
-    std::memcpy(values.data(), bytes.data() + at, count * sizeof(T));
+    if (count > 0) std::memcpy(values.data(), bytes.data() + at, count * sizeof(T));
     at += count * sizeof(T);
   }
 };
@@ -253,10 +253,16 @@ bool RotationTable::read(const std::string& bytes) {
   for (const int32_t root : table.roots_) {
     if (root >= boxes) return false;
   }
-  for (const Box& box : table.boxes_) {
-    if (box.children >= 0 && box.children + 4 > boxes) return false;
+  // In numbers that hold whatever the bytes say.
+  if (channels > table.values_.size()) return false;
+  const uint64_t samples = table.values_.size() / (twists * channels);
+  for (int64_t index = 0; index < boxes; ++index) {
+    const Box& box = table.boxes_[static_cast<size_t>(index)];
+    const int64_t children = box.children;
+    // Children come after their parents: a circle would never end.
+    if (children >= 0 && (children <= index || children + 4 > boxes)) return false;
     for (const uint32_t sample : box.sample) {
-      if ((sample + 1) * twists * channels > table.values_.size()) return false;
+      if (sample >= samples) return false;
     }
   }
   *this = std::move(table);

@@ -38,6 +38,12 @@ NumberColumns read_number_columns(const std::filesystem::path& path,
   std::vector<std::string_view> cells;
   for (std::string_view line; lines.next(line);) {
     split_cells(line, ',', cells);
+    // Decimal commas, say, which would shift what follows them.
+    if (cells.size() > result.header.size()) {
+      throw InputError(lines.where(), "", "a row of " + std::to_string(cells.size()) + " cells",
+                       std::to_string(result.header.size()) +
+                           ", as in the header; numbers have a point, no comma");
+    }
     for (size_t i = 0; i < names.size(); ++i) {
       const std::string_view cell = places[i] < cells.size() ? cells[places[i]] : "";
       result.columns[i].push_back(require_number(cell, lines.where(), names[i], "a finite number"));

@@ -29,8 +29,10 @@ Json read_lists(const fs::path& path) {
   std::error_code failure;
   if (!fs::is_regular_file(path, failure)) return Json::object();
   const Json read = Json::parse(read_file(path), nullptr, false);
-  const bool known = read.is_object() && read.value("schema", "") == "photorque.files/1" &&
-                     read.contains("commands") && read["commands"].is_object();
+  // Whatever stands there, it is read as far as it has the form that is written here.
+  const bool known = read.is_object() && read.contains("schema") &&
+                     read["schema"] == "photorque.files/1" && read.contains("commands") &&
+                     read["commands"].is_object();
   return known ? read["commands"] : Json::object();
 }
 

@@ -4,7 +4,10 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <string_view>
 
 #include "core/errors.h"
 
@@ -16,6 +19,47 @@ float linear_from_srgb(float value) {
   return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
 }
 
+uint32_t word_of(std::string_view bytes) {
+  uint32_t word = 0;
+  for (const char byte : bytes.substr(0, 4)) word = word << 8 | static_cast<unsigned char>(byte);
+  return word;
+}
+
+// PNG's checksum, table by table.
+// Source: ISO/IEC 15948:2003, annex D.
+uint32_t checksum_of(std::string_view bytes) {
+  static const std::array<uint32_t, 256> table = [] {
+    std::array<uint32_t, 256> all{};
+    for (uint32_t n = 0; n < all.size(); ++n) {
+      all[n] = n;
+      for (int k = 0; k < 8; ++k)
+        all[n] = (all[n] & 1) != 0 ? 0xedb88320u ^ all[n] >> 1 : all[n] >> 1;
+    }
+    return all;
+  }();
+  uint32_t sum = ~0u;
+  for (const char byte : bytes)
+    sum = table[(sum ^ static_cast<unsigned char>(byte)) & 0xff] ^ sum >> 8;
+  return ~sum;
+}
+
+// Whether every chunk of a PNG is there and as it was written: of one that is not, its library says
+// so on the terminal, beside the one line that this program promises.
+bool has_whole_chunks(std::string_view png) {
+  constexpr size_t signature = 8,
+                   around = 12;  // of a chunk: length and type before, checksum after
+  for (std::string_view rest = png.substr(std::min(signature, png.size()));
+       rest.size() >= around;) {
+    const size_t length = word_of(rest);
+    if (length > rest.size() - around) return false;
+    const std::string_view sealed = rest.substr(4, 4 + length);
+    if (word_of(rest.substr(8 + length)) != checksum_of(sealed)) return false;
+    if (sealed.starts_with("IEND")) return true;
+    rest.remove_prefix(around + length);
+  }
+  return false;
+}
+
 }  // namespace
 
 LinearPicture read_picture(const std::string& bytes) {
@@ -24,6 +68,9 @@ LinearPicture read_picture(const std::string& bytes) {
   constexpr int64_t max_texels = int64_t{1} << 26;
   const bool is_png = bytes.starts_with("\x89PNG");
   if (!is_png && !bytes.starts_with("\xFF\xD8")) throw wrong;
+  if (is_png && !has_whole_chunks(bytes)) {
+    throw InputError({"picture"}, "", "a PNG that is damaged or cut off", "a whole one");
+  }
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
   const auto input =
       OIIO::ImageInput::open(is_png ? "picture.png" : "picture.jpg", nullptr, &memory);

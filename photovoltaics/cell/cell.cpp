@@ -26,8 +26,12 @@ void check(const CellParameters& p) {
           "a number >= 0");
   require(finite(p.saturation_2_A) && p.saturation_2_A >= 0, "saturation_2_A", p.saturation_2_A,
           "a number >= 0");
-  require(p.saturation_1_A + p.saturation_2_A > 0, "saturation_1_A", p.saturation_1_A,
-          "a saturation current > 0 in one of the diodes");
+  if (!(p.saturation_1_A + p.saturation_2_A > 0)) {
+    // Very cold cells have none that a number could hold.
+    throw InputError({}, "saturation_1_A",
+                     "no saturation current at " + std::to_string(p.temperature_K) + " K",
+                     "one > 0 in one of the diodes");
+  }
   require(finite(p.ideality_1) && p.ideality_1 > 0, "ideality_1", p.ideality_1, "a number > 0");
   require(finite(p.ideality_2) && p.ideality_2 > 0, "ideality_2", p.ideality_2, "a number > 0");
   require(finite(p.series_ohm) && p.series_ohm >= 0, "series_ohm", p.series_ohm, "a number >= 0");

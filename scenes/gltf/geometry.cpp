@@ -130,6 +130,8 @@ std::vector<uint32_t> GeometryReader::add_triangles(const std::vector<Triangle>&
                                    vertices.position(triangle[2])};
     if (is_degenerate(p[0], p[1], p[2])) {
       ++result->degenerate;
+      for (const Vec3& corner : p)
+        result->degenerate_reach = std::max(result->degenerate_reach, corner.norm());
       continue;
     }
     Triangle renumbered{};

@@ -14,8 +14,9 @@ namespace photorque::gltf {
 // triangles use, in order of first use.
 struct PrimitiveMesh {
   Mesh mesh;
-  size_t degenerate = 0;    // triangles without area, left out
-  bool without_uv = false;  // texture coordinates were left out because some are not finite
+  size_t degenerate = 0;          // triangles without area, left out
+  double degenerate_reach = 0.0;  // of their corners, from the origin; in units of the file
+  bool without_uv = false;        // texture coordinates were left out because some are not finite
 };
 
 using Triangle = std::array<uint32_t, 3>;

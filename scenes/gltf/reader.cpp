@@ -106,7 +106,9 @@ class Assembly {
                                ": texture coordinates that are not finite are ignored");
     }
     if (read->mesh.triangles.empty()) return std::nullopt;
-    double square = 0.0;
+    // With the corners of triangles that were left out: one that is very far away makes its
+    // triangle a needle, and would otherwise go unnoticed.
+    double square = read->degenerate_reach * read->degenerate_reach;
     for (const Vec3& vertex : read->mesh.vertices_m) {
       square = std::max(square, vertex.squaredNorm());
     }

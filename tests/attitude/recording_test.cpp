@@ -234,6 +234,26 @@ TEST(Recording, HopelessFilesAreRefusedInOneLine) {
   EXPECT_THROW(read_recording(testing::TempDir()), InputError);
 }
 
+// Once such cells were emptied, and whole numbers were all that was left of a recording.
+TEST(Recording, DecimalCommasAreToldWhereTheyStand) {
+  EXPECT_THAT(complaint("t_s;gyro_x_rad_s\n0;1\n1;0,25\n2;3\n"),
+              HasSubstr(":3: gyro_x_rad_s: found \"0,25\", expected a decimal point, no comma"));
+  EXPECT_THAT(complaint("t_s;gyro_x_rad_s\n0,0;1\n0,1;2\n"),
+              HasSubstr(":2: t_s: found \"0,0\", expected a decimal point"));
+  // With commas between cells too, every row has more of them than the header.
+  EXPECT_THAT(complaint("t_s,gyro_x_rad_s\n0,0,1,5\n0,1,2,5\n0,2,2,5\n"),
+              HasSubstr(":2: found a row of 4 cells, expected 2, as in the header"));
+  // What only looks like it is no number at all, and is left out like any other.
+  EXPECT_EQ(complaint("t_s;a\n0;1\n1;x,5\n2;1,2,3\n3;2\n"), "none");
+}
+
+TEST(Recording, WhereMostRowsAreWrongTheFirstIsNamed) {
+  EXPECT_THAT(complaint("t_s,a\n0,1\n1,2\n2,3,4\n3,4,5\n4,5,6\n"),
+              HasSubstr(":4: found a row of 3 cells, expected 2"));
+  EXPECT_THAT(complaint("t_s,a\n0,1\n1,2\nnoon,3\nlater,3\nlater,3\n"),
+              HasSubstr(":4: t_s: found \"noon\", expected a number"));
+}
+
 TEST(Recording, DamagedCompressedFilesAreRefused) {
   std::string text = "t_s,a\n";
   for (int i = 0; i < 5000; ++i)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "core/constants.h"
 #include "core/errors.h"
@@ -211,6 +212,30 @@ TEST(RotationTable, BytesGiveItBackAndOthersAreRefused) {
   EXPECT_EQ(a, b);
   EXPECT_FALSE(again.read(bytes.substr(0, bytes.size() - 3)));
   EXPECT_FALSE(again.read("nonsense"));
+}
+
+// Found by reading and by fuzzing: sums that wrapped round let places beyond the table through, and
+// a box among its own children was followed for ever.
+TEST(RotationTable, BytesThatPointElsewhereAreRefused) {
+  const std::string bytes = make_rotation_table(exact(sideways), up_to(30, 1e-3, 3)).bytes();
+  constexpr size_t first_box = 88, first_sample = first_box + 48, children = first_box + 148;
+  const auto with = [&](size_t at, uint32_t word) {
+    std::string changed = bytes;
+    std::memcpy(changed.data() + at, &word, sizeof word);
+    return changed;
+  };
+  RotationTable table;
+  uint32_t there = 0;
+  std::memcpy(&there, bytes.data() + children, sizeof there);
+  EXPECT_TRUE(table.read(with(children, there)));
+  for (const uint32_t place : {0xffffffffu, 0x7fffffffu, 100000u}) {
+    EXPECT_FALSE(table.read(with(first_sample, place))) << place;
+  }
+  for (const uint32_t place : {0x7ffffffeu, 0x7fffffffu, 0u, 100000u}) {
+    EXPECT_FALSE(table.read(with(children, place))) << place;
+  }
+  constexpr size_t channels = 40;
+  EXPECT_FALSE(table.read(with(channels + 4, 0x7fffffffu)));
 }
 
 TEST(RotationTable, BeyondItsEdgeIsAnError) {

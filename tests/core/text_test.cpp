@@ -99,6 +99,9 @@ TEST(Columns, AreFoundByNameAndWrongCellsByLine) {
   };
   EXPECT_THAT(message("c"), HasSubstr("text_test.csv:3: c: found \"x\", expected a finite number"));
   EXPECT_THAT(message("d"), HasSubstr("text_test.csv:2: found no column d"));
+  // Decimal commas: once the numbers after them were read in the wrong columns.
+  write_file_whole(path, std::string("a,c\n1,2\n0,5,7\n"));
+  EXPECT_THAT(message("c"), HasSubstr("text_test.csv:3: found a row of 3 cells, expected 2"));
   std::filesystem::remove(path);
 }
 

@@ -61,6 +61,19 @@ TEST(LightRecordings, NumbersOfSweepsBeyondAllCountingAreLeftOut) {
   EXPECT_EQ(sweep.rejected.at("unreadable number"), 1);
 }
 
+TEST(LightRecordings, RowsOfAnotherLengthThanTheHeaderAreNamedWhereMostAre) {
+  const fs::path path =
+      light_file("commas.csv", "voltage_V,current_A\n1,2\n0,5,0,2\n0,6,0,2\n0,7,0,2\n");
+  try {
+    read_light_recording(path, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(":3: found a row of 4 cells, expected 2"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(LightRecordings, OthersAreRefused) {
   const fs::path motion =
       light_file("motion.csv", "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s\n0,1,0,0,0,0\n");

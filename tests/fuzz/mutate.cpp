@@ -17,6 +17,9 @@
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+// Of targets that change more than bytes.
+extern "C" __attribute__((weak)) size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size,
+                                                                size_t max_size, unsigned seed);
 
 namespace {
 
@@ -78,6 +81,18 @@ class Mutator {
   std::mt19937_64 random_;
 };
 
+// What a custom mutator calls; the seed goes on by itself, the same on every machine.
+uint64_t changes_of_bytes = 0;
+
+std::string changed(const std::string& bytes, uint64_t seed) {
+  if (LLVMFuzzerCustomMutator == nullptr) return Mutator(seed).changed(bytes);
+  constexpr size_t room = 1024;
+  std::string text = bytes + std::string(room, '\0');
+  text.resize(LLVMFuzzerCustomMutator(reinterpret_cast<uint8_t*>(text.data()), bytes.size(),
+                                      text.size(), static_cast<unsigned>(seed)));
+  return text;
+}
+
 void try_one(const std::string& bytes) {
   LLVMFuzzerTestOneInput(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
 }
@@ -91,6 +106,14 @@ std::vector<fs::path> files_of(const fs::path& path) {
 }
 
 }  // namespace
+
+extern "C" size_t LLVMFuzzerMutate(uint8_t* data, size_t size, size_t max_size) {
+  std::string bytes(reinterpret_cast<const char*>(data), size);
+  bytes = Mutator(++changes_of_bytes).changed(std::move(bytes));
+  bytes.resize(std::min(bytes.size(), max_size));
+  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(data));
+  return bytes.size();
+}
 
 int main(int argc, char** argv) {
   uint64_t mutations = 1000, tried = 0;
@@ -115,7 +138,7 @@ int main(int argc, char** argv) {
       return 2;
     }
     try_one(bytes);
-    for (uint64_t k = 0; k < mutations; ++k, ++tried) try_one(Mutator(k).changed(bytes));
+    for (uint64_t k = 0; k < mutations; ++k, ++tried) try_one(changed(bytes, k));
   }
   std::cout << fs::path(argv[0]).filename().string() << ": " << files.size() << " files, " << tried
             << " mutations read or refused\n";

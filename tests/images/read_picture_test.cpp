@@ -38,6 +38,19 @@ TEST(ReadPicture, RefusesWhatIsNone) {
   EXPECT_THROW(read_picture(good.substr(0, 40)), InputError);
 }
 
+// Its library told the terminal of each, beside the error.
+TEST(ReadPicture, RefusesDamageWithoutAWordOfItsOwn) {
+  const std::string good = two_texels();
+  testing::internal::CaptureStderr();
+  for (size_t at = 8; at < good.size(); ++at) {
+    std::string damaged = good;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
+    EXPECT_THROW(read_picture(damaged), InputError) << at;
+    EXPECT_THROW(read_picture(good.substr(0, at)), InputError) << at;
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 // The same with another size in its header, whose checksum is right (ISO 3309, as PNG has it).
 std::string of_size(uint32_t width, uint32_t height) {
   std::string bytes = two_texels();

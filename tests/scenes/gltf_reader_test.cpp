@@ -267,6 +267,18 @@ TEST(GltfGeometry, LeavesOutCollinearTriangles) {
   EXPECT_THAT(read.notices, Contains("1 triangle(s) without area left out"));
 }
 
+// A corner that is damaged makes a needle of its triangle, and half of a plate went with it unseen.
+TEST(GltfGeometry, RefusesCornersBeyondEverythingThoughTheirTrianglesAreNeedles) {
+  const TestModel model =
+      unindexed(triangles, {0, 0, 0, 1, 0, 0, 0, 0, 1, 3e38f, 0, 0, 1, 0, 0, 0, 0, 1});
+  try {
+    model.read();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("m away, expected at most 1e9 m"));
+  }
+}
+
 TEST(GltfGeometry, SkipsPointsAndLines) {
   for (int mode = 0; mode < 4; ++mode) {
     const GltfModel read = unindexed(mode, square).read();

@@ -117,11 +117,27 @@ CaseFiles files_of(const fs::path& case_folder) {
   return files;
 }
 
+std::string plan_text(const ProveSettings& settings);
+
+// Cases that stand there are gone on with, but only those of the same plan.
+void require_same_plan(const ProveSettings& settings, const fs::path& folder) {
+  const fs::path note = folder / "plan.txt";
+  const std::string plan = plan_text(settings) + "\n";
+  if (fs::exists(note) && read_file(note) != plan) {
+    throw InputError({folder.string()}, "--out",
+                     "cases of another plan (" + note.filename().string() + ")",
+                     "cases of this plan, or a new folder");
+  }
+  fs::create_directories(folder);
+  write_file_whole(note, plan);
+}
+
 // Makes the cases that are not there yet.
 std::vector<fs::path> make_cases(const ProveSettings& settings, const fs::path& folder, int threads,
                                  const Console& console) {
   const size_t all = settings.light ? light_case_count(*settings.light) : case_count(settings.plan);
   const size_t count = std::min(all, settings.max_cases);
+  require_same_plan(settings, folder);
   std::vector<fs::path> folders(count);
   std::atomic<size_t> done = 0;
   const auto progress = console.progress("injecting");
@@ -168,9 +184,14 @@ std::vector<fs::path> cases_in(const fs::path& folder) {
 
 // As the experiment file of a case states it; of cases made elsewhere, what most of them have.
 std::array<double, 3> camera_noise_arcsec(const fs::path& case_folder) {
-  const auto truth = nlohmann::json::parse(read_file(case_folder / "truth.json"), nullptr, false);
+  const fs::path file = case_folder / "truth.json";
+  const auto truth = nlohmann::json::parse(read_file(file), nullptr, false);
   const std::array<double, 3> common = {37.0, 37.0, 12.0};
-  return truth.is_object() ? truth.value("camera_noise_arcsec", common) : common;
+  try {
+    return truth.is_object() ? truth.value("camera_noise_arcsec", common) : common;
+  } catch (const nlohmann::json::exception&) {
+    throw InputError({file.string()}, "camera_noise_arcsec", "something else", "three numbers");
+  }
 }
 
 // Propagates the answer and compares with the recording; what a user would do first.

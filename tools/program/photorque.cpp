@@ -9,6 +9,7 @@
 #include "core/provenance.h"
 #include "core/settings/settings.h"
 #include "core/text/numbers.h"
+#include "images/loading/functions.h"
 #include "tools/commands/verb.h"
 #include "tools/guards/interruption.h"
 #include "tools/guards/memory.h"
@@ -84,6 +85,7 @@ void run_in_folder(const Verb& verb, const CommandLine& line) {
 int run_verb(const Verb& verb, const CommandLine& line) {
   try {
     if (verb.writes) {
+      require_pictures();
       run_in_folder(verb, line);
     } else {
       verb.run(line);

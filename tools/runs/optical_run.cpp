@@ -295,6 +295,16 @@ Provenance Warnings::into(Provenance provenance) const {
   return provenance;
 }
 
+namespace {
+
+// A perfect mirror absorbs nothing either, but it is pushed.
+bool misses_everything(const PowerBalance& balance) {
+  return balance.absorbed_W.value == 0.0 && balance.truncated_W.value == 0.0 &&
+         std::ranges::all_of(balance.force_N, [](const Estimate& f) { return f.value == 0.0; });
+}
+
+}  // namespace
+
 void print_trace(const Console& console, const OpticalRun& run, const OpticalResult& result) {
   const PowerBalance& power_balance = result.power_balance;
   const auto row = [&](const std::string& name, const Estimate& power) {
@@ -307,7 +317,7 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   row("absorbed", power_balance.absorbed_W);
   row("escaped", power_balance.escaped_W);
   row("truncated", power_balance.truncated_W);
-  if (power_balance.escaped_W.value >= power_balance.emitted_W) {
+  if (misses_everything(power_balance)) {
     console.line("  note: no light meets the scene: where do the sources stand and look?");
   }
   for (size_t i = 0; i < run.experiment().receivers.size(); ++i) {

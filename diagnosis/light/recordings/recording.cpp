@@ -208,12 +208,26 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   RowReader reader(columns, usual, recording);
   std::string_view line;
   std::vector<std::string_view> cells;
+  const std::string wrong_length = "wrong number of cells";
+  int64_t of_wrong_length = 0;
+  int first_of_wrong_length = 0;
+  size_t cells_there = 0;
   while (next_line(lines, line)) {
     ++recording.rows_read;
     split_cells(line, ',', cells);
-    const std::string reason =
-        cells.size() == header->columns() ? reader.add(cells) : "wrong number of cells";
+    const std::string reason = cells.size() == header->columns() ? reader.add(cells) : wrong_length;
+    if (reason == wrong_length && ++of_wrong_length == 1) {
+      first_of_wrong_length = static_cast<int>(lines.number());
+      cells_there = cells.size();
+    }
     if (!reason.empty()) ++recording.rejected[reason];
+  }
+  // A few torn rows are left out; where most are, something else is wrong, such as decimal commas.
+  if (2 * of_wrong_length > recording.rows_read) {
+    throw InputError(
+        {path.string(), first_of_wrong_length}, "",
+        "a row of " + std::to_string(cells_there) + " cells",
+        std::to_string(header->columns()) + ", as in the header; numbers have a point, no comma");
   }
   if (recording.rows() == 0) {
     throw InputError({path.string(), static_cast<int>(lines.number())}, "rows", "no usable row",

@@ -1,0 +1,11 @@
+// Fuzz target: any bytes as a CCSDS attitude ephemeris message.
+#include "attitude/ccsds/aem.h"
+
+#include "tests/fuzz/target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace photorque;
+  const fuzz::FileInMemory file(data, size);
+  fuzz::may_refuse([&] { read_aem(file.path()); });
+  return 0;
+}

@@ -1,0 +1,10 @@
+// Fuzz target: any bytes as a table of measured scattering.
+#include "scenes/surfaces/brdf_file.h"
+
+#include "tests/fuzz/target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace photorque;
+  fuzz::may_refuse([&] { read_brdf(fuzz::text_of(data, size), "fuzz"); });
+  return 0;
+}

@@ -1,0 +1,29 @@
+// Fuzz target: any bytes as files.json, the list of what a command's last run wrote. Whatever it
+// says, the new run's files appear and nothing outside of the folder is touched.
+#include "images/publishing/staged_files.h"
+
+#include <fstream>
+
+#include "tests/fuzz/target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace photorque;
+  namespace fs = std::filesystem;
+  static const fs::path folder = [] {
+    std::string name = "/dev/shm/photorque_fuzz_XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) std::abort();
+    return fs::path(name);
+  }();
+  static const fs::path results = folder / "results";
+  fs::create_directories(results);
+  std::ofstream(folder / "precious") << "of others";
+  std::ofstream(results / "files.json") << fuzz::text_of(data, size);
+  fuzz::may_refuse([&] {
+    StagedFiles staged(results);
+    std::ofstream(staged.path() / "summary.json") << "{}";
+    staged.publish_as("trace", {});
+    if (!fs::exists(results / "summary.json")) std::abort();
+  });
+  if (!fs::exists(folder / "precious")) std::abort();
+  return 0;
+}

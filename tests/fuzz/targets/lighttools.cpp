@@ -1,0 +1,7 @@
+// Fuzz target: any bytes as a file of rays in LightTools format.
+#include "tests/fuzz/targets/rays.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  photorque::fuzz::try_rays(photorque::read_lighttools_rays, data, size);
+  return 0;
+}

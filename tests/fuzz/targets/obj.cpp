@@ -1,0 +1,7 @@
+// Fuzz target: any bytes as an OBJ model.
+#include "tests/fuzz/targets/cad.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  photorque::fuzz::try_cad(photorque::CadFormat::obj, data, size);
+  return 0;
+}

@@ -1,0 +1,7 @@
+// Fuzz target: any bytes as a lamp table in IES TM-33 format.
+#include "tests/fuzz/targets/photometric.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  photorque::fuzz::try_photometric(photorque::read_tm33, data, size);
+  return 0;
+}
