@@ -1,0 +1,110 @@
+// Numbers far from those of a laboratory: sizes, distances, rates and temperatures. Each is right,
+// or one line says why there is none.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/command_test.h"
+
+namespace photorque {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Stress : public CommandTest {
+ protected:
+  // A square of this side that the Sun stands above, at a place along x.
+  Outcome lit_square(double side_m, double x_m, const std::string& further = "") const {
+    std::ostringstream model;
+    model.precision(17);
+    for (const auto& [x, y] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
+      model << "v " << x_m + x * side_m << " " << y * side_m << " 0\n";
+    }
+    write("square.obj", model.str() + "usemtl black\nf 1 2 3 4\n" + further);
+    return run(
+        "trace " +
+        write("e.toml",
+              "[scene]\nfile = \"square.obj\"\nunit = \"m\"\n[[material]]\nname = \"black\"\n"
+              "absorptance = 1\n[[source]]\nkind = \"sun\"\ndirection = [0, 0, -1]\n"
+              "irradiance_W_m2 = 1361\n[[receiver]]\nkind = \"wrench\"\n"
+              "[trace]\nrays = 65536\n") +
+        " --out " + at("o"));
+  }
+  json figure(const std::string& name) const {
+    return json::parse(file_text(at("o/summary.json"))).at(name);
+  }
+  // The last row of a free body's history, which turns about its z axis.
+  std::vector<double> turned(const std::string& rate_rad_s, const std::string& duration_s) const {
+    const Outcome got = run(
+        "propagate " +
+        write("p.toml",
+              "[platform]\ntopology = \"free\"\nmass_kg = 1\n"
+              "inertia_kg_m2 = [[1, 0, 0], [0, 1, 0], [0, 0, 1.5]]\n[propagate]\nduration_s = " +
+                  duration_s + "\ninitial_rate_rad_s = [0, 0, " + rate_rad_s +
+                  "]\noutput_rate_Hz = 1\n") +
+        " --out " + at("o"));
+    EXPECT_EQ(got.status, 0) << got.err;
+    const std::string text = file_text(at("o/time_history.csv"));
+    std::istringstream last(text.substr(text.rfind('\n', text.size() - 2) + 1));
+    std::vector<double> row;
+    for (std::string cell; std::getline(last, cell, ',');) row.push_back(std::stod(cell));
+    return row;
+  }
+};
+
+// Irradiance times area, whatever the size. The Sun's disc takes 5e-6 of the cosine.
+TEST_F(Stress, SquaresOfAMicrometreAndOfTenThousandKilometres) {
+  for (const double side_m : {1e-6, 1.0, 1e7}) {
+    const Outcome got = lit_square(side_m, 0.0);
+    ASSERT_EQ(got.status, 0) << got.err;
+    const json absorbed = figure("absorbed_W");
+    const double expected_W = 1361.0 * side_m * side_m;
+    EXPECT_NEAR(absorbed.at("value").get<double>() / expected_W, 1.0,
+                5.0 * absorbed.at("standard_error").get<double>() / expected_W + 1e-5)
+        << side_m;
+  }
+}
+
+// A nought without an error would look like a result.
+TEST_F(Stress, WhatNoRayMeetsIsSaid) {
+  const Outcome got = lit_square(1.0, 1e5);
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_EQ(figure("absorbed_W").at("value").get<double>(), 0.0);
+  EXPECT_THAT(got.out, HasSubstr("note: no light meets the scene"));
+}
+
+TEST_F(Stress, TrianglesWithoutAreaAndNeedlesChangeNothing) {
+  ASSERT_EQ(lit_square(1.0, 0.0).status, 0);
+  const json alone = figure("absorbed_W");
+  const Outcome got =
+      lit_square(1.0, 0.0,
+                 "v 0 0 0\nv 0 0 0\nv 0.2 0 0\nv 0.4 0 0\nf 5 6 7\nf 5 7 8\n"
+                 "v -0.4 0.1 -0.1\nv 0.4 0.1 -0.1\nv 0 0.100000001 -0.1\nf 9 10 11\n");
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("without area left out"));
+  const double tolerance_W = 3.0 * alone.at("standard_error").get<double>() + 1e-6;
+  EXPECT_NEAR(figure("absorbed_W").at("value").get<double>(), alone.at("value").get<double>(),
+              tolerance_W);
+}
+
+// Half the angle turned, in the quaternion.
+TEST_F(Stress, RatesFromANanoradianToAThousandRadiansASecond) {
+  const std::vector<double> fast = turned("1e3", "1");
+  EXPECT_NEAR(fast.at(1), std::cos(500.0), 1e-9);
+  EXPECT_NEAR(fast.at(4), std::sin(500.0), 1e-9);
+  const std::vector<double> slow = turned("1e-9", "100");
+  EXPECT_NEAR(slow.at(4), 5e-8, 1e-15);
+}
+
+TEST_F(Stress, CellsTooColdForADiodeAreTold) {
+  const Outcome got = run("power " + std::string(PHOTORQUE_SOURCE_DIR) +
+                          "/scenes/stasis/nominal.toml --set array.temperature_K=1 "
+                          "--set trace.rays=4096 --out " +
+                          at("o"));
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, HasSubstr("found no saturation current at 1.000000 K"));
+  EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+}
+
+}  // namespace
+}  // namespace photorque
