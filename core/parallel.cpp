@@ -7,6 +7,12 @@
 namespace photorque {
 
 void parallel_for(size_t count, int threads, const std::function<void(size_t)>& body) {
+  // One thread takes no part in TBB: a loop within the work of another loop would hold up that
+  // one's threads, whose number is one for the whole program.
+  if (threads == 1) {
+    for (size_t i = 0; i < count; ++i) body(i);
+    return;
+  }
   const auto loop = [&] {
     tbb::parallel_for(
         tbb::blocked_range<size_t>(0, count, 1),

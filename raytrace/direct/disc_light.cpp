@@ -130,33 +130,38 @@ Eigen::Array2d DiscLight::factors_W_m2(double distance_m, double height_m) const
   });
 }
 
+DiscLight::Flow DiscLight::flow_W_m2(double distance_m, double height_m) const {
+  return over_aperture(distance_m, height_m, [](const Arc& arc) -> Flow {
+    const double half_cosine_part =
+        arc.half_sine * std::copysign(std::sqrt(std::max(0.0, 1.0 - arc.half_sine * arc.half_sine)),
+                                      0.5 * pi - arc.half_rad);
+    Flow all;
+    all << 2.0 * arc.cosine * arc.half_rad, 2.0 * arc.sine * arc.half_sine,
+        2.0 * arc.cosine * arc.cosine * arc.half_rad, 2.0 * arc.cosine * arc.sine * arc.half_sine,
+        arc.sine * arc.sine * (arc.half_rad + half_cosine_part),
+        arc.sine * arc.sine * (arc.half_rad - half_cosine_part);
+    return all;
+  });
+}
+
 ArrivingLight DiscLight::arriving(const Vec3& point_m, const Vec3& normal) const {
-  // The flow of momentum is a tensor: its components along the axis and away from it, and the one
-  // around it.
-  using Components = Eigen::Array<double, 6, 1>;
-  Components flow;
-  double d = 0.0;
   if (parallel()) {
     const double square = angles_ ? angles_->mean_square_cosine() : 1.0;
     const double across = 0.5 * (1.0 - square);
+    Flow flow;
     flow << parallel_irradiance_W_m2_, 0.0,
         Eigen::Array4d(square, 0.0, across, across) * aperture_.exitance_W_m2;
-  } else {
-    if (!(point_m.z() > 0.0)) return {};
-    d = std::hypot(point_m.x(), point_m.y());
-    flow = over_aperture(d, point_m.z(), [](const Arc& arc) -> Components {
-      const double half_cosine_part =
-          arc.half_sine *
-          std::copysign(std::sqrt(std::max(0.0, 1.0 - arc.half_sine * arc.half_sine)),
-                        0.5 * pi - arc.half_rad);
-      Components all;
-      all << 2.0 * arc.cosine * arc.half_rad, 2.0 * arc.sine * arc.half_sine,
-          2.0 * arc.cosine * arc.cosine * arc.half_rad, 2.0 * arc.cosine * arc.sine * arc.half_sine,
-          arc.sine * arc.sine * (arc.half_rad + half_cosine_part),
-          arc.sine * arc.sine * (arc.half_rad - half_cosine_part);
-      return all;
-    });
+    return arriving_of(flow, Vec3::Zero(), normal);
   }
+  if (!(point_m.z() > 0.0)) return {};
+  const double d = std::hypot(point_m.x(), point_m.y());
+  return arriving_of(flow_W_m2(d, point_m.z()), point_m, normal);
+}
+
+ArrivingLight DiscLight::arriving_of(const Flow& flow, const Vec3& point_m, const Vec3& normal) {
+  // The flow of momentum is a tensor: its components along the axis and away from it, and the one
+  // around it.
+  const double d = std::hypot(point_m.x(), point_m.y());
   const Vec3 axis = Vec3::UnitZ();
   const Vec3 away = d > 0.0 ? Vec3(point_m.x() / d, point_m.y() / d, 0.0) : Vec3(Vec3::UnitX());
   const Vec3 around = axis.cross(away);

@@ -70,6 +70,14 @@ class DiscLight {
   // The same with the momentum that comes with it, in the emitter's frame.
   ArrivingLight arriving(const Vec3& point_m, const Vec3& normal) const;
 
+  // The six components of the flow of power and momentum at a height and a distance from the axis:
+  // A and B as of factors_W_m2(), then of the symmetric flow of momentum (times c) along the axis,
+  // between axis and away from it, away from it, and around it. Not for parallel light.
+  using Flow = Eigen::Array<double, 6, 1>;
+  Flow flow_W_m2(double distance_m, double height_m) const;
+  // What arrives at a point with this flow.
+  static ArrivingLight arriving_of(const Flow& flow, const Vec3& point_m, const Vec3& normal);
+
   // The irradiances A on a surface normal to the axis and B on one that looks at the axis, at a
   // height and a distance from it, such that E = −n_z A − n·p̂ B. Not for parallel light.
   Eigen::Array2d factors_W_m2(double distance_m, double height_m) const;

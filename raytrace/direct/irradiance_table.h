@@ -1,61 +1,70 @@
-// The irradiance of a disc_light.h for many points, from a table.
+// The irradiance of a disc_light.h for many points, from a table (factor_table.h).
 //
 // On a surface of normal n at height h above the aperture and distance d from its axis
 //   E = −n_z A(h, d) − n·p̂ B(h, d),
-// p̂ pointing away from the axis. A and B have kinks only where the circle that an edge of the beam
-// draws touches the rim of the aperture, at d = |R ± h tan θ|. Between two of these, powers of half
-// integers of the distance to them remain, which its square root makes smooth: cubics in the root
-// over even steps, with coefficients that are Chebyshev series in h.
+// p̂ pointing away from the axis.
 #pragma once
 
-#include <Eigen/Core>
+#include <cmath>
 #include <optional>
-#include <vector>
 
-#include "raytrace/direct/disc_light.h"
+#include "raytrace/direct/factor_table.h"
 
 namespace photorque {
 
 class IrradianceTable {
  public:
-  // For heights in [low_m, high_m], low_m > 0. Nothing where no such table agrees with `light` to
-  // `tolerance` of its largest value everywhere that is looked at: kinks that cross each other
-  // within these heights, or light all the way to the side. The same bits at any `threads`.
+  // See FactorTable::make().
   static std::optional<IrradianceTable> make(const DiscLight& light, double low_m, double high_m,
-                                             int threads);
-  static constexpr double tolerance = 1e-7;
-
-  static constexpr int max_degrees = 8;  // of the series in h
+                                             int threads) {
+    auto factors = FactorTable<2>::make(
+        light, [&](double d, double h) { return light.factors_W_m2(d, h); }, low_m, high_m,
+        threads);
+    if (!factors) return std::nullopt;
+    return IrradianceTable(*std::move(factors));
+  }
+  static constexpr double tolerance = FactorTable<2>::tolerance;
 
   // Largest difference from the light that was found, half-way between steps [W/m²].
-  double error_W_m2() const { return error_W_m2_; }
+  double error_W_m2() const { return factors_.error(); }
 
   // As DiscLight::irradiance_W_m2(), for points of these heights.
-  double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const;
+  double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const {
+    const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
+    const double away = d > 0.0 ? (normal.x() * point_m.x() + normal.y() * point_m.y()) / d : 0.0;
+    const Eigen::Array2d factor = factors_.at(d, point_m.z());
+    return -normal.z() * factor[0] - away * factor[1];
+  }
 
  private:
-  static constexpr size_t fewest_steps = 128, most_steps = 512;  // per half of a piece
+  explicit IrradianceTable(FactorTable<2> factors) : factors_(std::move(factors)) {}
 
-  // A distance from the axis that moves with the height.
-  struct Kink {
-    double at_zero_m, slope;
-    double at(double height_m) const { return at_zero_m + slope * height_m; }
-  };
-  using Node = Eigen::Array<double, max_degrees, 2>;  // coefficients of A and of B
+  FactorTable<2> factors_;
+};
 
-  IrradianceTable(double low_m, double high_m, std::vector<Kink> kinks, size_t steps);
-  // `coarser` has half as many steps, or is null.
-  void fill(const DiscLight& light, const IrradianceTable* coarser, int threads);
-  bool agrees_with(const DiscLight& light);
-  // The distance of a place in the table: node `place` (may be between two) of half 2 · piece or
-  // 2 · piece + 1.
-  double distance_m(size_t half, double place, double height_m) const;
+// The same for irradiance and momentum together.
+class MomentumTable {
+ public:
+  static std::optional<MomentumTable> make(const DiscLight& light, double low_m, double high_m,
+                                           int threads) {
+    auto factors = FactorTable<6>::make(
+        light, [&](double d, double h) { return light.flow_W_m2(d, h); }, low_m, high_m, threads);
+    if (!factors) return std::nullopt;
+    return MomentumTable(*std::move(factors));
+  }
 
-  double middle_m_, half_range_m_;  // of the heights
-  size_t degrees_, steps_;
-  double error_W_m2_ = 0.0;
-  std::vector<Kink> kinks_;  // rising, from the axis to where the light ends
-  std::vector<Node> nodes_;  // half by half, steps_ + 1 each
+  double error_W_m2() const { return factors_.error(); }
+
+  // As DiscLight::arriving(), for points of these heights.
+  ArrivingLight arriving(const Vec3& point_m, const Vec3& normal) const {
+    const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
+    return DiscLight::arriving_of(factors_.at(d, point_m.z()), point_m, normal);
+  }
+
+ private:
+  explicit MomentumTable(FactorTable<6> factors) : factors_(std::move(factors)) {}
+
+  FactorTable<6> factors_;
 };
 
 }  // namespace photorque

@@ -21,6 +21,8 @@ struct GatherOptions {
   int replicates = 16;  // ≥ 2
   uint64_t seed = 1;
   int points = 16;  // per replicate, bin and beam, where there may be shadow: a power of two
+  // On bodies, per replicate and in all, for the facets that may be shaded (bodies/wrench.h).
+  int body_points = 1 << 13;
   int threads = 0;  // 0: all
   // Doubles `points` until every bin with more than `floor` of the largest irradiance has this
   // relative standard error, or `points` is 16384; 0: once.

@@ -4,24 +4,18 @@
 #include <array>
 #include <cmath>
 
+#include "receivers/gather/triangle_rule.h"
+
 namespace photorque {
 namespace {
 
-// The mean of a function of the coordinates (a, b) over a triangle a, b ≥ 0, a + b ≤ 1, by the rule
-// of degree 5 with seven points; its error by a rule of degree 2.
-// Source: A. H. Stroud, Approximate Calculation of Multiple Integrals (1971), T2: 5-1 and 2-1.
+// The mean of a function of the coordinates (a, b) over a triangle a, b ≥ 0, a + b ≤ 1; its error
+// by a rule of degree 2.
+// Source: A. H. Stroud, Approximate Calculation of Multiple Integrals (1971), T2: 2-1.
 template <typename Function>
-Integral<double> triangle_mean(const Function& f) {
-  const auto ring = [&](double near) {  // three points towards the corners
-    const double far = 1.0 - 2.0 * near;
-    return f(near, near) + f(far, near) + f(near, far);
-  };
-  constexpr double inner = 0.47014206410511509, inner_weight = 0.13239415278850618;
-  constexpr double outer = 0.10128650732345634, outer_weight = 0.12593918054482715;
-  constexpr double third = 1.0 / 3.0;
-  const double mean =
-      0.225 * f(third, third) + inner_weight * ring(inner) + outer_weight * ring(outer);
-  return {mean, std::abs(mean - third * ring(1.0 / 6.0))};
+Integral<double> checked_mean(const Function& f) {
+  const double mean = triangle_mean(f);
+  return {mean, std::abs(mean - triangle_ring(f, 1.0 / 6.0) / 3.0)};
 }
 
 }  // namespace
@@ -107,7 +101,7 @@ Integral<double> OpenLight::power_on_smooth_W(const SurfacePatch& patch, const G
   const auto irradiance = [&](double a, double b) {
     return lamp.irradiance_W_m2(patch.origin_m + a * patch.edge1_m + b * patch.edge2_m);
   };
-  const Integral<double> mean = triangle_mean(irradiance);
+  const Integral<double> mean = checked_mean(irradiance);
   if (!patch.triangle || mean.error > tolerance_W_m2) return power_W(patch, lamp, tolerance_W_m2);
   return {patch.area_m2 * mean.value, patch.area_m2 * (mean.error + lamp.table_error_W_m2())};
 }

@@ -6,10 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "raytrace/direct/disc_light.h"
 #include "raytrace/direct/irradiance_table.h"
-#include "raytrace/tracing/shadow.h"
 #include "receivers/gather/bin_patches.h"
+#include "receivers/gather/lamp.h"
 #include "receivers/surface_grid.h"
 
 namespace photorque {
@@ -67,22 +66,18 @@ class GatherPlane {
 };
 
 // One beam as the plane sees it.
-class GatherLamp {
+class GatherLamp : public PlacedLamp {
  public:
   // `light` is of the beam's emitter.
   GatherLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
              const RigidTransform& body_from_lab, const GatherPlane& plane);
 
-  const DiscLight& light() const { return *light_; }
-  const RigidTransform& body_from_emitter() const { return body_from_emitter_; }
-  const RigidTransform& emitter_from_body() const { return emitter_from_body_; }
   const Vec3& normal_emitter() const { return normal_emitter_; }  // of the lit side
-  const BandValues& fraction() const { return fraction_; }        // of its power per band
   // Irradiance without shadow at a point of the plane.
   double irradiance_W_m2(const Vec3& at_body_m) const {
-    const Vec3 at = emitter_from_body_.point(at_body_m);
+    const Vec3 at = emitter_from_body().point(at_body_m);
     return table_ ? table_->irradiance_W_m2(at, normal_emitter_)
-                  : light_->irradiance_W_m2(at, normal_emitter_);
+                  : light().irradiance_W_m2(at, normal_emitter_);
   }
   // Irradiance and flow of momentum without shadow at a point of the plane, body frame.
   ArrivingLight arriving(const Vec3& at_body_m) const;
@@ -106,27 +101,12 @@ class GatherLamp {
 
   // No ray of the beam comes to the ball from the lit side.
   bool misses(const Ball& ball) const;
-  // Holds every point of the aperture from which light can come to the ball.
-  Ball aperture_ball(const Ball& ball) const;
-  // The unshaded irradiance has no kink or jump on the ball.
-  bool smooth_over(const Ball& ball) const;
-  // Length over which the unshaded irradiance falls by half or more, at the distance of the ball
-  // [m].
-  double scale_m(const Ball& ball) const;
-  // The order of magnitude of the irradiance of the lit part of the plane near the ball.
-  double typical_W_m2(const Ball& ball) const;
 
  private:
-  std::shared_ptr<const DiscLight> light_;
   std::shared_ptr<const IrradianceTable> table_;  // may be null
-  RigidTransform body_from_emitter_, emitter_from_body_;
   Vec3 normal_emitter_;
-  BandValues fraction_{};
   bool lights_front_ = false;
-  double scene_diameter_m_ = 0.0;
-  double lean_rad_ = 0.0;     // between the axis and the way into the plane
-  double reach_slope_ = 0.0;  // tangent of the light's reach
-  bool wide_ = false;         // the light reaches almost to the side: no slope serves
+  double lean_rad_ = 0.0;  // between the axis and the way into the plane
 };
 
 // A bin that may be in the shadow of something, for one lamp.

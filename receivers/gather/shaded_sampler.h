@@ -45,7 +45,6 @@ class ShadedSampler {
         points_(points),
         entries_(entries),
         ray_offset_m_(shadow_ray_offset_m(plane.scene())),
-        far_m_(scene_diameter_m(plane.scene())),
         body_from_emitter_(lamp.body_from_emitter().rotation.toRotationMatrix()) {}
 
   uint64_t run(std::span<const ShadedPair> pairs, const SobolStream& stream) {
@@ -71,12 +70,6 @@ class ShadedSampler {
   }
 
  private:
-  // By direction where the aperture is wide against the beam, by the aperture's point elsewhere.
-  bool by_direction(double height_m) const {
-    const double half = std::min(lamp_.light().half_flux_rad(), 1.5);
-    return lamp_.light().parallel() || height_m * std::tan(half) < 0.7 * lamp_.light().radius_m();
-  }
-
   void place(size_t bin) {
     placed_.clear();
     const double area_m2 = plane_.grid().area_m2[bin];
@@ -103,7 +96,7 @@ class ShadedSampler {
   void add_lines(size_t bin, size_t first, size_t count) {
     place(bin);
     const double area_m2 = plane_.grid().area_m2[bin] / static_cast<double>(points_);
-    const bool directed = by_direction(placed_[0].origin_m.z());
+    const bool directed = lamp_.sampled_by_direction(placed_[0].origin_m.z());
     const size_t dimension = directed ? 0 : 2;
     for (size_t i = first; i < first + count; ++i) {
       double s = sobol_fraction(samples_.bits[dimension][i]);
@@ -130,30 +123,13 @@ class ShadedSampler {
   double weigh_direction(size_t i, const Vec3& at, Vec3& from) const {
     const Vec3 direction(emitted_.direction[0][i], emitted_.direction[1][i],
                          emitted_.direction[2][i]);
-    const double facing = -lamp_.normal_emitter().dot(direction);
-    if (facing <= 0.0) return 0.0;
-    if (lamp_.light().parallel()) {
-      from = at - far_m_ * direction;
-      return lamp_.light().exitance_W_m2() * facing;
-    }
-    if (!(direction.z() > 0.0) || !(at.z() > 0.0)) return 0.0;
-    from = at - at.z() / direction.z() * direction;
-    const double radius = lamp_.light().radius_m();
-    if (from.head<2>().squaredNorm() > radius * radius) return 0.0;
-    return lamp_.light().exitance_W_m2() * facing / direction.z();
+    return lamp_.along_direction_W_m2(direction, at, lamp_.normal_emitter(), from);
   }
 
   // Irradiance for the point of the aperture of ray i.
   double weigh_point(size_t i, const Vec3& at, Vec3& from) const {
     from = {emitted_.origin_m[0][i], emitted_.origin_m[1][i], emitted_.origin_m[2][i]};
-    const Vec3 between = at - from;
-    const double distance2 = between.squaredNorm();
-    const double facing = -lamp_.normal_emitter().dot(between);
-    if (!(between.z() > 0.0) || facing <= 0.0) return 0.0;
-    const double distance = std::sqrt(distance2);
-    const double rise = between.head<2>().squaredNorm() / (distance * (distance + between.z()));
-    return lamp_.light().emitter().power_W() * lamp_.light().angles().intensity_per_flux(rise) *
-           facing / (distance2 * distance);
+    return lamp_.from_point_W_m2(from, at, lamp_.normal_emitter());
   }
 
   void add_ray(const Vec3& at, const Vec3& from) {
@@ -191,7 +167,7 @@ class ShadedSampler {
   const Quantity& quantity_;
   size_t points_;
   std::span<double> entries_;
-  double ray_offset_m_, far_m_;
+  double ray_offset_m_;
   Mat3 body_from_emitter_;
   std::vector<PlacedPatch> placed_;
   SampleBlock samples_;

@@ -8,6 +8,7 @@
 #include "core/errors.h"
 #include "core/numerics/chebyshev.h"
 #include "receivers/gather/chebyshev_tiles.h"
+#include "receivers/gather/first_contact.h"
 #include "receivers/gather/shaded_sampler.h"
 
 namespace photorque {
@@ -45,16 +46,9 @@ class Torque {
  private:
   Vec3 torque(const Vec3& at_m, const ArrivingLight& light, const GatherLamp& lamp,
               uint32_t instance) const {
-    const OpticalSurface& surface = plane_.surface(instance);
-    double specular = 0.0, diffuse = 0.0, transmitted = 0.0;
-    for (size_t band = 0; band < static_cast<size_t>(plane_.bands().count()); ++band) {
-      specular += lamp.fraction()[band] * surface.specular[band];
-      diffuse += lamp.fraction()[band] * surface.diffuse[band];
-      transmitted += lamp.fraction()[band] * surface.transmitted[band];
-    }
-    const Vec3 &in = light.momentum_W_m2, &n = plane_.normal();
-    const Vec3 kept = (1.0 - transmitted) * in - specular * (in - 2.0 * n.dot(in) * n) -
-                      2.0 / 3.0 * diffuse * light.irradiance_W_m2 * n;
+    const FirstContact contact(plane_.surface(instance), true, lamp.fraction(),
+                               plane_.bands().count());
+    const Vec3 kept = contact.of_flow(light, plane_.normal());
     return (at_m - about_m_).cross(kept) / speed_of_light_m_s;
   }
 

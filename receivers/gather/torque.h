@@ -1,13 +1,7 @@
 // The torque of direct light on a flat surface, gathered from the surface's side.
 //
-// Light brings the momentum of its directions and takes away that of what is reflected and passed
-// on at its first contact (Lambert's law leaves 2/3 of E/c along the normal): with the flow of
-// momentum V and the irradiance E of raytrace/direct/disc_light.h at a point,
-//
-//   c f = (1 − t) V − s (V − 2 (n·V) n) − ⅔ d E n,
-//
-// s, d, t being the fractions mirrored, scattered and passed on. Torques per bin are integrals of
-// (r − p) × f by the same rules as irradiance; what bounces is for rays.
+// With the force f per area of first_contact.h, torques per bin are integrals of (r − p) × f by the
+// same rules as irradiance; what bounces is for rays.
 #pragma once
 
 #include "receivers/gather/gather.h"

@@ -69,41 +69,69 @@ WrenchReceiver::WrenchReceiver(std::string name, const Scene& scene,
 }
 
 size_t WrenchReceiver::bins() const {
-  return part_names_.size() * components;
+  return 2 * part_names_.size() * components;
 }
 
-// Neighbouring hits mostly share an instance: a run of them is summed in registers.
+// Neighbouring hits mostly share an instance and a depth: a run of them is summed in registers.
 void WrenchReceiver::score(const Hits& hits, std::span<double> sums) const {
   for (int begin = 0, end = 0; begin < hits.count; begin = end) {
-    const uint32_t instance = hits.instance[static_cast<size_t>(begin)];
-    while (end < hits.count && hits.instance[static_cast<size_t>(end)] == instance) ++end;
+    const auto first = static_cast<size_t>(begin);
+    const uint32_t instance = hits.instance[first];
+    const bool bounced = hits.depth[first] > 0;
+    while (end < hits.count && hits.instance[static_cast<size_t>(end)] == instance &&
+           (hits.depth[static_cast<size_t>(end)] > 0) == bounced) {
+      ++end;
+    }
     const size_t part = part_of_instance_[instance];
     if (part == part_names_.size()) continue;
-    add_run(hits, begin, end, about_body_m_, sums.subspan(part * components, components));
+    const size_t entry = part * components + (bounced ? direct_entries() : 0);
+    add_run(hits, begin, end, about_body_m_, sums.subspan(entry, components));
   }
 }
 
-std::vector<WrenchEstimate> WrenchReceiver::by_part(const BinSums& sums) const {
-  std::vector<WrenchEstimate> wrenches;
+// The sum of the groups of six bins that count. Bounds of errors, which the scatter of the
+// replicates does not show, add up.
+WrenchEstimate WrenchReceiver::estimate(const BinSums& sums,
+                                        const std::function<bool(size_t)>& counts) const {
   std::vector<WrenchComponents> replicates(static_cast<size_t>(sums.replicates));
-  for (size_t part = 0; part < part_names_.size(); ++part) {
-    for (size_t r = 0; r < replicates.size(); ++r) {
-      const auto bins = sums.of(static_cast<int>(r)).subspan(part * components, components);
-      std::copy(bins.begin(), bins.end(), replicates[r].begin());
+  WrenchComponents bound{};
+  for (size_t group = 0; group < bins() / components; ++group) {
+    if (!counts(group)) continue;
+    for (size_t k = 0; k < components; ++k) {
+      const size_t bin = group * components + k;
+      for (size_t r = 0; r < replicates.size(); ++r) {
+        replicates[r][k] += sums.of(static_cast<int>(r))[bin];
+      }
+      bound[k] += sums.bound_of(bin);
     }
-    wrenches.push_back(wrench_from_replicates(replicates, about_body_m_));
+  }
+  WrenchEstimate wrench = wrench_from_replicates(replicates, about_body_m_);
+  for (size_t k = 0; k < components; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    wrench.covariance(i, i) += bound[k] * bound[k];
+  }
+  return wrench;
+}
+
+std::vector<WrenchEstimate> WrenchReceiver::by_part(const BinSums& sums) const {
+  const size_t parts = part_names_.size();
+  std::vector<WrenchEstimate> wrenches;
+  for (size_t part = 0; part < parts; ++part) {
+    wrenches.push_back(estimate(sums, [&](size_t group) { return group % parts == part; }));
   }
   return wrenches;
 }
 
 WrenchEstimate WrenchReceiver::total(const BinSums& sums) const {
-  std::vector<WrenchComponents> replicates(static_cast<size_t>(sums.replicates));
-  for (size_t r = 0; r < replicates.size(); ++r) {
-    const auto bins = sums.of(static_cast<int>(r));
-    replicates[r].fill(0.0);
-    for (size_t bin = 0; bin < bins.size(); ++bin) replicates[r][bin % components] += bins[bin];
-  }
-  return wrench_from_replicates(replicates, about_body_m_);
+  return estimate(sums, [](size_t) { return true; });
+}
+
+WrenchEstimate WrenchReceiver::direct(const BinSums& sums) const {
+  return estimate(sums, [&](size_t group) { return group < part_names_.size(); });
+}
+
+WrenchEstimate WrenchReceiver::bounced(const BinSums& sums) const {
+  return estimate(sums, [&](size_t group) { return group >= part_names_.size(); });
 }
 
 Product WrenchReceiver::product(const BinSums& sums) const {

@@ -112,17 +112,18 @@ Key trace_table() {
            "direct",
            {{"auto",
              "gathered, but with so many pairs of bin and lamp that it would take seconds and more "
-             "than four times as long as the rays (thousands of lamps) by rays, which a note says"},
+             "than four times as long as the rays (thousands of lamps) by rays, which a note says; "
+             "on bodies in sunlight alone"},
             {"gather",
-             "direct light on flat flux maps, and its torque on flat torque maps of plain "
-             "surfaces, "
-             "from the surface's side, by quadrature where nothing can shade and shadow rays where "
-             "something may"},
+             "direct light on flat flux maps, its torque on flat torque maps of plain surfaces, "
+             "and "
+             "its force and torque on bodies, from the surface's side, by quadrature where nothing "
+             "can shade and shadow rays where something may"},
             {"rays", "by rays alone"}},
            0,
            "how direct light is found. Gathering takes sources with uniform apertures (`led`, "
-           "`led_array`, `sun`, `ies` when round in aperture and beam); the others, and curved "
-           "surfaces, always go by rays"),
+           "`led_array`, `sun`, `ies` when round in aperture and beam); the others, and maps of "
+           "curved surfaces, always go by rays"),
        Key::number("target_error", {1e-6, 1.0, false, false},
                    "go on with twice the rays until every bin above a tenth of its map's peak has "
                    "this relative standard error; also `--target-error`")

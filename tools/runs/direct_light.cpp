@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "receivers/gather/bodies/wrench.h"
+
 namespace photorque {
 namespace {
 
@@ -102,6 +104,29 @@ DirectTorque compare(const TorqueMapReceiver& map, const Gathered& gathered, con
   return torque;
 }
 
+DirectWrench compare(const WrenchReceiver& receiver, const Gathered& gathered,
+                     const BinSums& rays) {
+  BinSums own = rays;
+  replace_direct(gathered, own);
+  DirectWrench wrench{receiver.name(), receiver.direct(own), receiver.direct(rays)};
+  const auto values = [](const WrenchEstimate& e) {
+    Eigen::Array<double, 6, 1> all;
+    all << e.mean.force_N.array(), e.mean.torque_N_m.array();
+    return all;
+  };
+  const auto mine = values(wrench.gathered), theirs = values(wrench.rays);
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    // Rays are single precision: what is zero by symmetry is not so to all digits.
+    const double largest = (k < 3 ? mine.head<3>() : mine.tail<3>()).matrix().norm();
+    const double sigma =
+        std::sqrt(wrench.gathered.covariance(k, k) + wrench.rays.covariance(k, k)) + 1e-6 * largest;
+    if (sigma > 0.0) {
+      wrench.worst_sigma = std::max(wrench.worst_sigma, std::abs(mine[k] - theirs[k]) / sigma);
+    }
+  }
+  return wrench;
+}
+
 std::string cost_notice(const std::string& what, size_t pairs, uint64_t rays) {
   char text[256];
   std::snprintf(text, sizeof text,
@@ -112,48 +137,90 @@ std::string cost_notice(const std::string& what, size_t pairs, uint64_t rays) {
   return what + text;
 }
 
+// What all maps and bodies of one run have in common.
+struct Wanted {
+  const Experiment& experiment;
+  const TraceableScene& scene;
+  const RigidTransform& lab_from_body;
+  GatherOptions options;
+  bool weigh_cost;
+  uint64_t rays;
+  DirectRoute& route;
+
+  // Whether it is worth while; else says so.
+  bool pays(const std::string& what, size_t pairs) const {
+    if (!weigh_cost || gathering_pays(pairs, rays)) return true;
+    route.notices.push_back(cost_notice(what, pairs, rays));
+    return false;
+  }
+};
+
+void gather_torques(const Wanted& wanted, const TorqueMapReceiver& map, BinSums& sums) {
+  if (map.force() != TorqueMapReceiver::Force::momentum) return;
+  const std::vector<Beam>& beams = wanted.experiment.beams;
+  if (!can_gather_torque(wanted.experiment.scene, map.grid(), beams)) return;
+  constexpr size_t dearer = 8;  // than irradiance, for which there are tables
+  const size_t pairs = dearer * map.grid().bins() * beams.size();
+  if (!wanted.pays("torque of direct light on " + map.name(), pairs)) return;
+  const Gathered gathered =
+      gather_torque(wanted.scene, wanted.lab_from_body, beams, map, wanted.options);
+  wanted.route.torques.push_back(compare(map, gathered, sums));
+  replace_direct(gathered, sums);
+}
+
+void gather_light(const Wanted& wanted, const FluxMapReceiver& map, size_t place, BinSums& sums) {
+  const std::vector<Beam>& beams = wanted.experiment.beams;
+  if (!can_gather(wanted.experiment.scene, map.grid(), beams)) return;
+  if (!wanted.pays("direct light on " + map.name(), map.grid().bins() * beams.size())) return;
+  const Gathered gathered =
+      gather_direct(wanted.scene, wanted.lab_from_body, beams, map, wanted.options);
+  wanted.route.gathered.push_back(compare(map, gathered, sums));
+  wanted.route.gathered.back().receiver = place;
+  replace_direct(gathered, sums);
+}
+
+void gather_wrench(const Wanted& wanted, const WrenchGather& bodies, const WrenchReceiver& receiver,
+                   BinSums& sums) {
+  // Sunlight takes closed forms; a lamp that is near a quadrature over every facet that it lights,
+  // which costs tenths of a second.
+  const bool sunlight = std::ranges::all_of(wanted.experiment.beams, [](const Beam& beam) {
+    return beam.aperture && std::isinf(beam.aperture->radius_m);
+  });
+  if (wanted.experiment.file.effort.direct != TraceEffort::Direct::gather && !sunlight) return;
+  if (!wanted.pays("force and torque of direct light on " + receiver.name(), bodies.pairs())) {
+    return;
+  }
+  const Gathered gathered = bodies.wrench(wanted.lab_from_body, receiver, wanted.options);
+  wanted.route.wrenches.push_back(compare(receiver, gathered, sums));
+  replace_direct(gathered, sums);
+}
+
 }  // namespace
 
 DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
-                        const RigidTransform& lab_from_body, const TraceOptions& options,
-                        TraceResult& result) {
+                        const WrenchGather* bodies, const RigidTransform& lab_from_body,
+                        const TraceOptions& options, TraceResult& result) {
   const TraceEffort& effort = experiment.file.effort;
-  const bool weigh_cost =
-      effort.direct == TraceEffort::Direct::automatic && !effort.target_error.has_value();
   DirectRoute route;
   if (effort.direct == TraceEffort::Direct::rays) return route;
-  const GatherOptions gather_options = {.replicates = options.replicates,
-                                        .seed = options.seed,
-                                        .threads = options.threads,
-                                        .target_error = effort.target_error.value_or(0.0)};
+  const Wanted wanted{experiment,
+                      scene,
+                      lab_from_body,
+                      {.replicates = options.replicates,
+                       .seed = options.seed,
+                       .body_points = 1 << 12,
+                       .threads = options.threads,
+                       .target_error = effort.target_error.value_or(0.0)},
+                      effort.direct == TraceEffort::Direct::automatic && !effort.target_error,
+                      result.rays,
+                      route};
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
-    const TorqueMapReceiver* torques = experiment.receivers[i].torque_map.get();
-    if (torques != nullptr && torques->force() == TorqueMapReceiver::Force::momentum &&
-        can_gather_torque(experiment.scene, torques->grid(), experiment.beams)) {
-      constexpr size_t dearer = 8;  // than irradiance, for which there are tables
-      const size_t weight = dearer * torques->grid().bins() * experiment.beams.size();
-      if (weigh_cost && !gathering_pays(weight, result.rays)) {
-        route.notices.push_back(
-            cost_notice("torque of direct light on " + torques->name(), weight, result.rays));
-        continue;
-      }
-      const Gathered gathered =
-          gather_torque(scene, lab_from_body, experiment.beams, *torques, gather_options);
-      route.torques.push_back(compare(*torques, gathered, result.sums[i]));
-      replace_direct(gathered, result.sums[i]);
-    }
-    const FluxMapReceiver* map = experiment.receivers[i].flux_map.get();
-    if (map == nullptr || !can_gather(experiment.scene, map->grid(), experiment.beams)) continue;
-    const size_t pairs = map->grid().bins() * experiment.beams.size();
-    if (weigh_cost && !gathering_pays(pairs, result.rays)) {
-      route.notices.push_back(cost_notice("direct light on " + map->name(), pairs, result.rays));
-      continue;
-    }
-    const Gathered gathered =
-        gather_direct(scene, lab_from_body, experiment.beams, *map, gather_options);
-    route.gathered.push_back(compare(*map, gathered, result.sums[i]));
-    route.gathered.back().receiver = i;
-    replace_direct(gathered, result.sums[i]);
+    const NamedReceiver& receiver = experiment.receivers[i];
+    BinSums& sums = result.sums[i];
+    if (receiver.torque_map) gather_torques(wanted, *receiver.torque_map, sums);
+    if (receiver.flux_map) gather_light(wanted, *receiver.flux_map, i, sums);
+    if (receiver.wrench && bodies != nullptr)
+      gather_wrench(wanted, *bodies, *receiver.wrench, sums);
   }
   return route;
 }

@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "core/wrench.h"
 #include "receivers/gather/torque.h"
 #include "scenes/experiment/experiment.h"
 
 namespace photorque {
+
+class WrenchGather;  // receivers/gather/bodies/wrench.h
 
 // How the two routes to the direct light on a flux map agree.
 struct DirectLight {
@@ -29,20 +32,29 @@ struct DirectTorque {
   double worst_sigma = 0.0;                        // largest difference in standard errors of both
 };
 
+// How the two routes to the wrench of direct light on a body agree.
+struct DirectWrench {
+  std::string name;
+  WrenchEstimate gathered, rays;
+  double worst_sigma = 0.0;  // largest difference of a component in standard errors of both
+};
+
 // Which way the direct light went.
 struct DirectRoute {
-  std::vector<DirectLight> gathered;  // by flux map; empty where rays alone had to do
-  std::vector<DirectTorque> torques;  // by torque map, likewise
+  std::vector<DirectLight> gathered;   // by flux map; empty where rays alone had to do
+  std::vector<DirectTorque> torques;   // by torque map, likewise
+  std::vector<DirectWrench> wrenches;  // by wrench, likewise
   std::vector<std::string> notices;  // one line for each map that was left to the rays for its cost
 };
 
-// Replaces the direct light of every flat flux map in `result`, and its torque on every flat torque
-// map, by what gather_direct() and gather_torque() find, where the experiment wants it and sources
-// and surfaces allow it, and says how it agrees with the rays' own. An
-// experiment with a target error always gathers, unless it says "rays".
+// Replaces the direct light of every flat flux map in `result`, its torque on every flat torque
+// map, and its wrench on bodies, by what gather_direct(), gather_torque() and `bodies` find, where
+// the experiment wants it and sources and surfaces allow it, and says how it agrees with the rays'
+// own. An experiment with a target error always gathers, unless it says "rays". `bodies` is of the
+// experiment's beams, or null.
 DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scene,
-                        const RigidTransform& lab_from_body, const TraceOptions& options,
-                        TraceResult& result);
+                        const WrenchGather* bodies, const RigidTransform& lab_from_body,
+                        const TraceOptions& options, TraceResult& result);
 
 // Largest relative standard error of any bin of any flux map with more than a tenth of the map's
 // largest irradiance.

@@ -10,6 +10,7 @@
 #include "core/text/display.h"
 #include "diagnosis/light/apply.h"
 #include "images/writers/read_picture.h"
+#include "receivers/gather/bodies/wrench.h"
 #include "sources/profiles/beam_shape.h"
 #include "tools/guards/memory.h"
 
@@ -131,6 +132,15 @@ size_t OpticalRun::add_receiver(NamedReceiver receiver) {
 
 void OpticalRun::keep_beams(const std::function<bool(const Beam&)>& wanted) {
   std::erase_if(experiment_.beams, [&](const Beam& beam) { return !wanted(beam); });
+  const std::lock_guard lock(*bodies_mutex_);
+  bodies_.reset();
+}
+
+// Made when it is first asked for.
+std::shared_ptr<const WrenchGather> OpticalRun::bodies() const {
+  const std::lock_guard lock(*bodies_mutex_);
+  if (!bodies_) bodies_ = WrenchGather::make(scene_, experiment_.beams);
+  return *bodies_;
 }
 
 OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
@@ -152,7 +162,8 @@ OpticalResult OpticalRun::run(const RigidTransform& lab_from_body,
   for (;; options.rays *= 2) {
     const double before_s = elapsed_s();
     OpticalResult result{trace(scene_, lab_from_body, experiment_.beams, receivers, options), {}};
-    result.direct = gather_into(experiment_, scene_, lab_from_body, options, result);
+    result.direct =
+        gather_into(experiment_, scene_, bodies().get(), lab_from_body, options, result);
     result.worst_bin_error = worst_bin_error(experiment_, result);
     result.wall_s = elapsed_s();
     const double next_s = 2.0 * (result.wall_s - before_s);
@@ -200,6 +211,12 @@ std::vector<std::string> OpticalRun::warnings(const OpticalResult& result) const
   for (const DirectTorque& direct : result.direct.torques) {
     if (direct.worst_sigma <= loud_sigma) continue;
     lines.push_back("torque of direct light on " + direct.name +
+                    ": gathered and by rays differ by " + show(direct.worst_sigma) +
+                    " standard errors");
+  }
+  for (const DirectWrench& direct : result.direct.wrenches) {
+    if (direct.worst_sigma <= loud_sigma) continue;
+    lines.push_back("force or torque of direct light on " + direct.name +
                     ": gathered and by rays differ by " + show(direct.worst_sigma) +
                     " standard errors");
   }
@@ -357,6 +374,11 @@ void print_trace(const Console& console, const OpticalRun& run, const OpticalRes
   }
   for (const DirectTorque& direct : result.direct.torques) {
     console.line("  torque of direct light on " + direct.name +
+                 ": gathered and by rays differ by at most " + show(direct.worst_sigma) +
+                 " standard errors");
+  }
+  for (const DirectWrench& direct : result.direct.wrenches) {
+    console.line("  force and torque of direct light on " + direct.name +
                  ": gathered and by rays differ by at most " + show(direct.worst_sigma) +
                  " standard errors");
   }

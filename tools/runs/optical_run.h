@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,6 +69,8 @@ class OpticalRun {
   Product product(const OpticalResult& result) const;
 
  private:
+  std::shared_ptr<const WrenchGather> bodies() const;
+
   Experiment experiment_;
   TraceableScene scene_;
   Provenance provenance_;
@@ -75,6 +78,10 @@ class OpticalRun {
   std::shared_ptr<const InsideLightReceiver> inside_light_;  // null where no part is closed
   size_t inside_index_ = 0;                                  // its place among the receivers
   int threads_ = 0;
+  // What gathers the wrench of direct light, once it has been asked for; null inside where rays
+  // must do.
+  mutable std::optional<std::shared_ptr<const WrenchGather>> bodies_;
+  std::unique_ptr<std::mutex> bodies_mutex_ = std::make_unique<std::mutex>();
 };
 
 // The warnings of several runs, each once: at most three in full, then how many more there are.

@@ -9,6 +9,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "receivers/wrench/smoothing.h"
 #include "receivers/wrench/spad.h"
 #include "receivers/wrench/table_product.h"
 
@@ -116,9 +117,123 @@ void print_summary(const Console& console, const WrenchTable& table, const SunLi
                show(over_pressure(force_N), "m2"));
   console.line("  largest torque   " + show(torque_N_m, "N m") + ", over pressure " +
                show(over_pressure(torque_N_m), "m3"));
+  double worst_N_m = 0.0;
+  for (const Vec3& error : table.torque_error_N_m) {
+    worst_N_m = std::max(worst_N_m, error.cwiseAbs().maxCoeff());
+  }
+  console.line("  standard errors of torques are at most " +
+               show(worst_N_m / std::max(torque_N_m.value, 1e-300)) + " of the largest torque");
   console.line("  mean push along the light's travel over all directions " +
                show(mean_push_N(table) / sun.pressure_Pa) + " m2");
 }
+
+// What light that has met a surface before does, about the point of the table, twice: from either
+// half of the replicates.
+TwofoldWrench bounced_of(const WrenchReceiver& receiver, const BinSums& sums,
+                         const WrenchTable& table) {
+  const int half = sums.replicates / 2;
+  const auto mean = [&](int from, int to) {
+    WrenchComponents all{};
+    for (int r = from; r < to; ++r) {
+      const auto bins = sums.of(r);
+      for (size_t bin = receiver.direct_entries(); bin < receiver.bins(); ++bin) {
+        all[bin % all.size()] += bins[bin] / (to - from);
+      }
+    }
+    const Wrench there = wrench_about(
+        Wrench{{all[0], all[1], all[2]}, {all[3], all[4], all[5]}, receiver.about_body_m()},
+        table.about_body_m);
+    const Vec3 &f = there.force_N, &t = there.torque_N_m;
+    return WrenchComponents{f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
+  };
+  return {mean(0, half), mean(half, sums.replicates)};
+}
+
+// The bounced part of a table over the sphere, which the table does not hold yet.
+class BouncedLight {
+ public:
+  BouncedLight(const OpticalRun& run, const SunLight& sun, size_t nodes)
+      : run_(run), sun_(sun), halves_(nodes) {}
+
+  void set(size_t node, const OpticalResult& result, const WrenchTable& table) {
+    halves_[node] = bounced_of(run_.wrench(), result.sums[run_.wrench_index()], table);
+  }
+  void copy(size_t to, size_t from) { halves_[to] = halves_[from]; }
+
+  // Adds it to the table: smoothed, unless neighbours are too far apart for that.
+  void add_to(WrenchTable& table, const Console& console, int threads) const {
+    const SmoothWrench smooth = smooth_over_sphere(table, halves_);
+    double own_square = 0.0, smooth_square = 0.0;
+    for (size_t k = 3; k < 6; ++k) {
+      for (const TwofoldWrench& one : halves_) {
+        own_square += 0.25 * std::pow(one.first[k] - one.second[k], 2);
+      }
+      smooth_square += std::pow(smooth.error[k], 2) * static_cast<double>(halves_.size());
+    }
+    const bool smoother = smooth_square < own_square;
+    for (size_t node = 0; node < table.nodes(); ++node) {
+      for (size_t k = 0; k < 6; ++k) {
+        const TwofoldWrench& one = halves_[node];
+        const double value =
+            smoother ? smooth.at_node[6 * node + k] : 0.5 * (one.first[k] + one.second[k]);
+        const double error =
+            smoother ? smooth.error[k] : std::sqrt(own_square / 3.0 / halves_.size());
+        const auto axis = static_cast<Eigen::Index>(k % 3);
+        auto& values = k < 3 ? table.force_body_N : table.torque_body_N_m;
+        auto& errors = k < 3 ? table.force_error_N : table.torque_error_N_m;
+        values[node][axis] += value;
+        errors[node][axis] = std::hypot(errors[node][axis], error);
+      }
+    }
+    if (smoother) say(smooth, table, console, threads);
+  }
+
+ private:
+  // How far the series is off in directions that it was not made from.
+  void say(const SmoothWrench& smooth, const WrenchTable& table, const Console& console,
+           int threads) const {
+    constexpr size_t fresh = 32;
+    constexpr uint64_t more = 8;  // rays, so that their own noise counts less
+    const ExperimentFile& file = run_.experiment().file;
+    std::vector<double> square(fresh, 0.0), noise(fresh, 0.0);
+    parallel_for(fresh, threads, [&](size_t i) {
+      // Evenly over the sphere, off the nodes.
+      constexpr double golden_rad = 2.39996322972865332;
+      const double height = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / fresh;
+      const TableAngles angles{std::asin(height), golden_rad * (static_cast<double>(i) + 0.3)};
+      const RigidTransform attitude =
+          lab_from_body_with_sun(towards_light(angles), sun_.towards_lab);
+      const OpticalResult result =
+          run_.run(attitude, {}, more * file.torque_map_rays.value_or(file.trace.rays));
+      const TwofoldWrench truth =
+          bounced_of(run_.wrench(), result.sums[run_.wrench_index()], table);
+      const Eigen::VectorXd own = smooth.series.at(angles.around_rad, angles.polar_rad);
+      for (size_t k = 3; k < 6; ++k) {
+        const double mean = 0.5 * (truth.first[k] + truth.second[k]);
+        square[i] += std::pow(mean - own[static_cast<Eigen::Index>(k)], 2) / 3.0;
+        noise[i] += 0.25 * std::pow(truth.first[k] - truth.second[k], 2) / 3.0;
+      }
+    });
+    double squares = 0.0, noises = 0.0;
+    for (size_t i = 0; i < fresh; ++i) {
+      squares += square[i] / fresh;
+      noises += noise[i] / fresh;
+    }
+    const double largest_N_m = longest(table.torque_body_N_m, table.torque_error_N_m).value;
+    const double stated = std::sqrt((std::pow(smooth.error[3], 2) + std::pow(smooth.error[4], 2) +
+                                     std::pow(smooth.error[5], 2)) /
+                                    3.0);
+    console.line("  light that bounced is smoothed by spherical harmonics up to degree " +
+                 std::to_string(smooth.series.degree()) + ": torque error " +
+                 show(stated / largest_N_m) + " of the largest (rms); " + std::to_string(fresh) +
+                 " fresh directions differ by " + show(std::sqrt(squares) / largest_N_m) +
+                 ", of which " + show(std::sqrt(noises) / largest_N_m) + " is their own noise");
+  }
+
+  const OpticalRun& run_;
+  const SunLight& sun_;
+  std::vector<TwofoldWrench> halves_;
+};
 
 }  // namespace
 
@@ -130,6 +245,8 @@ TorqueMapRun map_over_direction(const Console& console,
   const SunLight sun = only_sun(run.experiment());
   WrenchTable table = make_wrench_table(WrenchTable::Angles::azimuth_elevation, grid.elevation_rad,
                                         grid.azimuth_rad);
+  const bool whole = covers_sphere(table);
+  BouncedLight bounced(run, sun, table.nodes());
   uint64_t rays = 0;
   Warnings warnings;
   const WallTime wall;
@@ -151,6 +268,7 @@ TorqueMapRun map_over_direction(const Console& console,
       const Direction& one = all[from + i];
       if (one.first != one.node) {
         copy_node(table, one.node, one.first);
+        bounced.copy(one.node, one.first);
         if (watch) watch({run, table.nodes(), one.lab_from_body, earlier.at(one.first)});
         continue;
       }
@@ -159,7 +277,9 @@ TorqueMapRun map_over_direction(const Console& console,
         watch({run, table.nodes(), one.lab_from_body, result});
         if (one.around == 0) earlier.emplace(one.node, result);
       }
-      set_node(table, one.node, run.wrench().total(result.sums[run.wrench_index()]));
+      const BinSums& sums = result.sums[run.wrench_index()];
+      set_node(table, one.node, whole ? run.wrench().direct(sums) : run.wrench().total(sums));
+      bounced.set(one.node, result, table);
       warnings.add(run.warnings(result),
                    "azimuth " + show(stated_deg(grid.azimuth_rad[one.around])) +
                        " deg, elevation " + show(stated_deg(grid.elevation_rad[one.polar])) +
@@ -174,14 +294,15 @@ TorqueMapRun map_over_direction(const Console& console,
                           std::to_string(all.size()) + " traced, about " + show(std::ceil(left_s)) +
                           " s to go");
   }
-  const double wall_s = wall.elapsed_s();
   console.done();
+  if (whole) bounced.add_to(table, console, threads);
+  const double wall_s = wall.elapsed_s();
   print_summary(console, table, sun);
 
   warnings.print(console);
   RunResult result{
       wrench_table_product(table, "body"), warnings.into(run.provenance()), {wall_s, rays}};
-  if (covers_sphere(table)) {
+  if (whole) {
     const std::string body = run.experiment().file.path.stem().string();
     const SpadFile spad{body, scaled(table, 1.0 / sun.pressure_Pa), true};
     result.files.push_back(

@@ -1,4 +1,4 @@
-#include "raytrace/direct/irradiance_table.h"
+#include "raytrace/direct/factor_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,27 +11,31 @@ namespace {
 
 constexpr double root_half = 0.70710678118654752440;
 
-// Terms of a series whose next falls by `ratio`: heights on a scale of their middle.
-size_t degrees_for(double ratio) {
+// Terms of a series whose next falls by `ratio`, `most` at most: heights on a scale of their
+// middle.
+size_t degrees_for(double ratio, size_t most) {
   constexpr double negligible = 1e-8;
   if (ratio < 1e-9) return 1;
   const double wanted = 1.0 + std::log(negligible) / std::log(std::min(ratio, 0.5));
-  return std::min<size_t>(static_cast<size_t>(wanted) + 1, IrradianceTable::max_degrees);
+  return std::min(static_cast<size_t>(wanted) + 1, most);
 }
 
 }  // namespace
 
-IrradianceTable::IrradianceTable(double low_m, double high_m, std::vector<Kink> kinks, size_t steps)
+template <int Count>
+FactorTable<Count>::FactorTable(double low_m, double high_m, std::vector<Kink> kinks, size_t steps)
     : middle_m_(0.5 * (low_m + high_m)),
       half_range_m_(0.5 * (high_m - low_m)),
-      degrees_(degrees_for(half_range_m_ / middle_m_)),
+      degrees_(degrees_for(half_range_m_ / middle_m_, max_degrees)),
       steps_(steps),
       kinks_(std::move(kinks)),
       nodes_(2 * (kinks_.size() - 1) * (steps + 1)) {}
 
-std::optional<IrradianceTable> IrradianceTable::make(const DiscLight& light, double low_m,
-                                                     double high_m, int threads) {
-  if (light.parallel() || !(low_m > 0.0)) return std::nullopt;
+// Nothing where they cross within the heights, or the light reaches to the side.
+template <int Count>
+std::optional<std::vector<typename FactorTable<Count>::Kink>> FactorTable<Count>::kinks_of(
+    const DiscLight& light, double low_m, double high_m) {
+  if (light.parallel() || light.collimated() || !(low_m > 0.0)) return std::nullopt;
   const std::vector<double>& slopes = light.angles().edge_slopes();
   const double radius_m = light.radius_m(), last_slope = slopes.back();
   if (!(last_slope < 10.0)) return std::nullopt;
@@ -52,27 +56,39 @@ std::optional<IrradianceTable> IrradianceTable::make(const DiscLight& light, dou
       if (!(kinks[k].at(height_m) - kinks[k - 1].at(height_m) > min_m)) return std::nullopt;
     }
   }
-  std::optional<IrradianceTable> coarser;
+  return kinks;
+}
+
+template <int Count>
+std::optional<FactorTable<Count>> FactorTable<Count>::make(const DiscLight& light,
+                                                           const Function& factors, double low_m,
+                                                           double high_m, int threads) {
+  const auto kinks = kinks_of(light, low_m, high_m);
+  if (!kinks) return std::nullopt;
+  const double middle_m = 0.5 * (low_m + high_m);
+  std::optional<FactorTable> coarser;
   for (size_t steps = fewest_steps; steps <= most_steps; steps *= 2) {
-    IrradianceTable table(low_m, high_m, kinks, steps);
-    table.fill(light, coarser ? &*coarser : nullptr, threads);
-    if (table.agrees_with(light)) return table;
+    FactorTable table(low_m, high_m, *kinks, steps);
+    table.fill(factors, coarser ? &*coarser : nullptr, threads);
+    if (table.agrees_with(factors)) return table;
     // Cubics gain four powers of two with every halving of the steps.
     const double most_gain =
         std::pow(static_cast<double>(most_steps) / static_cast<double>(steps), 4.0);
-    if (table.error_W_m2_ > 2.0 * most_gain * tolerance * light.typical_W_m2(middle_m)) break;
+    if (table.error_ > 2.0 * most_gain * tolerance * light.typical_W_m2(middle_m)) break;
     coarser = std::move(table);
   }
   return std::nullopt;
 }
 
-double IrradianceTable::distance_m(size_t half, double place, double height_m) const {
+template <int Count>
+double FactorTable<Count>::distance_m(size_t half, double place, double height_m) const {
   const double from = kinks_[half / 2].at(height_m), to = kinks_[half / 2 + 1].at(height_m);
   const double root = root_half * place / static_cast<double>(steps_);
   return half % 2 == 0 ? from + root * root * (to - from) : to - root * root * (to - from);
 }
 
-void IrradianceTable::fill(const DiscLight& light, const IrradianceTable* coarser, int threads) {
+template <int Count>
+void FactorTable<Count>::fill(const Function& factors, const FactorTable* coarser, int threads) {
   parallel_for(nodes_.size(), threads, [&](size_t n) {
     const size_t half = n / (steps_ + 1), place = n % (steps_ + 1);
     Node& node = nodes_[n];
@@ -84,17 +100,17 @@ void IrradianceTable::fill(const DiscLight& light, const IrradianceTable* coarse
     for (size_t j = 0; j < degrees_; ++j) {
       const double x = chebyshev_point(degrees_, j);
       const double h = middle_m_ + half_range_m_ * x;
-      const Eigen::Array2d factors =
-          light.factors_W_m2(distance_m(half, static_cast<double>(place), h), h);
+      const Factors here = factors(distance_m(half, static_cast<double>(place), h), h);
       for (size_t k = 0; k < degrees_; ++k) {
         const double weight = chebyshev_weight(degrees_, k, std::acos(x));
-        node.row(static_cast<Eigen::Index>(k)) += weight * factors.transpose();
+        node.row(static_cast<Eigen::Index>(k)) += weight * here.transpose();
       }
     }
   });
 }
 
-bool IrradianceTable::agrees_with(const DiscLight& light) {
+template <int Count>
+bool FactorTable<Count>::agrees_with(const Function& factors) {
   constexpr size_t stride = 7;  // intervals between two that are looked at
   double largest = 0.0, worst = 0.0;
   for (const double x : {-0.97, 0.31}) {
@@ -102,24 +118,21 @@ bool IrradianceTable::agrees_with(const DiscLight& light) {
     for (size_t half = 0; half < 2 * (kinks_.size() - 1); ++half) {
       for (size_t step = 0; step < steps_; step += stride) {
         const double d = distance_m(half, static_cast<double>(step) + 0.5, h);
-        const Eigen::Array2d factors = light.factors_W_m2(d, h);
-        largest = std::max(largest, factors[0]);
-        for (const auto& [axis, factor] : {std::pair{Vec3(Vec3::UnitZ()), factors[0]},
-                                           std::pair{Vec3(Vec3::UnitX()), factors[1]}}) {
-          const double own = irradiance_W_m2({d, 0.0, h}, -axis);
-          worst = std::max(worst, std::abs(own - factor));
-        }
+        const Factors truth = factors(d, h);
+        largest = std::max(largest, truth[0]);
+        worst = std::max(worst, (at(d, h) - truth).abs().maxCoeff());
       }
     }
   }
-  error_W_m2_ = worst;
+  error_ = worst;
   return worst <= tolerance * largest;
 }
 
-double IrradianceTable::irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const {
-  const double h = point_m.z();
-  const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y());
-  if (d >= kinks_.back().at(h)) return 0.0;
+template <int Count>
+typename FactorTable<Count>::Factors FactorTable<Count>::at(double distance_m,
+                                                            double height_m) const {
+  const double h = height_m, d = distance_m;
+  if (d >= kinks_.back().at(h)) return Factors::Zero();
   size_t piece = 0;
   while (d >= kinks_[piece + 1].at(h)) ++piece;
   const double from = kinks_[piece].at(h), to = kinks_[piece + 1].at(h);
@@ -134,27 +147,27 @@ double IrradianceTable::irradiance_W_m2(const Vec3& point_m, const Vec3& normal)
   const std::array<double, 4> weight = {-t * right * far / 6.0, left * right * far / 2.0,
                                         -left * t * far / 2.0, left * t * right / 6.0};
   const Node* node = &nodes_[(2 * piece + (near ? 0 : 1)) * (steps_ + 1) + first];
-  const double away = d > 0.0 ? (normal.x() * point_m.x() + normal.y() * point_m.y()) / d : 0.0;
+  Factors factor = Factors::Zero();
   if (degrees_ == 1) {
-    std::array<double, 2> factor{};
-    for (Eigen::Index f = 0; f < 2; ++f) {
-      for (size_t i = 0; i < 4; ++i) factor[static_cast<size_t>(f)] += weight[i] * node[i](0, f);
+    for (Eigen::Index f = 0; f < Count; ++f) {
+      for (size_t i = 0; i < 4; ++i) factor[f] += weight[i] * node[i](0, f);
     }
-    return -normal.z() * factor[0] - away * factor[1];
+    return factor;
   }
   const Node series =
       weight[0] * node[0] + weight[1] * node[1] + weight[2] * node[2] + weight[3] * node[3];
   const double x = (h - middle_m_) / half_range_m_;
-  std::array<double, 2> factor{};
   double term = 1.0, next = x;
   for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(degrees_); ++k) {
-    factor[0] += term * series(k, 0);
-    factor[1] += term * series(k, 1);
+    for (Eigen::Index f = 0; f < Count; ++f) factor[f] += term * series(k, f);
     const double after = 2.0 * x * next - term;
     term = next;
     next = after;
   }
-  return -normal.z() * factor[0] - away * factor[1];
+  return factor;
 }
+
+template class FactorTable<2>;
+template class FactorTable<6>;
 
 }  // namespace photorque

@@ -1,0 +1,50 @@
+// The triangles of a body as light meets them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "raytrace/scene.h"
+#include "raytrace/tracing/shadow.h"
+
+namespace photorque {
+
+// A triangle of positive area. Body frame.
+struct Facet {
+  TriangleCorners corner_m;
+  Vec3 normal;  // of the front
+  double area_m2 = 0.0;
+  Ball ball;  // about its centroid
+  uint32_t instance = 0;
+  // Nothing of the scene lies above the back [0] or the front [1]: whatever comes to that side is
+  // not shaded.
+  std::array<bool, 2> free = {false, false};
+};
+
+// All facets of a scene, instance by instance.
+class Facets {
+ public:
+  explicit Facets(const Scene& scene);
+
+  std::span<const Facet> of(uint32_t instance) const {
+    return std::span(facets_).subspan(first_[instance], first_[instance + 1] - first_[instance]);
+  }
+  // Holds an instance.
+  const Ball& ball_of(uint32_t instance) const { return balls_[instance]; }
+  size_t count() const { return facets_.size(); }
+  // Of an instance that encloses something: whether it is the fronts that look inwards.
+  std::optional<bool> inward(uint32_t instance) const { return inward_[instance]; }
+
+ private:
+  void find_free(double scene_radius_m);
+
+  std::vector<Facet> facets_;
+  std::vector<size_t> first_;
+  std::vector<Ball> balls_;
+  std::vector<std::optional<bool>> inward_;
+};
+
+}  // namespace photorque

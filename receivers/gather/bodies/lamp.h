@@ -1,0 +1,87 @@
+// The light of one beam on the facets of a body. For the files of this folder only.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "raytrace/direct/irradiance_table.h"
+#include "receivers/gather/bodies/facets.h"
+#include "receivers/gather/first_contact.h"
+#include "receivers/gather/lamp.h"
+
+namespace photorque {
+
+// Force and torque about a point, x, y, z each.
+using WrenchSum = Eigen::Array<double, 6, 1>;
+
+WrenchSum wrench_of(const Vec3& force_N, const Vec3& lever_m);
+
+// An emitter's light, with tables of its momentum for heights above the aperture. They are made
+// when they are first asked for, each for a slab of heights.
+class BodyLight {
+ public:
+  explicit BodyLight(std::shared_ptr<const DiscLight> light) : light_(std::move(light)) {}
+
+  const std::shared_ptr<const DiscLight>& light() const { return light_; }
+  // The body will be within these heights: before any table is asked for.
+  void reach(double low_m, double high_m);
+  // Null where there is none.
+  const MomentumTable* table_at(double height_m) const;
+
+ private:
+  static constexpr double slab = 1.25;  // its ends' ratio
+  struct Slab {
+    std::once_flag made;
+    std::optional<MomentumTable> table;
+  };
+
+  std::shared_ptr<const DiscLight> light_;
+  double low_m_ = INFINITY, high_m_ = 0.0;
+  std::vector<std::unique_ptr<Slab>> slabs_;
+};
+
+// One side of a facet.
+struct FacetSide {
+  const Facet* facet;
+  bool front;
+
+  Vec3 normal() const { return front ? facet->normal : Vec3(-facet->normal); }
+};
+
+// How much of a beam's light a side can get.
+enum class Exposure {
+  none,
+  partly,  // some rays may come from behind
+  whole,   // every ray that meets the facet meets this side (all but 1e-9 of them)
+};
+
+class BodyLamp : public PlacedLamp {
+ public:
+  // `of` must outlive this.
+  BodyLamp(const Beam& beam, const BodyLight& of, const RigidTransform& body_from_lab,
+           const Bands& bands, double scene_diameter_m)
+      : PlacedLamp(beam, of.light(), body_from_lab, bands, scene_diameter_m), table_(of) {}
+
+  // Nothing of the aperture is inside the ball.
+  bool outside(const Ball& ball) const;
+  Exposure exposure_of(const FacetSide& side) const;
+  // About the power on a facet.
+  double typical_W(const FacetSide& side) const;
+  // Irradiance and flow of momentum without shadow at a point, body frame.
+  ArrivingLight arriving(const Vec3& at_m, const Vec3& normal) const;
+  // The wrench of all light on a plain side that every ray meets, as if nothing shaded it, about a
+  // point; and the errors of force and torque.
+  struct Open {
+    WrenchSum wrench;
+    double force_error_N = 0.0, torque_error_N_m = 0.0;
+  };
+  Open open_wrench(const FacetSide& side, const FirstContact& contact, const Vec3& about_m) const;
+
+ private:
+  const BodyLight& table_;
+};
+
+}  // namespace photorque

@@ -1,0 +1,105 @@
+#include "receivers/gather/lamp.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photorque {
+
+PlacedLamp::PlacedLamp(const Beam& beam, std::shared_ptr<const DiscLight> light,
+                       const RigidTransform& body_from_lab, const Bands& bands,
+                       double scene_diameter_m)
+    : light_(std::move(light)),
+      body_from_emitter_(body_from_lab * beam.lab_from_emitter),
+      emitter_from_body_(body_from_emitter_.inverse()),
+      fraction_(band_fractions(beam.spectrum, bands)),
+      scene_diameter_m_(scene_diameter_m),
+      reach_slope_(std::tan(std::min(light_->reach_rad(), 1.5))),
+      wide_(light_->reach_rad() > 1.5) {
+  double total = 0.0;
+  for (const double fraction : fraction_) total += fraction;
+  for (double& fraction : fraction_) fraction /= total;
+}
+
+bool PlacedLamp::misses(const Ball& ball) const {
+  if (light_->parallel()) return false;
+  const Vec3 at = emitter_from_body_.point(ball.centre_m);
+  if (at.z() + ball.radius_m <= 0.0) return true;
+  if (wide_) return false;
+  const double reach = light_->radius_m() + (at.z() + ball.radius_m) * reach_slope_;
+  return std::hypot(at.x(), at.y()) - ball.radius_m > reach;
+}
+
+Ball PlacedLamp::aperture_ball(const Ball& ball) const {
+  const Vec3 at = emitter_from_body_.point(ball.centre_m);
+  if (light_->parallel()) {
+    const double far = scene_diameter_m_;
+    return {body_from_emitter_.point(at - far * Vec3::UnitZ()), far * reach_slope_ + ball.radius_m};
+  }
+  const double seen = (std::max(at.z(), 0.0) + ball.radius_m) * reach_slope_ + ball.radius_m;
+  if (!wide_ && seen < light_->radius_m()) {
+    return {body_from_emitter_.point({at.x(), at.y(), 0.0}), seen};
+  }
+  return {body_from_emitter_.translation_m, light_->radius_m()};
+}
+
+bool PlacedLamp::smooth_over(const Ball& ball) const {
+  if (light_->parallel()) return true;
+  const Vec3 at = emitter_from_body_.point(ball.centre_m);
+  if (at.z() < 2.0 * ball.radius_m) return false;
+  if (light_->fades_out()) return true;
+  // Kinks are where a circle about the axis touches the rim of an edge's light, d = |R ± h tan θ|.
+  const double d = at.head<2>().norm(), radius_m = light_->radius_m();
+  for (const double slope : light_->angles().edge_slopes()) {
+    if (std::isinf(slope)) continue;
+    const double foot_m = at.z() * slope, reach_m = ball.radius_m * std::hypot(1.0, slope);
+    for (const double kink_m : {radius_m + foot_m, radius_m - foot_m, foot_m - radius_m}) {
+      if (std::abs(d - kink_m) <= reach_m) return false;
+    }
+  }
+  return true;
+}
+
+double PlacedLamp::scale_m(const Ball& ball) const {
+  if (light_->parallel()) return INFINITY;
+  const double h = emitter_from_body_.point(ball.centre_m).z();
+  return std::min(h, h * std::tan(std::min(light_->angles().steepest_rad(), 0.8)));
+}
+
+double PlacedLamp::typical_W_m2(const Ball& ball) const {
+  if (light_->parallel()) return light_->exitance_W_m2();
+  const double h = std::max(emitter_from_body_.point(ball.centre_m).z(), 0.0);
+  return light_->typical_W_m2(h);
+}
+
+bool PlacedLamp::sampled_by_direction(double height_m) const {
+  const double half = std::min(light_->half_flux_rad(), 1.5);
+  return light_->parallel() || height_m * std::tan(half) < 0.7 * light_->radius_m();
+}
+
+double PlacedLamp::along_direction_W_m2(const Vec3& direction, const Vec3& at_m, const Vec3& normal,
+                                        Vec3& from_m) const {
+  const double facing = -normal.dot(direction);
+  if (facing <= 0.0) return 0.0;
+  if (light_->parallel()) {
+    from_m = at_m - scene_diameter_m_ * direction;
+    return light_->exitance_W_m2() * facing;
+  }
+  if (!(direction.z() > 0.0) || !(at_m.z() > 0.0)) return 0.0;
+  from_m = at_m - at_m.z() / direction.z() * direction;
+  const double radius = light_->radius_m();
+  if (from_m.head<2>().squaredNorm() > radius * radius) return 0.0;
+  return light_->exitance_W_m2() * facing / direction.z();
+}
+
+double PlacedLamp::from_point_W_m2(const Vec3& from_m, const Vec3& at_m, const Vec3& normal) const {
+  const Vec3 between = at_m - from_m;
+  const double distance2 = between.squaredNorm();
+  const double facing = -normal.dot(between);
+  if (!(between.z() > 0.0) || facing <= 0.0) return 0.0;
+  const double distance = std::sqrt(distance2);
+  const double rise = between.head<2>().squaredNorm() / (distance * (distance + between.z()));
+  return light_->emitter().power_W() * light_->angles().intensity_per_flux(rise) * facing /
+         (distance2 * distance);
+}
+
+}  // namespace photorque
