@@ -229,11 +229,14 @@ class Weighing {
     const Trial joint = at->joint, train = trials_[at->at];
     if (!(joint.fit.chi2_per_sample() < limits_.diverged_chi2_per_sample)) return;
     const std::vector<size_t> candidates = worth_adding(joint, parent);
+    const Leader& leader = best();
+    const Effort of_train = within_reach(Effort{}, trials_[leader.at], limits_),
+                 of_all = within_reach(patient(limits_), leader.joint, limits_);
     std::vector<Trial> on_train(candidates.size()), on_all(candidates.size());
     parallel_for(candidates.size(), threads_, [&](size_t k) {
       const size_t c = candidates[k];
-      on_train[k] = domain_.extend(train, c, domain_.start_of(c), train_, {});
-      on_all[k] = domain_.extend(joint, c, domain_.start_of(c), all_runs_, patient(limits_));
+      on_train[k] = domain_.extend(train, c, domain_.start_of(c), train_, of_train);
+      on_all[k] = domain_.extend(joint, c, domain_.start_of(c), all_runs_, of_all);
     });
     for (size_t k = 0; k < candidates.size(); ++k) {
       add_leader(std::move(on_train[k]), std::move(on_all[k]));
@@ -256,9 +259,13 @@ class Weighing {
     const auto beyond_chance = [&](size_t i) {
       return gains[i] - static_cast<double>(all[untried[i]].parameters);
     };
+    // What the best explains already and this one, by far, would not, is not worth a fit.
+    constexpr double forecast_error = 2.0;
+    const double behind_chi2 = joint.fit.chi2 - best().joint.fit.chi2 - limits_.leaders.near_chi2;
     std::vector<size_t> order;
     for (size_t i = 0; i < untried.size(); ++i) {
-      if (beyond_chance(i) > limits_.scoring.min_joint_gain) order.push_back(i);
+      const bool is_lost = forecast_error * gains[i] < behind_chi2;
+      if (!is_lost && beyond_chance(i) > limits_.scoring.min_joint_gain) order.push_back(i);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](size_t a, size_t b) { return beyond_chance(a) > beyond_chance(b); });

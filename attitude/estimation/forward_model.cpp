@@ -179,6 +179,9 @@ inference::NormalSums AttitudeForwardModel::sums(const Eigen::VectorXd& at, Eige
   const Observation& seen = runs_[which];
   PredictionOptions options;
   options.propagation.tolerance = tolerance_;
+  // A step's direction and a covariance need no more digits than this of the slopes.
+  constexpr double derivative_tolerance = 1e-7;
+  options.propagation.derivative_tolerance = derivative_tolerance;
   options.propagation.max_step_s = max_step_s(h.model);
   options.max_chi2 = request.give_up_above;
   options.blocks = std::max<size_t>(

@@ -281,7 +281,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
                                                      const Lanes* y, const Block& block,
                                                      bool with_instruments,
                                                      std::vector<DualLanes>& rates) const {
-  std::vector<DualLanes> y_dual(y, y + size_);
+  std::vector<DualLanes> y_dual(y, y + size_), own_parameters;
   // Any law may change the inertia that all torques are divided by.
   bool everything = inertia_changes_;
   for (int k = 0; k < DualLanes::block; ++k) {
@@ -305,8 +305,11 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
     }
     return false;
   };
-  std::vector<size_t> owners;
+  // Torques and what follows from them reach the instruments through the state alone.
+  std::vector<size_t> acting, owners;
   for (const size_t d : order_) {
+    if (with_instruments && model_.disturbances[d].stage == Stage::torque) continue;
+    acting.push_back(d);
     const bool earlier = model_.disturbances[d].stage < Stage::torque, owner = owns(d);
     if (earlier || owner) owners.push_back(d);
     everything = everything || (earlier && owner);
@@ -315,7 +318,6 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
   everything = everything ||
                (with_instruments && std::any_of(instruments_.begin(), instruments_.end(), owns));
 
-  std::vector<DualLanes> own_parameters;
   rates.assign(static_cast<size_t>(size_), DualLanes(0.0));
   EvaluationContext<DualLanes> now = begin(DualLanes(time_s), command, y_dual.data());
   const auto act = [&](size_t d) {
@@ -333,10 +335,11 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
         {own_parameters.data(), y_dual.data() + own.first_state, rates.data() + own.first_state},
         now);
   };
-  run_stages(everything ? order_ : owners, now, act);
-  solve(now, y_dual.data(), rates.data());
+  run_stages(everything ? acting : owners, now, act);
   if (with_instruments) {
     for (const size_t d : instruments_) act(d);
+  } else {
+    solve(now, y_dual.data(), rates.data());
   }
   return now;
 }

@@ -380,9 +380,19 @@ size_t sample(Propagator& propagator, size_t count, const std::function<double(s
            ++batch) {
         times_s.set(batch, time_s(next++));
       }
-      propagator.dense(times_s, y.data());
-      if (with_derivatives) propagator.dense_derivatives(times_s, derivatives.data());
-      for (int i = 0; i < batch; ++i) {
+      // Eight at once are no others than those asked for next.
+      const bool is_whole = batch == Lanes::count;
+      propagator.dense(times_s, is_whole ? samples.y.data() : y.data());
+      if (with_derivatives) {
+        propagator.dense_derivatives(times_s,
+                                     is_whole ? samples.derivatives.data() : derivatives.data());
+      }
+      if (is_whole) {
+        samples.time_s = times_s;
+        samples.held.fill(propagator.held());
+        samples.count = batch;
+      }
+      for (int i = 0; i < batch && !is_whole; ++i) {
         const int lane = samples.count++;
         samples.time_s.set(lane, times_s[i]);
         samples.held[static_cast<size_t>(lane)] = propagator.held();

@@ -17,6 +17,20 @@ Dynamics::Block empty_block() {
   return block;
 }
 
+bool only_reads(const Dynamics& dynamics, const Variable& variable) {
+  return variable.initial < 0 &&
+         dynamics.model().disturbances[variable.disturbance].stage == Stage::measurement;
+}
+
+// Those of which the motion depends: a parameter of an instrument changes what is read of it.
+std::vector<size_t> moving_among(const std::vector<Variable>& variables, const Dynamics& dynamics) {
+  std::vector<size_t> moving;
+  for (size_t v = 0; v < variables.size(); ++v) {
+    if (!only_reads(dynamics, variables[v])) moving.push_back(v);
+  }
+  return moving;
+}
+
 bool is_zero(const Lanes& x) {
   return largest(larger_magnitude(x, 0.0)) == 0.0;
 }
@@ -85,15 +99,17 @@ void Sensitivity::seed_bound_states(size_t v, int axis) {
 
 void Sensitivity::make_blocks() {
   state_blocks_ = state_blocks(dynamics_);
-  // Parameters of early stages make every disturbance depend on them; keep them together.
-  const auto early = [&](const Variable& v) {
-    return dynamics_.model().disturbances[v.disturbance].stage < Stage::torque;
+  // Parameters of early stages make every disturbance depend on them, and those of instruments
+  // change nothing but readings: each kind has blocks of its own.
+  const auto kind = [&](const Variable& v) {
+    const Stage stage = dynamics_.model().disturbances[v.disturbance].stage;
+    return stage < Stage::torque ? 0 : stage == Stage::torque ? 1 : 2;
   };
-  for (const bool want_early : {true, false}) {
+  for (const int wanted : {0, 1, 2}) {
     size_t k = DualLanes::block;
     for (size_t v = 0; v < variables_.size(); ++v) {
       const Variable& variable = variables_[v];
-      if (variable.initial >= 0 || early(variable) != want_early) continue;
+      if (variable.initial >= 0 || kind(variable) != wanted) continue;
       if (k == DualLanes::block) {
         parameter_blocks_.push_back({empty_block(), {}});
         parameter_blocks_.back().variable.fill(-1);
@@ -113,6 +129,7 @@ void Sensitivity::differentiate_rates(const CollocationStep& step, const ZeroOrd
       rate_derivatives(dynamics_, state_blocks_, step.stage_times_s(), held, step.stages().data());
   std::vector<Lanes> partials(n * DualLanes::block);
   for (const ParameterBlock& block : parameter_blocks_) {
+    if (only_reads(dynamics_, variables_[static_cast<size_t>(block.variable[0])])) continue;
     dynamics_.derivatives(step.stage_times_s(), held, step.stages().data(), block.block,
                           partials.data());
     for (size_t c = 0; c < n; ++c) {
@@ -126,18 +143,22 @@ void Sensitivity::differentiate_rates(const CollocationStep& step, const ZeroOrd
 }
 
 bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, double tolerance) {
-  const size_t count = variables_.size();
+  const size_t count = variables_.size(), n = step.start().size();
   differentiate_rates(step, held);
   h_s_ = step.length_s();
   if (step.is_stiff()) {
     solve_at_once(step);
     return is_resolved(step);
   }
+  const std::vector<size_t> moving = moving_among(variables_, dynamics_);
+  const auto each = [&](const auto& visit) {
+    for (size_t c = 0; c < n; ++c) {
+      for (const size_t v : moving) visit(c * count + v);
+    }
+  };
   if (has_polynomial_) {
     const auto continuation = gauss::continuation_columns(h_s_ / accepted_h_s_);
-    for (size_t i = 0; i < increments_.size(); ++i) {
-      increments_[i] = gauss::times(continuation, accepted_increments_[i]);
-    }
+    each([&](size_t i) { increments_[i] = gauss::times(continuation, accepted_increments_[i]); });
   } else {
     std::fill(increments_.begin(), increments_.end(), Lanes(0.0));
   }
@@ -149,18 +170,18 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
   constexpr int patience = 25;
   Settling settling(tolerance, 1e-13, patience);
   for (int iteration = 1; iteration <= max_sweeps; ++iteration) {
-    for (size_t i = 0; i < start_.size(); ++i) {
+    each([&](size_t i) {
       stages[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);
-    }
-    rates = source_;
+      rates[i] = source_[i];
+    });
     for (const RateDerivative& entry : jacobian_) {
       const Lanes* from = stages.data() + entry.column * count;
       Lanes* to = rates.data() + entry.row * count;
-      for (size_t v = 0; v < count; ++v) to[v] += entry.value * from[v];
+      for (const size_t v : moving) to[v] += entry.value * from[v];
     }
     // The derivatives by different variables have different units: each is its own scale.
     double change = 0.0;
-    for (size_t v = 0; v < count; ++v) {
+    for (const size_t v : moving) {
       Lanes size = 0.0, moved = 0.0;
       for (size_t i = v; i < start_.size(); i += count) {
         const Lanes increment = weighted_h_s * rates[i];
@@ -228,8 +249,14 @@ void Sensitivity::add(size_t v, std::span<const double> change) {
 
 void Sensitivity::dense(const Lanes& fraction, Lanes* derivatives) const {
   const gauss::DenseWeights polynomial = gauss::dense_weights(fraction);
-  for (size_t i = 0; i < start_.size(); ++i) {
-    derivatives[i] = start_[i] + gauss::times(polynomial, increments_[i]);
+  const size_t count = variables_.size(), n = static_cast<size_t>(dynamics_.size());
+  std::fill_n(derivatives, n * count, Lanes(0.0));
+  const std::vector<size_t> moving = moving_among(variables_, dynamics_);
+  for (size_t c = 0; c < n; ++c) {
+    for (const size_t v : moving) {
+      const size_t i = c * count + v;
+      derivatives[i] = start_[i] + gauss::times(polynomial, increments_[i]);
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace photorque {
 namespace {
@@ -96,6 +97,68 @@ std::vector<size_t> outlying_rows(const std::vector<double>& x) {
   return rows;
 }
 
+// A sensor that stands still: it is at the end of its range, or repeats what it read last.
+struct Stuck {
+  static constexpr size_t least = 5;         // equal readings in a row
+  std::vector<bool> is_stuck;                // by row
+  size_t readings = 0, stuck = 0, ties = 0;  // ties: equal neighbours outside
+  size_t turns = 0, differences = 0;         // of third differences outside: changes of sign
+  double noise = 0.0;                        // outside
+  double least_step = std::numeric_limits<double>::infinity();  // between neighbours outside
+
+  explicit Stuck(const std::vector<double>& x) : is_stuck(x.size(), false) {
+    for (size_t i = 0; i < x.size();) {
+      size_t end = i + 1;
+      while (end < x.size() && x[end] == x[i]) ++end;
+      const size_t equal = end - i;
+      if (std::isfinite(x[i])) readings += equal;
+      if (equal >= least) {
+        stuck += equal;
+        std::fill_n(is_stuck.begin() + static_cast<std::ptrdiff_t>(i), equal, true);
+      } else {
+        ties += equal - 1;
+      }
+      i = end;
+    }
+    double before = 0.0;
+    std::vector<double> free = x;
+    for (size_t i = 0; i < x.size(); ++i) {
+      if (is_stuck[i]) free[i] = empty_cell;
+      const double step = i > 0 ? std::abs(free[i] - free[i - 1]) : 0.0;
+      if (step > 0.0) least_step = std::min(least_step, step);
+    }
+    noise = noise_level(free);
+    for (size_t i = 3; i < x.size(); ++i) {
+      const double d = free[i] - 3 * free[i - 1] + 3 * free[i - 2] - free[i - 3];
+      if (d * before < 0.0) ++turns;
+      if (std::isfinite(d * before)) ++differences;
+      before = d;
+    }
+  }
+
+  // White noise, as fine as hardly ever to repeat itself by chance: third differences of it change
+  // their sign three times in four, those of a smooth motion without noise next to never. Rounding
+  // of the numbers makes noise too, but no more than its own steps.
+  bool has_fine_noise() const {
+    constexpr size_t enough = 50;
+    return noise > 2.0 * least_step && differences >= enough && 2 * turns > differences &&
+           50 * ties < readings - stuck;
+  }
+  bool never_moves() const { return readings > 0 && stuck == readings; }
+};
+
+// Rows in which the readings say nothing of the motion. At the end of a sensor's range only what
+// noise brings below it is read between: such a reading is no fair one.
+std::vector<size_t> stuck_rows(const std::vector<double>& x, const Stuck& found) {
+  std::vector<size_t> rows;
+  for (size_t i = 0; i < x.size(); ++i) {
+    bool is_near = false;
+    for (const size_t j : {i - 1, i, i + 1}) is_near |= j < x.size() && found.is_stuck[j];
+    if (is_near && std::isfinite(x[i])) rows.push_back(i);
+  }
+  return rows;
+}
+
 std::array<Channel*, 4> quaternion_channels(Recording& recording) {
   return {find_channel(recording, "q_w"), find_channel(recording, "q_x"),
           find_channel(recording, "q_y"), find_channel(recording, "q_z")};
@@ -146,9 +209,22 @@ void remove_outliers(Recording& recording) {
     ++recording.report.outlier_cells;
     ++recording.report.outliers[channel.name];
   };
+  std::vector<Channel*> gyro;
   for (const char* name : {"gyro_x_rad_s", "gyro_y_rad_s", "gyro_z_rad_s"}) {
-    Channel* channel = find_channel(recording, name);
-    if (channel == nullptr) continue;
+    if (Channel* channel = find_channel(recording, name)) gyro.push_back(channel);
+  }
+  std::vector<Stuck> stuck;
+  for (const Channel* channel : gyro) stuck.emplace_back(channel->values);
+  const bool has_noise =
+      std::any_of(stuck.begin(), stuck.end(), [](const Stuck& s) { return s.has_fine_noise(); });
+  for (size_t k = 0; k < gyro.size(); ++k) {
+    const std::vector<double>& x = gyro[k]->values;
+    // An axis that the instrument does not have reads 0 throughout.
+    const bool is_pinned = has_noise && stuck[k].never_moves() && x.front() != 0.0;
+    if (!is_pinned && !stuck[k].has_fine_noise()) continue;
+    for (const size_t row : stuck_rows(x, stuck[k])) empty(*gyro[k], row);
+  }
+  for (Channel* channel : gyro) {
     for (const size_t row : outlying_rows(channel->values)) empty(*channel, row);
   }
   // A quaternion is right or wrong as a whole.
@@ -156,6 +232,10 @@ void remove_outliers(Recording& recording) {
   if (!complete(q)) return;
   std::vector<size_t> rows;
   for (const Channel* channel : q) {
+    if (const Stuck held(channel->values); held.has_fine_noise()) {
+      const std::vector<size_t> found = stuck_rows(channel->values, held);
+      rows.insert(rows.end(), found.begin(), found.end());
+    }
     const std::vector<size_t> found = outlying_rows(channel->values);
     rows.insert(rows.end(), found.begin(), found.end());
   }

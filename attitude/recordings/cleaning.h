@@ -11,7 +11,10 @@ void repair_quaternions(Recording& recording);
 
 // Empties cells of attitude and gyro channels that stand far from all their neighbours (a Hampel
 // filter: further from the median of the three on either side than 12 standard deviations of the
-// channel's noise and 12 times their median deviation). Steps and fast motion stay.
+// channel's noise and 12 times their median deviation). Steps and fast motion stay. Also cells of a
+// channel that stands still five rows or longer, and those next to them, where what is read
+// otherwise has a noise too fine for that: a gyro at the end of its range, a camera that repeats
+// its last attitude.
 void remove_outliers(Recording& recording);
 
 // Median interval, jitter and gaps.

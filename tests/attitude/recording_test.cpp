@@ -186,6 +186,47 @@ TEST(Recording, OutliersAreFoundAndNothingElse) {
   EXPECT_EQ(read(text, keep).report.outlier_cells, 0);
 }
 
+// A gyro that ends at 0.1 rad/s about x, whose z stands there throughout; one that repeats its last
+// reading for 2 s about y. What moves without noise and comes to rest is no fault, nor is an axis
+// that the instrument does not have.
+TEST(Recording, ReadingsOfASensorThatStandsStillAreLeftOut) {
+  std::mt19937_64 engine(9);
+  std::normal_distribution<double> noise(0.0, 2e-4);
+  const std::string header = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
+  std::string faulty = header, sound = header;
+  double y = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 0.01 * i;
+    const double x = std::min(0.1, 0.12 * std::sin(0.5 * t) + noise(engine));
+    if (i <= 500 || i > 700) y = 0.03 * std::cos(t) + noise(engine);
+    const auto row = [&](double a, double b, double c) {
+      return std::to_string(t) + "," + std::to_string(a) + "," + std::to_string(b) + "," +
+             std::to_string(c) + "\n";
+    };
+    faulty += row(x, y, 0.1);
+    sound += row(0.05 + noise(engine), t < 5.0 ? 0.1 * std::exp(-t) : 0.0, 0.0);
+  }
+  const Recording r = read(faulty);
+  for (size_t i = 0; i < 2000; ++i) {
+    const double rate = 0.12 * std::sin(0.005 * static_cast<double>(i));
+    if (rate > 0.101) {
+      EXPECT_TRUE(std::isnan(cells_of(r, "gyro_x_rad_s")[i])) << i;
+    }
+    if (rate < 0.099) {
+      EXPECT_FALSE(std::isnan(cells_of(r, "gyro_x_rad_s")[i])) << i;
+    }
+    const bool repeats = i > 500 && i <= 700, is_next = i >= 499 && i <= 701;
+    if (repeats) {
+      EXPECT_TRUE(std::isnan(cells_of(r, "gyro_y_rad_s")[i])) << i;
+    }
+    if (!is_next) {
+      EXPECT_FALSE(std::isnan(cells_of(r, "gyro_y_rad_s")[i])) << i;
+    }
+    EXPECT_TRUE(std::isnan(cells_of(r, "gyro_z_rad_s")[i])) << i;
+  }
+  EXPECT_EQ(read(sound).report.outlier_cells, 0);
+}
+
 TEST(Recording, JitterAndIntervalAreMeasured) {
   std::mt19937_64 engine(7);
   std::normal_distribution<double> jitter(0.0, 1e-3);
