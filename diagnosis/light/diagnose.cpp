@@ -27,41 +27,40 @@ void tell(const LightDiagnoseOptions& options, const std::string& what) {
   if (options.progress) options.progress(what);
 }
 
-Eigen::VectorXd nominal_residuals(const FittedRun& run, const LightState& nominal) {
-  return run.run->residuals(nominal, run.run->signals(nominal, *run.nominal), nullptr);
+Eigen::VectorXd nominal_residuals(const FittedRun& run, const LightBelief& nominal) {
+  return run.run->residuals(nominal.state, run.run->signals(nominal.state, *run.nominal), nullptr);
 }
 
 // Thinned where it is long, and without wild readings.
-FittedRun observed(const LightLab& lab, const LightState& nominal, LightRecording recording,
+FittedRun observed(const LightLab& lab, const LightBelief& nominal, LightRecording recording,
                    int number, const LightDiagnoseOptions& options, DataQuality& quality) {
   quality.rows += recording.rows_read;
   for (const auto& [reason, count] : recording.rejected) quality.rejected[reason] += count;
-  const size_t rows = recording.rows();
-  LightRun whole(lab, std::move(recording));
-  whole.set_number(number);
-  const bool is_scan = whole.recording().kind == LightRecording::Kind::scan;
-  const size_t most = is_scan ? options.max_scan_rows : options.max_rows;
+  const bool is_scan = recording.kind == LightRecording::Kind::scan;
+  const size_t rows = recording.rows(), most = is_scan ? options.max_scan_rows : options.max_rows;
   if (rows > most) {
     const size_t every = (rows + most - 1) / most;
     std::vector<size_t> some;
     for (size_t i = 0; i < rows; i += every) some.push_back(i);
     quality.rejected["left out of a long recording"] += static_cast<int64_t>(rows - some.size());
-    whole = whole.part(some);
+    recording = recording.part(some);
   }
+  LightRun whole(lab, std::move(recording));
+  whole.set_number(number);
   FittedRun run = prepared_run(std::move(whole), nominal);
   const std::vector<size_t> good =
       rows_without_outliers(*run.run, nominal_residuals(run, nominal), options.limits.noise);
   if (good.size() < run.run->rows()) {
     quality.rejected["outlier"] += static_cast<int64_t>(run.run->rows() - good.size());
-    run = prepared_run(run.run->part(good), nominal);
+    run = part_of(run, good, nominal);
   }
   quality.used += static_cast<int64_t>(run.run->rows());
   return run;
 }
 
-// Without a holdout: the last part of what was recorded over time or sweep by sweep, every so many
-// rows of a scan, whose end is but a corner of it.
-std::pair<LightRun, LightRun> split(const LightRun& run, double fraction) {
+// Rows to fit and rows to hold out, without a holdout: the last part of what was recorded over time
+// or sweep by sweep, every so many rows of a scan, whose end is but a corner of it.
+std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, double fraction) {
   std::vector<size_t> fitted, held;
   const size_t rows = run.rows();
   const bool scan = run.recording().kind == LightRecording::Kind::scan;
@@ -72,10 +71,10 @@ std::pair<LightRun, LightRun> split(const LightRun& run, double fraction) {
              : static_cast<double>(i) >= (1.0 - fraction) * static_cast<double>(rows);
     (is_held ? held : fitted).push_back(i);
   }
-  return {run.part(fitted), run.part(held)};
+  return {fitted, held};
 }
 
-LightData read_light_data(const LightLab& lab, const LightState& nominal,
+LightData read_light_data(const LightLab& lab, const LightBelief& nominal,
                           std::vector<LightRecording> recordings,
                           std::vector<LightRecording> holdouts,
                           const LightDiagnoseOptions& options) {
@@ -89,10 +88,10 @@ LightData read_light_data(const LightLab& lab, const LightState& nominal,
   }
   if (data.held.empty()) {
     for (FittedRun& run : data.train) {
-      auto [fitted, held] = split(*run.run, options.holdout_fraction);
-      if (held.rows() == 0 || fitted.rows() == 0) continue;
-      run = prepared_run(std::move(fitted), nominal);
-      data.held.push_back(prepared_run(std::move(held), nominal));
+      const auto [fitted, held] = split(*run.run, options.holdout_fraction);
+      if (held.empty() || fitted.empty()) continue;
+      data.held.push_back(part_of(run, held, nominal));
+      run = part_of(run, fitted, nominal);
     }
   }
   return data;
@@ -108,7 +107,7 @@ bool drop_outliers(const LightTrial& about, const LightCandidates& all,
           rows_without_outliers(*run.run, residuals_of(about, all, run), options.limits.noise);
       if (good.size() == run.run->rows() || good.empty()) continue;
       dropped += static_cast<int64_t>(run.run->rows() - good.size());
-      run = prepared_run(run.run->part(good), all.nominal);
+      run = part_of(run, good, all.nominal);
     }
   }
   if (dropped == 0) return false;
@@ -117,7 +116,7 @@ bool drop_outliers(const LightTrial& about, const LightCandidates& all,
   return true;
 }
 
-LightAnswer explain_light(const LightLab& lab, const LightState& nominal, LightData& data,
+LightAnswer explain_light(const LightLab& lab, const LightBelief& nominal, LightData& data,
                           const LightDiagnoseOptions& options) {
   LightAnswer answer{light_candidates(lab, nominal, data.train, options.limits), {}, {}};
   const LightDomain domain(answer.all);
@@ -232,7 +231,7 @@ std::vector<Where::ChannelMisfit> misfits(const LightAnswer& answer,
 
 }  // namespace
 
-Diagnosis diagnose_light(const LightLab& lab, const LightState& nominal,
+Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
                          std::vector<LightRecording> recordings,
                          std::vector<LightRecording> holdouts, const LightDiagnoseOptions& asked) {
   if (recordings.empty()) throw InputError({}, "--recording", "none", "at least one recording");

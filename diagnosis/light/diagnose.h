@@ -13,6 +13,7 @@
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/light/model/lab.h"
 #include "diagnosis/light/recordings/recording.h"
+#include "diagnosis/light/trials/candidate.h"
 #include "inference/limits/thresholds.h"
 
 namespace photorque {
@@ -28,7 +29,7 @@ struct LightDiagnoseOptions {
 
 // InputError for recordings that the experiment cannot explain at all: curves without an array.
 // The same result for any number of threads.
-Diagnosis diagnose_light(const LightLab& lab, const LightState& nominal,
+Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
                          std::vector<LightRecording> recordings,
                          std::vector<LightRecording> holdouts,
                          const LightDiagnoseOptions& options = {});

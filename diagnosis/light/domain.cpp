@@ -233,7 +233,7 @@ std::vector<FittedRun> LightDomain::average(const Trial&, const Runs& runs, size
     }
     std::vector<size_t> rows;
     for (size_t i = 0; i < run.run->rows(); i += every) rows.push_back(i);
-    result.push_back(prepared_run(run.run->part(rows), all_.nominal));
+    result.push_back(part_of(run, rows, all_.nominal));
   }
   return result;
 }

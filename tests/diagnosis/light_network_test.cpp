@@ -38,10 +38,12 @@ struct ArrayUnderTest {
   }
   LitNetwork network(bool tabulated = false) const {
     const std::vector<double> areas(photocurrents_A.size(), area_m2);
+    const CellModel cell = a_cell();
+    const std::vector<const CellModel*> models(areas.size(), &cell);
     NetworkSettings settings;
     settings.series_ohm = series_ohm;
     return {wiring,
-            std::make_shared<const LitCells>(lit_cells(a_cell(), areas, 298.15, 0.0, tabulated)),
+            std::make_shared<const LitCells>(lit_cells(models, areas, 298.15, 0.0, tabulated)),
             settings, photocurrents_A};
   }
   ArrayCurve curve() const {

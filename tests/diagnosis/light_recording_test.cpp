@@ -52,6 +52,29 @@ TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
   EXPECT_EQ(run.rejected.at("unreadable attitude"), 1);
 }
 
+// Lamps that are dimmed say so by their current; a constant one says nothing. Rows chosen keep what
+// is theirs.
+TEST(LightRecordings, DimmedLampsAreRelativeToTheirBrightest) {
+  const auto with_currents = [](const char* name, const char* second) {
+    return read_light_recording(
+        light_file(name, std::string("t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,"
+                                     "led_current_A\n0,1,0,0,0,8,0.3,0.7\n1,1,0,0,0,7,0.1,") +
+                             second + "\n2,1,0,0,0,8,0.3,\n"),
+        {});
+  };
+  const LightRecording dimmed = with_currents("dimmed.csv", "0.175");
+  ASSERT_EQ(dimmed.lamp_light.size(), 3u);
+  EXPECT_NEAR(dimmed.lamp_light[0], 1.0, 1e-12);
+  EXPECT_NEAR(dimmed.lamp_light[1], 0.25, 1e-12);
+  EXPECT_NEAR(dimmed.lamp_light[2], 0.25, 1e-12);
+  EXPECT_TRUE(with_currents("steady.csv", "0.69").lamp_light.empty());
+  const LightRecording last = dimmed.part({1, 2});
+  ASSERT_EQ(last.rows(), 2u);
+  EXPECT_EQ(last.time_s, (std::vector<double>{1.0, 2.0}));
+  EXPECT_EQ(last.voltage_V[0], 7.0);
+  EXPECT_EQ(last.lamp_light.size(), 2u);
+}
+
 // Once a conversion without a meaning.
 TEST(LightRecordings, NumbersOfSweepsBeyondAllCountingAreLeftOut) {
   const auto sweep = read_light_recording(

@@ -141,6 +141,48 @@ TEST(ProveLight, MakerAndProgramAgreeWhereTheTruthIsTold) {
   EXPECT_EQ(seen.size(), 3u);
 }
 
+// Light beside a state that is known, and rows of a scan that is known, are those found afresh.
+TEST(ProveLight, KnownLightIsThatFoundAfresh) {
+  // A setting with a wall; drawing an effect that shows would take long.
+  LightCase c;
+  c.seed = 16;
+  RandomDraw draw(c.seed, 1);
+  draw_light_setting(draw, c, {"interreflection"});
+  c.verdict = "consistent";
+  const fs::path folder = fs::path(testing::TempDir()) / "light_with_wall";
+  write_light_case(c, folder);
+  const Experiment experiment = read_experiment(folder / "experiment.toml");
+  const LightLab lab(experiment);
+  ASSERT_FALSE(lab.walls().empty());
+  const LightRun run(lab, read_light_recording(folder / "scan1.csv.gz", {}));
+  LightState state = lab.nominal();
+  state.walls.push_back({0, 0.3, 0.0});
+  const LightFields fields = run.fields(state, nullptr);
+  const std::vector<double> light = run.light(state, fields);
+  LightState other = state;
+  other.lamp_power[0] = 0.4;
+  other.lamp_aim[1] = Vec2(0.01, -0.02);
+  const LightFields there = run.fields(other, &fields);
+  const LightRun::KnownLight known{&state, &fields, &light};
+  const std::vector<double> beside = run.light(other, there, &known),
+                            afresh = run.light(other, run.fields(other, nullptr));
+  ASSERT_EQ(beside.size(), afresh.size());
+  const double brightest = *std::ranges::max_element(afresh);
+  double changed = 0.0;
+  for (size_t i = 0; i < afresh.size(); ++i) {
+    EXPECT_NEAR(beside[i], afresh[i], 1e-12 * brightest);
+    changed = std::max(changed, std::abs(afresh[i] - light[i]));
+  }
+  EXPECT_GT(changed, 1e-2 * brightest);
+  const std::vector<size_t> rows = {3, 5, 8, 40};
+  const LightRun part = run.part(rows);
+  const std::vector<double> some = part.light(state, LightRun::part(fields, rows));
+  ASSERT_EQ(some.size(), rows.size());
+  for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(some[i], light[rows[i]]);
+  EXPECT_EQ(part.circumstances()[3].irradiance, run.circumstances()[40].irradiance);
+  fs::remove_all(folder);
+}
+
 TEST(ProveLight, DrawsTheSameCaseAgain) {
   LightPlan plan;
   plan.per_kind = 1;

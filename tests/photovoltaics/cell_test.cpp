@@ -17,6 +17,7 @@
 #include "core/parallel.h"
 #include "ivcurves.h"
 #include "photovoltaics/cell/batch.h"
+#include "photovoltaics/cell/one_diode.h"
 #include "photovoltaics/cell/table.h"
 #include "reference.h"
 
@@ -48,6 +49,41 @@ TEST(PhotovoltaicCell, ResistiveLimitGivesAQuarterOfTheProduct) {
   const CellOperatingPoint best = CellCurve(p).maximum_power(3.0);
   const double open_V = CellCurve(p).open_circuit_V(3.0);
   EXPECT_NEAR(best.power_W(), 0.25 * open_V * open_V / 1e6, 1e-5 * best.power_W());
+}
+
+// The voltage put back into the dark current, and derivatives of the dark current itself, at
+// temperatures and shunts far apart.
+TEST(PhotovoltaicCell, OneDiodeByTheOmegaFunctionSolvesItsEquation) {
+  for (const double temperature_K : {120.0, 298.15, 420.0}) {
+    for (const double shunt_ohm : {2.0, 180.0, 1e9}) {
+      CellParameters p;
+      p.saturation_1_A = 1e-11 * std::exp(0.15 * (temperature_K - 298.15));
+      p.ideality_1 = 1.2;
+      p.shunt_ohm = shunt_ohm;
+      p.temperature_K = temperature_K;
+      const CellCurve exact(p);
+      const OneDiode cell(p, exact.thermal_V());
+      for (double dark_A = -0.5; dark_A < 2.0; dark_A += 0.0137) {
+        const OneDiode::Point at = cell.at(dark_A);
+        const DarkCurrent d = exact.dark(at.value_V);
+        const double scale_V = 1.2 * exact.thermal_V();
+        EXPECT_NEAR(d.value_A, dark_A, 1e-11 * (d.slope_S * scale_V + std::abs(dark_A)));
+        EXPECT_NEAR(at.slope_ohm * d.slope_S, 1.0, 1e-9);
+        EXPECT_NEAR(at.curvature_V_A2, -d.curvature_A_V2 * std::pow(at.slope_ohm, 3),
+                    1e-9 * scale_V * std::pow(at.slope_ohm * d.slope_S / scale_V, 2) *
+                        std::pow(at.slope_ohm, 2));
+      }
+    }
+  }
+}
+
+// The fixed point of the function: y + e^y = 1 at y = 0; and Ω = −y(0), with Ω e^Ω = 1.
+TEST(PhotovoltaicCell, OmegaFunctionHasItsKnownValues) {
+  EXPECT_NEAR(wright_log_omega(1.0), 0.0, 1e-13);
+  EXPECT_NEAR(wright_log_omega(0.0), -0.56714329040978387300, 1e-13);
+  EXPECT_NEAR(wright_log_omega(1.0 + std::exp(1.0)), 1.0, 1e-13);
+  EXPECT_NEAR(wright_log_omega(1e7 + std::log(1e7)), std::log(1e7), 1e-13 * 17.0);
+  EXPECT_EQ(wright_log_omega(-100.0), -100.0);
 }
 
 TEST(PhotovoltaicCell, CurrentAndVoltageAreInverse) {

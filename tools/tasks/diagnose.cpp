@@ -80,7 +80,7 @@ DiagnosisRun diagnose_light_recordings(const RunOptions& options,
   how.threads = options.threads;
   how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
   Diagnosis diagnosis =
-      diagnose_light(lab, nominal, std::move(recordings), std::move(holdouts), how);
+      diagnose_light(lab, LightBelief{nominal}, std::move(recordings), std::move(holdouts), how);
   return {std::move(diagnosis), std::move(provenance), options.experiment, text, true};
 }
 

@@ -302,6 +302,20 @@ double LightLab::narrowest_edge_m() const {
   return narrowest_m;
 }
 
+std::vector<const CellModel*> LightLab::models() const {
+  std::vector<const CellModel*> models;
+  for (size_t i = 0; i < cells_.size(); ++i) {
+    models.push_back(&design_->cell);
+  }
+  return models;
+}
+
+LitCells LightLab::lit(double temperature_K, double extra_shunt_S, bool tabulated) const {
+  std::vector<double> area_m2;
+  for (const LightCell& cell : cells_) area_m2.push_back(cell.area_m2);
+  return lit_cells(models(), area_m2, temperature_K, extra_shunt_S, tabulated);
+}
+
 size_t LightLab::strings() const {
   return design_ ? design_->wiring.strings.size() : 0;
 }

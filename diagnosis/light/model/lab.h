@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/light/model/lit_cells.h"
 #include "diagnosis/light/model/state.h"
 #include "photovoltaics/array/design.h"
 #include "raytrace/direct/disc_light.h"
@@ -42,6 +43,7 @@ struct LampSet {
 struct LightCell {
   CellRectangle rectangle;
   double area_m2 = 0.0;
+  double photocurrent_factor = 1.0;  // of what its light would give a cell like the others
   std::vector<Vec3> points_body_m;
   std::vector<double> weights;  // sum 1
 };
@@ -63,6 +65,10 @@ class LightLab {
   const std::vector<LightCell>& cells() const { return cells_; }
   size_t strings() const;
   size_t bypasses() const;
+  // What each cell is.
+  std::vector<const CellModel*> models() const;
+  // The cells' diodes at a temperature, with a conductance more across each.
+  LitCells lit(double temperature_K, double extra_shunt_S, bool tabulated) const;
   // Photocurrent over light [A/W] at the reference temperature.
   double responsivity_A_W() const { return responsivity_A_W_; }
 

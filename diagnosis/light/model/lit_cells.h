@@ -2,9 +2,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "photovoltaics/cell/model.h"
+#include "photovoltaics/cell/one_diode.h"
 #include "photovoltaics/cell/table.h"
 
 namespace photorque {
@@ -13,7 +15,8 @@ namespace photorque {
 class LitDiode {
  public:
   LitDiode(const CellParameters& parameters, double extra_shunt_S);
-  // From a table, where many points are asked for at one temperature.
+  // From a table, where many points are asked for at one temperature; a cell of one diode without
+  // breakdown needs none.
   LitDiode(const CellParameters& parameters, std::shared_ptr<const DiodeVoltageTable> table);
   double series_ohm() const { return series_ohm_; }
 
@@ -25,9 +28,8 @@ class LitDiode {
 
  private:
   CellCurve curve_;
-  double saturation_A_, scale_V_, shunt_S_;
   double series_ohm_;
-  bool is_plain_;  // one diode, no breakdown
+  std::optional<OneDiode> plain_;  // one diode, no breakdown
   std::shared_ptr<const DiodeVoltageTable> table_;
 };
 
@@ -43,8 +45,8 @@ struct LitCells {
   std::vector<LitDiode> kinds;
   std::vector<int> kind_of_cell;
 };
-// `tabulated`: worth its time where hundreds of points follow.
-LitCells lit_cells(const CellModel& cell, const std::vector<double>& area_m2, double temperature_K,
-                   double extra_shunt_S, bool tabulated);
+// `models`: of each cell. `tabulated`: worth its time where hundreds of points follow.
+LitCells lit_cells(const std::vector<const CellModel*>& models, const std::vector<double>& area_m2,
+                   double temperature_K, double extra_shunt_S, bool tabulated);
 
 }  // namespace photorque

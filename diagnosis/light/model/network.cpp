@@ -86,26 +86,23 @@ void LitNetwork::evaluate(const String& string, double current_A, StringPoint& a
 }
 
 // Newton's steps within a bracket that closes.
-void LitNetwork::solve(const String& string, double voltage_V, StringPoint& at) const {
+void LitNetwork::solve(const String& string, double voltage_V, StringPoint& at,
+                       double behind_ohm) const {
   double low = -unlimited, high = unlimited;
   double x = at.clamped.empty() ? 0.9 * string.largest_A : at.current_A;
   const double least = 1e-12 + 1e-12 * string.largest_A;
   for (int i = 0; i < 200; ++i) {
     if (string.is_blocking && x < 0.0) x = 0.0;
     evaluate(string, x, at);
-    const double off = at.voltage_V - voltage_V;
-    if (off > 0.0) {
-      low = x;
-    } else {
-      high = x;
-    }
+    const double off = at.voltage_V - behind_ohm * x - voltage_V;
+    const double slope_ohm = at.slope_ohm + behind_ohm;
+    (off > 0.0 ? low : high) = x;
     if (string.is_blocking && x == 0.0 && off <= 0.0) {
       at.slope_ohm = unlimited;  // blocked: carries nothing at any voltage near
       return;
     }
     if (std::abs(off) < 1e-11) return;
-    double next =
-        at.slope_ohm > 0.0 ? x + off / at.slope_ohm : (off > 0.0 ? unlimited : -unlimited);
+    double next = slope_ohm > 0.0 ? x + off / slope_ohm : (off > 0.0 ? unlimited : -unlimited);
     if (!(next > low && next < high)) {
       if (low > -unlimited && high < unlimited) {
         next = 0.5 * (low + high);
@@ -166,7 +163,10 @@ LitNetwork::Point LitNetwork::nearest(double voltage_V, double current_A, double
                    i = current_A - state.current_A;
       const double dv = by_current() ? -(1.0 / state.slope_S + R) : 1.0 + R * state.slope_S;
       const double di = by_current() ? 1.0 : -state.slope_S;
-      double step = (v * dv * wv + i * di * wi) / (dv * dv * wv + di * di * wi);
+      const double along2 = dv * dv * wv + di * di * wi;
+      double step = (v * dv * wv + i * di * wi) / along2;
+      // No nearer than a millionth of an error along the curve, which nothing feels.
+      if (step * step * along2 < 1e-12) break;
       const double from = x;
       bool nearer = false;
       for (int half = 0; half < 30; ++half, step *= 0.5) {

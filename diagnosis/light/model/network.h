@@ -78,7 +78,10 @@ class LitNetwork {
     std::vector<LitDiode::Point> cells;  // as wired, all substrings in turn
   };
   void evaluate(const String& string, double current_A, StringPoint& at) const;
-  void solve(const String& string, double voltage_V, StringPoint& at) const;
+  // The current at which a string behind a resistance has a voltage; a point that was found before
+  // is where it starts.
+  void solve(const String& string, double voltage_V, StringPoint& at,
+             double behind_ohm = 0.0) const;
   // All strings at one voltage of the network, before the series resistance of the array.
   struct State {
     double voltage_V = 0.0, current_A = 0.0, slope_S = 0.0, curvature = 0.0;  // I, −I′, I″ by V

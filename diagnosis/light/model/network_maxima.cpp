@@ -22,50 +22,59 @@ std::vector<double> LitNetwork::current_derivatives(const State& state) const {
   return result;
 }
 
+// The voltage of cells in series is concave in their current: from the least photocurrent, or the
+// right of the root, Newton's steps come down to it.
 double LitNetwork::clamp_current_A(const Substring& substring) const {
   if (substring.is_shorted || !(substring.clamp_V < unlimited)) return unlimited;
-  String alone;
-  alone.substrings = {substring};
-  alone.substrings.front().clamp_V = unlimited;
+  double x = unlimited;
   for (const int cell : substring.cells) {
-    alone.largest_A = std::max(alone.largest_A, photocurrents_A_[static_cast<size_t>(cell)]);
+    x = std::min(x, photocurrents_A_[static_cast<size_t>(cell)]);
   }
-  StringPoint p;
-  solve(alone, -substring.clamp_V, p);
-  return p.current_A;
+  double low = -unlimited, high = unlimited;
+  for (int i = 0; i < 200; ++i) {
+    double off = substring.clamp_V, slope_ohm = 0.0;
+    for (const int cell : substring.cells) {
+      const auto k = static_cast<size_t>(cell);
+      const LitDiode& kind = cells_->kinds[static_cast<size_t>(cells_->kind_of_cell[k])];
+      const LitDiode::Point d = kind.at(photocurrents_A_[k] - x);
+      off += d.value_V + settings_.cell_offset_V - x * kind.series_ohm();
+      slope_ohm += d.slope_ohm + kind.series_ohm();
+    }
+    (off > 0.0 ? low : high) = x;
+    double next = x + off / slope_ohm;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(off) < 1e-11 || !std::isfinite(next) || next == x) break;
+    x = next;
+  }
+  return x;
 }
 
 double LitNetwork::end_x() const {
-  const double R = settings_.series_ohm;
   if (by_current()) {
-    String with_resistance = strings_.front();
     StringPoint p;
-    if (R == 0.0) {
-      solve(with_resistance, 0.0, p);
-      return p.current_A;
-    }
-    double low = 0.0, high = 2.0 * with_resistance.largest_A + 1e-3;
-    for (int i = 0; i < 60; ++i) {
-      const double x = 0.5 * (low + high);
-      evaluate(with_resistance, x, p);
-      (p.voltage_V - R * x > 0.0 ? low : high) = x;
-    }
-    return low;
+    solve(strings_.front(), 0.0, p, settings_.series_ohm);
+    return p.current_A;
   }
   // The open circuit: between zero and the largest voltage of a string without current.
   double low = 0.0, high = 0.0;
+  StringPoint open;
   for (const String& string : strings_) {
-    StringPoint p;
-    evaluate(string, 0.0, p);
-    high = std::max(high, p.voltage_V);
+    evaluate(string, 0.0, open);
+    high = std::max(high, open.voltage_V);
   }
   State state;
-  for (int i = 0; i < 50; ++i) {
-    const double x = 0.5 * (low + high);
+  const double least = 1e-13 * high;
+  double x = high;
+  for (int i = 0; i < 100; ++i) {
     at(x, state);
     (state.current_A > 0.0 ? low : high) = x;
+    // Behind blocking diodes nothing flows beyond the open circuit, and nothing says how far it is.
+    double next = x + state.current_A / state.slope_S;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - x) < least) break;
+    x = next;
   }
-  return low;
+  return x;
 }
 
 std::vector<double> LitNetwork::breakpoints(double end) const {

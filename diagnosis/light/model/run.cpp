@@ -33,6 +33,9 @@ bool same_rotation(const Quat& a, const Quat& b) {
 }  // namespace
 
 LightRun::LightRun(const LightLab& lab, LightRecording recording)
+    : LightRun(lab, std::move(recording), nullptr) {}
+
+LightRun::LightRun(const LightLab& lab, LightRecording recording, const PartOf* known)
     : lab_(&lab), recording_(std::move(recording)) {
   if (!is_scan() && !lab.has_array()) {
     throw InputError({recording_.name}, "array", "no table [array] in the experiment",
@@ -44,7 +47,7 @@ LightRun::LightRun(const LightLab& lab, LightRecording recording)
     place_cells();
   }
   find_noise();
-  find_circumstances();
+  find_circumstances(known);
   number_samples();
 }
 
@@ -98,10 +101,7 @@ void LightRun::place_cells() {
     first_output_.push_back(sites_.outputs.size() - cells);
     auto& known = cells_at_[r.temperature_K[i]];
     if (known) continue;
-    std::vector<double> area;
-    for (const LightCell& cell : lab_->cells()) area.push_back(cell.area_m2);
-    known = std::make_shared<const LitCells>(
-        lit_cells(lab_->design().cell, area, r.temperature_K[i], 0.0, true));
+    known = std::make_shared<const LitCells>(lab_->lit(r.temperature_K[i], 0.0, true));
   }
 }
 
@@ -213,7 +213,7 @@ void LightRun::find_noise() {
   }
 }
 
-void LightRun::find_circumstances() {
+void LightRun::find_circumstances(const PartOf* known) {
   const SurfaceGrid& g = lab_->grid();
   const auto over = [](double x, double low, double high) {
     return high > low ? 2.0 * (x - low) / (high - low) - 1.0 : 0.0;
@@ -239,6 +239,12 @@ void LightRun::find_circumstances() {
       circumstances_[first_output_[row] + k] = c;
     }
   }
+  if (known != nullptr && is_scan()) {
+    for (size_t i = 0; i < rows(); ++i) {
+      circumstances_[i].irradiance = known->whole->circumstances_[(*known->rows)[i]].irradiance;
+    }
+    return;
+  }
   const LightState nominal = lab_->nominal();
   const std::vector<double> light = signals(nominal, fields(nominal, nullptr));
   const double most = std::max(1e-300, *std::ranges::max_element(light));
@@ -261,18 +267,26 @@ void LightRun::number_samples() {
 }
 
 LightRun LightRun::part(const std::vector<size_t>& rows) const {
-  LightRecording some = recording_;
-  some.u_m = chosen(recording_.u_m, rows);
-  some.v_m = chosen(recording_.v_m, rows);
-  some.irradiance_W_m2 = chosen(recording_.irradiance_W_m2, rows);
-  some.voltage_V = chosen(recording_.voltage_V, rows);
-  some.current_A = chosen(recording_.current_A, rows);
-  some.time_s = chosen(recording_.time_s, rows);
-  some.lab_from_body = chosen(recording_.lab_from_body, rows);
-  some.temperature_K = chosen(recording_.temperature_K, rows);
-  some.sweep = chosen(recording_.sweep, rows);
-  LightRun run(*lab_, std::move(some));
+  const PartOf known{this, &rows};
+  LightRun run(*lab_, recording_.part(rows), &known);
   if (is_scan()) run.irradiance_sigma_ = chosen(irradiance_sigma_, rows);
+  run.voltage_scale_V_ = voltage_scale_V_;
+  run.current_scale_A_ = current_scale_A_;
+  run.noise_factor_ = noise_factor_;
+  run.number_ = number_;
+  return run;
+}
+
+LightRun LightRun::in(const LightLab& lab) const {
+  LightRecording there = recording_;
+  if (!there.has_attitudes) {
+    std::ranges::fill(there.lab_from_body, lab.experiment().lab_from_body.rotation);
+  }
+  if (!there.has_temperatures && lab.has_array()) {
+    std::ranges::fill(there.temperature_K, lab.design().temperature_K);
+  }
+  LightRun run(lab, std::move(there));
+  run.irradiance_sigma_ = irradiance_sigma_;
   run.voltage_scale_V_ = voltage_scale_V_;
   run.current_scale_A_ = current_scale_A_;
   run.noise_factor_ = noise_factor_;
@@ -283,89 +297,6 @@ LightRun LightRun::part(const std::vector<size_t>& rows) const {
 void LightRun::scale_noise(double factor) {
   noise_factor_ *= factor;
   for (double& s : irradiance_sigma_) s *= factor;
-}
-
-LightFields LightRun::fields(const LightState& state, const LightFields* near) const {
-  LightFields result;
-  std::shared_ptr<const LampSet> lamps;
-  const auto lamp_set = [&]() -> const LampSet& {
-    if (!lamps) lamps = lab_->lamps_with(state.divergence);
-    return *lamps;
-  };
-  for (size_t l = 0; l < lab_->lamps(); ++l) {
-    LampGeometry geometry = geometry_of(state, l, sites_.enters_cells);
-    if (near != nullptr && near->lamps[l].geometry == geometry) {
-      result.lamps.push_back(near->lamps[l]);
-      continue;
-    }
-    auto field = std::make_shared<const LampField>(
-        expanded(lamp_field(*lab_, lamp_set(), sites_, geometry)));
-    result.lamps.push_back({std::move(geometry), std::move(field)});
-  }
-  // Light by way of walls takes long, and is kept as long as the lamps stay where they are.
-  std::vector<LampGeometry> geometries;
-  for (size_t l = 0; l < lab_->lamps(); ++l) geometries.push_back(geometry_of(state, l, false));
-  if (near != nullptr) {
-    for (const auto& [key, parts] : near->walls) {
-      const bool same = std::ranges::equal(parts, geometries, {}, &LightFields::Part::geometry);
-      if (same) result.walls[key] = parts;
-    }
-  }
-  for (const WallShare& share : state.walls) {
-    for (const bool specular : {false, true}) {
-      const double part = specular ? share.specular : share.diffuse;
-      const auto key = std::pair(share.wall, specular);
-      if (part == 0.0 || result.walls.contains(key)) continue;
-      std::vector<LampField> by_lamp =
-          wall_fields(*lab_, lamp_set(), sites_, geometries, share.wall, specular);
-      for (size_t l = 0; l < geometries.size(); ++l) {
-        result.walls[key].push_back(
-            {geometries[l], std::make_shared<const LampField>(expanded(std::move(by_lamp[l])))});
-      }
-    }
-  }
-  return result;
-}
-
-std::vector<double> LightRun::signals(const LightState& state, const LightFields& fields) const {
-  std::vector<double> light(circumstances_.size(), 0.0);
-  std::vector<double> power(lab_->lamps());
-  for (size_t l = 0; l < power.size(); ++l) power[l] = state.power * state.lamp_power[l];
-  const auto add = [&](const LampField& field, double factor) {
-    if (factor == 0.0) return;
-    for (size_t o = 0; o < light.size(); ++o) light[o] += factor * field[o];
-  };
-  for (size_t l = 0; l < power.size(); ++l) add(*fields.lamps[l].field, power[l]);
-  for (const WallShare& share : state.walls) {
-    for (const bool specular : {false, true}) {
-      const double part = specular ? share.specular : share.diffuse;
-      const auto found = fields.walls.find({share.wall, specular});
-      if (part == 0.0 || found == fields.walls.end()) continue;
-      for (size_t l = 0; l < power.size(); ++l) add(*found->second[l].field, part * power[l]);
-    }
-  }
-  const size_t cells = lab_->cells().size();
-  for (size_t o = 0; o < light.size(); ++o) {
-    const Circumstance& c = circumstances_[o];
-    if (is_run() && state.droop_depth != 0.0) {
-      light[o] *= 1.0 - state.droop_depth * (1.0 - std::exp(-c.time_s / state.droop_time_s));
-    }
-    light[o] += state.ambient_W_m2;
-    for (const auto& law : state.light_laws) light[o] *= std::max(0.0, law(c));
-    if (is_scan()) {
-      if (cell_of_point_[o] != no_cell) light[o] *= state.cell_light[cell_of_point_[o]];
-      light[o] *= state.detector_gain;
-      continue;
-    }
-    const size_t k = o % cells;
-    const double warm_K = c.temperature_K - lab_->design().cell.reference.temperature_K;
-    const double warmth = std::max(0.0, photocurrent_factor(lab_->design().cell, c.temperature_K) +
-                                            state.photocurrent_per_K * warm_K);
-    light[o] *= state.cell_light[k] * state.soiling * state.cell_current[k] * warmth *
-                lab_->responsivity_A_W() * lab_->cells()[k].area_m2;
-    light[o] = std::max(0.0, light[o]);
-  }
-  return light;
 }
 
 }  // namespace photorque

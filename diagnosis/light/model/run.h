@@ -59,11 +59,32 @@ class LightRun {
 
   // The rows chosen alone.
   LightRun part(const std::vector<size_t>& rows) const;
+  // Of a scan: fields of this recording at the rows chosen, for its part.
+  static LightFields part(const LightFields& fields, const std::vector<size_t>& rows);
+  // The same recording and noise with another nominal model.
+  LightRun in(const LightLab& lab) const;
   // The same with all noise multiplied.
   void scale_noise(double factor);
 
-  LightFields fields(const LightState& state, const LightFields* near) const;
-  std::vector<double> signals(const LightState& state, const LightFields& fields) const;
+  // Parts of `near` stay where they are the same. Light by way of walls takes long, and changes
+  // little where lamps move a little: kept, it stays whatever the lamps do.
+  enum class Walls { followed, kept };
+  LightFields fields(const LightState& state, const LightFields* near,
+                     Walls walls = Walls::followed) const;
+  // Light of all lamps on every output, before what acts on all of it alike. Of a state beside one
+  // whose light is known only those lamps are added anew that differ.
+  struct KnownLight {
+    const LightState* state;
+    const LightFields* fields;
+    const std::vector<double>* light;
+  };
+  std::vector<double> light(const LightState& state, const LightFields& fields,
+                            const KnownLight* near = nullptr) const;
+  // `light` is that of the state.
+  std::vector<double> signals_of(const LightState& state, std::vector<double> light) const;
+  std::vector<double> signals(const LightState& state, const LightFields& fields) const {
+    return signals_of(state, light(state, fields));
+  }
   // `slopes` may be null.
   Eigen::VectorXd residuals(const LightState& state, const std::vector<double>& signals,
                             SignalSlopes* slopes) const;
@@ -94,7 +115,13 @@ class LightRun {
   void place_scan();
   void place_cells();
   void find_noise();
-  void find_circumstances();
+  // Of some rows of a scan whose light is known already.
+  struct PartOf {
+    const LightRun* whole;
+    const std::vector<size_t>* rows;
+  };
+  LightRun(const LightLab& lab, LightRecording recording, const PartOf* known);
+  void find_circumstances(const PartOf* known);
   void number_samples();
   bool is_trapped(const LightState& state, size_t row) const;
   // χ² of a reading about a maximum.

@@ -45,10 +45,7 @@ LitNetwork LightRun::network(const LightState& state, const std::vector<double>&
 std::shared_ptr<const LitCells> LightRun::cells_at(double temperature_K, double shunt_S) const {
   const auto known = cells_at_.find(temperature_K);
   if (shunt_S == 0.0 && known != cells_at_.end()) return known->second;
-  std::vector<double> area;
-  for (const LightCell& cell : lab_->cells()) area.push_back(cell.area_m2);
-  return std::make_shared<const LitCells>(
-      lit_cells(lab_->design().cell, area, temperature_K, shunt_S, false));
+  return std::make_shared<const LitCells>(lab_->lit(temperature_K, shunt_S, false));
 }
 
 bool LightRun::is_trapped(const LightState& state, size_t row) const {

@@ -89,7 +89,7 @@ std::optional<LightHeader> find_header(TextLines& lines) {
 
 struct ColumnsOfLight {
   std::optional<LightColumn> u, v, irradiance, voltage, current, time, q[4], tilt, heading,
-      temperature, sweep;
+      temperature, sweep, lamps;
 };
 
 ColumnsOfLight columns_of(const LightHeader& header, LightRecording::Kind kind) {
@@ -107,6 +107,7 @@ ColumnsOfLight columns_of(const LightHeader& header, LightRecording::Kind kind) 
   c.heading = header.find("heading_deg");
   c.temperature = header.find("cell_temperature_K");
   c.sweep = header.find("sweep");
+  if (run) c.lamps = header.find("led_current_A");
   return c;
 }
 
@@ -140,6 +141,10 @@ class RowReader {
         if (!std::isfinite(time_s)) return "row without time";
         if (!into_.time_s.empty() && time_s == into_.time_s.back()) return "repeated time";
         into_.time_s.push_back(time_s);
+        // Where a cell says nothing, what was before holds.
+        const double lamps = value(columns_.lamps);
+        const double before = into_.lamp_light.empty() ? 1.0 : into_.lamp_light.back();
+        into_.lamp_light.push_back(std::isfinite(lamps) ? std::max(0.0, lamps) : before);
       } else {
         const double sweep = columns_.sweep ? value(columns_.sweep) : 0.0;
         constexpr double most = 1e9;  // what an int holds, and more than anybody measures
@@ -181,15 +186,50 @@ class RowReader {
   const std::vector<std::string_view>* cells_ = nullptr;
 };
 
+// Currents of lamps over the largest. What hardly changes is noise of a constant one.
+void make_relative(std::vector<double>& lamps) {
+  constexpr double changes = 0.05;
+  if (lamps.empty()) return;
+  const auto [low, high] = std::ranges::minmax(lamps);
+  if (!(high > 0.0) || high - low < changes * high) {
+    lamps.clear();
+    return;
+  }
+  for (double& current : lamps) current /= high;
+}
+
 }  // namespace
 
-bool is_light_recording(const std::filesystem::path& path) {
+LightRecording LightRecording::part(const std::vector<size_t>& rows) const {
+  const auto keep = [&](auto& column) {
+    if (column.empty()) return;
+    std::decay_t<decltype(column)> some;
+    some.reserve(rows.size());
+    for (const size_t row : rows) some.push_back(column[row]);
+    column = std::move(some);
+  };
+  LightRecording some = *this;
+  for (auto* column : {&some.u_m, &some.v_m, &some.irradiance_W_m2, &some.voltage_V,
+                       &some.current_A, &some.time_s, &some.temperature_K, &some.lamp_light}) {
+    keep(*column);
+  }
+  keep(some.lab_from_body);
+  keep(some.sweep);
+  return some;
+}
+
+std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path) {
   try {
     TextLines lines(path);
-    return find_header(lines).has_value();
+    const std::optional<LightHeader> header = find_header(lines);
+    return header ? header->kind() : std::nullopt;
   } catch (const InputError&) {
-    return false;
+    return std::nullopt;
   }
+}
+
+bool is_light_recording(const std::filesystem::path& path) {
+  return light_kind_of(path).has_value();
 }
 
 LightRecording read_light_recording(const std::filesystem::path& path,
@@ -205,6 +245,8 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   recording.kind = *header->kind();
   recording.name = path.string();
   const ColumnsOfLight columns = columns_of(*header, recording.kind);
+  recording.has_temperatures = columns.temperature.has_value();
+  recording.has_attitudes = columns.q[0].has_value() || (columns.tilt && columns.heading);
   RowReader reader(columns, usual, recording);
   std::string_view line;
   std::vector<std::string_view> cells;
@@ -219,6 +261,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
     throw InputError({path.string(), static_cast<int>(lines.number())}, "rows", "no usable row",
                      "at least one row of numbers");
   }
+  make_relative(recording.lamp_light);
   return recording;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,17 @@ struct LightRecording {
   std::vector<Quat> lab_from_body;
   std::vector<double> temperature_K;
   std::vector<int> sweep;
+  // Of runs with dimmed lamps: their current over its largest, to which their light is taken to
+  // be proportional. Empty where it hardly changes.
+  std::vector<double> lamp_light;
 
+  // False: each row has what the experiment says.
+  bool has_attitudes = true, has_temperatures = true;
   int64_t rows_read = 0;                    // data rows in the file
   std::map<std::string, int64_t> rejected;  // by reason: "torn row", "unreadable", …
   size_t rows() const { return lab_from_body.size(); }
+  // The chosen rows alone.
+  LightRecording part(const std::vector<size_t>& rows) const;
 };
 
 // What rows have that do not say it themselves.
@@ -42,6 +50,9 @@ struct UsualCircumstances {
   Quat lab_from_body = Quat::Identity();
   double temperature_K = 298.15;
 };
+
+// By a file's header; nothing for files that cannot be read, or have another.
+std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path);
 
 // Whether a file's header is one of these. False for files that cannot be read.
 bool is_light_recording(const std::filesystem::path& path);

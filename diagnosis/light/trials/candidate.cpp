@@ -54,18 +54,32 @@ bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
 
 }  // namespace
 
-FittedRun prepared_run(LightRun run, const LightState& nominal) {
+FittedRun prepared_run(LightRun run, const LightBelief& nominal) {
   FittedRun result;
   result.run = std::make_shared<const LightRun>(std::move(run));
   // With the light by way of every wall, of which most trials have none.
-  LightState with_walls = nominal;
+  LightState with_walls = nominal.state;
   with_walls.walls.clear();
   for (size_t w = 0; w < result.run->lab().walls().size(); ++w) {
     with_walls.walls.push_back({w, 1.0, 1.0});
   }
   result.nominal = std::make_shared<const LightFields>(result.run->fields(with_walls, nullptr));
-  result.prior_slopes = std::make_shared<const Eigen::MatrixXd>(
-      static_cast<Eigen::Index>(result.run->samples()), Eigen::Index{0});
+  result.prior_slopes =
+      std::make_shared<const Eigen::MatrixXd>(slopes_by_priors(*result.run, nominal.uncertain));
+  return result;
+}
+
+FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
+                  const LightBelief& nominal) {
+  // The knots of a run over time lie elsewhere among fewer rows.
+  const bool is_scan = whole.run->recording().kind == LightRecording::Kind::scan;
+  if (!is_scan) return prepared_run(whole.run->part(rows), nominal);
+  FittedRun result;
+  result.run = std::make_shared<const LightRun>(whole.run->part(rows));
+  result.nominal = std::make_shared<const LightFields>(LightRun::part(*whole.nominal, rows));
+  const std::vector<Eigen::Index> at(rows.begin(), rows.end());
+  result.prior_slopes =
+      std::make_shared<const Eigen::MatrixXd>((*whole.prior_slopes)(at, Eigen::all));
   return result;
 }
 
@@ -89,11 +103,15 @@ bool LightCandidate::is_linear() const {
                              [](const Number& n) { return n.is_strength || !n.is_fitted; });
 }
 
-LightCandidates light_candidates(const LightLab& lab, const LightState& nominal,
+LightCandidates light_candidates(const LightLab& lab, const LightBelief& nominal,
                                  const std::vector<FittedRun>& runs, const Thresholds& limits) {
-  LightCandidates all{{}, limits, &lab, nominal, {}};
+  LightCandidates all{{}, limits, &lab, nominal};
   for (const LightEffectKind& kind : all_light_effect_kinds()) {
     if (!can_show(kind, runs)) continue;
+    // What is believed of the tilt already is a nuisance of every trial.
+    const bool is_believed = std::ranges::any_of(
+        nominal.uncertain, [&](const LightPrior& p) { return p.key.starts_with(kind.name + "."); });
+    if (is_believed) continue;
     const size_t count = count_of(lab, kind.index);
     // An interrupted only string, or a shorted only diode, leaves nothing to measure.
     const bool is_only = count < 2 && (kind.index == LightEffectKind::Index::string);

@@ -6,6 +6,7 @@
 
 #include "diagnosis/light/effects/kind.h"
 #include "diagnosis/light/model/run.h"
+#include "diagnosis/light/trials/prior.h"
 #include "inference/limits/thresholds.h"
 
 namespace photorque {
@@ -18,8 +19,17 @@ struct FittedRun {
   std::shared_ptr<const Eigen::MatrixXd> prior_slopes;  // ∂(predicted/noise), a column each
 };
 
-// Without priors.
-FittedRun prepared_run(LightRun run, const LightState& nominal);
+// The nominal model: nothing beside the experiment acts but `state`; `uncertain` is known to
+// within errors.
+struct LightBelief {
+  LightState state;
+  std::vector<LightPrior> uncertain = {};
+};
+
+FittedRun prepared_run(LightRun run, const LightBelief& nominal);
+// The rows chosen alone.
+FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
+                  const LightBelief& nominal);
 
 struct LightCandidate {
   LightEffectKind kind;
@@ -47,14 +57,13 @@ struct LightCandidates {
   std::vector<LightCandidate> list;
   Thresholds limits;
   const LightLab* lab = nullptr;
-  LightState nominal;
-  std::vector<std::string> prior_names;  // of uncertain numbers of the experiment
+  LightBelief nominal;
 
   const LightCandidate& operator[](size_t i) const { return list[i]; }
 };
 
 // All that these recordings can show.
-LightCandidates light_candidates(const LightLab& lab, const LightState& nominal,
+LightCandidates light_candidates(const LightLab& lab, const LightBelief& nominal,
                                  const std::vector<FittedRun>& runs, const Thresholds& limits);
 
 // Smooth laws of position, irradiance, time, temperature, attitude and voltage.

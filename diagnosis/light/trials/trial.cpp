@@ -14,7 +14,7 @@ using Numbers = std::vector<std::vector<double>>;
 
 LightState acted(const LightCandidates& all, const std::vector<size_t>& candidates,
                  const Numbers& x) {
-  LightState state = all.nominal;
+  LightState state = all.nominal.state;
   for (size_t i = 0; i < candidates.size(); ++i) {
     const LightCandidate& c = all[candidates[i]];
     c.kind.act(state, c.index, x[i]);
@@ -40,16 +40,17 @@ std::vector<Place> places_of(const LightCandidates& all, const std::vector<size_
 
 // A recording at a state, ready for derivatives.
 struct AtState {
+  LightState state;
   LightFields fields;
-  std::vector<double> signals;
+  std::vector<double> light, signals;
   Eigen::VectorXd residuals;
   SignalSlopes slopes;
 };
 
 AtState evaluated(const FittedRun& run, const LightState& state, bool slopes) {
-  AtState at;
-  at.fields = run.run->fields(state, run.nominal.get());
-  at.signals = run.run->signals(state, at.fields);
+  AtState at{state, run.run->fields(state, run.nominal.get()), {}, {}, {}, {}};
+  at.light = run.run->light(state, at.fields);
+  at.signals = run.run->signals_of(state, at.light);
   at.residuals = run.run->residuals(state, at.signals, slopes ? &at.slopes : nullptr);
   return at;
 }
@@ -93,8 +94,12 @@ Eigen::VectorXd slope_by(const LightCandidates& all, const std::vector<size_t>& 
   double& b = high[place.member][place.number];
   a = std::max(a - n.step, std::min(n.lowest, a));
   b = std::min(b + n.step, std::max(n.highest, b));
+  // Slopes say where a fit steps to, χ² alone whether it does.
+  const LightRun::KnownLight near{&at.state, &at.fields, &at.light};
   const auto signals = [&](const LightState& state) {
-    return run.run->signals(state, run.run->fields(state, &at.fields));
+    return run.run->signals_of(
+        state,
+        run.run->light(state, run.run->fields(state, &at.fields, LightRun::Walls::kept), &near));
   };
   const LightState low_state = acted(all, candidates, low),
                    high_state = acted(all, candidates, high);
@@ -117,7 +122,7 @@ std::vector<inference::Parameter> parameters_of(const LightCandidates& all,
                                                 const std::vector<double>& priors) {
   std::vector<inference::Parameter> parameters;
   for (size_t i = 0; i < priors.size(); ++i) {
-    parameters.push_back({all.prior_names[i], "", priors[i], 0.0, 1.0});
+    parameters.push_back({all.nominal.uncertain[i].key, "", priors[i], 0.0, 1.0});
   }
   for (const Place& place : places_of(all, candidates)) {
     const LightCandidate& c = all[candidates[place.member]];
@@ -286,7 +291,7 @@ LightTrial fit_light(const LightCandidates& all, const std::vector<size_t>& cand
 }
 
 LightTrial nominal_light_trial(const LightCandidates& all, const std::vector<FittedRun>& runs) {
-  return fit_light(all, {}, {}, std::vector<double>(all.prior_names.size(), 0.0), runs, 25);
+  return fit_light(all, {}, {}, std::vector<double>(all.nominal.uncertain.size(), 0.0), runs, 25);
 }
 
 Eigen::VectorXd residuals_of(const LightTrial& trial, const LightCandidates& all,
