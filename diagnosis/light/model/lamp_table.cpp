@@ -83,13 +83,14 @@ Eigen::Array2d LampTable::factors(double slope, double height_m) const {
   const double x = slope / step_, whole = std::floor(x), t = place_of(height_m);
   const auto first = static_cast<size_t>(whole);  // two nodes below the slope
   const std::array<double, 6> weights = lagrange_weights(x - whole);
-  Eigen::Array2d sum = Eigen::Array2d::Zero();
+  // All coefficients between the nodes at once, then the polynomial.
+  using Coefficients = Eigen::Array<double, 2 * terms, 1>;
+  Coefficients between = Coefficients::Zero();
   for (size_t k = 0; k < weights.size(); ++k) {
-    const Node& n = nodes_[first + k];
-    Eigen::Array2d value = n[terms - 1];
-    for (size_t p = terms - 1; p-- > 0;) value = n[p] + t * value;
-    sum += weights[k] * value;
+    between += weights[k] * Eigen::Map<const Coefficients>(nodes_[first + k].front().data());
   }
+  Eigen::Array2d sum = between.tail<2>();
+  for (Eigen::Index p = terms - 1; p-- > 0;) sum = between.segment<2>(2 * p) + t * sum;
   return sum / (height_m * height_m);
 }
 
@@ -115,7 +116,7 @@ double LampTable::irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const
   if (nodes_.empty() || !(h > lowest_m_ && h < highest_m_)) {
     return light_->irradiance_W_m2(point_m, normal);
   }
-  const double d = std::hypot(point_m.x(), point_m.y()), slope = d / h;
+  const double d = std::sqrt(point_m.x() * point_m.x() + point_m.y() * point_m.y()), slope = d / h;
   if (slope > largest_slope_) {
     return light_->reach_rad() < steepest_rad ? 0.0 : light_->irradiance_W_m2(point_m, normal);
   }
