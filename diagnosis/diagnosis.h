@@ -163,6 +163,8 @@ struct Replay {
   Vec3 initial_rate_rad_s = Vec3::Zero();                 // body axes
   double initial_time_s = 0.0;                            // as in the recording
   double initial_charge_C = 0.0;                          // drawn from the battery
+  // Of a platform that slides: place and velocity along lab x and y.
+  std::optional<std::array<double, 4>> initial_place_m_m_s = {};
 };
 
 // What the readings show of the instruments themselves: noise that is not as the experiment states,

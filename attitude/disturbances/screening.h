@@ -67,6 +67,7 @@ enum class Requirement {
                        // latitude
   turning_laboratory,  // the same, seen by what turns about all axes
   wheel,               // the measured speed of one
+  plane,               // a platform that slides: the effect is a force
 };
 
 // What has to be scanned before a fit can find it.

@@ -68,6 +68,8 @@ Environment read_environment(const Settings& settings) {
   e.earth_rate_lab_rad_s =
       earth_rate_rad_s * Vec3(0.0, std::cos(e.latitude_rad), std::sin(e.latitude_rad));
 
+  if (settings.has("sun")) e.sun = read_sun(settings.table("sun"));
+
   e.air_temperature_K =
       settings.number_or("air_temperature_K", e.air_temperature_K, {100.0, 1000.0, false, false});
   e.air_pressure_Pa =

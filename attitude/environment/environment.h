@@ -2,6 +2,9 @@
 // EvaluationContext).
 #pragma once
 
+#include <optional>
+
+#include "attitude/environment/sun.h"
 #include "core/constants.h"
 #include "core/settings/settings.h"
 #include "core/vector.h"
@@ -22,6 +25,8 @@ struct Environment {
   double gravity_gradient_1_s2 = standard_gravity_m_s2 / earth_radius_m;
   // The Earth's rotation in lab axes: the lab turns, unless it is the inertial frame.
   Vec3 earth_rate_lab_rad_s = Vec3::Zero();
+  // Where the Sun is; none: nothing is said of it.
+  std::optional<SunPath> sun = {};
 
   double air_temperature_K = 293.15;
   double air_pressure_Pa = 101325.0;

@@ -20,14 +20,15 @@ constexpr double agrees = 0.2;
 // A bias that an instrument may have.
 constexpr double usual_bias_rad_s = 0.01;
 
-enum class Reading { as_is, conjugated, scalar_last, scalar_last_conjugated };
+enum class QuaternionReading { as_is, conjugated, scalar_last, scalar_last_conjugated };
 
-Quat read(const Quat& q, Reading reading) {
-  const bool last = reading == Reading::scalar_last || reading == Reading::scalar_last_conjugated;
+Quat read(const Quat& q, QuaternionReading reading) {
+  const bool last = reading == QuaternionReading::scalar_last ||
+                    reading == QuaternionReading::scalar_last_conjugated;
   // The columns were taken as w, x, y, z; with the scalar last they are x, y, z, w.
   const Quat in_order = last ? Quat(q.z(), q.w(), q.x(), q.y()) : q;
-  const bool conjugated =
-      reading == Reading::conjugated || reading == Reading::scalar_last_conjugated;
+  const bool conjugated = reading == QuaternionReading::conjugated ||
+                          reading == QuaternionReading::scalar_last_conjugated;
   return conjugated ? in_order.conjugate() : in_order;
 }
 
@@ -76,7 +77,8 @@ std::vector<Pair> pairs_of(const Observation& seen) {
 }
 
 // Mean over the axes of the mean square difference over the mean square rate.
-double disagreement(const std::vector<Pair>& pairs, Reading reading, const Mat3& gyro_matrix) {
+double disagreement(const std::vector<Pair>& pairs, QuaternionReading reading,
+                    const Mat3& gyro_matrix) {
   Vec3 mean = Vec3::Zero(), square = Vec3::Zero(), energy = Vec3::Zero();
   for (const Pair& p : pairs) {
     const Vec3 rate =
@@ -136,15 +138,15 @@ std::vector<GyroReading> gyro_readings() {
   return all;
 }
 
-std::string text_of(Reading reading) {
+std::string text_of(QuaternionReading reading) {
   switch (reading) {
-    case Reading::as_is:
+    case QuaternionReading::as_is:
       return "";
-    case Reading::conjugated:
+    case QuaternionReading::conjugated:
       return "the quaternions rotate lab vectors into the body (they are conjugated)";
-    case Reading::scalar_last:
+    case QuaternionReading::scalar_last:
       return "the quaternions have their scalar last";
-    case Reading::scalar_last_conjugated:
+    case QuaternionReading::scalar_last_conjugated:
       return "the quaternions have their scalar last and are conjugated";
   }
   return "";
@@ -352,17 +354,18 @@ std::optional<AngleConvention> convention_of_angles(const Recording& recording,
   const std::vector<Pair> as_usual = pairs_as(usual.sequence, 1.0);
   constexpr size_t fewest = 20;
   if (as_usual.size() < fewest) return usual;
-  const double as_is = disagreement(as_usual, Reading::as_is, Mat3::Identity());
+  const double as_is = disagreement(as_usual, QuaternionReading::as_is, Mat3::Identity());
   if (as_is < agrees) return usual;
   double by_axes = as_is;
   for (const GyroReading& gyro : gyro_readings()) {
-    by_axes = std::min(by_axes, disagreement(as_usual, Reading::as_is, gyro.matrix));
+    by_axes = std::min(by_axes, disagreement(as_usual, QuaternionReading::as_is, gyro.matrix));
   }
   double best = as_is;
   AngleConvention found = usual;
   for (const double factor : {1.0, degree_rad, 1.0 / degree_rad}) {
     for (const std::string_view sequence : angle_sequences) {
-      const double d = disagreement(pairs_as(sequence, factor), Reading::as_is, Mat3::Identity());
+      const double d =
+          disagreement(pairs_as(sequence, factor), QuaternionReading::as_is, Mat3::Identity());
       if (!(d < best)) continue;
       best = d;
       found = {std::string(sequence), factor};
@@ -386,18 +389,20 @@ std::string repair_conventions(Observation& seen) {
   if (!seen.has_gyro) return "";
   const std::vector<Pair> pairs = pairs_of(seen);
   if (pairs.size() < 20) return "";
-  const double as_is = disagreement(pairs, Reading::as_is, Mat3::Identity());
+  const double as_is = disagreement(pairs, QuaternionReading::as_is, Mat3::Identity());
   if (as_is < agrees) return "";
 
   double best = as_is, best_cost = as_is;
-  Reading best_reading = Reading::as_is;
+  QuaternionReading best_reading = QuaternionReading::as_is;
   GyroReading best_gyro{Mat3::Identity(), 0, ""};
-  for (const Reading reading : {Reading::as_is, Reading::conjugated, Reading::scalar_last,
-                                Reading::scalar_last_conjugated}) {
+  for (const QuaternionReading reading :
+       {QuaternionReading::as_is, QuaternionReading::conjugated, QuaternionReading::scalar_last,
+        QuaternionReading::scalar_last_conjugated}) {
     for (const GyroReading& gyro : gyro_readings()) {
       const double d = disagreement(pairs, reading, gyro.matrix);
       // Of readings that agree as well the one with fewest changes.
-      const double cost = d + 0.01 * (gyro.changes + static_cast<int>(reading != Reading::as_is));
+      const double cost =
+          d + 0.01 * (gyro.changes + static_cast<int>(reading != QuaternionReading::as_is));
       if (cost >= best_cost) continue;
       best = d;
       best_cost = cost;

@@ -71,6 +71,24 @@ inference::Parameter parameter_of(const Hypothesis& h, const Free& f, double val
   return {name_of(h, f), "", value, f.mean, f.sigma, f.lowest, f.highest};
 }
 
+// Of each extra state, which of place (x, y) and velocity it is; −1: neither.
+std::vector<int> places_among_extra(const AttitudeModel& model) {
+  std::vector<int> places;
+  for (const Disturbance& d : model.disturbances) {
+    for (size_t k = 0; k < d.states.size(); ++k) {
+      places.push_back(d.kind == translation_kind ? static_cast<int>(k) : -1);
+    }
+  }
+  return places;
+}
+
+// Whether readings tell it.
+bool tells_place(const Observation& seen, int which) {
+  const bool along_x = which % 2 == 0;
+  return seen.has(along_x ? Scalar::position_x : Scalar::position_y) ||
+         (which >= 2 && seen.has(along_x ? Scalar::velocity_x : Scalar::velocity_y));
+}
+
 // Where a run began. What no reading tells keeps where it is: rotations that no camera sees by a
 // radian, motion that the bearings of one axis hold by next to nothing.
 std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
@@ -80,7 +98,10 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
   const char* axes[] = {"x", "y", "z"};
   const Platform& platform = model.platform;
   std::vector<inference::Parameter> result;
+  // Of what slides the turn may not be seen at all.
+  const bool turn_is_seen = seen.sees_some_attitude() || seen.has_gyro || !platform.slides();
   const auto is_held = [&](int k) {
+    if (!turn_is_seen) return true;
     return platform.turns_about_one_axis() && std::abs(platform.axis[k]) < 1e-12;
   };
   for (int k = 0; k < 3; ++k) {
@@ -103,7 +124,17 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
   }
   if (initial.extra.empty()) return result;
   const PlatformState rest = Dynamics(model).initial_state(initial.rate_body_rad_s);
+  const std::vector<int> places = places_among_extra(model);
   for (size_t k = 0; k < rest.extra.size(); ++k) {
+    if (places[k] >= 0) {
+      result.push_back({"initial state " + std::to_string(k + 1), "", initial.extra[k]});
+      // What no reading tells stays where it is.
+      if (!tells_place(seen, places[k])) {
+        result.back().mean = initial.extra[k];
+        result.back().sigma = extra_state_sigma;
+      }
+      continue;
+    }
     result.push_back({"initial state " + std::to_string(k + 1), "", initial.extra[k], rest.extra[k],
                       extra_state_sigma});
   }

@@ -203,6 +203,16 @@ NoiseLevels noise_levels(const Sensors& sensors) {
         level = states_noise(sensors, vector_channels + s) ? sensors.accelerometer->noise_m_s2
                                                            : usual_force_m_s2;
         break;
+      case Measures::length:
+      case Measures::speed: {
+        constexpr double usual_m = 1e-3, usual_m_s = 1e-2;
+        const bool is_length = channel_traits(vector_channels + s).measures == Measures::length;
+        level = is_length ? usual_m : usual_m_s;
+        if (states_noise(sensors, vector_channels + s)) {
+          level = is_length ? sensors.position->noise_m : sensors.position->noise_m_s;
+        }
+        break;
+      }
       case Measures::field:
         level = states_noise(sensors, vector_channels + s) ? sensors.magnetometer->noise_T
                                                            : usual_field_T;
@@ -230,6 +240,10 @@ bool states_noise(const Sensors& sensors, int channel) {
       return states_gyro_noise(sensors);
     case Measures::force:
       return sensors.accelerometer && sensors.accelerometer->noise_m_s2 > 0.0;
+    case Measures::length:
+      return sensors.position && sensors.position->noise_m > 0.0;
+    case Measures::speed:
+      return sensors.position && sensors.position->noise_m_s > 0.0;
     case Measures::field:
       return sensors.magnetometer && sensors.magnetometer->noise_T > 0.0;
   }
@@ -254,6 +268,7 @@ bool Observation::feels_attitude(const Platform& platform) const {
   for (int s = 0; s < scalar_count; ++s) {
     if (scalar[static_cast<size_t>(s)].rows.empty()) continue;
     const Measures measures = channel_traits(vector_channels + s).measures;
+    if (measures == Measures::length || measures == Measures::speed) continue;
     // What falls freely does not feel its weight.
     if (measures == Measures::force ? platform.has_bearing() : measures != Measures::rate) {
       return true;
@@ -265,8 +280,10 @@ bool Observation::feels_attitude(const Platform& platform) const {
 size_t Observation::readings(size_t first, size_t last) const {
   size_t count = 0;
   for (size_t i = first; i < last; ++i) {
-    bool read = sees_some_attitude() ? attitude_rows[i] > 0.0 : (gyro_rows[i].array() > 0.0).any();
-    if (!sees_some_attitude()) {
+    const bool has_place = has(Scalar::position_x) || has(Scalar::position_y);
+    bool read = sees_some_attitude() && !has_place ? attitude_rows[i] > 0.0
+                                                   : (gyro_rows[i].array() > 0.0).any();
+    if (!sees_some_attitude() || has_place) {
       for (const ScalarReadings& s : scalar) read = read || (!s.rows.empty() && s.rows[i] > 0.0);
     }
     count += read ? 1 : 0;

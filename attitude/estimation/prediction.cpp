@@ -29,7 +29,7 @@ struct StateChange {
 };
 
 // Accelerometer and magnetometer, in the order of their scalars.
-using FieldRow = Eigen::Matrix<double, scalar_count - first_field, 1>;
+using FieldRow = Eigen::Matrix<double, first_place - first_field, 1>;
 
 // What they read: f = ω' × r + ω × (ω × r) − g, without g in free fall, and the field of the lab.
 class FieldReadings {
@@ -160,6 +160,11 @@ class Slopes {
     }
   }
 
+  // Of one component of the state.
+  double of_component(int c, size_t v, int lane) const {
+    return samples_.derivatives[static_cast<size_t>(c) * count_ + v][lane];
+  }
+
   // Of the state itself: the rotation of the body, in body axes, and the rate.
   StateChange change(size_t v, int lane, const PlatformState& state) const {
     const auto by = [&](size_t c) { return samples_.derivatives[c * count_ + v][lane]; };
@@ -245,7 +250,9 @@ class Comparison {
     std::optional<Slopes> slopes;
     if (sensitivity != nullptr) slopes.emplace(*sensitivity, samples);
     const FieldReadings fields(dynamics, seen_);
-    const bool has_fields = !scalars_.empty() && scalars_.back() >= first_field;
+    const bool has_fields = std::any_of(scalars_.begin(), scalars_.end(),
+                                        [](int s) { return s >= first_field && s < first_place; });
+    const int place = dynamics.first_of_translation();
     std::optional<AccelerationSlopes> turning;
     if (has_fields && sensitivity != nullptr && fields.feels_turning()) {
       turning.emplace(*sensitivity, samples);
@@ -266,10 +273,17 @@ class Comparison {
       if (slopes) slopes->fill(lane, state, delay, slope_);
       for (Eigen::Index v = 0; has_fields && slopes && v < slope_.cols(); ++v) {
         const auto column = static_cast<size_t>(v);
-        slope_.col(v).tail<scalar_count - first_field>() =
+        slope_.col(v).segment<first_place - first_field>(vector_channels + first_field) =
             fields.slope(state, slopes->change(column, lane, state),
                          turning ? turning->of(column, lane) : Vec3::Zero());
       }
+      for (Eigen::Index v = 0; place >= 0 && slopes && v < slope_.cols(); ++v) {
+        for (int k = 0; k < scalar_count - first_place; ++k) {
+          slope_(vector_channels + first_place + k, v) =
+              slopes->of_component(place + k, static_cast<size_t>(v), lane);
+        }
+      }
+      place_ = place < 0 ? nullptr : &y[static_cast<size_t>(place)];
       const Vec3 camera_offset_body = in_lane(now.camera_error_rad, lane) - delay.turn_rad();
       add_block(samples.first + static_cast<size_t>(lane), state, camera_offset_body,
                 in_lane(now.gyro_rad_s, lane), fields.at(state, delay.acceleration_rad_s2));
@@ -294,7 +308,7 @@ class Comparison {
     for (const int s : scalars_) {
       const ScalarReadings& read = seen_.scalar[static_cast<size_t>(s)];
       if (s >= first_field) {
-        scalars[s] = fields[s - first_field];
+        scalars[s] = s < first_place ? fields[s - first_field] : place_[s - first_place];
         off[vector_channels + s] = read.value[block] - scalars[s];
         continue;  // its slopes are filled
       }
@@ -343,6 +357,7 @@ class Comparison {
   inference::SumsOfRows sums_;
   Eigen::Matrix<double, channel_count, Eigen::Dynamic> slope_;
   std::vector<int> scalars_;          // that were read
+  const double* place_ = nullptr;     // place and velocity of the state that is compared
   std::vector<Whitening> whitening_;  // of each channel
   bool keep_;
   Prediction result_;

@@ -101,6 +101,9 @@ struct EvaluationContext {
   Vec3Of<T> wheel_rad_s;            // of wheels about the body's axes, relative to the body
   Vec3Of<T> wheel_rad_s2;           // their acceleration
 
+  // Of a platform that slides; zero for all others.
+  Vec3Of<T> position_lab_m, velocity_lab_m_s;
+
   // The conditions in body axes: valid after Stage::conditions.
   Vec3Of<T> gravity_body_m_s2;
   Vec3Of<T> magnetic_field_body_T;
@@ -112,6 +115,7 @@ struct EvaluationContext {
 
   // Results.
   Vec3Of<T> torque_body_N_m;  // add to it
+  Vec3Of<T> force_lab_N;      // on a platform that slides; add to it
   // Inertia that does not turn with the body: use detach_inertia().
   Mat3Of<T> detached_inertia_kg_m2;
   bool inertia_changed = false;  // false: inertia_kg_m2 is the platform's and nothing is detached
@@ -266,6 +270,23 @@ class TorqueLaw : public Law {
   void act(const ParametersAndStates<DualLanes>& own,
            EvaluationContext<DualLanes>& now) const final {
     now.torque_body_N_m += self().torque(own, now);
+  }
+
+ private:
+  const Derived& self() const { return static_cast<const Derived&>(*this); }
+};
+
+// The same for laws that are just a force on a platform that slides: Derived has force() in place
+// of torque(), in lab axes.
+template <class Derived>
+class ForceLaw : public Law {
+ public:
+  void act(const ParametersAndStates<Lanes>& own, EvaluationContext<Lanes>& now) const final {
+    now.force_lab_N += self().force(own, now);
+  }
+  void act(const ParametersAndStates<DualLanes>& own,
+           EvaluationContext<DualLanes>& now) const final {
+    now.force_lab_N += self().force(own, now);
   }
 
  private:

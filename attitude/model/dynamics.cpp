@@ -44,6 +44,7 @@ Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
     layout_.push_back({size_, static_cast<int>(parameters_.size())});
     for (const ExtraState& state : d.states) scales_.push_back(state.scale);
     for (const Parameter& parameter : d.parameters) parameters_.emplace_back(parameter.value);
+    if (d.kind == translation_kind) translation_ = size_;
     size_ += static_cast<int>(d.states.size());
   }
   for (const Stage stage : {Stage::conditions, Stage::mass, Stage::torque}) {
@@ -53,6 +54,9 @@ Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
   }
   for (size_t d = 0; d < all.size(); ++d) {
     if (all[d].stage == Stage::measurement) instruments_.push_back(d);
+  }
+  if (model_.platform.slides() && translation_ < 0) {
+    throw NumericalError("a platform that slides has no place");
   }
   const Eigen::FullPivLU<Mat3> lu(model_.platform.inertia_kg_m2);
   if (!lu.isInvertible()) throw NumericalError("the platform's inertia is singular");
@@ -124,6 +128,11 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
   const Vec3Of<T> zero = Vec3Of<T>::Constant(T(0.0));
   const QuatOf<T> attitude(y[0], y[1], y[2], y[3]);
   const Vec3Of<T> rate(y[4], y[5], y[6]);
+  Vec3Of<T> position = zero, velocity = zero;
+  for (int i = 0; translation_ >= 0 && i < 2; ++i) {
+    position[i] = y[translation_ + i];
+    velocity[i] = y[translation_ + 2 + i];
+  }
   return {.platform = platform,
           .environment = environment,
           .time_s = time_s,
@@ -145,11 +154,14 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
           .traced_light_body_N_m = command.light_body_N_m.template cast<T>(),
           .wheel_rad_s = command.wheel_rad_s.template cast<T>(),
           .wheel_rad_s2 = command.wheel_rad_s2.template cast<T>(),
+          .position_lab_m = position,
+          .velocity_lab_m_s = velocity,
           .gravity_body_m_s2 = zero,
           .magnetic_field_body_T = zero,
           .up_body = zero,
           .mass_offset_body_m = zero,
           .torque_body_N_m = zero,
+          .force_lab_N = zero,
           .detached_inertia_kg_m2 = Mat3Of<T>::Constant(T(0.0)),
           .inertial_rate_body_rad_s = rate,
           .gyro_error_rad_s = zero,
@@ -210,6 +222,10 @@ void Dynamics::solve(const EvaluationContext<T>& now, const T* y, T* rates) cons
   }
   for (int i = 0; i < 3; ++i) rates[component::rate + i] = acceleration[i];
   rates[component::charge] = now.battery_current_A;
+  for (int i = 0; translation_ >= 0 && i < 2; ++i) {
+    rates[translation_ + i] = now.velocity_lab_m_s[i];
+    rates[translation_ + 2 + i] = now.force_lab_N[i] / now.mass_kg;
+  }
 }
 
 // What solve() gives when nothing but the command acts, without an evaluation context for laws to
@@ -247,16 +263,18 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
                                 const std::array<ZeroOrderHold, Lanes::count>& held,
                                 const Lanes* y) const {
   Instants result;
+  result.force_lab_N.assign(model_.disturbances.size(), Vec3Of<Lanes>::Constant(Lanes(0.0)));
   result.torque_body_N_m.assign(model_.disturbances.size(), Vec3Of<Lanes>::Constant(Lanes(0.0)));
   result.rates.assign(static_cast<size_t>(size_), Lanes(0.0));
   EvaluationContext<Lanes> now = begin(time_s, gather(held, time_s), y);
   const auto act = [&](size_t d) {
     const Layout& own = layout_[d];
-    const Vec3Of<Lanes> before = now.torque_body_N_m;
+    const Vec3Of<Lanes> before = now.torque_body_N_m, force_before = now.force_lab_N;
     const Mat3Of<Lanes> attached = now.detached_inertia_kg_m2;
     model_.disturbances[d].law->act({parameters_.data() + own.first_parameter, y + own.first_state,
                                      result.rates.data() + own.first_state},
                                     now);
+    result.force_lab_N[d] = now.force_lab_N - force_before;
     // A part that swings with the body exerts no torque on it but the gyroscopic one of a rigid
     // body, which solve() no longer counts for the detached part.
     const Vec3Of<Lanes>& w = now.rate_body_rad_s;
@@ -287,7 +305,9 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
   for (int k = 0; k < DualLanes::block; ++k) {
     if (block.state[k] < 0) continue;
     y_dual[static_cast<size_t>(block.state[k])].partial[k] = 1.0;
-    everything = everything || block.state[k] < component::extra;
+    everything =
+        everything || block.state[k] < component::extra ||
+        (translation_ >= 0 && block.state[k] >= translation_ && block.state[k] < translation_ + 4);
   }
   // A torque depends on the body's state, on what is its own, and on what those of earlier stages
   // did: these always act.
@@ -362,21 +382,6 @@ void Dynamics::reading_derivatives(const Lanes& time_s,
   for (int i = 0; i < 3; ++i) put(now.inertial_rate_body_rad_s[i] + now.gyro_error_rad_s[i]);
   for (int i = 0; i < 3; ++i) put(now.camera_error_rad[i]);
   put(now.camera_delay_s);
-}
-
-std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,
-                                               const PlatformState& state) {
-  const Dynamics dynamics(model);
-  std::vector<Lanes> y;
-  for (const double x : to_vector(state)) y.emplace_back(x);
-  std::array<ZeroOrderHold, Lanes::count> held;
-  held.fill(model.schedule.at(state.time_s));
-  const Dynamics::Instants now = dynamics.at(state.time_s, held, y.data());
-  std::vector<Vec3> torques;
-  for (const Vec3Of<Lanes>& torque : now.torque_body_N_m) {
-    torques.emplace_back(torque[0][0], torque[1][0], torque[2][0]);
-  }
-  return torques;
 }
 
 }  // namespace photorque

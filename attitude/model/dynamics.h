@@ -4,9 +4,10 @@
 //   (I − I_d) ω' = T − ω × (I − I_d) ω
 //   Q' = battery current
 //
-// about one axis a alone where the platform has one, ω' = a (a·T) / (a·I a), and the extra states
-// of the disturbances; I_d is the inertia that sits on its own springs and bearings
-// (EvaluationContext::detach_inertia). The lab counts as inertial: earth_rotation is a disturbance.
+// about one axis a alone where the platform has one, ω' = a (a·T) / (a·I a), m v' = F where it
+// slides, and the extra states of the disturbances; I_d is the inertia that sits on its own springs
+// and bearings (EvaluationContext::detach_inertia). The lab counts as inertial: earth_rotation is a
+// disturbance.
 #pragma once
 
 #include <vector>
@@ -37,6 +38,11 @@ std::vector<double> to_vector(const PlatformState& state);
 // Normalises the quaternion.
 PlatformState to_state(double time_s, std::span<const double> y);
 
+// What a platform that slides has besides: place and velocity in the lab's xy plane, as the extra
+// states of a disturbance that does nothing. A model of such a platform begins with it.
+inline constexpr const char* translation_kind = "translation";
+Disturbance translation();
+
 // A copy of a model, laid out for evaluation. Const and usable from many threads.
 class Dynamics {
  public:
@@ -52,6 +58,10 @@ class Dynamics {
   int first_state(size_t d) const { return layout_[d].first_state; }
   // Where the parameters of disturbance d begin in the list of all parameters.
   int first_parameter(size_t d) const { return layout_[d].first_parameter; }
+
+  // Where place (x, y) and velocity begin in the state vector; −1 where the platform does not
+  // slide.
+  int first_of_translation() const { return translation_; }
 
   // At zero attitude, turning at this rate as one rigid body, the extra states at their initial
   // values.
@@ -74,6 +84,7 @@ class Dynamics {
   // lane to lane.
   struct Instants {
     std::vector<Vec3Of<Lanes>> torque_body_N_m;  // of each disturbance, in the model's order
+    std::vector<Vec3Of<Lanes>> force_lab_N;      // the same
     Vec3Of<Lanes> command_body_N_m;              // as it acts
     Vec3Of<Lanes> mass_offset_body_m;
     Lanes battery_current_A;
@@ -132,6 +143,7 @@ class Dynamics {
   int size_ = component::extra;
   std::vector<double> scales_;
   std::vector<Layout> layout_;
+  int translation_ = -1;
   std::vector<size_t> order_;        // disturbances by stage, without those of Stage::measurement
   std::vector<size_t> instruments_;  // disturbances of Stage::measurement
   std::vector<Lanes> parameters_;
@@ -146,5 +158,7 @@ bool depends_on_attitude(const AttitudeModel& model);
 // The torque of every disturbance at one state [N m], in the model's order, body axes.
 std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,
                                                const PlatformState& state);
+// The force of every disturbance on a platform that slides [N], lab axes.
+std::vector<Vec3> disturbance_forces_lab_N(const AttitudeModel& model, const PlatformState& state);
 
 }  // namespace photorque

@@ -34,6 +34,11 @@ Key platform_table() {
              {Key::choice_or("axis", words({"x", "y", "z"}), 2, "the axis that is left"),
               mass().usually_is("1"),
               inertia(Key::a_number | Key::an_array | Key::a_table, "about that axis, or 3 × 3")
+                  .usually_is("1")}},
+            {"planar",
+             "slides on a table: x and y in the lab, and a turn about the vertical",
+             {mass().usually_is("1"),
+              inertia(Key::a_number | Key::an_array | Key::a_table, "about the vertical, or 3 × 3")
                   .usually_is("1")}}},
            "what it is and what holds it"),
        Key::number("tilt_limit_deg", {0.0, pi, true, false}, "the bearing's stop: a run ends there")

@@ -64,9 +64,9 @@ Mat3 inertia_sigma_kg_m2(const Settings& platform) {
 
 Platform read_platform(const Settings& settings) {
   Platform platform;
-  platform.topology = static_cast<Topology>(
-      settings.choice("topology", {"dumbbell", "tabletop", "hollow", "free", "one_axis"}));
-  if (platform.turns_about_one_axis()) {
+  platform.topology = static_cast<Topology>(settings.choice(
+      "topology", {"dumbbell", "tabletop", "hollow", "free", "one_axis", "planar"}));
+  if (platform.topology == Topology::one_axis) {
     const size_t z = 2;
     platform.axis =
         Vec3::Unit(static_cast<Eigen::Index>(settings.choice_or("axis", {"x", "y", "z"}, z)));

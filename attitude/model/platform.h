@@ -15,6 +15,7 @@ enum class Topology {
   hollow,    // equipment inside the sphere
   free,      // a spacecraft, a thrown body: no bearing
   one_axis,  // a wheel, a pendulum: turns about one axis alone
+  planar,    // a puck on an air table: slides in the horizontal plane, turns about the vertical
 };
 
 struct Platform {
@@ -33,7 +34,9 @@ struct Platform {
   // whatever the topology.
   bool has_effects_of_bearing = false;
 
-  bool turns_about_one_axis() const { return topology == Topology::one_axis; }
+  bool turns_about_one_axis() const { return topology == Topology::one_axis || slides(); }
+  // Its centre of mass moves in the lab's xy plane.
+  bool slides() const { return topology == Topology::planar; }
   bool has_bearing() const { return topology != Topology::free || has_effects_of_bearing; }
   // It floats on air, about all three axes.
   bool has_air_bearing() const { return has_bearing() && !turns_about_one_axis(); }
@@ -41,7 +44,8 @@ struct Platform {
 
 // Reads [platform]. `axis` of a one_axis platform is "x", "y" or "z" (default); its
 // `inertia_kg_m2` may be one number, the moment about that axis, and both it and `mass_kg` default
-// to one: torques are then per unit of inertia. A free platform needs no mass either.
+// to one: torques are then per unit of inertia, and forces of a planar platform, which turns about
+// z, per unit of mass. A free platform needs no mass either.
 // `inertia_kg_m2` may be { value, sigma }, see inertia_sigma_kg_m2(). InputError when the mass is
 // not positive, the inertia not symmetric, not positive definite or against the triangle inequality
 // (the largest principal moment exceeds the sum of the others: no body has such an inertia).

@@ -27,6 +27,10 @@ Key propagate_table() {
            .of_size(4)
            .optional(),
        Key::vector3_or("initial_rate_rad_s", Vec3::Zero(), "body axes"),
+       Key::numbers("initial_position_m", {}, "of a planar platform, lab x and y")
+           .of_size(2)
+           .usually_is("0, 0"),
+       Key::numbers("initial_velocity_m_s", {}, "the same").of_size(2).usually_is("0, 0"),
        Key::number_or("initial_charge_Ah", 0.0, {}, "drawn before"),
        Key::number_or("initial_time_s", 0.0, {},
                       "of the first row; commands, measured series and laws in time count in it"),

@@ -7,6 +7,7 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/environment/epoch.h"
+#include "attitude/propagation/place.h"
 #include "attitude/propagation/time_history.h"
 #include "core/transform.h"
 
@@ -237,8 +238,9 @@ NominalModel read_attitude_model(const Settings& root) {
   model.platform = read_platform(platform);
   model.platform.has_effects_of_bearing = names_effect_of_bearing(root);
   model.environment = read_environment(environment);
-  // What falls freely feels no weight.
-  if (!model.platform.has_bearing() && !environment.has("gravity_m_s2")) {
+  // What falls freely feels no weight, nor does what moves about the Sun.
+  const bool is_in_space = !model.platform.has_bearing() || model.environment.sun;
+  if (is_in_space && !environment.has("gravity_m_s2")) {
     model.environment.gravity_lab_m_s2 = Vec3::Zero();
   }
   // Who reads the camera later complains about its keys.
@@ -246,6 +248,7 @@ NominalModel read_attitude_model(const Settings& root) {
   if (sensors.has("camera")) camera = read_tracking_camera(sensors.table("camera"));
   const DisturbanceContext context{model.platform, model.environment, camera ? &*camera : nullptr};
   model.disturbances = read_own_disturbances(root, context);
+  if (model.platform.slides()) model.disturbances.push_back(translation());
   if (const Mat3 sigma = inertia_sigma_kg_m2(platform); sigma.maxCoeff() > 0.0) {
     nominal.uncertain_inertia = model.disturbances.size();
     model.disturbances.push_back(uncertain_inertia(sigma, context));
@@ -285,6 +288,7 @@ PropagationRun read_propagation(const Settings& root) {
   run.initial =
       Dynamics(run.model).initial_state(settings.vector3_or("initial_rate_rad_s", Vec3::Zero()));
   run.initial.lab_from_body = read_initial_attitude(settings);
+  read_initial_place(settings, run.model, run.initial);
   const double tilt_rad =
       std::acos(std::clamp(run.initial.lab_from_body.toRotationMatrix()(2, 2), -1.0, 1.0));
   const std::optional<double> limit_rad = run.model.platform.tilt_limit_rad;
@@ -353,6 +357,7 @@ PropagationResult propagate(const PropagationRun& run, const std::function<void(
                     .lab_from_body_seen = seen,
                     .rate_body_rad_s = state.rate_body_rad_s,
                     .heading_rad = heading_rad(state),
+                    .place_m_m_s = place_of(dynamics, y),
                     .gyro_rad_s = in_lane(now.gyro_rad_s, i),
                     .camera_error_rad = in_lane(now.camera_error_rad, i),
                     .command_body_N_m = in_lane(now.command_body_N_m, i),

@@ -41,6 +41,14 @@ constexpr std::array<ChannelTraits, channel_count> all_traits = {{
      "mag_y_T"},
     {"mag_z_T", "Magnetometer z", "the magnetometer along body z", "T", 1.0, Measures::field,
      "mag_z_T"},
+    {"position_x_m", "Position along lab x", "the position along lab x", "m", 1.0, Measures::length,
+     "x_m"},
+    {"position_y_m", "Position along lab y", "the position along lab y", "m", 1.0, Measures::length,
+     "y_m"},
+    {"velocity_x_m_s", "Velocity along lab x", "the velocity along lab x", "m/s", 1.0,
+     Measures::speed, "velocity_x_m_s"},
+    {"velocity_y_m_s", "Velocity along lab y", "the velocity along lab y", "m/s", 1.0,
+     Measures::speed, "velocity_y_m_s"},
 }};
 
 Quat turned(const Vec3& rotation_lab, const Quat& q) {

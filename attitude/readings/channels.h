@@ -27,13 +27,19 @@ enum class Scalar {
   magnetometer_x,
   magnetometer_y,
   magnetometer_z,
+  position_x,  // of a platform that slides [m], [m/s], lab axes
+  position_y,
+  velocity_x,
+  velocity_y,
 };
-inline constexpr int scalar_count = 12;
+inline constexpr int scalar_count = 16;
 // From here on what a model reads is not of attitude and rate alone (Dynamics::Instants).
 inline constexpr int first_field = static_cast<int>(Scalar::accelerometer_x);
+// And from here on it is of place and velocity, the four extra states of a translation.
+inline constexpr int first_place = static_cast<int>(Scalar::position_x);
 inline constexpr int channel_count = vector_channels + scalar_count;
 
-enum class Measures { angle, rate, force, field };
+enum class Measures { angle, rate, force, field, length, speed };
 
 struct ChannelTraits {
   const char* name;   // in diagnosis.json, with its unit

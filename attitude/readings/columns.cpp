@@ -76,6 +76,13 @@ MotionColumns::MotionColumns(const Recording& recording, const Platform& platfor
     sees_axis_ = {true, true, true};
   }
   if (!platform.turns_about_one_axis()) take_scalars();
+  if (platform.slides()) {
+    take_places();
+    if (has_scalars()) return;
+    throw InputError({name, 0}, "header", "no channel of a place or a velocity",
+                     "x_m, y_m, velocity_x_m_s or velocity_y_m_s, or [recording.columns] that says "
+                     "which column is one");
+  }
   if (has_attitude() || has_gyro() || has_scalars()) return;
   throw InputError({name, 0}, "header",
                    platform.turns_about_one_axis() ? "no channel of an angle or a rate"
@@ -102,13 +109,19 @@ void MotionColumns::take_scalars() {
         std::none_of(rate->values.begin(), rate->values.end(), [](double x) { return x < 0.0; });
     if (is_magnitude) put(Scalar::rate_magnitude, "rate_rad_s");
   }
-  for (int s = static_cast<int>(Scalar::accelerometer_x); s < scalar_count; ++s) {
+  for (int s = first_field; s < first_place; ++s) {
     put(static_cast<Scalar>(s), channel_traits(vector_channels + s).column);
   }
   if (has_attitude()) return;
   for (const Scalar angle :
        {Scalar::tilt, Scalar::heading, Scalar::roll, Scalar::pitch, Scalar::yaw}) {
     put(angle, channel_traits(vector_channels + static_cast<int>(angle)).column);
+  }
+}
+
+void MotionColumns::take_places() {
+  for (int s = first_place; s < scalar_count; ++s) {
+    scalars_[static_cast<size_t>(s)] = take(channel_traits(vector_channels + s).column);
   }
 }
 

@@ -7,6 +7,7 @@
 //   rates: gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s, any of them; about one axis also rate_rad_s;
 //   where there is no attitude: any of tilt_rad, heading_rad, roll_rad, pitch_rad, yaw_rad; where
 //     there are not three rates: rate_magnitude_rad_s, or a rate_rad_s that is never negative;
+//   of a platform that slides: x_m, y_m, velocity_x_m_s, velocity_y_m_s, any of them;
 //   accelerometer and magnetometer: accel_x_m_s2 …, mag_x_T …;
 //   what was done: commands, currents, wheel speeds (Recording::schedule());
 //   events: thruster, impulse or event, not zero where something hit the platform: what was read in
@@ -55,6 +56,7 @@ class MotionColumns {
  private:
   const Channel* take(const std::string& name);
   void take_scalars();
+  void take_places();
   const Channel* scalar_at(Scalar scalar) const { return scalars_[static_cast<size_t>(scalar)]; }
 
   const Recording& recording_;

@@ -47,6 +47,10 @@ constexpr std::string_view known_channels[] = {
     "mag_x_T",
     "mag_y_T",
     "mag_z_T",
+    "x_m",
+    "y_m",
+    "velocity_x_m_s",
+    "velocity_y_m_s",
 };
 
 // NaN for an empty cell or the word nan; nullopt for what is no number.

@@ -10,7 +10,14 @@ namespace photorque {
 namespace {
 
 // One stream of random numbers for each purpose.
-enum Stream : uint64_t { camera_noise, gyro_noise, gyro_walk, current_noise, power_noise };
+enum Stream : uint64_t {
+  camera_noise,
+  gyro_noise,
+  gyro_walk,
+  current_noise,
+  power_noise,
+  place_noise
+};
 
 Vec3 gaussian_vector(uint64_t seed, Stream stream, uint64_t index) {
   return {gaussian(seed, stream, index, 0), gaussian(seed, stream, index, 1),
@@ -122,6 +129,11 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
     magnetometer.noise_T = s.number_or("noise_T", 0.0, not_negative);
     magnetometer.bias_T = s.vector3_or("bias_T", Vec3::Zero());
   }
+  if (settings.has("position")) {
+    const Settings s = settings.table("position");
+    sensors.position = {s.number_or("noise_m", 0.0, not_negative),
+                        s.number_or("noise_m_s", 0.0, not_negative)};
+  }
   if (settings.has("encoder")) {
     sensors.encoder.emplace().resolution_rad =
         settings.table("encoder").number("resolution_arcsec", Range::positive());
@@ -195,11 +207,29 @@ void Recorder::add_gyro(const Truth& truth) {
   put("gyro_z_rad_s", due ? reading.z() : empty_cell);
 }
 
+void Recorder::add_place(const Truth& truth) {
+  const uint64_t row = recording_.rows();
+  const Sensors::Position noise = sensors_.position.value_or(Sensors::Position{});
+  const auto& place = *truth.place_m_m_s;
+  const auto read = [&](size_t k) {
+    return place[k] + (k < 2 ? noise.noise_m : noise.noise_m_s) *
+                          gaussian(seed_, place_noise, row, static_cast<uint64_t>(k));
+  };
+  put("x_m", read(0));
+  put("y_m", read(1));
+  // A velocity is written where its noise is stated: what sees places alone does not read it.
+  if (noise.noise_m_s > 0.0) {
+    put("velocity_x_m_s", read(2));
+    put("velocity_y_m_s", read(3));
+  }
+}
+
 void Recorder::add(const Truth& truth) {
   const uint64_t row = recording_.rows();
   column_ = 0;
   if (sensors_.camera) add_camera(truth);
   if (sensors_.gyro) add_gyro(truth);
+  if (truth.place_m_m_s) add_place(truth);
   if (sensors_.encoder) {
     const double step_rad = sensors_.encoder->resolution_rad;
     put("heading_rad", step_rad * std::round(truth.heading_rad / step_rad));

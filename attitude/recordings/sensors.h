@@ -45,6 +45,11 @@ struct Sensors {
     double noise_T = 0.0;
     Vec3 bias_T = Vec3::Zero();
   };
+  // Sees where a platform that slides is.
+  struct Position {
+    double noise_m = 0.0;    // per reading and axis; 0: not stated
+    double noise_m_s = 0.0;  // of a velocity
+  };
   // Reads the heading in whole steps.
   struct Encoder {
     double resolution_rad = 0.0;
@@ -57,6 +62,7 @@ struct Sensors {
   std::optional<Gyro> gyro;
   std::optional<Accelerometer> accelerometer;
   std::optional<Magnetometer> magnetometer;
+  std::optional<Position> position;
   std::optional<Encoder> encoder;
   Power power;
   // The noise is what is stated here, whatever a recording shows.
@@ -72,6 +78,7 @@ struct Sensors {
 //     rate_Hz;
 //   accelerometer: noise_m_s2, position_m[3], bias_m_s2[3];
 //   magnetometer: noise_T, bias_T[3];
+//   position: noise_m, noise_m_s;
 //   encoder: resolution_arcsec;
 //   power: current_noise_A, power_noise_W;
 //   noise_is: "found" (diagnose looks for the noise in the recording) or "stated".
@@ -94,6 +101,8 @@ struct Truth {
   Quat lab_from_body_seen = Quat::Identity();  // at time − camera delay
   Vec3 rate_body_rad_s = Vec3::Zero();
   double heading_rad = 0.0;
+  // Place and velocity of a platform that slides.
+  std::optional<std::array<double, 4>> place_m_m_s = {};
   Vec3 gyro_rad_s = Vec3::Zero();  // Dynamics::Instants, for this row
   Vec3 camera_error_rad = Vec3::Zero();
   Vec3 command_body_N_m = Vec3::Zero();
@@ -119,6 +128,7 @@ class Recorder {
   bool is_due(double rate_Hz, double time_s) const;
   void add_camera(const Truth& truth);
   void add_gyro(const Truth& truth);
+  void add_place(const Truth& truth);
 
   Sensors sensors_;
   uint64_t seed_;

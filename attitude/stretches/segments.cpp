@@ -33,36 +33,52 @@ double long_gap_s(const Recording& recording) {
   return longest_s;
 }
 
-// Rows at which the angle about the one axis has a kink that its own readings do not know: a firing
-// that nobody noted. Noise and torques make all of them alike.
+// Rows at which the angle about the one axis, or the path of what slides, has a kink that its own
+// readings do not know: a firing that nobody noted, a wall. Noise and torques make all of them
+// alike.
 std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
-  if (!platform.turns_about_one_axis() || !rows.sees_some_attitude()) return kinks;
+  const bool slides = platform.slides();
+  if (slides && !(rows.has(Scalar::position_x) && rows.has(Scalar::position_y))) return kinks;
+  if (!slides && (!platform.turns_about_one_axis() || !rows.sees_some_attitude())) return kinks;
   struct Change {
     size_t row;
-    double rate_rad_s;
+    double rate;  // rad/s or m/s
   };
   std::vector<Change> changes;
-  const auto turn_rad = [&](size_t from, size_t to) {
-    return platform.axis.dot(rotation_vector(rows.attitude[to] * rows.attitude[from].conjugate()));
+  const auto moved = [&](size_t from, size_t to) -> Vec3 {
+    if (!slides) {
+      return platform.axis * platform.axis.dot(rotation_vector(rows.attitude[to] *
+                                                               rows.attitude[from].conjugate()));
+    }
+    Vec3 by = Vec3::Zero();
+    for (int k = 0; k < 2; ++k) {
+      const std::vector<double>& x =
+          rows.scalar[static_cast<size_t>(static_cast<int>(Scalar::position_x) + k)].value;
+      by[k] = x[to] - x[from];
+    }
+    return by;
+  };
+  const auto is_read = [&](size_t i) {
+    if (!slides) return rows.attitude_rows[i] > 0.0;
+    return rows.rows_of(i, vector_channels + static_cast<int>(Scalar::position_x)) > 0.0 &&
+           rows.rows_of(i, vector_channels + static_cast<int>(Scalar::position_y)) > 0.0;
   };
   for (size_t i = 1; i + 1 < rows.blocks(); ++i) {
-    if (!(rows.attitude_rows[i - 1] * rows.attitude_rows[i] * rows.attitude_rows[i + 1] > 0.0)) {
-      continue;
-    }
-    const double before = turn_rad(i - 1, i) / (rows.time_s[i] - rows.time_s[i - 1]),
-                 after = turn_rad(i, i + 1) / (rows.time_s[i + 1] - rows.time_s[i]);
-    changes.push_back({i, std::abs(after - before)});
+    if (!is_read(i - 1) || !is_read(i) || !is_read(i + 1)) continue;
+    const Vec3 before = moved(i - 1, i) / (rows.time_s[i] - rows.time_s[i - 1]),
+               after = moved(i, i + 1) / (rows.time_s[i + 1] - rows.time_s[i]);
+    changes.push_back({i, (after - before).norm()});
   }
   if (changes.empty()) return kinks;
   std::vector<double> sizes;
-  for (const Change& change : changes) sizes.push_back(change.rate_rad_s);
+  for (const Change& change : changes) sizes.push_back(change.rate);
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   // Of a Gaussian, 12 of these medians are 8 standard deviations.
   constexpr double medians = 12.0;
   for (const Change& change : changes) {
-    kinks[change.row] = change.rate_rad_s > medians * *middle ? 1 : 0;
+    kinks[change.row] = change.rate > medians * *middle ? 1 : 0;
   }
   return kinks;
 }
@@ -78,7 +94,7 @@ Segments cut(const Recording& recording, const std::string& name, const Platform
   size_t first = 0;
   const auto close = [&](size_t end) {
     size_t last = end;
-    if (platform.turns_about_one_axis() && rows.has_gyro) {
+    if (platform.turns_about_one_axis() && !platform.slides() && rows.has_gyro) {
       LawfulStretch lawful = lawful_stretch(rows, platform.axis, first, last);
       first = lawful.first;
       last = lawful.last;

@@ -41,6 +41,12 @@ Answer unexplained(const NominalModel& nominal, const Fit& nominal_fit, const Re
 std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData data,
                                             const DiagnoseOptions& options);
 
+// The one torque of the catalogue that predicts most stretches better than the nominal model, each
+// stretch from fits to others, where a recording has many of them: by ranks, because what is left
+// over is as irregular as it is. Nothing where none does beyond doubt.
+std::optional<Answer> named_over_stretches(const NominalModel& nominal, RecordedData data,
+                                           const DiagnoseOptions& options);
+
 // What describes the motion best, known or not, with all that the nominal model leaves counted as
 // noise: where the nominal model is far off and no names come out of it.
 Answer explained_in_the_rough(const NominalModel& nominal, RecordedData data,

@@ -1,6 +1,7 @@
 #include "diagnosis/attitude/diagnose.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -145,6 +146,10 @@ bool is_an_inertia(const Trial& chosen, size_t disturbance) {
   }
 }
 
+bool sees_place(const Observation& seen) {
+  return seen.has(Scalar::position_x) && seen.has(Scalar::position_y);
+}
+
 Replay replay_of(const Fit& fit, const Observation& seen) {
   Replay replay;
   replay.recording = seen.name;
@@ -159,6 +164,11 @@ Replay replay_of(const Fit& fit, const Observation& seen) {
   replay.initial_rate_rad_s = initial.rate_body_rad_s;
   replay.initial_time_s = initial.time_s;
   replay.initial_charge_C = initial.charge_drawn_C;
+  const int place = Dynamics(fit.best.model).first_of_translation();
+  if (place >= 0) {
+    std::array<double, 4>& four = replay.initial_place_m_m_s.emplace();
+    std::copy_n(initial.extra.begin() + (place - component::extra), 4, four.begin());
+  }
   return replay;
 }
 
@@ -171,9 +181,9 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   const NominalModel nominal = as_seen(stated, data);
   tell(options, "fitting the nominal model");
   Fit nominal_fit = settle(nominal, options.limits, data);
-  // On an air bearing, and wherever the attitude is seen, the whole search is worth its time.
-  const bool is_watched =
-      stated.model.platform.has_air_bearing() || data.train.front().sees_attitude();
+  // On an air bearing, and wherever attitude or place is seen, the whole search is worth its time.
+  const bool is_watched = stated.model.platform.has_air_bearing() ||
+                          data.train.front().sees_attitude() || sees_place(data.train.front());
   // A machine of which little is known, far from its recording: a search at the noise of the
   // readings would find nothing but ways of bending what is believed.
   const bool is_lost =
@@ -194,6 +204,10 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   say_what_was_found(answer, nominal_fit, data, options, d);
   if (d.verdict == Verdict::unexplained && !is_watched && !is_lost) {
     named = named_beside_the_rest(nominal, data, options);
+  }
+  if (d.verdict == Verdict::unexplained && !named && d.effects.empty()) {
+    named = named_over_stretches(nominal, data, options);
+    if (named) d.because += "; " + named->decision.because;
   }
   if (named) {
     answer = std::move(*named);

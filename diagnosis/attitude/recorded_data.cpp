@@ -46,7 +46,7 @@ void say_unused(const NamedRecording& r, const NominalModel& nominal,
   const Platform& platform = nominal.model.platform;
   std::string names, undeclared;
   const MotionColumns motion(r.recording, platform, r.name);
-  for (int s = first_field; s < scalar_count; ++s) {
+  for (int s = first_field; s < first_place; ++s) {
     if (is_declared(nominal.sensors, s) || !motion.has_scalar(static_cast<Scalar>(s))) continue;
     undeclared +=
         (undeclared.empty() ? "" : ", ") + std::string(channel_traits(vector_channels + s).column);

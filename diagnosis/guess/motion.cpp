@@ -70,6 +70,11 @@ std::string machine_text(const Machine& m) {
                  "No moment of inertia can be known from motion alone: it is one, and "
                  "all torques are per unit of it.");
     }
+    case Topology::planar:
+      return text + "topology = \"planar\"\n" +
+             comment_lines(
+                 "No mass can be known from motion alone: it is one, and all forces are per unit "
+                 "of it.");
     default:
       return text + "topology = \"tabletop\"\n" +
              comment_lines(
@@ -234,6 +239,12 @@ bool see_by_scalars(Machine& m) {
 }
 
 void see_machine(Machine& m) {
+  if (m.has("x_m") && m.has("y_m")) {
+    m.why =
+        "two coordinates and no third: something slides on a level plane, and gravity is "
+        "9.80665 m/s² across it.";
+    return m.observe_as(Topology::planar);
+  }
   if (see_by_scalars(m)) return;
   if (!m.sees_attitude() && !m.has_three_rates()) return see_one_axis(m);
   m.why =
@@ -323,7 +334,7 @@ std::string guess_motion(const std::vector<fs::path>& recordings) {
   see_machine(m);
   std::string text = sequence_text(m) + mapped + machine_text(m);
   if (m.platform.topology == Topology::free) text += inertia_text(m.runs);
-  if (m.platform.turns_about_one_axis()) text += drag_text(m);
+  if (m.platform.turns_about_one_axis() && !m.platform.slides()) text += drag_text(m);
   text += "\n";
   const bool has_gyro = m.runs.front().has_gyro, has_angle = m.runs.front().sees_some_attitude();
   if (has_gyro) text += noise_text(m.runs, {3, 4, 5}, "sensors.gyro", "noise_rad_s", 1.0);
@@ -339,6 +350,10 @@ std::string guess_motion(const std::vector<fs::path>& recordings) {
   if (!has_gyro) text += noise_text(m.runs, rates, "sensors.gyro", "noise_rad_s", 1.0);
   if (!has_angle) {
     text += noise_text(m.runs, angles, "sensors.angle", "noise_arcsec", arcsecond_rad);
+  }
+  if (m.platform.slides()) {
+    const int x = vector_channels + static_cast<int>(Scalar::position_x);
+    text += noise_text(m.runs, {x, x + 1}, "sensors.position", "noise_m", 1.0);
   }
   std::string unused;
   for (const std::string& name :

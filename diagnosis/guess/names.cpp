@@ -109,6 +109,7 @@ constexpr UnitWord unit_words[] = {
     {"sec", "s"},       {"s", "s"},           {"min", "min"},     {"rad", "rad"},
     {"deg", "deg"},     {"°", "deg"},         {"mrad", "mrad"},   {"µT", "uT"},
     {"uT", "uT"},       {"nT", "nT"},         {"T", "T"},         {"arcsec", "arcsec"},
+    {"mm", "mm"},       {"cm", "cm"},         {"m", "m"},
 };
 
 // The unit in brackets behind a name, and the name without it.
@@ -192,6 +193,11 @@ MeantQuantity quantity_of(const std::vector<std::string>& words) {
   if (any("magnitude", "norm", "modulus") &&
       any("gyr", "omega", "ang", "rate", "spin", "speed", "w")) {
     return {"rate_magnitude", "rad_s"};
+  }
+  // A coordinate: x, or "pos_x", "puck x".
+  if (is_one_of(axis, {"x", "y"}) &&
+      (words.size() == 1 || any("pos", "coord", "place", "puck", "cent"))) {
+    return {axis, "m"};
   }
   if (any("acc")) return {axis.empty() ? "" : "accel_" + axis, "m_s2"};
   if (any("mag") || (words.size() <= 2 && any("b") && !axis.empty())) {

@@ -99,6 +99,10 @@ std::string replay_text(const Replay& replay, const std::filesystem::path& folde
   if (replay.initial_time_s != 0.0) {
     text += "initial_time_s = " + print("%.12g", replay.initial_time_s) + "\n";
   }
+  if (const auto& place = replay.initial_place_m_m_s) {
+    text += "initial_position_m = " + array_text({(*place)[0], (*place)[1]}, "%.12g") + "\n" +
+            "initial_velocity_m_s = " + array_text({(*place)[2], (*place)[3]}, "%.12g") + "\n";
+  }
   if (replay.initial_charge_C != 0.0) {
     text += "initial_charge_Ah = " + print("%.9g", replay.initial_charge_C / 3600.0) + "\n";
   }

@@ -213,6 +213,14 @@ struct Thresholds {
     double max_excess_sigma = 6.0, structure_confidence = 0.95;
   } decision;
 
+  // Names by how many stretches of a recording they predict, each from fits to the others.
+  struct OverStretches {
+    size_t min_stretches = 24;
+    // Standard errors of the ranks: over the nominal model, of some ten candidates once in a
+    // hundred by chance; over another candidate, to be told from it: 95 %.
+    double min_sigma = 3.0, min_rival_sigma = 1.645;
+  } over_stretches;
+
   // Where recording and nominal model part, for the report; no verdict depends on it.
   struct Location {
     // Excess of an interval's χ² over that of noise [sigma] and its fewest readings, to be listed.

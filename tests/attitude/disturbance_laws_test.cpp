@@ -98,6 +98,11 @@ std::map<std::string, Entries> examples() {
         {"largest_torque_N_m", node(0.5)},
         {"largest_rate_rad_s", node(500)},
         {"viscous_N_m_s", node(1e-6)}}},
+      {"table_slope", {{"slope_rad", numbers({1e-3, -2e-3})}}},
+      {"sliding_friction", {{"coefficient", node(2e-3)}}},
+      {"sliding_drag", {{"coefficient_kg_s", node(0.3)}}},
+      {"sliding_air_drag", {{"coefficient_kg_m", node(2.0)}}},
+      {"sliding_spring", {{"stiffness_N_per_m", node(0.7)}, {"pull_N", numbers({0.1, -0.2})}}},
       {"camera_misalignment", {{"misalignment_rad", numbers({1e-3, 2e-3, -1e-3})}}},
       {"marker_positions", {{"marker", node(2)}, {"error_m", numbers({2e-4, -1e-4, 3e-4})}}},
       {"empirical_torque",
@@ -121,6 +126,12 @@ AttitudeModel model_with(const std::string& kind) {
   model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
                               .battery_current_A = 2.0,
                               .wheel = {0.0, {20.0, -10.0, 30.0}, {0.3, 0.2, -0.1}}});
+  // Forces act on what slides.
+  const DisturbanceKind* known = find_kind(kind);
+  if (known != nullptr && known->screening.needs == Requirement::plane) {
+    model.platform.topology = Topology::planar;
+    model.disturbances.push_back(translation());
+  }
   model = with(model, "static_unbalance", {{"offset_m", numbers({1e-6, 2e-6, -2e-5})}});
   model = with(model, "magnetic_dipole", {{"dipole_A_m2", numbers({0.01, -0.02, 0.005})}});
   const auto all = examples();

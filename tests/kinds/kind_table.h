@@ -48,7 +48,8 @@ inline std::string screening_text(const Screening& screening) {
       "an air bearing",
       "a bearing, or a free body's attitude in a laboratory of stated latitude",
       "an air bearing, or a free body's attitude in a laboratory of stated latitude",
-      "the measured speed of a wheel"};
+      "the measured speed of a wheel",
+      "a planar platform"};
   if (screening.needs != Requirement::none) {
     text += "; needs " + std::string(needs[int(screening.needs)]);
   }

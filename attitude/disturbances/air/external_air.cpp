@@ -132,6 +132,7 @@ std::vector<AirPart> parts_of_topology(Topology topology, AirPart plate, AirPart
       return {sphere};
     case Topology::free:
     case Topology::one_axis:
+    case Topology::planar:
       break;
   }
   return {};

@@ -1,14 +1,23 @@
-// The pressure of light, from a table that the tracer made: T = scale · table(attitude).
+// The pressure of light. From a table that the tracer made, T = scale · table(attitude), or of
+// sunlight on a spacecraft of which no more is known than where the pressure acts,
+// T = p s × a: p = 4.54e-6 Pa/r² at r au from the Sun, s the unit vector towards it, a the sum over
+// the lit surfaces of projected area times place from the centre of mass, times one plus the
+// fraction that is sent back (J. R. Wertz, Spacecraft Attitude Determination and Control, 1978,
+// sec. 17.2.2). That takes the projected area for the same from all sides that the Sun comes to.
 //
-// table: a CSV file (torque_surface.h), its path relative to the experiment's. A table over tilt
-// and heading holds for light that is the same all round the vertical (a beamer overhead); a table
-// over azimuth and elevation for far light from one direction, sun_direction_lab[3], towards the
-// light. scale: default 1. In eclipse the torque falls with the illumination.
+// area_moment_m3[3]: a, body axes; where the Sun is [environment.sun] says. table: a CSV file
+// (torque_surface.h), its path relative to the experiment's. A table over tilt and heading holds
+// for light that is the same all round the vertical (a beamer overhead); a table over azimuth and
+// elevation for far light from one direction, sun_direction_lab[3], towards the light. scale:
+// default 1. In eclipse the torque falls with the illumination.
 //
 // Per ray, the tracer counts momentum in minus momentum out; eq. 29's cosine is inside the
 // irradiance already (docs/physics.md).
+#include <array>
+
 #include "attitude/disturbances/fields/surface_lookup.h"
 #include "attitude/disturbances/kind.h"
+#include "core/constants.h"
 
 namespace photorque {
 namespace {
@@ -39,7 +48,74 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
   Vec3 sun_direction_lab_;
 };
 
-Disturbance read(const Settings& settings, const DisturbanceContext&) {
+constexpr VectorKey area_moment{"area_moment_m3"};
+
+// With the time's derivatives, where it has any.
+Lanes moved(const Lanes&, const Lanes& value, const Lanes&) {
+  return value;
+}
+DualLanes moved(const DualLanes& time_s, const Lanes& value, const Lanes& slope) {
+  DualLanes result(value);
+  for (int k = 0; k < DualLanes::block; ++k) result.partial[k] = slope * time_s.partial[k];
+  return result;
+}
+
+// From the spacecraft to the Sun [au], lab axes: the path is asked once an instant, because
+// Kepler's equation costs more than all the rest of the law.
+template <class T>
+Vec3Of<T> towards_sun(const SunPath& sun, const T& time_s) {
+  std::array<Lanes, 3> value, slope;
+  for (int lane = 0; lane < Lanes::count; ++lane) {
+    const bool again = lane > 0 && values(time_s)[lane] == values(time_s)[lane - 1];
+    const auto [place, speed] =
+        again ? std::array{Vec3(value[0][lane - 1], value[1][lane - 1], value[2][lane - 1]),
+                           Vec3(slope[0][lane - 1], slope[1][lane - 1], slope[2][lane - 1])}
+              : sun.at(values(time_s)[lane]);
+    for (size_t k = 0; k < 3; ++k) {
+      value[k].set(lane, place[static_cast<Eigen::Index>(k)]);
+      slope[k].set(lane, speed[static_cast<Eigen::Index>(k)]);
+    }
+  }
+  return {moved(time_s, value[0], slope[0]), moved(time_s, value[1], slope[1]),
+          moved(time_s, value[2], slope[2])};
+}
+
+class SunPressure final : public TorqueLaw<SunPressure> {
+ public:
+  explicit SunPressure(SunPath sun) : sun_(std::move(sun)) {}
+
+  template <class T>
+  Vec3Of<T> torque(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    constexpr double at_1_au_Pa = solar_irradiance_W_m2 / speed_of_light_m_s;
+    const Vec3Of<T> towards = towards_sun(sun_, now.time_s);
+    const T square = towards.dot(towards);
+    const T pressure = at_1_au_Pa * now.illumination / (square * sqrt(square));
+    return pressure * now.to_body(towards).cross(own[area_moment]);
+  }
+
+ private:
+  SunPath sun_;
+};
+
+Disturbance read_of_sun(const Settings& settings, const DisturbanceContext& context) {
+  if (!context.environment.sun) {
+    throw settings.error("area_moment_m3", "no [environment.sun]", "where the Sun is");
+  }
+  return make_disturbance<SunPressure>({vector_parameter(settings, area_moment)}, Stage::torque, {},
+                                       *context.environment.sun);
+}
+
+// Where the experiment says where the Sun is, its pressure may be what is missing.
+std::vector<Parametrisation> of_experiment(const DisturbanceContext& context) {
+  if (!context.environment.sun) return {};
+  return {
+      {"the pressure of sunlight acts beside the centre of mass, and its torque changes with "
+       "the Sun's direction",
+       {EffectKey::vector(area_moment.name, 1.0)}}};
+}
+
+Disturbance read(const Settings& settings, const DisturbanceContext& context) {
+  if (settings.has(area_moment.name)) return read_of_sun(settings, context);
   const TorqueSurface surface(read_wrench_table(file_of(settings, "table")));
   Vec3 sun_direction_lab = Vec3::UnitZ();
   if (surface.angles() == WrenchTable::Angles::azimuth_elevation) {
@@ -60,13 +136,19 @@ DisturbanceKind radiation_pressure_kind() {
       .name = "radiation_pressure",
       .summary = "light pushes on what it falls on",
       .read = read,
-      .screening = {.reason_against = "needs a table that torque-map traces for this platform"},
-      .injection = {.reason_against = "needs a traced table"},
+      .screening = {.of_experiment = of_experiment,
+                    .widths = "1 m³, where `[environment.sun]` is stated"},
+      .injection = {.reason_against = "the laboratories of `prove` see no Sun"},
       .budget = {.paper_figure = "radiation_torque_at_30_deg_N_m"},
       .keys = {Key::text("table",
                          "CSV of `torque-map` (`wrench_table_body.csv`): `tilt_deg`, `heading_deg` "
                          "or `elevation_deg`, `azimuth_deg`; `torque_x_N_m`, `…_y_…`, `…_z_…`. The "
-                         "motion must stay within it"),
+                         "motion must stay within it; *or*")
+                   .optional(),
+               Key::uncertain_vector("area_moment_m3",
+                                     "projected area times its place from the centre of mass, "
+                                     "body axes; needs `[environment.sun]`")
+                   .optional(),
                Key::vector3(
                    "sun_direction_lab",
                    "towards the light, any length; only, and always, with elevation and azimuth")

@@ -142,6 +142,8 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         return context.platform.has_air_bearing() || floats_in_laboratory;
       case Requirement::wheel:
         return covered.has_wheel;
+      case Requirement::plane:
+        return context.platform.slides();
       case Requirement::none:
         break;
     }
@@ -170,6 +172,14 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     all.list.push_back(candidate_of(law));
   }
   scale_to_machine(nominal, runs, all.list);
+  // Of what slides the turn may not be seen.
+  const bool sees_turn = std::any_of(runs.begin(), runs.end(), [](const Observation& seen) {
+    return seen.sees_some_attitude() || seen.has_gyro;
+  });
+  if (context.platform.slides() && !sees_turn) {
+    std::erase_if(all.list,
+                  [](const Candidate& c) { return c.effect.how.needs != Requirement::plane; });
+  }
   // A law of the heading cannot be told from a constant where the heading hardly changes.
   if (!context.platform.has_air_bearing() && !turns(runs)) {
     std::erase_if(all.list, [](const Candidate& c) {

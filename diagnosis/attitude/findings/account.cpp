@@ -80,14 +80,26 @@ std::vector<FittedParameter> fitted_parameters(const Trial& t, size_t disturbanc
       if (f.disturbance == disturbance && f.parameter == static_cast<int>(p)) at = shared;
       ++shared;
     }
-    if (at < 0) continue;
+    const auto is_free = [&](size_t other) {
+      return parameters[other].key == parameters[p].key &&
+             std::any_of(t.fit.best.free.begin(), t.fit.best.free.end(), [&](const Free& f) {
+               return !f.per_run && f.disturbance == disturbance &&
+                      f.parameter == static_cast<int>(other);
+             });
+    };
+    bool any_free = false;
+    for (size_t other = 0; other < parameters.size(); ++other)
+      any_free = any_free || is_free(other);
+    if (!any_free) continue;
     const double unit = unit_of_key(parameters[p].key).to_SI;
     if (result.empty() || result.back().key != parameters[p].key) {
       result.push_back({parameters[p].key, {}, {}});
     }
     result.back().value.push_back(parameters[p].value / unit);
-    result.back().sigma.push_back(std::sqrt(std::max(0.0, covariance(at, at))) / unit);
-    if (parameters[p].key == "axis" && result.back().value.size() == 3) {
+    // A component about which the motion tells nothing stays what it was.
+    result.back().sigma.push_back(at < 0 ? 0.0
+                                         : std::sqrt(std::max(0.0, covariance(at, at))) / unit);
+    if (at >= 0 && parameters[p].key == "axis" && result.back().value.size() == 3) {
       make_direction(result.back(), covariance.block<3, 3>(at - 2, at - 2));
     }
   }
@@ -105,7 +117,12 @@ void keep_within_bounds(const Candidate& c, std::vector<FittedParameter>& fitted
   }
   size_t k = 0;
   for (size_t p = 0; p < c.scale.size() && k < values.size(); ++p) {
-    if (!c.is_fitted(p)) continue;
+    const Parameters& all = c.start.parameters;
+    bool any_fitted = false;
+    for (size_t other = 0; other < all.size(); ++other) {
+      any_fitted = any_fitted || (all[other].key == all[p].key && c.is_fitted(other));
+    }
+    if (!any_fitted) continue;
     const double unit = unit_of_key(c.start.parameters[p].key).to_SI;
     *values[k] = std::clamp(*values[k], c.lowest[p] / unit, c.highest[p] / unit);
     ++k;

@@ -180,6 +180,8 @@ std::vector<Manoeuvre> manoeuvres(const std::vector<FoundEffect>& effects,
                                   const std::vector<Observation>& runs, int threads) {
   const Trial& chosen = trials[decision.chosen];
   std::vector<Manoeuvre> result;
+  // The starts that are known turn the platform.
+  if (chosen.fit.best.model.platform.slides()) return result;
   for (const FoundEffect& effect : effects) {
     for (const std::string& rival : effect.indistinguishable_from) {
       Manoeuvre m{{effect.kind, rival}, longer, 0.0};

@@ -1,0 +1,38 @@
+// Form drag of what slides through air: F = −k |v| v.
+//
+// coefficient_kg_m: k ≥ 0, ½ ρ c_d A of a body.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+constexpr ScalarKey coefficient{"coefficient_kg_m"};
+
+struct SlidingAirDrag final : ForceLaw<SlidingAirDrag> {
+  template <class T>
+  Vec3Of<T> force(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    return -own[coefficient] * length(now.velocity_lab_m_s) * now.velocity_lab_m_s;
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<SlidingAirDrag>(
+      {scalar_parameter(settings, coefficient, Range::not_negative())});
+}
+
+}  // namespace
+
+DisturbanceKind sliding_air_drag_kind() {
+  return {.name = "sliding_air_drag",
+          .summary = "form drag of what slides through air, by the square of the speed",
+          .read = read,
+          .screening = {.parametrisations = {{"air drags on what slides, by the square of its "
+                                              "speed",
+                                              {EffectKey::not_negative(coefficient.name, 1e-2)}}},
+                        .needs = Requirement::plane},
+          .injection = {.reason_against = "the laboratories of `prove` have no table to slide on"},
+          .budget = {.reason_against = "a force, not a torque"},
+          .keys = {Key::uncertain("coefficient_kg_m", Range::not_negative(), "k in F = −k |v| v")}};
+}
+
+}  // namespace photorque

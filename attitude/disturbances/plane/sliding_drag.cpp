@@ -1,0 +1,38 @@
+// Viscous drag of what slides, as an air film has it: F = −c v.
+//
+// coefficient_kg_s: c ≥ 0.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+constexpr ScalarKey coefficient{"coefficient_kg_s"};
+
+struct SlidingDrag final : ForceLaw<SlidingDrag> {
+  template <class T>
+  Vec3Of<T> force(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    return -own[coefficient] * now.velocity_lab_m_s;
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<SlidingDrag>(
+      {scalar_parameter(settings, coefficient, Range::not_negative())});
+}
+
+}  // namespace
+
+DisturbanceKind sliding_drag_kind() {
+  return {.name = "sliding_drag",
+          .summary = "viscous drag of what slides, linear in the speed",
+          .read = read,
+          .screening = {.parametrisations = {{"the air film drags on what slides, in proportion to "
+                                              "its speed",
+                                              {EffectKey::not_negative(coefficient.name, 1e-2)}}},
+                        .needs = Requirement::plane},
+          .injection = {.reason_against = "the laboratories of `prove` have no table to slide on"},
+          .budget = {.reason_against = "a force, not a torque"},
+          .keys = {Key::uncertain("coefficient_kg_s", Range::not_negative(), "c in F = −c v")}};
+}
+
+}  // namespace photorque

@@ -1,0 +1,44 @@
+// Dry friction of what slides: F = −μ m g v/|v|.
+//
+// coefficient: μ ≥ 0. Below a speed of 1e-4 m/s it fades with the speed, so that a platform that
+// comes to rest stays within a creep of that size.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+constexpr ScalarKey coefficient{"coefficient"};
+
+struct SlidingFriction final : ForceLaw<SlidingFriction> {
+  template <class T>
+  Vec3Of<T> force(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    constexpr double creep_m_s = 1e-4;
+    const Vec3Of<T>& v = now.velocity_lab_m_s;
+    const T speed = sqrt(T(v.dot(v) + creep_m_s * creep_m_s));
+    return (own[coefficient] * now.mass_kg * now.gravity_lab_m_s2[2] / speed) * v;
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  Disturbance d = make_disturbance<SlidingFriction>(
+      {scalar_parameter(settings, coefficient, Range::not_negative())});
+  d.is_abrupt = true;
+  return d;
+}
+
+}  // namespace
+
+DisturbanceKind sliding_friction_kind() {
+  return {.name = "sliding_friction",
+          .summary = "dry friction of what slides, the same at every speed",
+          .read = read,
+          .screening = {.parametrisations = {{"dry friction brakes what slides, the same at every "
+                                              "speed",
+                                              {EffectKey::not_negative(coefficient.name, 1e-3)}}},
+                        .needs = Requirement::plane},
+          .injection = {.reason_against = "the laboratories of `prove` have no table to slide on"},
+          .budget = {.reason_against = "a force, not a torque"},
+          .keys = {Key::uncertain("coefficient", Range::not_negative(), "μ in F = −μ m g v/|v|")}};
+}
+
+}  // namespace photorque

@@ -1,0 +1,46 @@
+// A spring or cable that holds what slides: F = f − k r.
+//
+// stiffness_N_per_m: k ≥ 0; pull_N[2]: f at the lab's origin, so that f/k is where it pulls to.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+constexpr ScalarKey stiffness{"stiffness_N_per_m"};
+constexpr KeyOf<2> pull{"pull_N", stiffness.end()};
+
+struct SlidingSpring final : ForceLaw<SlidingSpring> {
+  template <class T>
+  Vec3Of<T> force(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    const Vec3Of<T>& r = now.position_lab_m;
+    return {own.element(pull, 0) - own[stiffness] * r[0],
+            own.element(pull, 1) - own[stiffness] * r[1], T(0.0)};
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<SlidingSpring>(
+      {scalar_parameter(settings, stiffness, Range::not_negative()),
+       array_parameter(settings, pull.name, 2, pull.first)});
+}
+
+}  // namespace
+
+DisturbanceKind sliding_spring_kind() {
+  return {.name = "sliding_spring",
+          .summary = "a spring or cable pulls what slides back to one place",
+          .read = read,
+          .screening = {.parametrisations = {{"a spring or cable pulls what slides back to one "
+                                              "place",
+                                              {EffectKey::not_negative(stiffness.name, 1e-2),
+                                               {pull.name, {0.0, 0.0}, 1e-2}}}},
+                        .needs = Requirement::plane},
+          .injection = {.reason_against = "the laboratories of `prove` have no table to slide on"},
+          .budget = {.reason_against = "a force, not a torque"},
+          .keys = {Key::uncertain("stiffness_N_per_m", Range::not_negative(), "k in F = f − k r"),
+                   Key::numbers("pull_N", {}, "f at the lab's origin; it pulls to f/k")
+                       .of_size(2)
+                       .with_error()}};
+}
+
+}  // namespace photorque

@@ -1,0 +1,42 @@
+// A table that is not level: F = −m g (s_x, s_y) on a platform that slides.
+//
+// slope_rad[2]: by which the table rises along lab x and y; small. A steady draught or any other
+// constant force looks the same.
+#include "attitude/disturbances/kind.h"
+
+namespace photorque {
+namespace {
+
+constexpr KeyOf<2> slope{"slope_rad"};
+
+struct TableSlope final : ForceLaw<TableSlope> {
+  template <class T>
+  Vec3Of<T> force(const ParametersAndStates<T>& own, const EvaluationContext<T>& now) const {
+    const T weight = now.mass_kg * now.gravity_lab_m_s2[2];  // downwards: below zero
+    return {weight * own.element(slope, 0), weight * own.element(slope, 1), T(0.0)};
+  }
+};
+
+Disturbance read(const Settings& settings, const DisturbanceContext&) {
+  return make_disturbance<TableSlope>({array_parameter(settings, slope.name, 2)});
+}
+
+}  // namespace
+
+DisturbanceKind table_slope_kind() {
+  return {
+      .name = "table_slope",
+      .summary = "the table is not level: a constant acceleration",
+      .read = read,
+      .screening = {.parametrisations = {{"the table is not level, or a steady draught or "
+                                          "another constant force acts, which looks the same",
+                                          {{slope.name, {0.0, 0.0}, 1e-3}}}},
+                    .needs = Requirement::plane},
+      .injection = {.reason_against = "the laboratories of `prove` have no table to slide on"},
+      .budget = {.reason_against = "a force, not a torque"},
+      .keys = {Key::numbers("slope_rad", {}, "by which the table rises along lab x and y; small")
+                   .of_size(2)
+                   .with_error()}};
+}
+
+}  // namespace photorque

@@ -1,0 +1,187 @@
+#include "attitude/environment/sun.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/environment/epoch.h"
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+// IAU 1976, at J2000.
+constexpr double obliquity_rad = 23.4392911 * degree_rad;
+// Gauss's year: of a body without mass at 1 au.
+constexpr double gaussian_motion_rad_s = 0.01720209895 / 86400.0;
+
+Mat3 equatorial_from_ecliptic() {
+  return Eigen::AngleAxisd(obliquity_rad, Vec3::UnitX()).toRotationMatrix();
+}
+
+double eccentric_anomaly(double mean_rad, double eccentricity) {
+  double e = mean_rad + eccentricity * std::sin(mean_rad);
+  constexpr int most = 50;
+  for (int i = 0; i < most; ++i) {
+    const double step =
+        (mean_rad - e + eccentricity * std::sin(e)) / (1.0 - eccentricity * std::cos(e));
+    e += step;
+    if (std::abs(step) < 1e-14) break;
+  }
+  return e;
+}
+
+Epoch read_date(const Settings& settings, const char* key) {
+  std::string date = settings.text(key);
+  const bool has_seconds = std::count(date.begin(), date.end(), ':') != 1;
+  if (date.find('T') == std::string::npos) date += "T00:00:00";
+  const auto epoch = parse_epoch(has_seconds ? date : date + ":00");
+  if (!epoch) throw settings.error(key, "\"" + date + "\"", "a time as \"2015-04-27T03:00:00\"");
+  return *epoch;
+}
+
+HeliocentricOrbit read_orbit(const Settings& settings, const Epoch& date) {
+  HeliocentricOrbit orbit;
+  orbit.semi_major_axis_au =
+      settings.number("semi_major_axis_au", Range::positive()) / astronomical_unit_m;
+  orbit.eccentricity = settings.number_or("eccentricity", 0.0, {0.0, 1.0, false, true});
+  orbit.inclination_rad = settings.number_or("inclination_deg", 0.0);
+  orbit.ascending_node_rad = settings.number_or("ascending_node_deg", 0.0);
+  orbit.perihelion_rad = settings.number_or("perihelion_deg", 0.0);
+  orbit.mean_anomaly_rad = settings.number("mean_anomaly_deg");
+  if (settings.has("epoch")) {
+    orbit.mean_anomaly_rad += gaussian_motion_rad_s / std::pow(orbit.semi_major_axis_au, 1.5) *
+                              date.seconds_since(read_date(settings, "epoch"));
+  }
+  return orbit;
+}
+
+Pointing read_pointing(const Settings& settings) {
+  Pointing pointing;
+  pointing.axis = static_cast<int>(settings.choice_or("axis", {"x", "y", "z"}, 2));
+  pointing.right_ascension_rad = settings.number("right_ascension_deg");
+  pointing.declination_rad =
+      settings.number("declination_deg", {-0.5 * pi, 0.5 * pi, false, false});
+  pointing.roll_rad = settings.number_or("roll_deg", 0.0);
+  return pointing;
+}
+
+}  // namespace
+
+std::array<Vec3, 2> HeliocentricOrbit::position_and_velocity(double time_s) const {
+  const double motion_rad_s = gaussian_motion_rad_s / std::pow(semi_major_axis_au, 1.5);
+  const double e = eccentric_anomaly(mean_anomaly_rad + motion_rad_s * time_s, eccentricity);
+  const double minor = std::sqrt(1.0 - eccentricity * eccentricity);
+  const double rate_rad_s = motion_rad_s / (1.0 - eccentricity * std::cos(e));
+  const Mat3 turn = (Eigen::AngleAxisd(ascending_node_rad, Vec3::UnitZ()) *
+                     Eigen::AngleAxisd(inclination_rad, Vec3::UnitX()) *
+                     Eigen::AngleAxisd(perihelion_rad, Vec3::UnitZ()))
+                        .toRotationMatrix();
+  const Vec3 position(std::cos(e) - eccentricity, minor * std::sin(e), 0.0),
+      velocity(-std::sin(e) * rate_rad_s, minor * std::cos(e) * rate_rad_s, 0.0);
+  return {semi_major_axis_au * turn * position, semi_major_axis_au * turn * velocity};
+}
+
+HeliocentricOrbit orbit_of_earth(double since_J2000_s) {
+  // Mean longitude and anomaly of the Sun; the longitude counts from the equinox of date, which
+  // moves by 1.397 degrees a century against that of J2000.
+  const double days = since_J2000_s / 86400.0, centuries = days / 36525.0;
+  const double longitude_deg = 280.460 + 0.9856474 * days - 1.397 * centuries,
+               anomaly_deg = 357.528 + 0.9856003 * days;
+  HeliocentricOrbit orbit;
+  orbit.semi_major_axis_au = 1.00000011;
+  orbit.eccentricity = 0.01671;
+  orbit.perihelion_rad = std::remainder(longitude_deg - anomaly_deg + 180.0, 360.0) * degree_rad;
+  orbit.mean_anomaly_rad = std::remainder(anomaly_deg, 360.0) * degree_rad;
+  return orbit;
+}
+
+SunPath SunPath::fixed(const Vec3& towards_lab_au) {
+  SunPath path;
+  path.fixed_au_ = towards_lab_au;
+  return path;
+}
+
+SunPath SunPath::table(TimeSeries towards_lab, double distance_au) {
+  SunPath path;
+  path.fixed_au_ = distance_au * Vec3::UnitX();
+  path.table_ = std::move(towards_lab);
+  return path;
+}
+
+SunPath SunPath::orbit(const HeliocentricOrbit& orbit, const Mat3& lab_from_ecliptic) {
+  SunPath path;
+  path.orbit_ = orbit;
+  path.lab_from_ecliptic_ = lab_from_ecliptic;
+  return path;
+}
+
+std::array<Vec3, 2> SunPath::at(double time_s) const {
+  if (orbit_) {
+    const auto [position, velocity] = orbit_->position_and_velocity(time_s);
+    return {-lab_from_ecliptic_ * position, -lab_from_ecliptic_ * velocity};
+  }
+  if (!table_) return {fixed_au_, Vec3::Zero()};
+  Vec3 value, slope;
+  for (int k = 0; k < 3; ++k) {
+    const auto [x, rate] = table_->at(time_s, k);
+    value[k] = x;
+    slope[k] = rate;
+  }
+  const double length = value.norm();
+  const Vec3 unit = value / length;
+  return {fixed_au_.norm() * unit, fixed_au_.norm() / length * (slope - unit * unit.dot(slope))};
+}
+
+Mat3 Pointing::lab_from_equatorial() const {
+  const double c = std::cos(declination_rad);
+  const Vec3 towards(c * std::cos(right_ascension_rad), c * std::sin(right_ascension_rad),
+                     std::sin(declination_rad));
+  // At the pole itself north is the direction from which right ascension counts, reversed.
+  const Vec3 north(-std::sin(declination_rad) * std::cos(right_ascension_rad),
+                   -std::sin(declination_rad) * std::sin(right_ascension_rad), c);
+  const Vec3 next = std::cos(roll_rad) * north + std::sin(roll_rad) * towards.cross(north);
+  Mat3 lab_from;
+  lab_from.row(axis) = towards;
+  lab_from.row((axis + 1) % 3) = next;
+  lab_from.row((axis + 2) % 3) = towards.cross(next);
+  return lab_from;
+}
+
+SunPath read_sun(const Settings& settings) {
+  const int ways = (settings.has("direction") ? 1 : 0) + (settings.has("table") ? 1 : 0) +
+                   (settings.has("date") ? 1 : 0);
+  if (ways != 1) {
+    throw settings.error("date", ways == 0 ? "nothing" : "several of direction, table and date",
+                         "one of direction, table and date");
+  }
+  if (settings.has("date")) {
+    const Epoch date = read_date(settings, "date");
+    const Epoch J2000 = *parse_epoch("2000-01-01T12:00:00");
+    const HeliocentricOrbit orbit = settings.has("orbit")
+                                        ? read_orbit(settings.table("orbit"), date)
+                                        : orbit_of_earth(date.seconds_since(J2000));
+    Mat3 lab_from_equatorial = Mat3::Identity();
+    if (settings.has("pointing")) {
+      lab_from_equatorial = read_pointing(settings.table("pointing")).lab_from_equatorial();
+    }
+    return SunPath::orbit(orbit, lab_from_equatorial * equatorial_from_ecliptic());
+  }
+  const double distance_au =
+      settings.number_or("distance_au", astronomical_unit_m, Range::positive()) /
+      astronomical_unit_m;
+  if (settings.has("table")) {
+    const std::filesystem::path path =
+        std::filesystem::path(settings.where().file).parent_path() / settings.text("table");
+    return SunPath::table(
+        read_time_series(path, {"sun_x", "sun_y", "sun_z"}, TimeSeries::Outside::hold),
+        distance_au);
+  }
+  const Vec3 direction = settings.vector3("direction");
+  if (!(direction.norm() > 0.0)) {
+    throw settings.error("direction", "a zero vector", "a direction");
+  }
+  return SunPath::fixed(distance_au * direction.normalized());
+}
+
+}  // namespace photorque

@@ -1,0 +1,83 @@
+// Where the Sun is, seen from a spacecraft, over the time of a recording.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "attitude/environment/time_series.h"
+#include "core/constants.h"
+#include "core/settings/settings.h"
+#include "core/vector.h"
+
+namespace photorque {
+
+// An ellipse about the Sun, ecliptic and equinox of J2000.
+struct HeliocentricOrbit {
+  double semi_major_axis_au = 1.0;  // > 0
+  double eccentricity = 0.0;        // in [0, 1)
+  double inclination_rad = 0.0;
+  double ascending_node_rad = 0.0;
+  double perihelion_rad = 0.0;    // its argument, from the node
+  double mean_anomaly_rad = 0.0;  // at time 0
+
+  // From the Sun to the spacecraft [au], and its velocity [au/s], ecliptic axes.
+  std::array<Vec3, 2> position_and_velocity(double time_s) const;
+};
+
+// The orbit of the Earth, as good as its mean elements: the Sun's direction to 0.02 deg from 1950
+// to 2050 (The Astronomical Almanac, low-precision formulas for the Sun's coordinates). Seconds
+// since 2000-01-01T12:00.
+HeliocentricOrbit orbit_of_earth(double since_J2000_s);
+
+// From the spacecraft to the Sun in lab axes [au], smooth in time.
+class SunPath {
+ public:
+  static SunPath fixed(const Vec3& towards_lab_au);
+  // Of a table only the direction counts.
+  static SunPath table(TimeSeries towards_lab, double distance_au);
+  static SunPath orbit(const HeliocentricOrbit& orbit, const Mat3& lab_from_ecliptic);
+
+  // Value and time derivative of each component.
+  std::array<Vec3, 2> at(double time_s) const;
+
+  template <class T>
+  Vec3Of<T> sample(const T& time_s) const {
+    Vec3Of<T> v;
+    for (int k = 0; k < 3; ++k) {
+      v[k] = from_values(time_s, [&](double t_s) {
+        const auto [value, slope] = at(t_s);
+        return std::array{value[k], slope[k]};
+      });
+    }
+    return v;
+  }
+
+ private:
+  Vec3 fixed_au_ = Vec3::UnitX();
+  std::optional<TimeSeries> table_;
+  std::optional<HeliocentricOrbit> orbit_;
+  Mat3 lab_from_ecliptic_ = Mat3::Identity();
+};
+
+// The axes of a lab whose `axis` (0, 1, 2) points to right ascension and declination (equator and
+// equinox of J2000) while the next one, at a roll of zero, leans as far as it can towards the
+// celestial north pole; a roll turns that about the first.
+struct Pointing {
+  int axis = 2;
+  double right_ascension_rad = 0.0, declination_rad = 0.5 * pi;
+  double roll_rad = 0.0;
+
+  Mat3 lab_from_equatorial() const;
+};
+
+// Reads [environment.sun]:
+//   direction[3]: fixed, lab axes, any length; or
+//   table: CSV with t_s, sun_x, sun_y, sun_z, lab axes, any length, its path relative to the
+//     experiment's; both at 1 au unless distance_au says otherwise; or
+//   date: calendar time of t = 0; orbit = { semi_major_axis_au, eccentricity, inclination_deg,
+//     ascending_node_deg, perihelion_deg, mean_anomaly_deg, epoch (date) }, by default that of the
+//     Earth; pointing = { axis ("z"), right_ascension_deg, declination_deg, roll_deg (0) }, by
+//     default lab axes are equatorial.
+SunPath read_sun(const Settings& settings);
+
+}  // namespace photorque

@@ -1,0 +1,103 @@
+// A platform that slides on a table: the forces' closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "attitude/propagation/run.h"
+#include "core/errors.h"
+#include "scenes/experiment/toml_reader.h"
+#include "tests/attitude/settings_bench.h"
+
+namespace photorque {
+namespace {
+
+PropagationRun run_of(const std::string& toml) {
+  return read_propagation(
+      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "puck.toml"))));
+}
+
+const std::string puck = R"([platform]
+topology = "planar"
+mass_kg = 2
+[propagate]
+duration_s = 5
+output_rate_Hz = 2
+initial_position_m = [0.1, -0.2]
+initial_velocity_m_s = [0.3, 0.4]
+tolerance = 1e-11
+)";
+
+struct Place {
+  double x, y;
+};
+
+Place end_of(const std::string& disturbance) {
+  const PropagationResult result = propagate(run_of(puck + "[[disturbance]]\n" + disturbance));
+  return {result.recording.find("x_m")->values.back(), result.recording.find("y_m")->values.back()};
+}
+
+TEST(Sliding, FreelyItGoesStraight) {
+  const PropagationResult result = propagate(run_of(puck));
+  EXPECT_NEAR(result.recording.find("x_m")->values.back(), 0.1 + 0.3 * 5, 1e-12);
+  EXPECT_NEAR(result.recording.find("y_m")->values.back(), -0.2 + 0.4 * 5, 1e-12);
+  EXPECT_EQ(result.recording.find("velocity_x_m_s"), nullptr);
+}
+
+TEST(Sliding, DownASlopeItAccelerates) {
+  const Place end = end_of("kind = \"table_slope\"\nslope_mrad = [2, -1]\n");
+  EXPECT_NEAR(end.x, 0.1 + 0.3 * 5 - 0.5 * g * 2e-3 * 25, 1e-10);
+  EXPECT_NEAR(end.y, -0.2 + 0.4 * 5 + 0.5 * g * 1e-3 * 25, 1e-10);
+}
+
+// v = v₀ exp(−c t/m).
+TEST(Sliding, DragFadesItExponentially) {
+  const Place end = end_of("kind = \"sliding_drag\"\ncoefficient_kg_s = 0.5\n");
+  const double way = (1.0 - std::exp(-0.25 * 5)) / 0.25;
+  EXPECT_NEAR(end.x, 0.1 + 0.3 * way, 1e-10);
+  EXPECT_NEAR(end.y, -0.2 + 0.4 * way, 1e-10);
+}
+
+// v = v₀/(1 + k v₀ t/m), so that the way is (m/k) ln(1 + k v₀ t/m).
+TEST(Sliding, AirFadesItByTheSquare) {
+  const Place end = end_of("kind = \"sliding_air_drag\"\ncoefficient_kg_m = 0.8\n");
+  const double way = std::log(1.0 + 0.4 * 0.5 * 5) / 0.4;
+  EXPECT_NEAR(end.x, 0.1 + 0.6 * way, 1e-9);
+  EXPECT_NEAR(end.y, -0.2 + 0.8 * way, 1e-9);
+}
+
+// It stops after v₀²/(2 μ g), whatever its mass, and stays there but for the creep.
+TEST(Sliding, DryFrictionStopsIt) {
+  const double friction = 0.02, way = 0.25 / (2.0 * friction * g);
+  const Place end = end_of("kind = \"sliding_friction\"\ncoefficient = 0.02\n");
+  EXPECT_NEAR(end.x, 0.1 + 0.6 * way, 1e-4);
+  EXPECT_NEAR(end.y, -0.2 + 0.8 * way, 1e-4);
+}
+
+// About its place f/k, with ω² = k/m.
+TEST(Sliding, ASpringSwingsIt) {
+  const Place end =
+      end_of("kind = \"sliding_spring\"\nstiffness_N_per_m = 0.5\npull_N = [0.1, 0]\n");
+  const double w = 0.5, c = std::cos(w * 5), s = std::sin(w * 5) / w;
+  EXPECT_NEAR(end.x, 0.2 + (0.1 - 0.2) * c + 0.3 * s, 1e-9);
+  EXPECT_NEAR(end.y, -0.2 * c + 0.4 * s, 1e-9);
+}
+
+// A drag on its turn brakes the turn alone.
+TEST(Sliding, TurnsMeanwhile) {
+  const PropagationRun run =
+      run_of(puck + "initial_rate_rad_s = [0, 0, 0.2]\n[[disturbance]]\nkind = \"bearing_drag\"\n" +
+             "coefficient_N_m_s = 0.3\n");
+  const PropagationResult result = propagate(run);
+  EXPECT_NEAR(result.states.back().rate_body_rad_s.z(), 0.2 * std::exp(-0.3 * 5), 1e-9);
+  EXPECT_NEAR(result.recording.find("x_m")->values.back(), 1.6, 1e-10);
+}
+
+TEST(Sliding, SaysWhatIsWrong) {
+  EXPECT_THROW(run_of(puck + "initial_charge_Ah = 0\n[[disturbance]]\nkind = \"table_slope\"\n"
+                             "slope_rad = [1, 2, 3]\n"),
+               InputError);
+  EXPECT_THROW(run_of("[platform]\ntopology = \"planar\"\naxis = \"x\"\n"), InputError);
+}
+
+}  // namespace
+}  // namespace photorque

@@ -1,0 +1,143 @@
+// Where the Sun is, and its pressure.
+#include "attitude/environment/sun.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "attitude/environment/environment.h"
+#include "attitude/environment/epoch.h"
+#include "core/errors.h"
+#include "scenes/experiment/toml_reader.h"
+#include "tests/attitude/disturbance_bench.h"
+
+namespace photorque {
+namespace {
+
+Environment environment_of(const std::string& toml) {
+  const Settings settings(std::make_shared<const SettingsNode>(parse_toml(toml, "sun.toml")));
+  Environment environment = read_environment(settings);
+  settings.finish();
+  return environment;
+}
+
+Vec3 sun_at(const std::string& toml, double time_s = 0.0) {
+  return environment_of("[sun]\n" + toml).sun->at(time_s)[0];
+}
+
+double angle_deg(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) / degree_rad;
+}
+
+Vec3 ecliptic(double longitude_deg) {
+  const double l = longitude_deg * degree_rad, obliquity = 23.4392911 * degree_rad;
+  return {std::cos(l), std::sin(l) * std::cos(obliquity), std::sin(l) * std::sin(obliquity)};
+}
+
+// J. Meeus, Astronomical Algorithms (1998), example 25.b: on 1992 October 13.0 TD the Sun's
+// longitude is 199.907272 deg by the equinox of date, 0.1009 deg more by that of J2000; R =
+// 0.99760775.
+TEST(Sun, StandsWhereTheAlmanacHasIt) {
+  const Vec3 sun = sun_at("date = \"1992-10-13\"");
+  EXPECT_LT(angle_deg(sun, ecliptic(199.907272 + 0.1009)), 0.02);
+  EXPECT_NEAR(sun.norm(), 0.99760775, 1e-3);
+  // And three days later, by the daily motion there, 0.993 deg (Kepler's second law at R).
+  EXPECT_NEAR(angle_deg(sun, sun_at("date = \"1992-10-13\"", 3 * 86400.0)), 3 * 0.9905, 0.01);
+}
+
+// An ellipse's own numbers: distances at both ends of the long axis, and half a period between.
+TEST(Sun, OrbitIsKepler) {
+  const std::string orbit =
+      "date = \"2020-01-01\"\norbit = { semi_major_axis_au = 1.5, eccentricity = 0.3, "
+      "inclination_deg = 20, ascending_node_deg = 40, perihelion_deg = 70, mean_anomaly_deg = 0 }";
+  const double year_s = 365.2568983 * 86400.0, half_s = 0.5 * std::pow(1.5, 1.5) * year_s;
+  const Vec3 near = sun_at(orbit), far = sun_at(orbit, half_s);
+  EXPECT_NEAR(near.norm(), 1.5 * 0.7, 1e-12);
+  EXPECT_NEAR(far.norm(), 1.5 * 1.3, 1e-7);
+  EXPECT_NEAR(angle_deg(near, far), 180.0, 1e-5);
+  // The latitude of the perihelion: sin b = sin i sin ω, and it lies opposite to the Sun.
+  const double obliquity = 23.4392911 * degree_rad;
+  const Vec3 pole(0.0, -std::sin(obliquity), std::cos(obliquity));
+  EXPECT_NEAR(-near.normalized().dot(pole), std::sin(20 * degree_rad) * std::sin(70 * degree_rad),
+              1e-12);
+  // An epoch before the date moves the spacecraft on.
+  EXPECT_NEAR((sun_at(orbit + "\n", 86400.0) -
+               sun_at("date = \"2020-01-02\"\norbit = { semi_major_axis_au = 1.5, eccentricity = "
+                      "0.3, inclination_deg = 20, ascending_node_deg = 40, perihelion_deg = 70, "
+                      "mean_anomaly_deg = 0, epoch = \"2020-01-01\" }"))
+                  .norm(),
+              0.0, 1e-12);
+}
+
+TEST(Sun, SlopesAreThoseOfThePath) {
+  const auto path = environment_of(
+                        "[sun]\ndate = \"2015-04-27T03:00\"\npointing = { axis = \"x\", "
+                        "right_ascension_deg = 130, declination_deg = 17, roll_deg = 30 }")
+                        .sun;
+  for (const double t_s : {0.0, 3e6, -2e7}) {
+    const double step_s = 1000.0;
+    const Vec3 difference = (path->at(t_s + step_s)[0] - path->at(t_s - step_s)[0]) / (2 * step_s);
+    EXPECT_LT((path->at(t_s)[1] - difference).norm(), 1e-7 * difference.norm());
+  }
+}
+
+// A lab axis that points to the vernal equinox, to the pole, and to the Sun itself.
+TEST(Sun, PointingTurnsTheLab) {
+  const auto lab = [](const char* pointing) {
+    return sun_at(std::string("date = \"2000-01-01T12:00:00\"\npointing = ") + pointing);
+  };
+  const Vec3 sun = sun_at("date = \"2000-01-01T12:00:00\"");
+  // x to the equinox and y to the north pole: z is −y of the equator.
+  const Vec3 a = lab("{ axis = \"x\", right_ascension_deg = 0, declination_deg = 0 }");
+  EXPECT_NEAR((a - Vec3(sun.x(), sun.z(), -sun.y())).norm(), 0.0, 1e-14);
+  // Rolled by a right angle about x, y points to −y of the equator.
+  const Vec3 b =
+      lab("{ axis = \"x\", right_ascension_deg = 0, declination_deg = 0, roll_deg = 90 }");
+  EXPECT_NEAR((b - Vec3(sun.x(), -sun.y(), -sun.z())).norm(), 0.0, 1e-14);
+  const double right_ascension = std::atan2(sun.y(), sun.x()) / degree_rad,
+               declination = std::asin(sun.z() / sun.norm()) / degree_rad;
+  const Vec3 c = lab(("{ right_ascension_deg = " + std::to_string(right_ascension) +
+                      ", declination_deg = " + std::to_string(declination) + " }")
+                         .c_str());
+  EXPECT_NEAR((c - Vec3(0, 0, sun.norm())).norm(), 0.0, 1e-7);
+}
+
+TEST(Sun, ComesFromATableToo) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "sun.csv";
+  std::ostringstream file;
+  file << "t_s,sun_x,sun_y,sun_z\n";
+  for (int i = 0; i <= 90; ++i) {
+    const double a = i * degree_rad;
+    file << 100 * i << ',' << 3 * std::cos(a) << ',' << 3 * std::sin(a) << ",0\n";
+  }
+  write_file_whole(path, file.str());
+  const std::string toml = "table = '" + path.string() + "'\ndistance_au = 2";
+  const Vec3 sun = sun_at(toml, 4550.0);
+  EXPECT_NEAR(
+      (sun - 2.0 * Vec3(std::cos(45.5 * degree_rad), std::sin(45.5 * degree_rad), 0)).norm(), 0.0,
+      1e-5);
+  EXPECT_THROW(sun_at("direction = [1, 0, 0]\ndate = \"2020-01-01\""), InputError);
+  EXPECT_THROW(sun_at("distance_au = 2"), InputError);
+  EXPECT_THROW(sun_at("direction = [0, 0, 0]"), InputError);
+  EXPECT_THROW(sun_at("date = \"yesterday\""), InputError);
+}
+
+// 1361 W/m² over the speed of light, a quarter at 2 au; the torque p s × a of a centre of pressure
+// off the centre of mass, and that it turns with the body.
+TEST(Sun, PressesBesideTheCentreOfMass) {
+  AttitudeModel model = bench_model();
+  model.environment = environment_of("[sun]\ndirection = [0, 5, 0]\ndistance_au = 2");
+  model = with(model, "radiation_pressure", {{"area_moment_m3", numbers({0, 0, 0.5})}});
+  const double pressure_Pa = 1361.0 / 299792458.0 / 4.0;
+  const Vec3 upright = torque_body_N_m(model, state_of(model, Quat::Identity()));
+  EXPECT_NEAR((upright - pressure_Pa * Vec3(0.5, 0, 0)).norm(), 0.0, 1e-18);
+  // Turned by a about x, the Sun stands at (0, cos a, −sin a) in the body.
+  const double a = 0.4;
+  const Vec3 leaning = torque_body_N_m(model, state_of(model, turned(a, Vec3::UnitX())));
+  EXPECT_NEAR((leaning - pressure_Pa * Vec3(0.5 * std::cos(a), 0, 0)).norm(), 0.0, 1e-18);
+  EXPECT_THROW(make(bench_model(), "radiation_pressure", {{"area_moment_m3", numbers({0, 0, 1})}}),
+               InputError);
+}
+
+}  // namespace
+}  // namespace photorque

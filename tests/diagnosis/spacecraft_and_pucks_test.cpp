@@ -1,0 +1,176 @@
+// Machines off the bearing: one angle of a spacecraft that the Sun presses on, and what slides on a
+// table. Recordings by closed forms and by a small integration of their own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "attitude/propagation/run.h"
+#include "core/constants.h"
+#include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/guess/guess.h"
+#include "scenes/experiment/toml_reader.h"
+
+namespace photorque {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+NominalModel machine(const std::string& toml) {
+  return read_attitude_model(
+      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "machine.toml"))));
+}
+
+Recording recording_of(double interval_s, const std::vector<Channel>& channels) {
+  Recording recording;
+  recording.channels = channels;
+  const size_t rows = channels.front().values.size();
+  for (size_t i = 0; i < rows; ++i) recording.time_s.push_back(interval_s * static_cast<double>(i));
+  recording.report.rows_read = recording.report.rows_kept = static_cast<int64_t>(rows);
+  recording.report.median_interval_s = interval_s;
+  return recording;
+}
+
+std::vector<std::string> kinds_of(const Diagnosis& d) {
+  std::vector<std::string> kinds;
+  for (const FoundEffect& effect : d.effects) kinds.push_back(effect.kind);
+  return kinds;
+}
+
+const FittedParameter& parameter(const Diagnosis& d, const std::string& kind,
+                                 const std::string& key) {
+  for (const FoundEffect& effect : d.effects) {
+    for (const FittedParameter& p : effect.parameters) {
+      if (effect.kind == kind && p.key == key) return p;
+    }
+  }
+  throw std::runtime_error(kind + "." + key + " was not found");
+}
+
+const char* const puck_toml =
+    "[platform]\ntopology = \"planar\"\n[sensors.position]\nnoise_m = 3e-4\n";
+
+// Down a slope under viscous drag: v → −g s/c exponentially, each axis by itself.
+Recording puck(double slope_x, double slope_y, double drag_1_s, uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, 3e-4);
+  Channel x{"x_m", {}}, y{"y_m", {}};
+  const auto way = [&](double t, double v, double slope) {
+    const double a = -standard_gravity_m_s2 * slope;
+    if (drag_1_s == 0.0) return v * t + 0.5 * a * t * t;
+    const double last = a / drag_1_s;
+    return last * t + (v - last) * (1.0 - std::exp(-drag_1_s * t)) / drag_1_s;
+  };
+  for (int i = 0; i < 800; ++i) {
+    const double t = 0.05 * i;
+    x.values.push_back(way(t, 0.3, slope_x) + noise(random));
+    y.values.push_back(way(t, 0.1, slope_y) + noise(random));
+  }
+  return recording_of(0.05, {x, y});
+}
+
+TEST(Pucks, TheSlopeOfTheTableAndTheDragAreFound) {
+  const Diagnosis d = diagnose(machine(puck_toml), {{"puck.csv", puck(1e-3, -2e-3, 0.04, 1)}}, {});
+  EXPECT_EQ(d.verdict, Verdict::missing_physics);
+  ASSERT_THAT(kinds_of(d), UnorderedElementsAre("table_slope", "sliding_drag"));
+  const FittedParameter& slope = parameter(d, "table_slope", "slope_rad");
+  EXPECT_NEAR(slope.value[0], 1e-3, 5.0 * slope.sigma[0]);
+  EXPECT_NEAR(slope.value[1], -2e-3, 5.0 * slope.sigma[1]);
+  EXPECT_LT(slope.sigma[0], 2e-5);
+  const FittedParameter& drag = parameter(d, "sliding_drag", "coefficient_kg_s");
+  EXPECT_NEAR(drag.value[0], 0.04, 5.0 * drag.sigma[0]);
+}
+
+TEST(Pucks, FreelyTheyAreConsistent) {
+  const Diagnosis d = diagnose(machine(puck_toml), {{"puck.csv", puck(0, 0, 0, 2)}}, {});
+  EXPECT_EQ(d.verdict, Verdict::consistent);
+  EXPECT_THAT(kinds_of(d), IsEmpty());
+}
+
+// A wall that it bounces off is a start anew, no force.
+TEST(Pucks, AWallIsNoForce) {
+  Recording free = puck(0, 0, 0, 3);
+  for (double& x : free.channels[0].values) {
+    if (x > 6.0) x = 12.0 - x;
+  }
+  const Diagnosis d = diagnose(machine(puck_toml), {{"puck.csv", free}}, {});
+  EXPECT_EQ(d.verdict, Verdict::consistent);
+}
+
+TEST(Pucks, AreGuessedByTheirColumns) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "puck.csv";
+  std::ofstream file(path);
+  file << "time (s),x (mm),y (mm)\n";
+  const Recording seen = puck(1e-3, 0, 0, 4);
+  for (size_t i = 0; i < seen.rows(); ++i) {
+    file << seen.time_s[i] << ',' << 1e3 * seen.channels[0].values[i] << ','
+         << 1e3 * seen.channels[1].values[i] << '\n';
+  }
+  file.close();
+  const std::string toml = guess_experiment({path}, path.parent_path());
+  EXPECT_THAT(toml, HasSubstr("topology = \"planar\""));
+  EXPECT_THAT(toml, HasSubstr("x_mm = \"x (mm)\""));
+  EXPECT_THAT(toml, HasSubstr("[sensors.position]"));
+}
+
+const char* const spacecraft_toml = R"([platform]
+topology = "one_axis"
+axis = "x"
+[environment.sun]
+date = "2015-04-27"
+pointing = { axis = "x", right_ascension_deg = 130, declination_deg = 17 }
+[sensors.angle]
+noise_arcsec = 0.1
+)";
+
+// A roll between firings under a torque per unit of inertia [rad/s²] that changes so slowly that it
+// is constant over a stretch, and shakes by a white torque besides; a start of its own each.
+template <typename Torque>
+Recording roll(const Torque& torque, double shaking, uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Channel angle{"roll_rad", {}}, thruster{"thruster", {}};
+  constexpr double step_s = 1800.0;
+  double roll_rad = 0.0, rate = 0.0;
+  for (int i = 0; i < 2400; ++i) {
+    const bool fires = i % 20 == 0;
+    if (fires) rate = -roll_rad / 36000.0 + 2e-9 * normal(random);
+    angle.values.push_back(roll_rad + 0.1 * arcsecond_rad * normal(random));
+    thruster.values.push_back(fires ? 1.0 : 0.0);
+    const double a = torque(step_s * (i + 0.5), roll_rad + 0.5 * rate * step_s);
+    roll_rad += rate * step_s + 0.5 * a * step_s * step_s;
+    rate += a * step_s + shaking * std::sqrt(step_s) * normal(random);
+  }
+  return recording_of(step_s, {angle, thruster});
+}
+
+// p s × a about x, of the same Sun: what the law is, tests/attitude holds against closed forms.
+double pressed(const Environment& environment, const Vec3& a_m3, double time_s, double roll_rad) {
+  const Vec3 sun = environment.sun->at(time_s)[0];
+  const double p = 1361.0 / 299792458.0 / sun.squaredNorm();
+  const Quat body_from_lab(Eigen::AngleAxisd(-roll_rad, Vec3::UnitX()));
+  return p * (body_from_lab * sun.normalized()).cross(a_m3).x();
+}
+
+TEST(Spacecraft, ThePressureOfTheSunIsNamedAndMeasured) {
+  const NominalModel model = machine(spacecraft_toml);
+  const Vec3 a_m3(0.0, 2e-7, 3e-8);
+  const Recording seen = roll(
+      [&](double t, double at) { return pressed(model.model.environment, a_m3, t, at); }, 0.0, 5);
+  const Diagnosis d = diagnose(model, {{"roll.csv", seen}}, {});
+  ASSERT_THAT(kinds_of(d), ElementsAre("radiation_pressure"));
+  const FittedParameter& a = parameter(d, "radiation_pressure", "area_moment_m3");
+  EXPECT_EQ(a.value[0], 0.0);  // along the axis it exerts nothing
+  for (size_t k = 1; k < 3; ++k) {
+    EXPECT_NEAR(a.value[k], a_m3[static_cast<Eigen::Index>(k)], 5.0 * a.sigma[k]);
+    EXPECT_LT(a.sigma[k], 2e-8);
+  }
+}
+
+}  // namespace
+}  // namespace photorque
