@@ -38,6 +38,9 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"tools/coupling/couple.cpp", {"orbit", "planet_light", "power_balance", "radiation_pressure"}},
     // The trade compares ways by the disturbances that they are.
     {"tools/supply/onboard.cpp", {"battery_discharge", "tether"}},
+    // A key of [environment.sun]: the path about the Sun.
+    {"attitude/environment/keys.cpp", {"orbit"}},
+    {"attitude/environment/sun.cpp", {"orbit"}},
     // A field of truth.json.
     {"tools/proof/files.cpp", {"gyro_bias"}},
 };
