@@ -107,6 +107,7 @@ struct Screening {
   Scan scan = Scan::nothing;
   bool fast = false;           // acts within averages of the readings: fitted to all of them
   bool per_recording = false;  // has another value after every switching on
+  bool steady = false;         // a torque that nothing changes, in the laboratory
   // By how much a fitted disturbance changes the platform's inertia, of which there is a limit to
   // what is credible; null: not at all.
   Mat3 (*inertia_change_kg_m2)(const Disturbance&) = nullptr;

@@ -63,6 +63,21 @@ double difference(const std::vector<ReadingAt>& x, size_t first, size_t order) {
   return sum / std::sqrt(squares);
 }
 
+// What readings differ by, and by how much those differences do: multiples of the last digit, and
+// the smaller ones of both where something moves steadily. Less than rounding leaves is none.
+void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) {
+  double largest = 0.0;
+  for (const ReadingAt& reading : x) largest = std::max(largest, std::abs(reading.value));
+  const double rounding = 1e-12 * largest;
+  for (size_t i = 1; i < x.size(); ++i) {
+    const double step = x[i].value - x[i - 1].value;
+    if (std::abs(step) > rounding) steps.push_back(std::abs(step));
+    if (i < 2) continue;
+    const double change = step - (x[i - 1].value - x[i - 2].value);
+    if (std::abs(change) > rounding) steps.push_back(std::abs(change));
+  }
+}
+
 double median(std::vector<double>& of) {
   const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
   std::nth_element(of.begin(), middle, of.end());
@@ -83,10 +98,7 @@ std::optional<double> reading_level(const std::vector<Observation>& runs, int ch
         sizes[order].push_back(one * std::abs(difference(x, i, order)));
       }
     }
-    for (size_t i = 1; i < x.size(); ++i) {
-      const double step = std::abs(x[i].value - x[i - 1].value);
-      if (step > 0.0) steps.push_back(step);
-    }
+    collect_steps(x, steps);
   }
   if (sizes[lowest_order].size() < fewest) return std::nullopt;
   // The median of |x| of a Gaussian is 0.6745 σ.

@@ -73,7 +73,7 @@ struct Recording {
 struct RecordingOptions {
   // Names in the file by the channel they stand for: {"gyro_x_rad_s", "wx"}. A channel may be named
   // in another unit of its kind ("gyro_x_deg_s"); it is converted and renamed.
-  std::map<std::string, std::string> columns;
+  std::map<std::string, std::string> columns = {};
   bool remove_outliers = true;
   std::string angle_sequence = {};  // of the recording
   // Largest number of cells that are kept, times included (8 bytes each).

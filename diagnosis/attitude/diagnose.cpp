@@ -221,6 +221,7 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);
   }
+  if (!answer.all.remark.empty() && !d.effects.empty()) d.warnings.push_back(answer.all.remark);
   d.instruments = data.instruments;
   for (InstrumentFinding& finding : clock_findings(stated.model.platform, data)) {
     d.warnings.insert(d.warnings.begin(), finding.text);

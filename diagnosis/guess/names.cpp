@@ -196,7 +196,7 @@ MeantQuantity quantity_of(const std::vector<std::string>& words) {
   }
   // A coordinate: x, or "pos_x", "puck x".
   if (is_one_of(axis, {"x", "y"}) &&
-      (words.size() == 1 || any("pos", "coord", "place", "puck", "cent"))) {
+      (words == std::vector<std::string>{axis} || any("pos", "coord", "place", "puck", "cent"))) {
     return {axis, "m"};
   }
   if (any("acc")) return {axis.empty() ? "" : "accel_" + axis, "m_s2"};

@@ -133,11 +133,12 @@ TEST(BiasHistory, IsSilentWhereAScaleIsFarOff) {
   }
 }
 
-// A pendulum of a quarter of a minute, five readings in a block: what is left about its motion is
-// noise (37 arcsec, 2e-4 rad, of one reading), not a part of the swing of 15 deg.
+// A pendulum of a quarter of a minute, five readings in a block: a parabola over h = 1.25 s to either
+// side of a swing A sin ωt (A = 0.3 rad, ω = 0.35 rad/s) misses its rate by A ω³ h²/10, so that the
+// curve is off by half a milliradian, beside 2e-4 rad of noise. Not by a part of the swing.
 TEST(KinematicRun, FollowsASwingInBlocksOfReadings) {
-  const auto bottom_heavy = [](const State& s) {
-    return 2e-2 * (s.lab_from_body.conjugate() * Vec3::UnitZ()).cross(Vec3::UnitZ()).eval();
+  const auto bottom_heavy = [](const State& s) -> Vec3 {
+    return 2e-2 * (s.lab_from_body.conjugate() * Vec3::UnitZ()).cross(Vec3::UnitZ());
   };
   Session session;
   session.interval_s = 0.05;
@@ -147,7 +148,7 @@ TEST(KinematicRun, FollowsASwingInBlocksOfReadings) {
   for (const KinematicSeries& series : run.axis) {
     double square = 0.0;
     for (const double angle : series.angle_rad) square += angle * angle;
-    EXPECT_LT(std::sqrt(square / static_cast<double>(series.blocks())), 3e-4);
+    EXPECT_LT(std::sqrt(square / static_cast<double>(series.blocks())), 1e-3);
   }
 }
 

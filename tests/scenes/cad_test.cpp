@@ -17,7 +17,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 
 const std::filesystem::path seeds =
-    std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "tests/fuzz/seeds/cad";
+    std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "tests/fuzz/seeds";
 
 GltfModel stl(const std::string& bytes, const CadConventions& how = {1.0}) {
   return read_cad_bytes(bytes, "part.stl", CadFormat::stl, how);
@@ -89,9 +89,9 @@ TEST(Stl, TetrahedronHasItsVolumeAndArea) {
 }
 
 TEST(Stl, TextAndBinaryOfOneBodyAreTheSame) {
-  const Extent binary = extent_of(read_cad(seeds / "tetrahedron_binary.stl", {1.0}).scene);
+  const Extent binary = extent_of(read_cad(seeds / "stl" / "tetrahedron_binary.stl", {1.0}).scene);
   // The text has a second solid: a triangle of base 11 and height 1 at z = 0.25.
-  const GltfModel text = read_cad(seeds / "tetrahedron_text.stl", {1.0});
+  const GltfModel text = read_cad(seeds / "stl" / "tetrahedron_text.stl", {1.0});
   ASSERT_EQ(text.scene.instances.size(), 2u);
   EXPECT_EQ(text.scene.instances[0].node, "tetra hedron");
   EXPECT_EQ(text.scene.instances[1].node, "tetrahedron_text");
@@ -114,7 +114,7 @@ TEST(Cad, AxesAndUnitsAreAsAsked) {
 }
 
 TEST(Obj, GroupsMaterialsAndIndicesAreRead) {
-  const GltfModel model = read_cad(seeds / "house.obj", {1.0});
+  const GltfModel model = read_cad(seeds / "obj" / "house.obj", {1.0});
   std::vector<std::pair<std::string, std::string>> parts;
   for (const Instance& instance : model.scene.instances) {
     parts.emplace_back(instance.path, instance.material);
@@ -247,7 +247,7 @@ std::string refusal_of_scene(const std::string& keys) {
   const std::string text = "[scene]\n" + keys +
                            "\n[[source]]\nkind = \"laser\"\npower_W = 1\nwavelength_nm = 730\n"
                            "waist_mm = 1\nposition_m = [0, 0, 9]\naim_m = [0, 0, 0]\n";
-  return refusal_of([&] { read_experiment_text(seeds / "lab.toml", text); });
+  return refusal_of([&] { read_experiment_text(seeds / "obj" / "lab.toml", text); });
 }
 
 TEST(Cad, ExperimentsSayTheUnit) {

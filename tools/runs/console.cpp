@@ -68,7 +68,9 @@ std::string show(double value) {
 std::string show(const Estimate& estimate, const std::string& unit) {
   const double error = estimate.standard_error;
   if (std::isinf(error)) return show(estimate.value) + " " + unit + " (undetermined)";
-  if (!(error > 0.0)) return show(estimate.value) + " " + unit;
+  // What rounding leaves of equal samples is no error.
+  const double rounding = 1e-12 * std::abs(estimate.value);
+  if (!(error > rounding)) return show(estimate.value) + " " + unit;
   // Two digits of the error decide how many of the value mean something.
   const int last = magnitude(error) - 1;
   const double largest = std::max(std::abs(estimate.value), error);

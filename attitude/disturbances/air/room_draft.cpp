@@ -37,7 +37,8 @@ DisturbanceKind room_draft_kind() {
           .screening = {.parametrisations =
                             {{"a steady draught exerts a torque that is constant in the laboratory",
                               {EffectKey::vector(torque_lab.name, 5e-6)}}},
-                        .needs = Requirement::laboratory},
+                        .needs = Requirement::laboratory,
+                        .steady = true},
           .injection = {.draw = injected::random_direction(torque_lab.name, 5e-6),
                         .torque = plain_torque,
                         .strength = torque_lab.name,

@@ -101,6 +101,20 @@ bool turns(const std::vector<Observation>& runs) {
   });
 }
 
+// Whether every run turns one way about `axis` all the time, and ever more slowly.
+bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
+  return std::all_of(runs.begin(), runs.end(), [&](const Observation& seen) {
+    std::vector<double> rate_rad_s;
+    for (size_t i = 0; i < seen.blocks(); ++i) {
+      const double read = axis.cwiseAbs2().dot(seen.gyro_rows[i]);
+      if (read > 0.0) rate_rad_s.push_back(axis.dot(seen.gyro_rad_s[i]));
+    }
+    if (rate_rad_s.empty()) return false;
+    const auto [least, most] = std::minmax_element(rate_rad_s.begin(), rate_rad_s.end());
+    return *least * *most > 0.0 && std::abs(rate_rad_s.back()) < std::abs(rate_rad_s.front());
+  });
+}
+
 // Whether a candidate of the size to be expected makes the motion depend on the attitude.
 bool needs_attitude(const Candidate& c, AttitudeModel model) {
   Disturbance acting = c.start;
@@ -185,6 +199,12 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     std::erase_if(all.list, [](const Candidate& c) {
       return c.variable == "heading" || c.variable == "tilt";
     });
+  }
+  // What rubs brakes with a steady torque as well, and its sign is known.
+  if (context.platform.turns_about_one_axis() && only_slows_down(runs, context.platform.axis) &&
+      std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; }) > 0) {
+    all.remark =
+        "it turns one way only: a torque that rubs cannot be told from any other that is steady";
   }
   // Nobody knows the attitude.
   if (nominal.model.holds_attitude) {

@@ -53,6 +53,7 @@ struct Candidates {
   std::vector<Candidate> list;
   Thresholds limits;
   double longest_run_s = 0.0;
+  std::string remark = {};  // on what is not tried, for whoever reads a name; empty: none
 
   const Candidate& operator[](size_t i) const { return list[i]; }
   size_t size() const { return list.size(); }

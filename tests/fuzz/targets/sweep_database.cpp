@@ -24,7 +24,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     RunDatabase database(path);
     for (const std::string& hash : database.failed()) database.find(hash);
     database.find("0123456789abcdef0123456789abcdef");
-    database.keep({.hash = "1", .command = "power", .program = "0", .outcome = {}});
+    RunRecord record;
+    record.hash = "1";
+    record.command = "power";
+    record.program = "0";
+    database.keep(record);
   });
   return 0;
 }
