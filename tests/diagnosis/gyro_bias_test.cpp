@@ -133,9 +133,10 @@ TEST(BiasHistory, IsSilentWhereAScaleIsFarOff) {
   }
 }
 
-// A pendulum of a quarter of a minute, five readings in a block: a parabola over h = 1.25 s to either
-// side of a swing A sin ωt (A = 0.3 rad, ω = 0.35 rad/s) misses its rate by A ω³ h²/10, so that the
-// curve is off by half a milliradian, beside 2e-4 rad of noise. Not by a part of the swing.
+// A pendulum of a quarter of a minute, five readings in a block: a parabola over h = 1.25 s to
+// either side of a swing A sin ωt (A = 0.3 rad, ω = 0.35 rad/s) misses its rate by A ω³ h²/10, so
+// that the curve is off by half a milliradian, beside 2e-4 rad of noise. Not by a part of the
+// swing.
 TEST(KinematicRun, FollowsASwingInBlocksOfReadings) {
   const auto bottom_heavy = [](const State& s) -> Vec3 {
     return 2e-2 * (s.lab_from_body.conjugate() * Vec3::UnitZ()).cross(Vec3::UnitZ());
