@@ -6,6 +6,7 @@
 
 #include "attitude/environment/epoch.h"
 #include "core/constants.h"
+#include "core/errors.h"
 
 namespace photorque {
 namespace {
@@ -129,6 +130,9 @@ std::array<Vec3, 2> SunPath::at(double time_s) const {
     slope[k] = rate;
   }
   const double length = value.norm();
+  if (!(length > 0.0)) {
+    throw NumericalError("environment.sun.table: no direction at " + std::to_string(time_s) + " s");
+  }
   const Vec3 unit = value / length;
   return {fixed_au_.norm() * unit, fixed_au_.norm() / length * (slope - unit * unit.dot(slope))};
 }

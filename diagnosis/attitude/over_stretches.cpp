@@ -14,7 +14,7 @@ namespace photorque {
 namespace {
 
 // Stretches are dealt out so many ways: each time one part is predicted from the others.
-constexpr size_t parts = 8;
+constexpr size_t parts = 5;
 
 struct Dealt {
   std::vector<Observation> train, held;

@@ -116,6 +116,8 @@ TEST(Sun, ComesFromATableToo) {
   EXPECT_NEAR(
       (sun - 2.0 * Vec3(std::cos(45.5 * degree_rad), std::sin(45.5 * degree_rad), 0)).norm(), 0.0,
       1e-5);
+  write_file_whole(path, "t_s,sun_x,sun_y,sun_z\n0,1,0,0\n1,0,0,0\n2,0,1,0\n");
+  EXPECT_THROW(sun_at("table = '" + path.string() + "'", 1.0), NumericalError);
   EXPECT_THROW(sun_at("direction = [1, 0, 0]\ndate = \"2020-01-01\""), InputError);
   EXPECT_THROW(sun_at("distance_au = 2"), InputError);
   EXPECT_THROW(sun_at("direction = [0, 0, 0]"), InputError);

@@ -1,6 +1,7 @@
 #include "tools/tasks/torque_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/constants.h"
@@ -66,6 +67,34 @@ class PowerTable {
   Table table_;
 };
 
+void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const Console& console) {
+  console.heading("Torque about the centre of rotation, body frame");
+  std::string names = "  tilt [deg]  heading [deg]";
+  for (const char* name : {"torque x", "torque y", "torque z"}) names += in_column(name);
+  console.line(names);
+  double largest_N_m = 0.0;
+  for (const Vec3& torque : wrenches.torque_body_N_m) {
+    largest_N_m = std::max(largest_N_m, torque.cwiseAbs().maxCoeff());
+  }
+  // Where everything cancels, rounding stays.
+  const auto rounded_N_m = [&](double x) { return std::abs(x) < 1e-13 * largest_N_m ? 0.0 : x; };
+  for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
+    for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
+      const size_t node = wrenches.node(h, t);
+      char angles[64];
+      std::snprintf(angles, sizeof angles, "  %10g  %13g", grid.tilt_rad[t] / degree_rad,
+                    grid.heading_rad[h] / degree_rad);
+      std::string line = angles;
+      for (int i = 0; i < 3; ++i) {
+        line += in_column(show(Estimate{rounded_N_m(wrenches.torque_body_N_m[node][i]),
+                                        rounded_N_m(wrenches.torque_error_N_m[node][i])},
+                               "N m"));
+      }
+      console.line(line);
+    }
+  }
+}
+
 TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<OpticalRun>& shared,
                                const NodeWatch& watch) {
   OpticalRun& run = *shared;
@@ -120,25 +149,7 @@ TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<Opt
     product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), "electric",
                                         "electric_power_over_tilt", "Electric power of the array"));
   }
-  console.heading("Torque about the centre of rotation, body frame");
-  std::string names = "  tilt [deg]  heading [deg]";
-  for (const char* name : {"torque x", "torque y", "torque z"}) names += in_column(name);
-  console.line(names);
-  for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
-    for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
-      const size_t node = wrenches.node(h, t);
-      char angles[64];
-      std::snprintf(angles, sizeof angles, "  %10g  %13g", grid.tilt_rad[t] / degree_rad,
-                    grid.heading_rad[h] / degree_rad);
-      std::string line = angles;
-      for (int i = 0; i < 3; ++i) {
-        line += in_column(
-            show(Estimate{wrenches.torque_body_N_m[node][i], wrenches.torque_error_N_m[node][i]},
-                 "N m"));
-      }
-      console.line(line);
-    }
-  }
+  print_torques(wrenches, grid, console);
   warnings.print(console);
   return {shared,
           std::move(wrenches),
