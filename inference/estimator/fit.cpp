@@ -183,10 +183,6 @@ class Fitter {
         continue;
       }
       now_ = std::move(tried);
-      if (is_last_step(now.sums.chi2 - at.sums.chi2, predicted_gain, damping, least_gain)) {
-        move_sums(step, std::move(at), now);
-        return Termination::converged;
-      }
       is_on_course = at.sums.chi2 < now.sums.chi2 - 0.25 * predicted_gain;
       damping = std::max(is_on_course ? damping * 0.1 : damping * 3.0, options_.min_damping);
       now = at_once ? std::move(at) : evaluate(model_, now_, {true, window});
@@ -199,26 +195,6 @@ class Fitter {
   static bool is_short(double predicted_gain) {
     constexpr double few_sigma = 3.0;
     return predicted_gain < few_sigma * few_sigma;
-  }
-
-  // Whether derivatives at its end would only say that nothing is left to gain. The fall of χ²
-  // along the step was foretold by a parabola. What it fell short of that is a cubic's part, and
-  // such a cubic leaves 9/4 of its square over the gain; other directions may have as much each. A
-  // step of a few standard errors leaves slopes and covariance as they are.
-  bool is_last_step(double gain, double predicted_gain, double damping, double least_gain) const {
-    constexpr double no_damping = 1e-3, of_cubic = 10.0;
-    if (options_.polish || damping > no_damping || !is_short(predicted_gain)) return false;
-    const double missed = predicted_gain - gain;
-    return of_cubic * missed * missed < least_gain * predicted_gain;
-  }
-
-  // `now` at the end of a step that was evaluated without derivatives: those before it, and what
-  // they foretell of the gradient.
-  static void move_sums(const Eigen::VectorXd& step, Evaluation&& at, Evaluation& now) {
-    const Eigen::VectorXd gradient = now.sums.gradient - now.sums.matrix * step;
-    at.sums.matrix = std::move(now.sums.matrix);
-    at.sums.gradient = gradient;
-    now = std::move(at);
   }
 
   // Takes a step untested, and others as long as each predicts to gain less than half of the last.

@@ -283,31 +283,6 @@ TEST(Options, ValuesOutsideTheirRangesAreRefused) {
 }
 
 // χ² = 100 + x²; slopes that claim twenty times too much make every step too short.
-// Of the mean of four readings 1, begun at its standard error's double: χ² falls by 4, as foretold.
-// With a curvature of the prediction it does not, and slopes are asked for again.
-TEST(Fit, AsksForNoSlopesWhereAShortStepWentAsForetold) {
-  const auto slopes_asked = [](double curvature, double& found) {
-    int asked = 0;
-    const ResidualModel model(
-        std::vector<Parameter>{{"mean", "m", 2.0}},
-        [&](const Eigen::VectorXd& values, Eigen::Index, Eigen::VectorXd& residuals,
-            Eigen::MatrixXd* slopes) {
-          const double off = values[0] - 1.0;
-          residuals = Eigen::VectorXd::Constant(4, -off * (1.0 + curvature * off));
-          if (slopes == nullptr) return;
-          ++asked;
-          *slopes = Eigen::MatrixXd::Constant(4, 1, 1.0 + 2.0 * curvature * off);
-        });
-    found = fit(model, model.start()).at[0];
-    return asked;
-  };
-  double found = 0.0;
-  EXPECT_EQ(slopes_asked(0.0, found), 1);
-  EXPECT_NEAR(found, 1.0, 1e-8);
-  EXPECT_GT(slopes_asked(0.2, found), 1);
-  EXPECT_NEAR(found, 1.0, 0.05);  // a tenth of its standard error
-}
-
 TEST(Fit, EndsWhereItFallsTooSlowlyToBeWorthIt) {
   const ResidualModel model({{"x", "", 100.0}},
                             [](const Eigen::VectorXd& at, Eigen::Index, Eigen::VectorXd& residuals,
