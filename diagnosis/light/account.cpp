@@ -323,6 +323,28 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
   return result;
 }
 
+std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer) {
+  std::vector<FittedParameter> refined;
+  const std::vector<LightPrior>& beliefs = answer.all.nominal.uncertain;
+  if (beliefs.empty()) return refined;
+  const LightTrial& chosen = answer.chosen();
+  const Eigen::MatrixXd covariance = chosen.fit.shared_posterior();
+  for (size_t i = 0; i < beliefs.size(); ++i) {
+    const LightPrior& b = beliefs[i];
+    if (refined.empty() || refined.back().key != b.key) {
+      refined.push_back({b.key, b.value, std::vector<double>(b.value.size(), 0.0)});
+    }
+    // No further beyond the end of its range than it was stated.
+    double errors = chosen.priors[i];
+    if (!(b.low.errors < 0.0)) errors = std::max(errors, 0.0);
+    if (!(b.high.errors > 0.0)) errors = std::min(errors, 0.0);
+    const auto k = static_cast<Eigen::Index>(i);
+    refined.back().value[b.component] += errors * b.sigma;
+    refined.back().sigma[b.component] = b.sigma * std::sqrt(std::max(0.0, covariance(k, k)));
+  }
+  return refined;
+}
+
 std::string light_sentence(const Diagnosis& d) {
   if (d.verdict == Verdict::consistent) {
     return "Nothing is missing: what differs is noise or lies within the stated uncertainty.";

@@ -27,6 +27,9 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
                                                  const LightCandidates& all,
                                                  const std::vector<FittedRun>& runs);
 
+// What was known to within an error, after the fit.
+std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer);
+
 std::string light_sentence(const Diagnosis& diagnosis);
 
 }  // namespace photorque

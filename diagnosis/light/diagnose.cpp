@@ -264,6 +264,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
     lead_with_chosen_law(answer, about, d.where.depends_on);
   }
   d.alternatives = light_alternatives(answer);
+  d.priors_refined = refined_light_beliefs(answer);
   d.chi2_per_sample_before = answer.trials.front().fit.chi2_per_sample();
   d.chi2_per_sample_after = answer.chosen().fit.chi2_per_sample();
   d.samples = answer.trials.front().fit.samples;

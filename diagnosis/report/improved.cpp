@@ -133,19 +133,42 @@ size_t end_of_value(const std::string& text, size_t from) {
   return text.size();
 }
 
-// The assignment of a key, perhaps in another unit, within the `number`-th [[disturbance]]; none
-// where the file says it in another way.
+// A key by the table that it stands in: "source[1].power_W", "attitude.tilt_deg".
+struct KeyPlace {
+  std::string table;  // "array.cell_override"
+  std::optional<size_t> number;
+  std::string key;
+};
+std::optional<KeyPlace> place_of(const std::string& path) {
+  static const std::regex place(R"(([A-Za-z0-9_.-]+?)(?:\[([0-9]+)\])?\.([A-Za-z0-9_-]+))");
+  std::smatch name;
+  if (!std::regex_match(path, name, place)) return std::nullopt;
+  KeyPlace at{name[1].str(), std::nullopt, name[3].str()};
+  if (name[2].matched) at.number = std::stoul(name[2].str());
+  return at;
+}
+
+// Where a table begins.
+std::regex header_of(const KeyPlace& place) {
+  const std::string name =
+      std::regex_replace(place.table, std::regex(R"(\.)"), R"([ \t]*\.[ \t]*)");
+  const std::string open = place.number ? R"(\[\[)" : R"(\[)",
+                    close = place.number ? R"(\]\])" : R"(\])";
+  return std::regex(R"((?:^|\n)[ \t]*)" + open + R"([ \t]*)" + name + R"([ \t]*)" + close);
+}
+
+// The assignment of a key, perhaps in another unit, within its table; none where the file says it
+// in another way.
 struct Assignment {
   size_t begin = 0, value = 0, end = 0;
 };
-std::optional<Assignment> find_assignment(const std::string& text, size_t number,
-                                          const std::string& key) {
-  static const std::regex header(R"((?:^|\n)[ \t]*\[\[[ \t]*disturbance[ \t]*\]\])");
+std::optional<Assignment> find_assignment(const std::string& text, const KeyPlace& place) {
   static const std::regex begin_of_line(R"([ \t]*(\[|([A-Za-z0-9_-]+)[ \t]*=))");
+  const std::regex header = header_of(place);
   auto table = std::sregex_iterator(text.begin(), text.end(), header);
-  for (size_t i = 0; i < number && table != std::sregex_iterator(); ++i) ++table;
+  for (size_t i = 0; i < place.number.value_or(0) && table != std::sregex_iterator(); ++i) ++table;
   if (table == std::sregex_iterator()) return std::nullopt;
-  const KeyUnit wanted = unit_of_key(key);
+  const KeyUnit wanted = unit_of_key(place.key);
   auto line = static_cast<size_t>(table->position() + table->length());
   while ((line = text.find('\n', line)) != std::string::npos) {
     ++line;
@@ -171,20 +194,17 @@ std::optional<Assignment> find_assignment(const std::string& text, size_t number
 // written they stay as comments. What is not found goes to `others`.
 std::string with_refined(std::string text, const std::vector<FittedParameter>& refined,
                          std::vector<FittedParameter>& others) {
-  static const std::regex place(R"(disturbance\[([0-9]+)\]\.(.+))");
   for (const FittedParameter& p : refined) {
-    std::smatch name;
+    const std::optional<KeyPlace> place = place_of(p.key);
     std::optional<Assignment> at;
-    if (std::regex_match(p.key, name, place)) {
-      at = find_assignment(text, std::stoul(name[1].str()), name[2].str());
-    }
+    if (place) at = find_assignment(text, *place);
     if (!at) {
       others.push_back(p);
       continue;
     }
     const std::string before = text.substr(at->begin, at->end - at->begin);
     text.replace(at->begin, at->end - at->begin,
-                 comment("before the fit: " + before) + name[2].str() + " = " + value_text(p));
+                 comment("before the fit: " + before) + place->key + " = " + value_text(p));
   }
   return text;
 }

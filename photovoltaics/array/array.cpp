@@ -34,7 +34,8 @@ struct PreparedArray {
   const ArrayDesign& design;
   CellCover cover;
   std::vector<double> area_m2;
-  std::vector<double> factor_A_W;  // per band, temperature included
+  std::vector<double> factor_A_W;   // per band, temperature included
+  std::vector<double> cell_factor;  // per cell, over that of a cell like the others
   CellTables tables;
 
   ArrayCurve curve(const std::vector<double>& photocurrents_A) const {
@@ -76,7 +77,7 @@ CellLight PreparedArray::light(const LightBins& bins) const {
     const double entering_W = power_W[i] * fraction[i];
     light.incident_W[cell] += power_W[i];
     light.entering_W[cell] += entering_W;
-    light.current_A[cell] += entering_W * factor_A_W[i % bands];
+    light.current_A[cell] += entering_W * factor_A_W[i % bands] * cell_factor[cell];
   }
   return light;
 }
@@ -94,7 +95,7 @@ PreparedArray prepare_light(const ArrayDesign& design, const ArrayLight& light,
     throw InputError({}, "array", std::to_string(responsivity_A_W.size()) + " responsivities",
                      "one per band");
   }
-  PreparedArray array{design, cover_of(design, light), {}, {}, {}};
+  PreparedArray array{design, cover_of(design, light), {}, {}, {}, {}};
   for (size_t i = 0; i < array.cover.cells(); ++i) {
     array.area_m2.push_back(array.cover.area_m2(i));
     if (!(array.area_m2.back() > 0)) {
@@ -105,6 +106,11 @@ PreparedArray prepare_light(const ArrayDesign& design, const ArrayLight& light,
   const double warmth = photocurrent_factor(design.cell, design.temperature_K);
   for (const double r : responsivity_A_W.first(static_cast<size_t>(light.bands))) {
     array.factor_A_W.push_back(r * warmth);
+  }
+  array.cell_factor.assign(array.cover.cells(), 1.0);
+  for (const CellOverride& one : design.overrides) {
+    array.cell_factor[static_cast<size_t>(one.index)] =
+        one.photocurrent_factor * photocurrent_factor(one.model, design.temperature_K) / warmth;
   }
   return array;
 }
@@ -202,17 +208,25 @@ LightBins mean_light(const ArrayLight& light) {
 CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_area_m2,
                        double largest_photocurrent_A) {
   std::vector<std::pair<double, std::shared_ptr<const DiodeVoltageTable>>> known;
+  const auto table_of = [&](const CellModel& model, double area_m2) {
+    const CellCurve curve(parameters_at(model, area_m2, design.temperature_K));
+    return std::make_shared<const DiodeVoltageTable>(curve,
+                                                     std::max(2.0 * largest_photocurrent_A, 1e-9));
+  };
   CellTables tables;
-  for (const double area_m2 : cell_area_m2) {
+  for (size_t i = 0; i < cell_area_m2.size(); ++i) {
+    const double area_m2 = cell_area_m2[i];
+    if (const CellOverride* one = design.override_of(i)) {
+      tables.push_back(table_of(one->model, area_m2));
+      continue;
+    }
     // Areas that differ by the rounding of a model's single numbers alone are one.
     constexpr double rounding = 1e-6;
     auto same = std::ranges::find_if(known, [&](const auto& pair) {
       return std::abs(pair.first - area_m2) <= rounding * area_m2;
     });
     if (same == known.end()) {
-      const CellCurve curve(parameters_at(design.cell, area_m2, design.temperature_K));
-      known.emplace_back(area_m2, std::make_shared<const DiodeVoltageTable>(
-                                      curve, std::max(2.0 * largest_photocurrent_A, 1e-9)));
+      known.emplace_back(area_m2, table_of(design.cell, area_m2));
       same = known.end() - 1;
     }
     tables.push_back(same->second);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace photorque {
 namespace {
@@ -140,13 +141,8 @@ ArrayWiring read_wiring(const Settings& array, const ArrayDesign& design) {
   return regular_wiring(design.columns, design.rows, options);
 }
 
-CellModel read_cell(const Settings& array) {
-  const std::vector<NamedCell> known = known_cells();
-  std::vector<std::string> names;
-  for (const NamedCell& cell : known) names.push_back(cell.name);
-  CellModel model = known[array.choice_or("cell", names, 1)].model;
-  if (!array.has("cell_parameters")) return model;
-  const Settings s = array.table("cell_parameters");
+// Single numbers of a cell replaced; they belong to its reference area, if that was stated.
+CellModel replaced(CellModel model, const Settings& s, bool area_is_stated) {
   CellParameters& p = model.reference;
   p.saturation_1_A = s.number_or("saturation_1_A", p.saturation_1_A, Range::not_negative());
   p.ideality_1 = s.number_or("ideality_1", p.ideality_1, Range::positive());
@@ -157,15 +153,12 @@ CellModel read_cell(const Settings& array) {
   p.breakdown_fraction = s.number_or("breakdown_fraction", p.breakdown_fraction, {0.0, 7.0});
   p.breakdown_V = s.number_or("breakdown_V", p.breakdown_V, {-1e308, 0.0, false, true});
   p.breakdown_exponent = s.number_or("breakdown_exponent", p.breakdown_exponent, {1.0, 1e3});
-  p.temperature_K = s.number_or("reference_temperature_K", p.temperature_K, Range::positive());
   model.gap_eV = s.number_or("gap_eV", model.gap_eV, Range::positive());
   model.gap_slope_1_K = s.number_or("gap_slope_per_K", model.gap_slope_1_K);
   model.photocurrent_slope_1_K =
       s.number_or("photocurrent_slope_per_K", model.photocurrent_slope_1_K);
-  model.reference_area_m2 =
-      s.number_or("reference_area_m2", model.reference_area_m2, Range::positive());
   for (const char* key : {"saturation_1_A", "saturation_2_A", "series_ohm", "shunt_ohm"}) {
-    if (!s.has(key) || s.has("reference_area_m2")) continue;
+    if (area_is_stated || !s.has(key)) continue;
     throw s.error("reference_area_m2", "nothing beside " + std::string(key),
                   "the area of the cell that it was found on");
   }
@@ -173,6 +166,52 @@ CellModel read_cell(const Settings& array) {
     throw s.error("saturation_1_A", "0 in both diodes", "a saturation current > 0 in one of them");
   }
   return model;
+}
+
+CellModel read_cell(const Settings& array) {
+  const std::vector<NamedCell> known = known_cells();
+  std::vector<std::string> names;
+  for (const NamedCell& cell : known) names.push_back(cell.name);
+  CellModel model = known[array.choice_or("cell", names, 1)].model;
+  if (!array.has("cell_parameters")) return model;
+  const Settings s = array.table("cell_parameters");
+  model.reference_area_m2 =
+      s.number_or("reference_area_m2", model.reference_area_m2, Range::positive());
+  model.reference.temperature_K =
+      s.number_or("reference_temperature_K", model.reference.temperature_K, Range::positive());
+  return replaced(model, s, s.has("reference_area_m2"));
+}
+
+// The same cell with its numbers stated for another area.
+CellModel stated_for(double area_m2, CellModel model) {
+  model.reference = parameters_at(model, area_m2, model.reference.temperature_K);
+  model.reference_area_m2 = area_m2;
+  return model;
+}
+
+// In the order of their cells.
+std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesign& design) {
+  std::vector<CellOverride> overrides;
+  if (!array.has("cell_override")) return overrides;
+  const bool area_of_others =
+      array.has("cell_parameters") && array.table("cell_parameters").has("reference_area_m2");
+  std::set<int> known;
+  for (const Settings& s : array.tables("cell_override")) {
+    CellOverride one;
+    one.index = static_cast<int>(s.integer("index", 0, design.cells() - 1));
+    if (!known.insert(one.index).second) {
+      throw s.error("index", std::to_string(one.index), "each cell at most once");
+    }
+    one.photocurrent_factor = s.number_or("photocurrent_factor", 1.0, Range::not_negative());
+    const bool own_area = s.has("reference_area_m2");
+    const CellModel others =
+        own_area ? stated_for(s.number("reference_area_m2", Range::positive()), design.cell)
+                 : design.cell;
+    one.model = replaced(others, s, own_area || area_of_others);
+    overrides.push_back(std::move(one));
+  }
+  std::ranges::sort(overrides, {}, &CellOverride::index);
+  return overrides;
 }
 
 QuantumEfficiency read_efficiency(const Settings& array) {
@@ -197,6 +236,12 @@ QuantumEfficiency read_efficiency(const Settings& array) {
 }
 
 }  // namespace
+
+const CellOverride* ArrayDesign::override_of(size_t cell) const {
+  const auto index = static_cast<int>(cell);
+  const auto found = std::ranges::lower_bound(overrides, index, {}, &CellOverride::index);
+  return found != overrides.end() && found->index == index ? &*found : nullptr;
+}
 
 ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options) {
   const std::vector<int> order = serpentine(columns, rows, options.along_columns);
@@ -231,6 +276,7 @@ ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> p
   design.temperature_K = array.number_or("temperature_K", design.temperature_K, {1.0, 1000.0});
   design.wiring = read_wiring(array, design);
   design.cell = read_cell(array);
+  design.overrides = read_overrides(array, design);
   design.efficiency = read_efficiency(array);
   if (array.has("cover")) design.front = read_cell_front(array.table("cover"));
   return design;

@@ -12,6 +12,13 @@
 
 namespace photorque {
 
+// A cell that is not like the others.
+struct CellOverride {
+  int index = 0;
+  CellModel model;
+  double photocurrent_factor = 1.0;  // of what its light would give
+};
+
 // The array on one receiver: where its cells lie, how they are wired, and what they are.
 struct ArrayDesign {
   int columns = 0;                   // cells along u of the receiver's grid
@@ -21,11 +28,14 @@ struct ArrayDesign {
   double margin_m = 0.0;
   ArrayWiring wiring;
   CellModel cell;
+  std::vector<CellOverride> overrides;  // in the order of their cells, each once at most
   double temperature_K = 298.15;
   QuantumEfficiency efficiency;
   std::optional<CellFront> front;  // over the surface's own optics
 
   int cells() const { return columns * rows; }
+  // What differs of a cell; null where nothing does.
+  const CellOverride* override_of(size_t cell) const;
 };
 
 // Regular wiring: the cells, taken serpentine-wise along columns (v) or rows (u) of the grid, are
@@ -66,11 +76,14 @@ ArrayWiring regular_wiring(int columns, int rows, const RegularWiring& options);
 //                            breakdown_V, breakdown_exponent, reference_temperature_K, gap_eV,
 //                            gap_slope_per_K, photocurrent_slope_per_K; and reference_area_m2, the
 //                            area all of them belong to
+//   [[array.cell_override]]  one cell that differs: index, photocurrent_factor (1), and the keys of
+//                            [array.cell_parameters] but the temperature; what is not given is that
+//                            of the other cells
 //   quantum_efficiency_peak = 0.95    of the default table for monocrystalline silicon, or
 //   [array.quantum_efficiency]        wavelength_m = […] (or _nm), efficiency = […]
 //   [array.cover]                     see read_cell_front()
 //
-// Throws InputError for values out of range, and for a wiring that names a cell twice.
+// Throws InputError for values out of range, and for a wiring or overrides that name a cell twice.
 ArrayDesign read_array_design(const Settings& array, std::optional<CellPlaces> places = {});
 
 }  // namespace photorque

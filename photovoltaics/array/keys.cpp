@@ -28,14 +28,11 @@ Key diode_key(const std::string& name, size_t usual, const std::string& what) {
                         usual, what);
 }
 
-std::vector<Key> cell_keys() {
-  const auto replaced = [](const char* name, Range range, const char* what) {
-    return Key::number(name, range, what).usually_is("that of `cell`");
+std::vector<Key> cell_keys(const char* usual) {
+  const auto replaced = [usual](const char* name, Range range, const char* what) {
+    return Key::number(name, range, what).usually_is(usual);
   };
-  return {replaced("reference_area_m2", Range::positive(),
-                   "the area that the others belong to; required beside currents and resistances"),
-          replaced("reference_temperature_K", Range::positive(), "and the temperature"),
-          replaced("saturation_1_A", Range::not_negative(), "I₁; not both I₁ and I₂ are 0"),
+  return {replaced("saturation_1_A", Range::not_negative(), "I₁; not both I₁ and I₂ are 0"),
           replaced("saturation_2_A", Range::not_negative(), "I₂"),
           replaced("ideality_1", Range::positive(), "n₁"),
           replaced("ideality_2", Range::positive(), "n₂"),
@@ -47,6 +44,30 @@ std::vector<Key> cell_keys() {
           replaced("gap_eV", Range::positive(), "E₀"),
           replaced("gap_slope_per_K", {}, "s in E = E₀ (1 + s (T − T₀))"),
           replaced("photocurrent_slope_per_K", {}, "fraction per kelvin; about 4e-4 in sunlight")};
+}
+
+std::vector<Key> all_cells_keys() {
+  constexpr const char* usual = "that of `cell`";
+  return joined(
+      {{Key::number("reference_area_m2", Range::positive(),
+                    "the area that the others belong to; required beside currents and resistances")
+            .usually_is(usual),
+        Key::number("reference_temperature_K", Range::positive(), "and the temperature")
+            .usually_is(usual)},
+       cell_keys(usual)});
+}
+
+std::vector<Key> one_cell_keys() {
+  constexpr const char* usual = "that of the others";
+  return joined(
+      {{Key::integer("index", 0, most_cells - 1, "row · columns + column").range_that_varies(),
+        Key::number_or("photocurrent_factor", 1.0, Range::not_negative(),
+                       "of what its light would give"),
+        Key::number("reference_area_m2", Range::positive(),
+                    "the area that the currents and resistances of this table belong to; "
+                    "required beside them where the others' is not stated")
+            .usually_is(usual)},
+       cell_keys(usual)});
 }
 
 std::vector<Key> cover_keys() {
@@ -126,7 +147,11 @@ std::vector<Key> array_design_keys() {
                        "temperature, and warmer cells (`[array.day]`, \"temperature +10 K\") leave "
                        "the diodes as they are"),
         Key::choice_or("cell", std::move(cells), 1, "what the cells are"),
-        Key::table("cell_parameters", cell_keys(), "single numbers of it replaced, for one area"),
+        Key::table("cell_parameters", all_cells_keys(),
+                   "single numbers of it replaced, for one area"),
+        Key::tables("cell_override", one_cell_keys(),
+                    "a cell that differs from the others; where cells are warmed (`[array.day]`, "
+                    "`supply`, \"temperature +10 K\") its photocurrent grows as theirs"),
         Key::number_or("quantum_efficiency_peak", 0.95, Range::fraction(),
                        "of the default shape, at 800 nm; or `[array.quantum_efficiency]`"),
         Key::table("quantum_efficiency",

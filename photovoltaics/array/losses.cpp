@@ -150,11 +150,18 @@ std::vector<ArraySensitivity> sensitivities(const ArrayDesign& design, const Arr
   add("light or quantum efficiency +1 %", 1.01, [](ArrayDesign&) {});
   add("light -10 %", 0.9, [](ArrayDesign&) {});
   add("temperature +10 K", 1.0, [](ArrayDesign& d) { d.temperature_K += 10.0; });
-  add("series resistance x 2", 1.0, [](ArrayDesign& d) { d.cell.reference.series_ohm *= 2.0; });
-  add("shunt resistance / 2", 1.0, [](ArrayDesign& d) { d.cell.reference.shunt_ohm /= 2.0; });
-  add("saturation currents x 2", 1.0, [](ArrayDesign& d) {
-    d.cell.reference.saturation_1_A *= 2.0;
-    d.cell.reference.saturation_2_A *= 2.0;
+  const auto add_of_cells = [&](const std::string& change,
+                                const std::function<void(CellParameters&)>& apply) {
+    add(change, 1.0, [&](ArrayDesign& d) {
+      apply(d.cell.reference);
+      for (CellOverride& one : d.overrides) apply(one.model.reference);
+    });
+  };
+  add_of_cells("series resistance x 2", [](CellParameters& p) { p.series_ohm *= 2.0; });
+  add_of_cells("shunt resistance / 2", [](CellParameters& p) { p.shunt_ohm /= 2.0; });
+  add_of_cells("saturation currents x 2", [](CellParameters& p) {
+    p.saturation_1_A *= 2.0;
+    p.saturation_2_A *= 2.0;
   });
   return all;
 }

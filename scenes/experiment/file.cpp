@@ -7,6 +7,7 @@
 #include "core/provenance.h"
 #include "scenes/experiment/experiment.h"
 #include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/uncertain.h"
 
 namespace photorque {
 namespace {
@@ -223,6 +224,7 @@ ExperimentFile read_experiment_text(const std::filesystem::path& path, const std
     apply_override(*root, assignment);
     file.inputs.emplace_back("--set " + assignment, content_hash(assignment));
   }
+  take_uncertainty(*root);
   file.settings = Settings(std::move(root));
   const Settings& settings = file.settings;
   if (settings.has("scene")) {

@@ -94,6 +94,43 @@ latitude_deg = 40
   EXPECT_THAT(text, HasSubstr("  # along\n"));
 }
 
+// Those of light: of the second source, of an override within the array, of the attitude.
+TEST(Improved, FindsNominalValuesOfLight) {
+  const std::string lamps = R"([[source]]
+power_W = { value = 3, sigma = 0.2 }
+[[source]]
+kind = "led"
+power_mW = { value = 4000, sigma = 200 }
+[array]
+receiver = "array"
+[[array.cell_override]]
+index = 2
+shunt_ohm = { value = 9, sigma = 2 }
+[ attitude ]
+tilt_deg = { value = 12, sigma = 0.5 }
+)";
+  Diagnosis d = sample_diagnosis();
+  d.effects.clear();
+  d.replay.reset();
+  d.priors_refined = {{"array.cell_override[0].shunt_ohm", {8.0}, {0.5}},
+                      {"attitude.tilt_deg", {12.25}, {0.125}},
+                      {"source[1].power_W", {3.75}, {0.0625}}};
+  const SettingsNode improved = parse_toml(improved_experiment(lamps, d, "."), "improved.toml");
+  const auto number = [&](const std::string& key) {
+    const SettingsNode* node = find_setting(improved, key);
+    EXPECT_NE(node, nullptr) << key;
+    if (node == nullptr) return 0.0;
+    const auto* whole = std::get_if<int64_t>(&node->value);
+    return whole != nullptr ? static_cast<double>(*whole) : std::get<double>(node->value);
+  };
+  EXPECT_EQ(number("source[0].power_W.value"), 3.0);
+  EXPECT_EQ(number("source[1].power_W.value"), 3.75);
+  EXPECT_EQ(number("source[1].power_W.sigma"), 0.0625);
+  EXPECT_EQ(number("array.cell_override[0].shunt_ohm.value"), 8.0);
+  EXPECT_EQ(number("attitude.tilt_deg.value"), 12.25);
+  EXPECT_EQ(find_setting(improved, "source[1].power_mW"), nullptr);
+}
+
 TEST(Improved, ActsWithTheFittedNumbersAndTheirErrors) {
   const std::string text = improved_experiment(written, sample_diagnosis(), ".");
   const AttitudeModel model = read_attitude_model(read(text)).model;

@@ -141,6 +141,26 @@ TEST(ProveLight, MakerAndProgramAgreeWhereTheTruthIsTold) {
   EXPECT_EQ(seen.size(), 3u);
 }
 
+// A cell that turns less light into current, as [[array.cell_override]] says it.
+TEST(ProveLight, MakerAndProgramAgreeOnACellThatIsOverridden) {
+  LightPlan plan;
+  plan.per_kind = 1;
+  plan.dirty_share = 0.0;
+  const auto& kinds = injected_light_kinds();
+  const auto index = static_cast<size_t>(std::ranges::find(kinds, "cell_degraded") - kinds.begin());
+  const LightCase c = draw_light_case(plan, index);
+  ASSERT_EQ(c.effects.at(0).kind, "cell_degraded");
+  const fs::path folder = fs::path(testing::TempDir()) / "cell_override";
+  write_light_case(c, folder);
+  std::ofstream(folder / "experiment.toml", std::ios::app)
+      << "\n[[array.cell_override]]\nindex = " << c.effects[0].index
+      << "\nphotocurrent_factor = " << c.effects[0].numbers.at("factor").at(0) << '\n';
+  std::set<LightRecording::Kind> seen;
+  expect_agreement(folder, "experiment.toml", seen);
+  EXPECT_FALSE(seen.empty());
+  fs::remove_all(folder);
+}
+
 // Light beside a state that is known, and rows of a scan that is known, are those found afresh.
 TEST(ProveLight, KnownLightIsThatFoundAfresh) {
   // A setting with a wall; drawing an effect that shows would take long.

@@ -57,6 +57,80 @@ TEST(PhotovoltaicArray, EvenLightGivesTheSumOfItsCells) {
   EXPECT_LT(result.efficiency.value, 0.5);
 }
 
+SettingsNode tables(std::initializer_list<SettingsNode::Table> all) {
+  SettingsNode node;
+  SettingsNode::Array array;
+  for (const SettingsNode::Table& table : all) {
+    SettingsNode one;
+    one.value = table;
+    array.push_back(one);
+  }
+  node.value = array;
+  return node;
+}
+
+// Two cells in series without diodes: at one current their voltages add up. The numbers that are
+// stated for the second belong to its area, 0.01 m², those that are not to any.
+TEST(PhotovoltaicArray, ACellThatDiffersHasItsOwnCircuit) {
+  SettingsNode::Table table = ten_by_ten();
+  SettingsNode size;
+  size.value = SettingsNode::Array{whole(2), whole(1)};
+  table["cells"] = size;
+  table["bypass"] = text("none");
+  table["cell_override"] = tables({{{"index", whole(1)},
+                                    {"photocurrent_factor", number(0.5)},
+                                    {"shunt_ohm", number(50.0)},
+                                    {"series_ohm", number(0.02)},
+                                    {"reference_area_m2", number(0.01)}}});
+  const ArrayDesign array = design(table);
+  const ArrayResult result =
+      evaluate(array, array_light(20, 20, 0.2, 0.1, std::vector<double>(400, 800.0)));
+  ASSERT_NEAR(result.cell_area_m2[1], 0.01, 1e-15);
+  const double light_A = responsivity_A_W * 800.0 * 0.01;
+  EXPECT_NEAR(result.cell_photocurrent_A[0], light_A, 1e-12);
+  EXPECT_NEAR(result.cell_photocurrent_A[1], 0.5 * light_A, 1e-12);
+  const CellParameters others = parameters_at(array.cell, 0.01, array.temperature_K);
+  CellParameters weak = others;
+  weak.shunt_ohm = 50.0;
+  weak.series_ohm = 0.02;
+  const CellCurve strong_curve(others), weak_curve(weak);
+  size_t points = 0;
+  for (const ArrayPoint& p : result.curve) {
+    const double volts = strong_curve.voltage_V(light_A, p.current_A) +
+                         weak_curve.voltage_V(0.5 * light_A, p.current_A);
+    EXPECT_NEAR(volts, p.voltage_V, 1e-8 * std::max(1.0, std::abs(volts)));
+    ++points;
+  }
+  EXPECT_GT(points, 20u);
+}
+
+TEST(PhotovoltaicArray, ACellWithoutPhotocurrentIsACellInTheDark) {
+  std::vector<double> irradiance(100, 1000.0);
+  SettingsNode::Table table = ten_by_ten();
+  table["bypass_every"] = whole(20);
+  SettingsNode::Table dead = table;
+  dead["cell_override"] = tables({{{"index", whole(81)}, {"photocurrent_factor", number(1.0)}},
+                                  {{"index", whole(37)}, {"photocurrent_factor", number(0.0)}}});
+  const double dead_W =
+      evaluate(design(dead), array_light(10, 10, 0.2, 0.2, irradiance)).power_W.value;
+  irradiance[37] = 0.0;
+  const double dark_W =
+      evaluate(design(table), array_light(10, 10, 0.2, 0.2, irradiance)).power_W.value;
+  EXPECT_NEAR(dead_W, dark_W, 1e-11 * dark_W);
+}
+
+TEST(PhotovoltaicArray, OverridesThatMeanNothingAreRefused) {
+  const auto refused = [](std::initializer_list<SettingsNode::Table> overrides) {
+    SettingsNode::Table table = ten_by_ten();
+    table["cell_override"] = tables(overrides);
+    EXPECT_THROW(design(table), InputError);
+  };
+  refused({{{"index", whole(7)}}, {{"index", whole(7)}}});
+  refused({{{"index", whole(100)}}});
+  // Of which area?
+  refused({{{"index", whole(7)}, {"shunt_ohm", number(10.0)}}});
+}
+
 TEST(PhotovoltaicArray, GapsAndMarginsLeaveTheirLightAside) {
   auto table = ten_by_ten();
   table["gap_mm"] = number(2.0);

@@ -1,6 +1,8 @@
 #include "tools/keys/registry.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include "attitude/camera/keys.h"
 #include "attitude/disturbances/kind.h"
@@ -39,14 +41,45 @@ Key effect_table() {
       "what a diagnosis found missing: the nominal model has it");
 }
 
+// Every number of the table, and of those in it, may have an error (scenes/experiment/uncertain.h).
+Key with_errors(Key key) {
+  const bool is_number = key.type == Key::Type::number || key.type == Key::Type::numbers ||
+                         key.type == Key::Type::vector;
+  key.has_error = key.has_error || is_number;
+  for (Key& inner : key.keys) inner = with_errors(std::move(inner));
+  for (Key::Choice& choice : key.choices) {
+    for (Key& inner : choice.keys) inner = with_errors(std::move(inner));
+  }
+  return key;
+}
+
+// What a diagnosis of light knows of an array; days, trackers and reports have no errors.
+Key with_errors_of_cells(Key array) {
+  static const std::set<std::string> known = {
+      "temperature_K", "bypass_diode", "blocking_diode",     "cell_parameters",
+      "cell_override", "cover",        "quantum_efficiency", "quantum_efficiency_peak"};
+  for (Key& key : array.keys) {
+    if (known.contains(key.name)) key = with_errors(std::move(key));
+  }
+  return array;
+}
+
+std::vector<Key> with_errors_of_lamps(std::vector<Key> tables) {
+  for (Key& table : tables) {
+    if (table.name == "source" || table.name == "attitude") table = with_errors(std::move(table));
+  }
+  return tables;
+}
+
 }  // namespace
 
 std::vector<Key> experiment_keys() {
   const std::vector<std::string> motion = {"budget",   "propagate", "balance", "diagnose",
                                            "estimate", "camera",    "serve",   "supply"};
   const std::vector<std::string> moves = {"propagate", "serve"};
-  return joined({scene_tables(),
-                 {array_table().read_by({"power", "torque-map", "propagate", "diagnose"}),
+  return joined({with_errors_of_lamps(scene_tables()),
+                 {with_errors_of_cells(array_table())
+                      .read_by({"power", "torque-map", "propagate", "diagnose"}),
                   published_table().read_by({"trace", "power"}),
                   effect_table().read_by({"trace", "power", "diagnose"}),
                   light_table().read_by(moves),

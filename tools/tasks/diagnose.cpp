@@ -6,8 +6,8 @@
 #include "core/files.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
+#include "diagnosis/light/beliefs.h"
 #include "diagnosis/light/diagnose.h"
-#include "diagnosis/light/written.h"
 #include "diagnosis/module/diagnose.h"
 #include "diagnosis/report/improved.h"
 #include "diagnosis/report/json.h"
@@ -66,12 +66,17 @@ DiagnosisRun diagnose_light_recordings(const RunOptions& options,
                                        const std::vector<fs::path>& holdout_paths,
                                        const Console& console) {
   const std::string text = options.experiment_text();
-  const Experiment experiment =
-      resolve_experiment(read_experiment_text(options.experiment, text, options.all_overrides()));
+  const auto reread = [&](const std::string& assignment) {
+    std::vector<std::string> overrides = options.all_overrides();
+    if (!assignment.empty()) overrides.push_back(assignment);
+    return resolve_experiment(read_experiment_text(options.experiment, text, overrides));
+  };
+  const Experiment experiment = reread("");
   Provenance provenance = build_provenance();
   provenance.inputs = experiment.inputs;
   const LightLab lab(experiment);
-  const LightState nominal = written_state(lab);
+  const LightBelief nominal =
+      light_belief(lab, uncertain_keys(options.experiment, text, options.all_overrides()), reread);
   const UsualCircumstances usual{experiment.lab_from_body.rotation,
                                  lab.has_array() ? lab.design().temperature_K : 298.15};
   std::vector<LightRecording> recordings = read_light(paths, usual, provenance),
@@ -80,7 +85,7 @@ DiagnosisRun diagnose_light_recordings(const RunOptions& options,
   how.threads = options.threads;
   how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
   Diagnosis diagnosis =
-      diagnose_light(lab, LightBelief{nominal}, std::move(recordings), std::move(holdouts), how);
+      diagnose_light(lab, nominal, std::move(recordings), std::move(holdouts), how);
   return {std::move(diagnosis), std::move(provenance), options.experiment, text, true};
 }
 

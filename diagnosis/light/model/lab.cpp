@@ -208,6 +208,9 @@ void LightLab::read_array() {
   }
   responsivity_A_W_ /= all_W;
   place_cells();
+  for (const CellOverride& one : design_->overrides) {
+    cells_[static_cast<size_t>(one.index)].photocurrent_factor = one.photocurrent_factor;
+  }
 }
 
 void LightLab::place_cells() {
@@ -305,7 +308,8 @@ double LightLab::narrowest_edge_m() const {
 std::vector<const CellModel*> LightLab::models() const {
   std::vector<const CellModel*> models;
   for (size_t i = 0; i < cells_.size(); ++i) {
-    models.push_back(&design_->cell);
+    const CellOverride* one = design_->override_of(i);
+    models.push_back(one != nullptr ? &one->model : &design_->cell);
   }
   return models;
 }

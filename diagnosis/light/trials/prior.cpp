@@ -11,8 +11,9 @@ Eigen::MatrixXd slopes_by_priors(const LightRun& run, const std::vector<LightPri
                            nullptr);
   };
   for (size_t k = 0; k < priors.size(); ++k) {
+    const LightPrior::Side &low = priors[k].low, &high = priors[k].high;
     slopes.col(static_cast<Eigen::Index>(k)) =
-        (residuals(priors[k].low) - residuals(priors[k].high)) / (2.0 * LightPrior::part);
+        (residuals(low) - residuals(high)) / (high.errors - low.errors);
   }
   return slopes;
 }

@@ -2,7 +2,8 @@
 //
 // Each is a nuisance p of every trial, in units of its error, with a Gaussian prior of width 1. The
 // recordings move with it as a difference says, between a tenth of its error more and less: the
-// experiment is read again with either.
+// experiment is read again with either. Where it bears only one of them (a quantum efficiency of
+// 1), the other side is the number itself.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,14 +16,15 @@
 namespace photorque {
 
 struct LightPrior {
-  std::string key;                       // "source[0].power_W"
-  double value = 0.0, sigma = 1.0;       // in its unit, before anything is fitted
-  size_t component = 0, components = 1;  // of an array
-  // With a part of the error less and more.
+  std::string key;            // "source[0].power_W"
+  std::vector<double> value;  // all of the key, in its unit, before anything is fitted
+  size_t component = 0;       // the one of them that this is about
+  double sigma = 1.0;         // of that
   static constexpr double part = 0.1;
   struct Side {
     std::shared_ptr<const LightLab> lab;
     LightState state;
+    double errors = 0.0;  // how many of them away: −part, part, or 0
   };
   Side low, high;
 };

@@ -1,0 +1,68 @@
+#include "diagnosis/light/beliefs.h"
+
+#include <optional>
+
+#include "core/errors.h"
+#include "diagnosis/light/written.h"
+#include "scenes/experiment/toml_writer.h"
+
+namespace photorque {
+namespace {
+
+// A lab with the experiment that it refers to.
+struct OwnedLab {
+  Experiment experiment;
+  LightLab lab;
+  explicit OwnedLab(Experiment read) : experiment(std::move(read)), lab(experiment) {}
+};
+
+LightPrior::Side side_of(Experiment experiment, double errors) {
+  const auto owned = std::make_shared<const OwnedLab>(std::move(experiment));
+  return {std::shared_ptr<const LightLab>(owned, &owned->lab), written_state(owned->lab), errors};
+}
+
+std::string assignment_of(const UncertainKey& key, const std::vector<double>& values) {
+  SettingsNode node{values.front(), {}};
+  if (key.is_array) {
+    SettingsNode::Array all;
+    for (const double v : values) all.push_back({v, {}});
+    node.value = std::move(all);
+  }
+  return key.path + "=" + toml_value(node);
+}
+
+LightPrior prior_of(const UncertainKey& key, size_t component, const LightPrior::Side& itself,
+                    const std::function<Experiment(const std::string&)>& reread) {
+  std::optional<InputError> refused;
+  const auto side = [&](double errors) {
+    std::vector<double> values = key.value;
+    values[component] += errors * key.sigma[component];
+    try {
+      return side_of(reread(assignment_of(key, values)), errors);
+    } catch (const InputError& error) {
+      // A number at the end of its range; of what can be no other at all it is the first message.
+      if (refused) throw *refused;
+      refused = error;
+      return itself;
+    }
+  };
+  LightPrior::Side low = side(-LightPrior::part), high = side(LightPrior::part);
+  return {key.path, key.value, component, key.sigma[component], std::move(low), std::move(high)};
+}
+
+}  // namespace
+
+LightBelief light_belief(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
+                         const std::function<Experiment(const std::string&)>& reread) {
+  LightBelief belief{written_state(lab), {}};
+  const LightPrior::Side itself{std::shared_ptr<const LightLab>(std::shared_ptr<void>(), &lab),
+                                belief.state, 0.0};
+  for (const UncertainKey& key : uncertain) {
+    for (size_t i = 0; i < key.value.size(); ++i) {
+      if (key.sigma[i] > 0.0) belief.uncertain.push_back(prior_of(key, i, itself, reread));
+    }
+  }
+  return belief;
+}
+
+}  // namespace photorque

@@ -1,0 +1,131 @@
+// What an experiment knows of light and power to within an error. The recordings are those of the
+// maker of `prove`, which shares nothing with the program.
+#include "diagnosis/light/beliefs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "diagnosis/light/diagnose.h"
+#include "tools/proof/light/files.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace injected;
+
+// Scans under lamps that shine by a factor more than is stated.
+class LightBeliefs : public testing::Test {
+ protected:
+  static constexpr double brighter = 0.97;
+
+  void SetUp() override {
+    c_.seed = 29;
+    RandomDraw draw(c_.seed, 1);
+    draw_light_setting(draw, c_, {"detector_gain"});
+    c_.effects = {{"source_power", -1, {{"factor", {brighter}}}}};
+    c_.verdict = "missing_physics";
+    folder_ = fs::path(testing::TempDir()) /
+              testing::UnitTest::GetInstance()->current_test_info()->name();
+    write_light_case(c_, folder_);
+    text_ = read_file(folder_ / "experiment.toml");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // What the expression finds, written anew.
+  void rewrite(const char* expression, const std::string& format) {
+    const std::string before = text_;
+    text_ = std::regex_replace(text_, std::regex(expression), format);
+    ASSERT_NE(text_, before);
+  }
+  // Every power known to within 5 %.
+  void doubt_powers() {
+    const double power_W = c_.believed.light.lamps.front().power_W;
+    rewrite("power_W = ([0-9.]+)",
+            "power_W = { value = $1, sigma = " + std::to_string(0.05 * power_W) + " }");
+  }
+  Experiment read(const std::string& assignment) const {
+    std::vector<std::string> overrides;
+    if (!assignment.empty()) overrides.push_back(assignment);
+    return resolve_experiment(read_experiment_text(folder_ / "experiment.toml", text_, overrides));
+  }
+  LightBelief belief(const LightLab& lab) const {
+    return light_belief(lab, uncertain_keys(folder_ / "experiment.toml", text_, {}),
+                        [this](const std::string& more) { return read(more); });
+  }
+  LightRecording recording(const char* name) const {
+    return read_light_recording(folder_ / name, {Quat::Identity(), 298.15});
+  }
+  Diagnosis diagnosed() const {
+    const Experiment experiment = read("");
+    const LightLab lab(experiment);
+    return diagnose_light(lab, belief(lab), {recording("scan1.csv.gz")},
+                          {recording("scan2.csv.gz")});
+  }
+
+  LightCase c_;
+  fs::path folder_;
+  std::string text_;
+};
+
+// Light is proportional to power: an error of 5 % in all powers moves every reading by 5 % of
+// itself.
+TEST_F(LightBeliefs, LightMovesAsThePowerDoes) {
+  doubt_powers();
+  const Experiment experiment = read("");
+  const LightLab lab(experiment);
+  const LightBelief known = belief(lab);
+  ASSERT_FALSE(known.uncertain.empty());
+  const LightRun run(lab, recording("scan1.csv.gz"));
+  const Eigen::VectorXd moved = slopes_by_priors(run, known.uncertain).rowwise().sum();
+  const std::vector<double> light = run.signals(known.state, run.fields(known.state, nullptr));
+  ASSERT_EQ(static_cast<size_t>(moved.size()), light.size());
+  for (size_t i = 0; i < light.size(); ++i) {
+    const double expected = 0.05 * light[i] / run.row_noise(i);
+    EXPECT_NEAR(moved[static_cast<Eigen::Index>(i)], expected, 1e-5 * (1.0 + expected));
+  }
+}
+
+TEST_F(LightBeliefs, PowerWithinItsErrorIsNoEffect) {
+  const double stated_W = c_.believed.light.lamps.front().power_W;
+  const Diagnosis certain = diagnosed();
+  ASSERT_EQ(certain.verdict, Verdict::missing_physics);
+  ASSERT_EQ(certain.effects.size(), 1u);
+  EXPECT_TRUE(certain.priors_refined.empty());
+  doubt_powers();
+  const Diagnosis uncertain = diagnosed();
+  EXPECT_EQ(uncertain.verdict, Verdict::consistent);
+  ASSERT_EQ(uncertain.priors_refined.size(), 1u);
+  const FittedParameter& power = uncertain.priors_refined[0];
+  EXPECT_EQ(power.key, "source[0].power_W");
+  EXPECT_NEAR(power.value.at(0), brighter * stated_W, 4.0 * power.sigma.at(0));
+  EXPECT_LT(power.sigma.at(0), 0.01 * stated_W);
+  EXPECT_GT(power.sigma.at(0), 0.0);
+}
+
+// A quantum efficiency of 1 is at the end of its range; a number of cells is known or is not.
+TEST_F(LightBeliefs, NumbersAtTheEndOfTheirRange) {
+  rewrite("efficiency = [^\n]+", "efficiency = { value = [1, 1], sigma = [0, 0.02] }");
+  {
+    const Experiment experiment = read("");
+    const LightLab lab(experiment);
+    const LightBelief known = belief(lab);
+    ASSERT_EQ(known.uncertain.size(), 1u);
+    EXPECT_EQ(known.uncertain[0].component, 1u);
+    EXPECT_EQ(known.uncertain[0].value, (std::vector<double>{1.0, 1.0}));
+    EXPECT_EQ(known.uncertain[0].low.errors, -LightPrior::part);
+    EXPECT_EQ(known.uncertain[0].high.errors, 0.0);
+  }
+  rewrite("bypass_every = ([0-9]+)", "bypass_every = { value = $1, sigma = 1 }");
+  const Experiment experiment = read("");
+  const LightLab lab(experiment);
+  EXPECT_THROW(belief(lab), InputError);
+}
+
+}  // namespace
+}  // namespace photorque
