@@ -42,7 +42,8 @@ if [[ "${1:-}" == "--options" ]]; then
   touches() { objdump -d "$1/hardened" | grep -qE 'or[ql]? +[$]0x0,.*[(]%rsp[)]'; }
   touches "$place/ON"
   if touches "$place/OFF"; then exit 1; fi
-  "$place/ON/hardened" >/dev/null 2>&1 && exit 1 # its own path does not fit into the buffer
+  # Its own path does not fit into the buffer.
+  if ("$place/ON/hardened" || exit 1) >/dev/null 2>&1; then exit 1; fi
   exit 0
 fi
 
