@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "attitude/estimation/whitening.h"
+#include "attitude/propagation/sampling.h"
 #include "core/errors.h"
 
 namespace photorque {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "attitude/propagation/settling.h"
+#include "core/snapshots/snapshot.h"
 
 namespace photorque {
 namespace {
@@ -222,6 +223,12 @@ void CollocationStep::dense(const Lanes& fraction, Lanes* y) const {
   for (size_t c = 0; c < y_.size(); ++c) {
     y[c] = y_[c] + (carry_[c] + gauss::times(polynomial, increments_[c]));
   }
+}
+
+void CollocationStep::keep(Snapshot& snapshot) {
+  snapshot(time_s_, h_s_, is_stiff_, stiffness_, has_polynomial_, accepted_h_s_);
+  for (std::vector<double>* values : {&y_, &carry_}) snapshot.fixed(*values);
+  for (std::vector<Lanes>* values : {&increments_, &accepted_increments_}) snapshot.fixed(*values);
 }
 
 }  // namespace photorque

@@ -20,6 +20,8 @@
 
 namespace photorque {
 
+class Snapshot;  // core/snapshots/snapshot.h
+
 class CollocationStep {
  public:
   // Starts at `y` (Dynamics::size() components). `dynamics` must outlive the step.
@@ -61,6 +63,9 @@ class CollocationStep {
   // The polynomial at fractions θ ∈ [0, 1] of the attempted step; `y` receives size() components.
   // Valid until accept().
   void dense(const Lanes& fraction, Lanes* y) const;
+
+  // After an attempt, without its stages.
+  void keep(Snapshot& snapshot);
 
  private:
   double estimate_error() const;

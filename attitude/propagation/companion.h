@@ -22,6 +22,8 @@ struct Companion {
   // Up to known_until_s().
   std::function<CompanionPower(double time_s)> at;
   std::function<double()> known_until_s;
+  // Its own state, of a companion that can be gone on with.
+  std::function<void(Snapshot& snapshot)> keep = {};
 };
 
 }  // namespace photorque

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "attitude/propagation/sampling.h"
 #include "core/errors.h"
+#include "core/snapshots/snapshot.h"
 
 namespace photorque {
 namespace {
@@ -342,78 +344,15 @@ double Propagator::locate(const EventFunction& event, double low_s, double high_
   return high_s;
 }
 
-size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
-              const std::function<void(const Samples&)>& sink,
-              const std::function<void()>& after_step) {
-  const size_t n = static_cast<size_t>(propagator.dynamics().size());
-  const bool with_derivatives = propagator.sensitivity().has_value();
-  std::vector<Lanes> y(n);
-  std::vector<Lanes> derivatives(with_derivatives ? n * propagator.sensitivity()->variables().size()
-                                                  : 0);
-  Samples samples{.time_s = 0.0, .held = {}, .y = y, .derivatives = derivatives};
-
-  const auto flush = [&] {
-    if (samples.count == 0) return;
-    const int last = samples.count - 1;
-    const auto repeat = [&](Lanes& x) {
-      for (int i = samples.count; i < Lanes::count; ++i) x.set(i, x[last]);
-    };
-    repeat(samples.time_s);
-    for (Lanes& x : samples.y) repeat(x);
-    for (Lanes& x : samples.derivatives) repeat(x);
-    for (int i = samples.count; i < Lanes::count; ++i) {
-      samples.held[static_cast<size_t>(i)] = samples.held[static_cast<size_t>(last)];
-    }
-    sink(samples);
-    samples.first += static_cast<size_t>(samples.count);
-    samples.count = 0;
-  };
-
-  // Times within one step share one evaluation of the polynomial; the lanes are then filed singly,
-  // because a batch may span several short steps.
-  const auto take = [&](size_t next, double end_s, bool including_end) {
-    const auto inside = [&](double t_s) { return including_end ? t_s <= end_s : t_s < end_s; };
-    while (next < count && inside(time_s(next))) {
-      Lanes times_s = time_s(next);
-      int batch = 0;
-      for (; batch < Lanes::count - samples.count && next < count && inside(time_s(next));
-           ++batch) {
-        times_s.set(batch, time_s(next++));
-      }
-      // Eight at once are no others than those asked for next.
-      const bool is_whole = batch == Lanes::count;
-      propagator.dense(times_s, is_whole ? samples.y.data() : y.data());
-      if (with_derivatives) {
-        propagator.dense_derivatives(times_s,
-                                     is_whole ? samples.derivatives.data() : derivatives.data());
-      }
-      if (is_whole) {
-        samples.time_s = times_s;
-        samples.held.fill(propagator.held());
-        samples.count = batch;
-      }
-      for (int i = 0; i < batch && !is_whole; ++i) {
-        const int lane = samples.count++;
-        samples.time_s.set(lane, times_s[i]);
-        samples.held[static_cast<size_t>(lane)] = propagator.held();
-        for (size_t c = 0; c < y.size(); ++c) samples.y[c].set(lane, y[c][i]);
-        for (size_t c = 0; c < derivatives.size(); ++c) {
-          samples.derivatives[c].set(lane, derivatives[c][i]);
-        }
-      }
-      if (samples.count == Lanes::count) flush();
-    }
-    return next;
-  };
-
-  size_t next = 0;
-  while (propagator.advance()) {
-    if (after_step) after_step();
-    next = take(next, propagator.step_end_s(), false);
-  }
-  next = take(next, propagator.step_end_s(), true);
-  flush();
-  return next;
+void Propagator::keep(Snapshot& snapshot) {
+  snapshot(step_);
+  snapshot.each(events_, [&](Event& event) { snapshot(event.name, event.time_s, event.rising); });
+  snapshot.fixed(event_values_);
+  snapshot.expect(jumps_.size());
+  snapshot.at_most(next_jump_, jumps_.size());
+  snapshot(held_, stop_s_, drive_, drive_is_new_);
+  snapshot(h_s_, ceiling_s_, is_ceiling_of_state_, is_stiff_, held_back_);
+  snapshot(step_end_s_, has_step_, ended_by_event_, statistics_);
 }
 
 Trajectory propagate(const Dynamics& dynamics, const PlatformState& initial,

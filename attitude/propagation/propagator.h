@@ -18,6 +18,8 @@
 
 namespace photorque {
 
+class Snapshot;  // core/snapshots/snapshot.h
+
 struct PropagationOptions {
   // Bound on the estimated error of the polynomial within a step, relative to Dynamics::scales(): 1
   // rad, 1 rad/s. The dense output is some ten times better, and the ends of steps, whose errors
@@ -103,6 +105,9 @@ class Propagator {
   };
   const Statistics& statistics() const { return statistics_; }
 
+  // After a step, of a propagator without variables and commander.
+  void keep(Snapshot& snapshot);
+
  private:
   struct Jump {
     double time_s;
@@ -170,23 +175,5 @@ Trajectory propagate(const Dynamics& dynamics, const PlatformState& initial,
                      std::span<const double> times_s, const PropagationOptions& options = {},
                      const std::vector<Variable>& variables = {},
                      const std::vector<EventFunction>& events = {});
-
-// Up to eight states on their way to a user, in lanes; lanes from `count` on repeat the last.
-struct Samples {
-  size_t first = 0;  // index of lane 0 among the times asked for
-  int count = 0;
-  Lanes time_s;
-  std::array<ZeroOrderHold, Lanes::count> held;
-  std::vector<Lanes> y;  // Dynamics::size()
-  std::vector<Lanes>
-      derivatives;  // of y, as Propagator::dense_derivatives; empty without variables
-};
-// Calls `sink` with the states at time_s(0), time_s(1), …, time_s(count − 1), which must not fall,
-// as the propagator passes them. Uses the same memory however many there are. At a jump the values
-// after it are given. `after_step` is called after every step, before its states are handed out.
-// Returns the number of times reached before the run ended.
-size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
-              const std::function<void(const Samples&)>& sink,
-              const std::function<void()>& after_step = {});
 
 }  // namespace photorque

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <optional>
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/environment/epoch.h"
 #include "attitude/propagation/place.h"
-#include "attitude/propagation/time_history.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -92,107 +90,6 @@ Quat read_initial_attitude(const Settings& settings) {
                          "a quaternion of unit norm");
   }
   return attitude.normalized();
-}
-
-std::vector<EventFunction> events_of(const Dynamics& dynamics, bool has_companion) {
-  const Platform& platform = dynamics.model().platform;
-  std::vector<EventFunction> events;
-  if (platform.tilt_limit_rad) events.push_back(tilt_event(*platform.tilt_limit_rad));
-  if (platform.battery_capacity_C && !has_companion) {
-    events.push_back(battery_empty_event(*platform.battery_capacity_C));
-    // The platform turns on without power.
-    events.back().ends_run = false;
-  }
-  for (const Disturbance& d : dynamics.model().disturbances) {
-    const DisturbanceKind* kind = find_kind(d.kind);
-    if (kind != nullptr && kind->has_eclipses) events.push_back(eclipse_event(dynamics));
-  }
-  return events;
-}
-
-struct Seen {
-  const PropagationRun& run;
-  double time_s(size_t row) const {
-    return run.initial.time_s + static_cast<double>(row) / run.output_rate_Hz;
-  }
-  size_t rows() const {
-    return static_cast<size_t>(std::floor(run.duration_s * run.output_rate_Hz + 1e-6)) + 1;
-  }
-};
-
-double camera_delay_s(const Dynamics& dynamics, const PlatformState& state) {
-  std::vector<Lanes> y;
-  for (const double x : to_vector(state)) y.emplace_back(x);
-  return dynamics.at(state.time_s, {}, y.data()).camera_delay_s[0];
-}
-
-// The times at which a run is looked at: its rows and, for a camera with latency, what it sees in
-// them. In order; of two equal times what is seen comes first. What lies before the start is looked
-// at there, `before_s` too late.
-struct Look {
-  double time_s;
-  bool is_row;
-  double before_s = 0.0;
-};
-std::vector<Look> looks(const PropagationRun& run, double delay_s) {
-  const Seen seen{run};
-  std::vector<Look> all;
-  size_t next_seen = 0;
-  for (size_t row = 0; row < seen.rows(); ++row) {
-    const double time_s = seen.time_s(row);
-    for (; delay_s > 0.0 && next_seen < seen.rows(); ++next_seen) {
-      const double wanted_s = seen.time_s(next_seen) - delay_s;
-      const double seen_s = std::max(run.initial.time_s, wanted_s);
-      if (seen_s > time_s) break;
-      all.push_back({seen_s, false, seen_s - wanted_s});
-    }
-    all.push_back({time_s, true});
-  }
-  return all;
-}
-
-// sample() with a companion: states are handed on when it knows what it did until then.
-void sample_beside(Propagator& propagator, size_t count,
-                   const std::function<double(size_t)>& time_s, const Companion& companion,
-                   const std::function<void(const Samples&)>& sink,
-                   const std::function<void()>& after_step) {
-  std::deque<Samples> waiting;
-  const auto hand_on = [&] {
-    for (; !waiting.empty(); waiting.pop_front()) {
-      const Samples& first = waiting.front();
-      if (first.time_s[first.count - 1] > companion.known_until_s()) return;
-      sink(first);
-    }
-  };
-  companion.follow(propagator);
-  sample(
-      propagator, count, time_s,
-      [&](const Samples& samples) {
-        waiting.push_back(samples);
-        hand_on();
-      },
-      [&] {
-        companion.follow(propagator);
-        if (after_step) after_step();
-        hand_on();
-      });
-  for (const Samples& samples : waiting) sink(samples);
-}
-
-// Reads the instruments at a tick and asks the run's commander.
-Propagator::Commander live_commander(const PropagationRun& run, const Propagator& propagator,
-                                     LiveInstruments& instruments, const Companion* companion) {
-  return [&run, &propagator, &instruments, companion](double time_s, std::span<const double> y) {
-    std::optional<CompanionPower> power;
-    if (companion != nullptr) {
-      power = companion->at(std::min(time_s, companion->known_until_s()));
-    }
-    return run.commander(instruments.read(time_s, y, propagator.held(), power));
-  };
-}
-
-Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
-  return {v[0][lane], v[1][lane], v[2][lane]};
 }
 
 }  // namespace
@@ -307,80 +204,6 @@ PropagationRun read_propagation(const Settings& root) {
   run.initial.time_s = settings.number_or("initial_time_s", 0.0);
   settings.finish();
   return run;
-}
-
-PropagationResult propagate(const PropagationRun& run, const std::function<void(double)>& progress,
-                            const Companion* companion) {
-  const Dynamics dynamics(run.model);
-  const size_t rows = Seen{run}.rows();
-  const double end_s = run.initial.time_s + run.duration_s;
-  const double delay_s = camera_delay_s(dynamics, run.initial);
-  const std::vector<Look> times = looks(run, delay_s);
-
-  PropagationResult result;
-  Recorder recorder(run.sensors, run.seed);
-  TimeHistory history(dynamics);
-  Propagator propagator(dynamics, run.initial, end_s, run.options, {},
-                        events_of(dynamics, companion != nullptr));
-  std::vector<double> y(static_cast<size_t>(dynamics.size()));
-  std::optional<LiveInstruments> instruments;
-  if (run.commander) {
-    instruments.emplace(dynamics, run.initial, run.output_rate_Hz, delay_s, run.sensors, run.seed);
-    propagator.follow_commander(live_commander(run, propagator, *instruments, companion));
-  }
-  std::function<void()> after_step;
-  if (instruments) after_step = [&] { instruments->follow(propagator); };
-  std::deque<Quat> on_the_way;  // seen by the camera, not yet reported
-  const size_t thinning = (rows + run.history_rows - 1) / run.history_rows;
-  const auto sink = [&](const Samples& samples) {
-    Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
-    for (int i = 0; companion != nullptr && i < samples.count; ++i) {
-      const CompanionPower power = companion->at(samples.time_s[i]);
-      now.battery_current_A.set(i, power.battery_current_A);
-      now.array_power_W.set(i, power.array_power_W);
-    }
-    for (int i = 0; i < samples.count; ++i) {
-      for (size_t c = 0; c < y.size(); ++c) y[c] = samples.y[c][i];
-      PlatformState state = to_state(samples.time_s[i], y);
-      if (companion != nullptr) state.charge_drawn_C = companion->at(state.time_s).charge_drawn_C;
-      const Look& look = times[samples.first + static_cast<size_t>(i)];
-      if (!look.is_row) {
-        on_the_way.push_back(attitude_before(state, look.before_s));
-        continue;
-      }
-      Quat seen = state.lab_from_body;
-      if (!on_the_way.empty()) {
-        seen = on_the_way.front();
-        on_the_way.pop_front();
-      }
-      recorder.add({.time_s = state.time_s,
-                    .lab_from_body_seen = seen,
-                    .rate_body_rad_s = state.rate_body_rad_s,
-                    .heading_rad = heading_rad(state),
-                    .place_m_m_s = place_of(dynamics, y),
-                    .gyro_rad_s = in_lane(now.gyro_rad_s, i),
-                    .camera_error_rad = in_lane(now.camera_error_rad, i),
-                    .command_body_N_m = in_lane(now.command_body_N_m, i),
-                    .battery_current_A = now.battery_current_A[i],
-                    .array_power_W = now.array_power_W[i]});
-      if (result.states.size() % thinning == 0) history.add(state, now, i);
-      result.states.push_back(state);
-    }
-    if (progress) {
-      progress(static_cast<double>(result.states.size()) / static_cast<double>(rows));
-    }
-  };
-  const auto time_at = [&](size_t i) { return times[i].time_s; };
-  if (companion == nullptr) {
-    sample(propagator, times.size(), time_at, sink, after_step);
-  } else {
-    sample_beside(propagator, times.size(), time_at, *companion, sink, after_step);
-  }
-  result.recording = recorder.finish();
-  result.events = propagator.events();
-  result.statistics = propagator.statistics();
-  result.product = history.product(result.events, result.statistics);
-  return result;
 }
 
 }  // namespace photorque

@@ -72,11 +72,23 @@ struct PropagationResult {
   Propagator::Statistics statistics;
 };
 
+// What lets a run that takes long be broken off and gone on with, its results the same to the last
+// bit. Runs with a commander have none.
+struct Checkpoints {
+  // What `keep` was given by an equal run, to go on from there.
+  std::optional<std::string> from = {};
+  // Asked after every step of the motion; where it says so `keep` gets the state, in bytes.
+  std::function<bool()> due = {};
+  std::function<void(double time_s, const std::string& state)> keep = {};
+};
+
 // Propagates the run. It ends early at the bearing's stop (Platform::tilt_limit_rad). `progress` is
 // called now and then with the fraction of the duration that is done. With a companion, battery
 // current and array power are the companion's, which also says when the battery is empty.
+// InputError where checkpoints.from does not fit the run.
 PropagationResult propagate(const PropagationRun& run,
                             const std::function<void(double)>& progress = {},
-                            const Companion* companion = nullptr);
+                            const Companion* companion = nullptr,
+                            const Checkpoints& checkpoints = {});
 
 }  // namespace photorque

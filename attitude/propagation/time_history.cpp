@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/snapshots/snapshot.h"
 
 namespace photorque {
 namespace {
@@ -157,6 +158,15 @@ void TimeHistory::add(const PlatformState& state, const Dynamics::Instants& now,
   for (const double x : state.extra) put(x);
   for (const size_t d : acting_) {
     for (int k = 0; k < 3; ++k) put(now.torque_body_N_m[d][k][lane]);
+  }
+}
+
+void TimeHistory::keep(Snapshot& snapshot) {
+  snapshot.expect(columns_.size());
+  snapshot(columns_[time].values);
+  for (Table::Column& column : columns_) {
+    column.values.resize(columns_[time].values.size());
+    snapshot.fixed(column.values);
   }
 }
 

@@ -21,6 +21,8 @@ class TimeHistory {
   // are thinned to a few thousand points that keep every extreme.
   Product product(const std::vector<Event>& events, const Propagator::Statistics& statistics) const;
 
+  void keep(Snapshot& snapshot);
+
  private:
   std::vector<std::string> labels_;  // of the disturbances that act on the body
   std::vector<size_t> acting_;       // their indices

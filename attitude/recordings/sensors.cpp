@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/numerics/random.h"
+#include "core/snapshots/snapshot.h"
 
 namespace photorque {
 namespace {
@@ -261,6 +262,15 @@ Recording Recorder::finish() {
                                    [](double x) { return x == 0.0; });
   });
   return std::move(recording_);
+}
+
+void Recorder::keep(Snapshot& snapshot) {
+  snapshot(recording_.time_s, bias_walk_rad_s_);
+  snapshot.each(recording_.channels, [&](Channel& channel) {
+    snapshot(channel.name);
+    channel.values.resize(recording_.rows());
+    snapshot.fixed(channel.values);
+  });
 }
 
 }  // namespace photorque

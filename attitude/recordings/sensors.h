@@ -19,6 +19,8 @@
 
 namespace photorque {
 
+class Snapshot;  // core/snapshots/snapshot.h
+
 struct Sensors {
   // Star-tracker-like camera that reports attitudes. Defaults: the source paper's, 12 arcsec in the
   // image plane (about lab z, for a camera above) and 37 arcsec out of it.
@@ -121,6 +123,8 @@ class Recorder {
   double last(std::string_view channel) const;
   // The recording so far; channels of commands and power that were zero throughout are left out.
   Recording finish();
+
+  void keep(Snapshot& snapshot);
 
  private:
   // The next column of the row that is being added.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/snapshots/snapshot.h"
 #include "photovoltaics/array/tracker.h"
 
 namespace photorque {
@@ -37,6 +38,11 @@ class TrackerControl {
       perturb(now);
     }
     last_ = now;
+  }
+
+  void keep(Snapshot& snapshot) {
+    snapshot(voltage_V_, direction_, last_, best_, sweep_point_, settled_, recent_W_, reference_W_,
+             since_sweep_s_);
   }
 
  private:

@@ -219,4 +219,10 @@ SupplyClosure PowerSupply::closure() const {
   return closure;
 }
 
+void PowerSupply::keep(Snapshot& snapshot) {
+  snapshot(stored_J_, temperature_K_, full_, empty_, best_per_light_, state_, energies_);
+  if (control_) snapshot(*control_);
+  snapshot.each(events_, [&](SupplyEvent& event) { snapshot(event.name, event.time_s); });
+}
+
 }  // namespace photorque

@@ -103,6 +103,8 @@ class PowerSupply {
   SupplyClosure closure() const;
   const SupplyDesign& design() const { return design_; }
 
+  void keep(Snapshot& snapshot);
+
  private:
   struct Curves;
   const CellTables& tables_at(int index);

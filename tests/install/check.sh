@@ -34,6 +34,12 @@ P
 grep -q '^error absent.toml: ' "$place/said"
 grep -qE '^tilt 0\.[0-9]+ rad$|^tilt [0-9.]+e-[0-9]+ rad$' "$place/said"
 
+if grep -q '^PHOTORQUE_HARDEN:BOOL=ON' "$build/CMakeCache.txt"; then
+  echo "== Hardened"
+  "$source/tests/install/hardened.sh" "$prefix/bin/photorque" "$prefix"/lib/*/photorque/*.so \
+    "$(find "$prefix" -name 'libphotorque.so.*.*.*')"
+fi
+
 echo "== Only our own symbols"
 library="$(find "$prefix" -name 'libphotorque.so.*.*.*')"
 foreign="$(nm -D --defined-only -C "$library" | grep -cvE 'photorque::' || true)"

@@ -58,6 +58,25 @@ if(PHOTORQUE_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
+# What stands in the way of whoever finds a fault in a reader: for what is shipped (preset "package").
+option(PHOTORQUE_HARDEN "Checks of stack, buffers and jumps, and nothing writable that need not be" OFF)
+if(PHOTORQUE_HARDEN)
+  include(CheckPIESupported)
+  check_pie_supported(LANGUAGES CXX)
+  add_compile_options(-fstack-protector-strong)
+  include(CheckCXXCompilerFlag)
+  foreach(flag IN ITEMS -fstack-clash-protection -fcf-protection)
+    string(MAKE_C_IDENTIFIER "PHOTORQUE_KNOWS${flag}" known)
+    check_cxx_compiler_flag(${flag} ${known})
+    if(${known})
+      add_compile_options(${flag})
+    endif()
+  endforeach()
+  # Beside optimisation alone; of two definitions of a compiler's default the last holds.
+  add_compile_options($<$<CONFIG:Release>:-U_FORTIFY_SOURCE> $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=2>)
+  add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)
+endif()
+
 find_program(PHOTORQUE_CCACHE ccache)
 if(PHOTORQUE_CCACHE)
   # Paths are hashed as seen from the clone, so that a second clone finds what the first compiled.

@@ -33,6 +33,7 @@ struct CommandLine : RunOptions {
   bool bake = false;                              // --bake: also the lit scene as glTF
   std::string key;                                // --key, to be explained
   std::vector<std::filesystem::path> documents;   // --document, whose tables of keys are renewed
+  std::optional<double> checkpoint_min;           // --checkpoint, minutes between two states
   Interruption* interruption = nullptr;           // the program's, when it is one
   // Of a run in a sweep: takes what came out, and no file is written.
   std::function<void(const RunResult&)> take_result = {};
@@ -57,6 +58,7 @@ struct Verb {
   bool takes_cases = false;
   bool takes_shard = false;
   bool takes_scene = false;
+  bool takes_checkpoint = false;
   bool draws_page = false;
   bool bakes = false;
   bool takes_keys = false;  // --out FILE, --key, --document

@@ -204,9 +204,54 @@ std::optional<double> attitude_error_rad(const PropagationRun& run, const Rotati
   return bound_rad;
 }
 
+// The state of a run that is kept now and then, and what is told of it.
+class KeptState {
+ public:
+  KeptState(const Console& console, CheckpointFile* file, std::string identity)
+      : console_(console), file_(file), identity_(std::move(identity)) {
+    if (file_ != nullptr) kept_ = file_->read(identity_);
+  }
+
+  // How far the table of light reached in the run that was broken off.
+  std::optional<double> table_tilt_rad() const {
+    return kept_ ? std::optional(kept_->table_tilt_rad) : std::nullopt;
+  }
+  // For one run, the first of which goes on.
+  Checkpoints of_run(double table_tilt_rad) {
+    if (file_ == nullptr) return {};
+    Checkpoints checkpoints;
+    if (kept_) {
+      console_.line("goes on from " + file_->path().string());
+      checkpoints.from = std::move(kept_->state);
+      kept_.reset();
+    }
+    checkpoints.due = [this] { return file_->due(); };
+    checkpoints.keep = [this, table_tilt_rad](double time_s, const std::string& state) {
+      write(table_tilt_rad, time_s, state);
+    };
+    return checkpoints;
+  }
+
+ private:
+  // Hours of work do not end because of a disk that is full for a while.
+  void write(double table_tilt_rad, double time_s, const std::string& state) const {
+    try {
+      file_->write(identity_, table_tilt_rad, state);
+    } catch (const InputError& error) {
+      console_.line("note: no checkpoint at " + show(time_s) + " s: " + error.what());
+    }
+  }
+
+  const Console& console_;
+  CheckpointFile* file_;
+  std::string identity_;
+  std::optional<CheckpointFile::Kept> kept_;
+};
+
 // One run in light that is known up to a tilt; at it the run stops.
 void attempt(CoupledResult& result, const Console& console, const ExperimentFile& file,
-             const LightSettings& settings, PropagationRun run, double table_tilt_rad) {
+             const LightSettings& settings, PropagationRun run, double table_tilt_rad,
+             KeptState& kept) {
   const std::vector<GroupOutput> outputs =
       group_outputs(*result.light, settings, run.initial.time_s);
   if (settings.mode == LightSettings::Mode::table) {
@@ -227,8 +272,8 @@ void attempt(CoupledResult& result, const Console& console, const ExperimentFile
                                      settings, run, run.model.platform.battery_voltage_V);
   }
   const Companion companion = result.beside ? result.beside->companion() : Companion{};
-  result.motion =
-      propagate(run, console.progress("propagating"), result.beside ? &companion : nullptr);
+  result.motion = propagate(run, console.progress("propagating"),
+                            result.beside ? &companion : nullptr, kept.of_run(table_tilt_rad));
   if (result.table && !hits_tilt_limit(result.motion)) {
     result.attitude_error_rad = attitude_error_rad(run, *result.table, outputs.size());
   }
@@ -237,12 +282,20 @@ void attempt(CoupledResult& result, const Console& console, const ExperimentFile
 
 }  // namespace
 
+std::string of_inputs(const std::vector<std::pair<std::string, std::string>>& inputs) {
+  std::string all;
+  for (const auto& [name, hash] : inputs) all += name + ":" + hash + "\n";
+  return all;
+}
+
 CoupledResult propagate_in_light(const RunOptions& options, const Console& console,
-                                 const ExperimentFile& file, const PropagationRun& run) {
+                                 const ExperimentFile& file, const PropagationRun& run,
+                                 CheckpointFile* checkpoint, const std::string& identity) {
   CoupledResult result;
   const LightSettings settings = has_light(file) ? read_light(file) : LightSettings{};
   if (!has_light(file) || settings.mode == LightSettings::Mode::off) {
-    result.motion = propagate(run, console.progress("propagating"));
+    KeptState kept(console, checkpoint, identity);
+    result.motion = propagate(run, console.progress("propagating"), nullptr, kept.of_run(0.0));
     console.done();
     return result;
   }
@@ -255,8 +308,10 @@ CoupledResult propagate_in_light(const RunOptions& options, const Console& conso
   if (!result.light->sun_direction_lab() && !run.commander) {
     tilt_now_rad = std::min(limit_rad, std::max(least_rad, 2.0 * tilt_rad(run.initial)));
   }
+  KeptState kept(console, checkpoint, identity + of_inputs(result.light->inputs()));
+  if (kept.table_tilt_rad()) tilt_now_rad = *kept.table_tilt_rad();
   for (;; tilt_now_rad = std::min(limit_rad, 2.0 * tilt_now_rad)) {
-    attempt(result, console, file, settings, run, tilt_now_rad);
+    attempt(result, console, file, settings, run, tilt_now_rad, kept);
     const bool wider = result.table && tilt_now_rad < limit_rad && hits_tilt_limit(result.motion);
     if (!wider) break;
     console.line("the tilt passed " + show(tilt_now_rad / degree_rad) + " deg at " +

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/coupling/checkpoint_file.h"
 #include "tools/coupling/coupled_run.h"
 #include "tools/runs/console.h"
 
@@ -29,10 +30,17 @@ std::vector<std::string> orbit_overrides(const ExperimentFile& file);
 // InputError for what an experiment says of light and power twice: as a disturbance beside a scene.
 void require_light_once(const ExperimentFile& file);
 
+// Names and hashes of inputs, line by line: part of what a run follows from.
+std::string of_inputs(const std::vector<std::pair<std::string, std::string>>& inputs);
+
 // Propagates in the light of the experiment. A table of light first holds twice the initial tilt
 // (at least 5 deg); a run that goes beyond begins again with one twice as wide, up to the
 // platform's stop. InputError for a disturbance that would count light or power twice.
+// With a checkpoint file the run goes on from the state that it holds and keeps its own there;
+// `identity` is all that the run follows from, but for the light.
 CoupledResult propagate_in_light(const RunOptions& options, const Console& console,
-                                 const ExperimentFile& file, const PropagationRun& run);
+                                 const ExperimentFile& file, const PropagationRun& run,
+                                 CheckpointFile* checkpoint = nullptr,
+                                 const std::string& identity = {});
 
 }  // namespace photorque

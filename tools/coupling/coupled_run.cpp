@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/snapshots/snapshot.h"
+
 namespace photorque {
 namespace {
 
@@ -111,7 +113,7 @@ void CoupledRun::begin(Propagator& motion) {
       has_sun_ ? motion.dynamics().at(start_s_, {}, y.data()).illumination[0] : 1.0;
   Instant now{start_s_, 0.0, channels_at(attitude_of(y, 0)), illumination};
   if (!table_) {
-    traced_.push_back({start_s_, now.channels});
+    add_trace(start_s_, now.channels);
     held_ = continued(illumination);
   }
   double current_A = 0.0;
@@ -171,9 +173,15 @@ PowerSupply::Light CoupledRun::light_of(const Instant& instant) const {
   return light;
 }
 
+void CoupledRun::add_trace(double time_s, std::vector<double> channels) {
+  traced_.push_back({time_s, std::move(channels)});
+  if (traced_.size() > 3) traced_.erase(traced_.begin());
+  ++traces_;
+}
+
 // The polynomial through the last three traces.
 ContinuedTorque CoupledRun::continued(double illumination) const {
-  const size_t count = std::min<size_t>(3, traced_.size());
+  const size_t count = traced_.size();
   const double now_s = traced_.back().time_s;
   const auto total = [&](size_t back) {
     const Traced& trace = traced_[traced_.size() - 1 - back];
@@ -278,7 +286,7 @@ void CoupledRun::exchange(Propagator& motion) {
   }
   if (!table_) {
     const Vec3 expected = held_.at(now_s);
-    traced_.push_back({now_s, channels_at(attitude_of(y, 0))});
+    add_trace(now_s, channels_at(attitude_of(y, 0)));
     const Traced &last = traced_[traced_.size() - 2], &now = traced_.back();
     Vec3 truth = Vec3::Zero();
     for (const GroupOutput& group : outputs_) {
@@ -320,7 +328,32 @@ void CoupledRun::exchange(Propagator& motion) {
 
 Companion CoupledRun::companion() {
   return {[this](Propagator& motion) { follow(motion); },
-          [this](double time_s) { return at(time_s); }, [this] { return known_until_s_; }};
+          [this](double time_s) { return at(time_s); }, [this] { return known_until_s_; },
+          [this](Snapshot& snapshot) { keep(snapshot); }};
+}
+
+void CoupledRun::keep(Snapshot& snapshot) {
+  const size_t channels = light_.groups().size() * light_.channels_per_group();
+  snapshot(max_correction_C_, begun_, segment_from_s_, segment_end_s_, known_until_s_);
+  snapshot(max_light_W_, last_light_W_, last_light_s_, is_lit_, held_, continuation_, emitted_);
+  if (supply_) snapshot(*supply_);
+  snapshot.each(instants_, [&](Instant& instant) {
+    bool has_light = !instant.channels.empty();
+    snapshot(instant.from_s, instant.length_s, instant.illumination, has_light);
+    instant.channels.resize(has_light ? channels : 0);
+    snapshot.fixed(instant.channels);
+  });
+  snapshot.at_most(collected_, instants_.size());
+  snapshot.each(traced_, [&](Traced& traced) {
+    snapshot(traced.time_s);
+    traced.channels.resize(channels);
+    snapshot.fixed(traced.channels);
+  });
+  snapshot(traces_);
+  snapshot(power_time_s_, rows_);
+  power_.resize(power_time_s_.size());
+  snapshot.fixed(power_);
+  snapshot.each(events_, [&](Event& event) { snapshot(event.name, event.time_s, event.rising); });
 }
 
 void CoupledRun::follow(Propagator& motion) {

@@ -66,7 +66,7 @@ class CoupledRun {
   const std::vector<Event>& events() const { return events_; }
   const ContinuationError& continuation() const { return continuation_; }
   double emitted_J() const { return emitted_.value(); }
-  size_t traces() const { return traced_.size(); }
+  size_t traces() const { return traces_; }
   // By how much, at most, an exchange corrected the charge that the motion had gone ahead with.
   double max_correction_C() const { return max_correction_C_; }
 
@@ -84,8 +84,10 @@ class CoupledRun {
     double middle_s() const { return from_s + 0.5 * length_s; }
   };
   void follow(Propagator& motion);
+  void keep(Snapshot& snapshot);
   CompanionPower at(double time_s) const;
   void begin(Propagator& motion);
+  void add_trace(double time_s, std::vector<double> channels);
   void plan(double from_s);
   void collect(Propagator& motion);
   void exchange(Propagator& motion);
@@ -111,7 +113,8 @@ class CoupledRun {
   std::vector<double> switches_s_;
   std::vector<Instant> instants_;  // of the segment
   size_t collected_ = 0;
-  std::vector<Traced> traced_;
+  std::vector<Traced> traced_;  // the last three
+  size_t traces_ = 0;
   ContinuedTorque held_;
   std::vector<double> power_time_s_;  // the ends of the power system's steps
   std::vector<CompanionPower> power_;

@@ -37,6 +37,12 @@ std::string seconds_above_zero(const std::string& text) {
   return seconds && *seconds > 0.0 ? "" : "found " + text + ", expected a number of seconds > 0";
 }
 
+std::string minutes_above_zero(const std::string& text) {
+  const std::optional<double> minutes = number_in(text);
+  const bool good = minutes && *minutes > 0.0 && *minutes <= 1e6;
+  return good ? "" : "found " + text + ", expected a number of minutes > 0";
+}
+
 void add_options(CLI::App& command, const Verb& verb, CommandLine& line) {
   if (verb.takes_experiment) {
     command.add_option("experiment", line.experiment, "Experiment file (TOML)")
@@ -158,6 +164,14 @@ int run(int argc, char** argv, Interruption& interruption) {
     }
     if (verb.takes_scene) {
       command->add_option("--scene", line.scene, "A model (glTF, GLB, STL or OBJ) to be lit");
+    }
+    if (verb.takes_checkpoint) {
+      command
+          ->add_option(
+              "--checkpoint", line.checkpoint_min,
+              "Keep the run's state in the folder of results (propagate.checkpoint) every so "
+              "many minutes; after a kill the same command goes on from there")
+          ->check(minutes_above_zero);
     }
     if (verb.draws_page) {
       command->add_flag("--page", line.page,

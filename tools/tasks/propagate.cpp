@@ -5,6 +5,7 @@
 #include "attitude/ccsds/aem.h"
 #include "core/constants.h"
 #include "tools/coupling/report.h"
+#include "tools/coupling/table_cache.h"
 #include "tools/runs/camera_sight.h"
 #include "tools/runs/optical_run.h"
 
@@ -87,11 +88,19 @@ void add_light(const Console& console, const CoupledResult& coupled, const Propa
   append(product, power_product(*coupled.beside, product, run.history_rows));
 }
 
+// All that a run follows from but the light, to tell its checkpoint from those of others.
+std::string identity(const Provenance& provenance,
+                     const std::vector<std::pair<std::string, std::string>>& seen) {
+  return table_cache_version() + "seed " + std::to_string(provenance.seed) + "\n" +
+         of_inputs(provenance.inputs) + of_inputs(seen);
+}
+
 }  // namespace
 
-MotionRun propagate_experiment(
-    const RunOptions& options, const Console& console, const FurtherTorques& further,
-    const std::function<void(const Settings&, PropagationRun&)>& prepare) {
+MotionRun propagate_experiment(const RunOptions& options, const Console& console,
+                               const FurtherTorques& further,
+                               const std::function<void(const Settings&, PropagationRun&)>& prepare,
+                               CheckpointFile* checkpoint) {
   const WallTime wall;
   const RunOptions full = with_orbit_overrides(options);
   const AttitudeExperiment experiment(full);
@@ -100,11 +109,12 @@ MotionRun propagate_experiment(
   for (const Disturbance& one : further.disturbances) run->model.disturbances.push_back(one);
   const auto seen = look_through_scene(experiment.file(), run->sensors);
   if (prepare) prepare(experiment.settings(), *run);
-  const auto coupled =
-      std::make_shared<CoupledResult>(propagate_in_light(full, console, experiment.file(), *run));
-  PropagationResult& motion = coupled->motion;
   RunResult result;
   result.provenance = experiment.provenance(run->seed);
+  const auto coupled = std::make_shared<CoupledResult>(propagate_in_light(
+      full, console, experiment.file(), *run, checkpoint,
+      checkpoint == nullptr ? std::string() : identity(result.provenance, seen)));
+  PropagationResult& motion = coupled->motion;
   if (coupled->light) add_inputs(result.provenance, coupled->light->inputs());
   add_inputs(result.provenance, seen);
   add_inputs(result.provenance, further.inputs);

@@ -26,9 +26,12 @@ struct FurtherTorques {
   std::vector<std::pair<std::string, std::string>> inputs;  // name, hash
 };
 
-// `prepare` may change the run that was read from the experiment's settings before it begins.
+// `prepare` may change the run that was read from the experiment's settings before it begins. With
+// a checkpoint file the run goes on from the state that an equal run left there: the same program,
+// experiment, overrides, seed and files. InputError for that of another run.
 MotionRun propagate_experiment(
     const RunOptions& options, const Console& console, const FurtherTorques& further = {},
-    const std::function<void(const Settings& root, PropagationRun& run)>& prepare = {});
+    const std::function<void(const Settings& root, PropagationRun& run)>& prepare = {},
+    CheckpointFile* checkpoint = nullptr);
 
 }  // namespace photorque

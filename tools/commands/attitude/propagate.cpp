@@ -11,9 +11,16 @@ namespace {
 
 void run_propagate(const CommandLine& line) {
   const Console console = terminal(line);
-  MotionRun run = propagate_experiment(line, console);
+  std::optional<CheckpointFile> checkpoint;
+  if (line.checkpoint_min) {
+    checkpoint.emplace(line.out_folder() / "propagate.checkpoint", 60.0 * *line.checkpoint_min);
+  }
+  MotionRun run = propagate_experiment(line, console, {}, {}, checkpoint ? &*checkpoint : nullptr);
   if (line.page) run.result.files.push_back(motion_page(run, line, page_head(line)));
   write_results(line, console, run.result);
+  // Its work is done and stands in the results.
+  std::error_code stays;
+  if (checkpoint) std::filesystem::remove(checkpoint->path(), stays);
 }
 
 }  // namespace
@@ -21,6 +28,7 @@ void run_propagate(const CommandLine& line) {
 Verb propagate_verb() {
   Verb verb{"propagate", "Fly the platform: attitude, rates, charge, every torque; a recording",
             run_propagate};
+  verb.takes_checkpoint = true;
   verb.draws_page = true;
   return verb;
 }

@@ -1,0 +1,61 @@
+// States at the times that a user asks for, as the propagator passes them.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "attitude/propagation/propagator.h"
+
+namespace photorque {
+
+// Up to eight states on their way to a user, in lanes; lanes from `count` on repeat the last.
+struct Samples {
+  size_t first = 0;  // index of lane 0 among the times asked for
+  int count = 0;
+  Lanes time_s = 0.0;
+  std::array<ZeroOrderHold, Lanes::count> held = {};
+  std::vector<Lanes> y;  // Dynamics::size()
+  std::vector<Lanes>
+      derivatives;  // of y, as Propagator::dense_derivatives; empty without variables
+
+  // Of samples of so many components at some of `times` times, without derivatives.
+  void keep(Snapshot& snapshot, size_t components, size_t times);
+};
+
+// Calls `sink` with the states at time_s(0), time_s(1), …, time_s(count − 1), which must not fall.
+// Uses the same memory however many there are. At a jump the values after it are given.
+class Sampler {
+ public:
+  Sampler(const Propagator& propagator, size_t count, std::function<double(size_t)> time_s,
+          std::function<void(const Samples&)> sink);
+
+  // After every step: what it passed, but for its end.
+  void follow();
+  // When the run has ended: its end too. Returns the number of times reached.
+  size_t finish();
+
+  // Of a sampler without derivatives, after a step.
+  void keep(Snapshot& snapshot);
+
+ private:
+  void take(bool including_end);
+  void file(const Lanes& times_s, int batch);
+  void flush();
+
+  const Propagator& propagator_;
+  size_t count_;
+  std::function<double(size_t)> time_s_;
+  std::function<void(const Samples&)> sink_;
+  std::vector<Lanes> y_, derivatives_;
+  Samples samples_;
+  size_t next_ = 0;
+};
+
+// The same over the whole run. `after_step` is called after every step, before its states are
+// handed out. Returns the number of times reached before the run ended.
+size_t sample(Propagator& propagator, size_t count, const std::function<double(size_t)>& time_s,
+              const std::function<void(const Samples&)>& sink,
+              const std::function<void()>& after_step = {});
+
+}  // namespace photorque

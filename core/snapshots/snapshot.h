@@ -1,0 +1,133 @@
+// The state of a run as bytes, so that it can be broken off and gone on with later, to the last
+// bit.
+//
+// One function of a class names what its state is made of, for both directions:
+//   void Walk::keep(Snapshot& snapshot) { snapshot(steps_, where_m_, path_m_); }
+// What follows from the run's inputs is not kept but made again.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace photorque {
+
+class Snapshot;
+
+template <class T>
+concept HasState = requires(T& value, Snapshot& snapshot) {
+  value.keep(snapshot);
+};
+// Numbers, and vectors and structs of numbers, whose bytes are all that they are. (Eigen's vectors
+// are so although the compiler does not call them trivially copyable.)
+template <class T>
+concept MadeOfNumbers =
+    std::is_trivially_destructible_v<T> && !std::is_pointer_v<T> && !HasState<T>;
+
+class Snapshot {
+ public:
+  // Takes a state.
+  Snapshot() = default;
+  // Gives back what `bytes` hold, which must outlive it.
+  explicit Snapshot(const std::string& bytes) : source_(&bytes) {}
+
+  template <class... T>
+  void operator()(T&... values) {
+    (value(values), ...);
+  }
+  // A list, every element by `visit`.
+  template <class List, class Visit>
+  void each(List& list, const Visit& visit) {
+    uint64_t count = list.size();
+    value(count);
+    if (gives_back()) list.clear();
+    for (uint64_t i = 0; i < count && good_; ++i) {
+      if (gives_back()) list.emplace_back();
+      visit(list[i]);
+    }
+  }
+  // A list of numbers whose length is known.
+  template <MadeOfNumbers T>
+  void fixed(std::vector<T>& list) {
+    expect(list.size());
+    copy(reinterpret_cast<char*>(list.data()), list.size() * sizeof(T));
+  }
+  // A number that the inputs fix: a state with another one is not of the same run.
+  void expect(uint64_t number) {
+    uint64_t kept = number;
+    value(kept);
+    good_ = good_ && kept == number;
+  }
+  // A count or an index of at most `largest`.
+  template <class Integer>
+  void at_most(Integer& number, uint64_t largest) {
+    value(number);
+    good_ = good_ && number >= 0 && static_cast<uint64_t>(number) <= largest;
+    if (!good_) number = 0;
+  }
+
+  bool gives_back() const { return source_ != nullptr; }
+  // Whether all was given back and nothing is left. What was given back is of no use otherwise.
+  bool is_whole() const { return good_ && (!gives_back() || at_ == source_->size()); }
+  // What was taken.
+  const std::string& bytes() const { return taken_; }
+
+ private:
+  template <MadeOfNumbers T>
+  void value(T& numbers) {
+    copy(reinterpret_cast<char*>(&numbers), sizeof numbers);
+  }
+  template <HasState T>
+  void value(T& part) {
+    part.keep(*this);
+  }
+  void value(bool& truth) {
+    char byte = truth ? 1 : 0;
+    copy(&byte, 1);
+    truth = byte != 0;
+  }
+  void value(std::string& text) { block(text); }
+  template <MadeOfNumbers T>
+  void value(std::vector<T>& numbers) {
+    block(numbers);
+  }
+  template <class T>
+  void value(std::optional<T>& perhaps) {
+    bool is_there = perhaps.has_value();
+    value(is_there);
+    if (gives_back()) perhaps = is_there ? std::optional<T>(T{}) : std::nullopt;
+    if (is_there) value(*perhaps);
+  }
+  template <class Block>
+  void block(Block& numbers) {
+    uint64_t count = numbers.size();
+    value(count);
+    constexpr size_t each_bytes = sizeof(typename Block::value_type);
+    if (gives_back()) {
+      // No more than there are bytes for.
+      good_ = good_ && count <= (source_->size() - at_) / each_bytes;
+      numbers.resize(good_ ? count : 0);
+    }
+    copy(reinterpret_cast<char*>(numbers.data()), numbers.size() * each_bytes);
+  }
+  void copy(char* numbers, size_t bytes) {
+    if (!gives_back()) {
+      taken_.append(numbers, bytes);
+      return;
+    }
+    good_ = good_ && bytes <= source_->size() - at_;
+    if (!good_) return;
+    std::copy_n(source_->data() + at_, bytes, numbers);
+    at_ += bytes;
+  }
+
+  const std::string* source_ = nullptr;
+  std::string taken_;
+  size_t at_ = 0;
+  bool good_ = true;
+};
+
+}  // namespace photorque

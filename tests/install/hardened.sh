@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# Whether programs and libraries have the protections of PHOTORQUE_HARDEN, as the ELF files say.
+#   hardened.sh FILE ...       those files
+#   hardened.sh --options SOURCE_FOLDER   a small program with the options of the build: hardened it has
+#                                         all of them, without it does not
+set -euo pipefail
+
+# Prints what is missing in a file.
+missing() {
+  local file="$1" headers segments dynamic symbols
+  headers="$(readelf -hW "$file")"
+  segments="$(readelf -lW "$file")"
+  dynamic="$(readelf -dW "$file")"
+  symbols="$(readelf -W --dyn-syms "$file")"
+  grep -q 'Type: *DYN' <<<"$headers" || echo "any address (PIE)"
+  grep -q 'GNU_RELRO' <<<"$segments" || echo "tables that are read-only after the start (RELRO)"
+  grep -q 'GNU_STACK.* RW ' <<<"$segments" || echo "a stack that cannot be run"
+  grep -qE 'BIND_NOW|Flags:.*\bNOW\b' <<<"$dynamic" || echo "symbols that are all bound at the start (now)"
+  if grep -q 'TEXTREL' <<<"$dynamic"; then echo "code that stays as it is"; fi
+  grep -q '__stack_chk_fail' <<<"$symbols" || echo "guarded stacks (-fstack-protector-strong)"
+  grep -qE '__[a-z]+_chk\b' <<<"$(grep -v stack_chk <<<"$symbols")" || echo "checked copies (_FORTIFY_SOURCE)"
+  # endbr64 at what may be jumped to; the start files of the C library bring two.
+  [[ "$(objdump -d -j .text "$file" | grep -c endbr64)" -ge 4 ]] || echo "marked entries (-fcf-protection)"
+}
+
+if [[ "${1:-}" == "--options" ]]; then
+  source="$2"
+  place="$(mktemp -d)"
+  trap 'rm -rf "$place"' EXIT
+  for harden in ON OFF; do
+    cmake -S "$source/tests/install/hardened" -B "$place/$harden" -G Ninja -DPHOTORQUE_SOURCE="$source" \
+      -DPHOTORQUE_HARDEN="$harden" >/dev/null
+    cmake --build "$place/$harden" >/dev/null
+    missing "$place/$harden/hardened" >"$place/$harden.missing"
+    echo "hardened $harden misses: $(paste -sd, "$place/$harden.missing")"
+  done
+  [[ ! -s "$place/ON.missing" ]]
+  for protection in now fstack-protector _FORTIFY_SOURCE fcf-protection; do
+    grep -q "$protection" "$place/OFF.missing"
+  done
+  # Large frames are touched page by page.
+  touches() { objdump -d "$1/hardened" | grep -qE 'or[ql]? +[$]0x0,.*[(]%rsp[)]'; }
+  touches "$place/ON"
+  if touches "$place/OFF"; then exit 1; fi
+  # Its own path does not fit into the buffer.
+  if ("$place/ON/hardened" || exit 1) >/dev/null 2>&1; then exit 1; fi
+  exit 0
+fi
+
+status=0
+for file in "$@"; do
+  while read -r protection; do
+    echo "$file lacks $protection"
+    status=1
+  done < <(missing "$file")
+done
+exit "$status"
