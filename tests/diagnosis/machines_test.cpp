@@ -18,8 +18,10 @@
 namespace photorque {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::UnorderedElementsAre;
 
 NominalModel machine(const std::string& toml) {
@@ -78,6 +80,9 @@ TEST(Machines, AWheelThatCoastsDownIsNamedByItsDryTorqueAndItsDrag) {
   ASSERT_TRUE(d.holdout);
   EXPECT_LT(d.holdout->chi2_per_sample_after, 2.0);
   EXPECT_GT(d.holdout->chi2_per_sample_before, 100.0);
+  // One way only a steady torque of any origin brakes like a dry one: one name, and a word on that.
+  EXPECT_THAT(d.warnings, Contains(HasSubstr("turns one way only")));
+  for (const Alternative& a : d.alternatives) EXPECT_THAT(a.kinds, Not(Contains("room_draft")));
 }
 
 TEST(Machines, ABodyThatTurnsFreelyLacksNothing) {

@@ -101,7 +101,7 @@ bool turns(const std::vector<Observation>& runs) {
   });
 }
 
-// Whether every run turns one way about `axis` all the time, and ever more slowly.
+// Whether every run turns one way about `axis`, and ever more slowly; it may stop.
 bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   return std::all_of(runs.begin(), runs.end(), [&](const Observation& seen) {
     std::vector<double> rate_rad_s;
@@ -111,7 +111,10 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
     }
     if (rate_rad_s.empty()) return false;
     const auto [least, most] = std::minmax_element(rate_rad_s.begin(), rate_rad_s.end());
-    return *least * *most > 0.0 && std::abs(rate_rad_s.back()) < std::abs(rate_rad_s.front());
+    // What noise makes of a wheel at rest, and of a short stretch.
+    constexpr double little = 0.02;
+    return std::min(-*least, *most) < little * std::max(-*least, *most) &&
+           std::abs(rate_rad_s.back()) < (1.0 + little) * std::abs(rate_rad_s.front());
   });
 }
 
