@@ -11,6 +11,7 @@
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/free_inertia.h"
 #include "attitude/propagation/run.h"
+#include "attitude/propagation/sampling.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"

@@ -8,6 +8,7 @@
 #include "attitude/noise/discrepancy.h"
 #include "attitude/noise/reading_level.h"
 #include "attitude/propagation/run.h"
+#include "attitude/propagation/sampling.h"
 #include "attitude/readings/columns.h"
 #include "attitude/stretches/segments.h"
 #include "core/constants.h"
