@@ -106,8 +106,13 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   return std::all_of(runs.begin(), runs.end(), [&](const Observation& seen) {
     std::vector<double> rate_rad_s;
     for (size_t i = 0; i < seen.blocks(); ++i) {
-      const double read = axis.cwiseAbs2().dot(seen.gyro_rows[i]);
-      if (read > 0.0) rate_rad_s.push_back(axis.dot(seen.gyro_rad_s[i]));
+      double along_rad_s = 0.0, read = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        if (axis[k] == 0.0) continue;
+        along_rad_s += axis[k] * seen.gyro_rad_s[i][k];
+        read += seen.gyro_rows[i][k];
+      }
+      if (read > 0.0 && std::isfinite(along_rad_s)) rate_rad_s.push_back(along_rad_s);
     }
     if (rate_rad_s.empty()) return false;
     const auto [least, most] = std::minmax_element(rate_rad_s.begin(), rate_rad_s.end());
