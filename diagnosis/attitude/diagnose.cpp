@@ -188,8 +188,9 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   // readings would find nothing but ways of bending what is believed.
   const bool is_lost =
       !is_watched && !(nominal_fit.chi2_per_sample() < options.limits.diverged_chi2_per_sample);
-  std::optional<Answer> named;
+  std::optional<Answer> named, of_stretches;
   if (is_lost) named = named_beside_the_rest(nominal, data, options);
+  if (is_lost && !named) named = of_stretches = named_over_stretches(nominal, data, options);
   Answer answer = named     ? unexplained(nominal, nominal_fit, data, options.limits)
                   : is_lost ? explained_in_the_rough(nominal, data, options)
                             : explain(nominal, nominal_fit, data, options);
@@ -205,10 +206,10 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   if (d.verdict == Verdict::unexplained && !is_watched && !is_lost) {
     named = named_beside_the_rest(nominal, data, options);
   }
-  if (d.verdict == Verdict::unexplained && !named && d.effects.empty()) {
-    named = named_over_stretches(nominal, data, options);
-    if (named) d.because += "; " + named->decision.because;
+  if (d.verdict == Verdict::unexplained && !is_lost && !named && d.effects.empty()) {
+    named = of_stretches = named_over_stretches(nominal, data, options);
   }
+  if (of_stretches) d.because += "; " + of_stretches->decision.because;
   if (named) {
     answer = std::move(*named);
     say_names_beside_the_rest(answer, d);
