@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "attitude/estimation/first_line.h"
+
 namespace photorque {
 
 AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {
@@ -64,43 +66,16 @@ Vec3 rate_between_attitudes_rad_s(const Observation& seen, size_t first, size_t 
   return seen.attitude[first].conjugate() * rate_lab;
 }
 
-}  // namespace
-
-namespace {
-
-// A line through the first readings of one coordinate.
-struct FirstLine {
-  double value = 0.0, slope_1_s = 0.0;
-};
-
-FirstLine first_line(const Observation& seen, Scalar scalar) {
-  constexpr size_t most = 8;
-  if (!seen.has(scalar)) return {};
-  const ScalarReadings& read = seen.scalar[static_cast<size_t>(scalar)];
-  double n = 0.0, t = 0.0, x = 0.0, tt = 0.0, tx = 0.0;
-  for (size_t i = 0; i < read.rows.size() && n < most; ++i) {
-    if (!(read.rows[i] > 0.0)) continue;
-    const double since_s = seen.time_s[i] - seen.time_s.front();
-    n += 1.0;
-    t += since_s;
-    x += read.value[i];
-    tt += since_s * since_s;
-    tx += since_s * read.value[i];
-  }
-  const double spread = n * tt - t * t;
-  if (!(spread > 0.0)) return {n > 0.0 ? x / n : 0.0};
-  const double slope_1_s = (n * tx - t * x) / spread;
-  return {(x - slope_1_s * t) / n, slope_1_s};
-}
-
 // Place and velocity at the first reading.
 void put_place(const Observation& seen, double* place) {
+  constexpr int most = 8;
   constexpr std::array positions = {Scalar::position_x, Scalar::position_y},
                        velocities = {Scalar::velocity_x, Scalar::velocity_y};
   for (size_t k = 0; k < 2; ++k) {
-    const FirstLine line = first_line(seen, positions[k]);
+    const FirstLine line = first_line(seen, positions[k], most);
     place[k] = line.value;
-    place[2 + k] = seen.has(velocities[k]) ? first_line(seen, velocities[k]).value : line.slope_1_s;
+    place[2 + k] =
+        seen.has(velocities[k]) ? first_line(seen, velocities[k], most).value : line.slope_1_s;
   }
 }
 

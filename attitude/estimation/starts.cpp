@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "attitude/estimation/first_line.h"
 #include "attitude/readings/angle_sequence.h"
 #include "core/constants.h"
 
@@ -100,23 +101,10 @@ std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& se
   return leaning(tilt.value_or(0.0), about_z);
 }
 
-// How fast an angle turns at the beginning: a line through its first blocks.
+// How fast an angle turns at the beginning.
 double first_slope(const Observation& seen, Scalar scalar) {
-  if (!seen.has(scalar)) return 0.0;
   constexpr int most = 10;
-  const ScalarReadings& read = seen.scalar[static_cast<size_t>(scalar)];
-  double n = 0.0, t = 0.0, x = 0.0, tt = 0.0, tx = 0.0;
-  for (size_t i = 0; i < read.rows.size() && n < most; ++i) {
-    if (!(read.rows[i] > 0.0)) continue;
-    const double since_s = seen.time_s[i] - seen.time_s.front();
-    n += 1.0;
-    t += since_s;
-    x += read.value[i];
-    tt += since_s * since_s;
-    tx += since_s * read.value[i];
-  }
-  const double spread = n * tt - t * t;
-  return spread > 0.0 ? (n * tx - t * x) / spread : 0.0;
+  return first_line(seen, scalar, most).slope_1_s;
 }
 
 // Rates of this magnitude along the axes that no gyro reads, in all directions; those that one

@@ -15,6 +15,7 @@
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "scenes/experiment/toml_reader.h"
+#include "tests/diagnosis/machine_bench.h"
 
 namespace photorque {
 namespace {
@@ -24,28 +25,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 using testing::UnorderedElementsAre;
-
-NominalModel machine(const std::string& toml) {
-  return read_attitude_model(
-      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "machine.toml"))));
-}
-
-// Rows of named channels at even times.
-Recording recording_of(double interval_s, const std::vector<Channel>& channels) {
-  Recording recording;
-  recording.channels = channels;
-  const size_t rows = channels.front().values.size();
-  for (size_t i = 0; i < rows; ++i) recording.time_s.push_back(interval_s * static_cast<double>(i));
-  recording.report.rows_read = recording.report.rows_kept = static_cast<int64_t>(rows);
-  recording.report.median_interval_s = interval_s;
-  return recording;
-}
-
-std::vector<std::string> kinds_of(const Diagnosis& d) {
-  std::vector<std::string> kinds;
-  for (const FoundEffect& effect : d.effects) kinds.push_back(effect.kind);
-  return kinds;
-}
 
 const char* const wheel_toml = R"([platform]
 topology = "one_axis"

@@ -12,6 +12,7 @@
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
 #include "scenes/experiment/toml_reader.h"
+#include "tests/diagnosis/machine_bench.h"
 
 namespace photorque {
 namespace {
@@ -20,27 +21,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
-
-NominalModel machine(const std::string& toml) {
-  return read_attitude_model(
-      Settings(std::make_shared<const SettingsNode>(parse_toml(toml, "machine.toml"))));
-}
-
-Recording recording_of(double interval_s, const std::vector<Channel>& channels) {
-  Recording recording;
-  recording.channels = channels;
-  const size_t rows = channels.front().values.size();
-  for (size_t i = 0; i < rows; ++i) recording.time_s.push_back(interval_s * static_cast<double>(i));
-  recording.report.rows_read = recording.report.rows_kept = static_cast<int64_t>(rows);
-  recording.report.median_interval_s = interval_s;
-  return recording;
-}
-
-std::vector<std::string> kinds_of(const Diagnosis& d) {
-  std::vector<std::string> kinds;
-  for (const FoundEffect& effect : d.effects) kinds.push_back(effect.kind);
-  return kinds;
-}
 
 const FittedParameter& parameter(const Diagnosis& d, const std::string& kind,
                                  const std::string& key) {
