@@ -20,14 +20,17 @@ Mat3 equatorial_from_ecliptic() {
   return Eigen::AngleAxisd(obliquity_rad, Vec3::UnitX()).toRotationMatrix();
 }
 
+// Starts from the series to the second order in the eccentricity.
 double eccentric_anomaly(double mean_rad, double eccentricity) {
-  double e = mean_rad + eccentricity * std::sin(mean_rad);
+  const double sine = eccentricity * std::sin(mean_rad);
+  double e = mean_rad + sine * (1.0 + eccentricity * std::cos(mean_rad));
   constexpr int most = 50;
   for (int i = 0; i < most; ++i) {
     const double step =
         (mean_rad - e + eccentricity * std::sin(e)) / (1.0 - eccentricity * std::cos(e));
     e += step;
-    if (std::abs(step) < 1e-14) break;
+    // The error after a step is below the square of the step over 1 - eccentricity.
+    if (step * step < 1e-16 * (1.0 - eccentricity)) break;
   }
   return e;
 }
@@ -69,18 +72,28 @@ Pointing read_pointing(const Settings& settings) {
 
 }  // namespace
 
-std::array<Vec3, 2> HeliocentricOrbit::position_and_velocity(double time_s) const {
-  const double motion_rad_s = gaussian_motion_rad_s / std::pow(semi_major_axis_au, 1.5);
+std::array<Eigen::Vector2d, 2> HeliocentricOrbit::in_plane(double time_s) const {
+  const double motion_rad_s =
+      gaussian_motion_rad_s / (semi_major_axis_au * std::sqrt(semi_major_axis_au));
   const double e = eccentric_anomaly(mean_anomaly_rad + motion_rad_s * time_s, eccentricity);
-  const double minor = std::sqrt(1.0 - eccentricity * eccentricity);
-  const double rate_rad_s = motion_rad_s / (1.0 - eccentricity * std::cos(e));
-  const Mat3 turn = (Eigen::AngleAxisd(ascending_node_rad, Vec3::UnitZ()) *
-                     Eigen::AngleAxisd(inclination_rad, Vec3::UnitX()) *
-                     Eigen::AngleAxisd(perihelion_rad, Vec3::UnitZ()))
-                        .toRotationMatrix();
-  const Vec3 position(std::cos(e) - eccentricity, minor * std::sin(e), 0.0),
-      velocity(-std::sin(e) * rate_rad_s, minor * std::cos(e) * rate_rad_s, 0.0);
-  return {semi_major_axis_au * turn * position, semi_major_axis_au * turn * velocity};
+  const double sine = std::sin(e), cosine = std::cos(e);
+  const double minor_au = semi_major_axis_au * std::sqrt(1.0 - eccentricity * eccentricity);
+  const double rate_rad_s = motion_rad_s / (1.0 - eccentricity * cosine);
+  return {Eigen::Vector2d(semi_major_axis_au * (cosine - eccentricity), minor_au * sine),
+          Eigen::Vector2d(-semi_major_axis_au * sine, minor_au * cosine) * rate_rad_s};
+}
+
+Mat3 HeliocentricOrbit::ecliptic_from_plane() const {
+  return (Eigen::AngleAxisd(ascending_node_rad, Vec3::UnitZ()) *
+          Eigen::AngleAxisd(inclination_rad, Vec3::UnitX()) *
+          Eigen::AngleAxisd(perihelion_rad, Vec3::UnitZ()))
+      .toRotationMatrix();
+}
+
+std::array<Vec3, 2> HeliocentricOrbit::position_and_velocity(double time_s) const {
+  const auto axes = ecliptic_from_plane().leftCols<2>().eval();
+  const auto [position, velocity] = in_plane(time_s);
+  return {axes * position, axes * velocity};
 }
 
 HeliocentricOrbit orbit_of_earth(double since_J2000_s) {
@@ -113,14 +126,14 @@ SunPath SunPath::table(TimeSeries towards_lab, double distance_au) {
 SunPath SunPath::orbit(const HeliocentricOrbit& orbit, const Mat3& lab_from_ecliptic) {
   SunPath path;
   path.orbit_ = orbit;
-  path.lab_from_ecliptic_ = lab_from_ecliptic;
+  path.lab_from_plane_ = (lab_from_ecliptic * orbit.ecliptic_from_plane()).leftCols<2>();
   return path;
 }
 
 std::array<Vec3, 2> SunPath::at(double time_s) const {
   if (orbit_) {
-    const auto [position, velocity] = orbit_->position_and_velocity(time_s);
-    return {-lab_from_ecliptic_ * position, -lab_from_ecliptic_ * velocity};
+    const auto [position, velocity] = orbit_->in_plane(time_s);
+    return {-(lab_from_plane_ * position), -(lab_from_plane_ * velocity)};
   }
   if (!table_) return {fixed_au_, Vec3::Zero()};
   Vec3 value, slope;

@@ -22,6 +22,9 @@ struct HeliocentricOrbit {
 
   // From the Sun to the spacecraft [au], and its velocity [au/s], ecliptic axes.
   std::array<Vec3, 2> position_and_velocity(double time_s) const;
+  // The same in axes of the orbit's plane: x to the perihelion, y along the motion there.
+  std::array<Eigen::Vector2d, 2> in_plane(double time_s) const;
+  Mat3 ecliptic_from_plane() const;
 };
 
 // The orbit of the Earth, as good as its mean elements: the Sun's direction to 0.02 deg from 1950
@@ -40,23 +43,11 @@ class SunPath {
   // Value and time derivative of each component.
   std::array<Vec3, 2> at(double time_s) const;
 
-  template <class T>
-  Vec3Of<T> sample(const T& time_s) const {
-    Vec3Of<T> v;
-    for (int k = 0; k < 3; ++k) {
-      v[k] = from_values(time_s, [&](double t_s) {
-        const auto [value, slope] = at(t_s);
-        return std::array{value[k], slope[k]};
-      });
-    }
-    return v;
-  }
-
  private:
   Vec3 fixed_au_ = Vec3::UnitX();
   std::optional<TimeSeries> table_;
   std::optional<HeliocentricOrbit> orbit_;
-  Mat3 lab_from_ecliptic_ = Mat3::Identity();
+  Eigen::Matrix<double, 3, 2> lab_from_plane_ = {};
 };
 
 // The axes of a lab whose `axis` (0, 1, 2) points to right ascension and declination (equator and
