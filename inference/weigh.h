@@ -16,7 +16,9 @@ std::vector<size_t> leaders_among(const std::vector<Trial>& trials,
   std::vector<size_t> leaders;
   for (const size_t i : order) {
     if (!trials[i].objection.empty() || leaders.size() == limits.max_leaders) continue;
-    if (trials[i].log_evidence < trials[order.front()].log_evidence - limits.within) break;
+    // What is forbidden does not say how near the best is.
+    const size_t first = leaders.empty() ? i : leaders.front();
+    if (trials[i].log_evidence < trials[first].log_evidence - limits.within) break;
     leaders.push_back(i);
   }
   if (std::find(leaders.begin(), leaders.end(), 0u) == leaders.end()) leaders.push_back(0);
@@ -209,15 +211,20 @@ class Weighing {
     return domain_.assemble(start, members, train_, effort);
   }
 
+  // Of an explanation that leads already the better pair stays: what is held out is the difference
+  // of the two fits, which have to be of one minimum.
   void add_leader(Trial train, Trial joint) {
+    const auto leader = std::find_if(leaders_.begin(), leaders_.end(), [&](const Leader& l) {
+      return same_candidates(train.candidates, trials_[l.at].candidates);
+    });
+    const bool leads_already = leader != leaders_.end();
+    if (leads_already && !(joint.log_evidence > leader->joint.log_evidence)) return;
     predict_held(train);
     const size_t at = place_of(std::move(train));
-    const auto leader =
-        std::find_if(leaders_.begin(), leaders_.end(), [&](const Leader& l) { return l.at == at; });
-    if (leader == leaders_.end()) {
-      leaders_.push_back({at, std::move(joint)});
-    } else if (joint.log_evidence > leader->joint.log_evidence) {
+    if (leads_already) {
       leader->joint = std::move(joint);
+    } else {
+      leaders_.push_back({at, std::move(joint)});
     }
   }
 

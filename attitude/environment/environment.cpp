@@ -47,9 +47,9 @@ Vec3 read_field_lab_T(const Settings& settings) {
   if (measured) throw settings.error("igrf", "a field beside magnetic_field_T", "one of the two");
   const Settings igrf = settings.table("igrf");
   const GeomagneticModel model(read_year(igrf));
-  return model.lab_T(GeodeticPosition{igrf.number("latitude_deg", {-pi / 2, pi / 2, false, false}),
-                                      igrf.number("longitude_deg"),
-                                      igrf.number_or("height_m", 0.0)});
+  return model.lab_T(GeodeticPosition{
+      igrf.number("latitude_deg", {-pi / 2, pi / 2, false, false}), igrf.number("longitude_deg"),
+      igrf.number_or("height_m", 0.0, {-12e3, 1e10, false, false})});
 }
 
 }  // namespace

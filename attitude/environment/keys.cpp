@@ -60,15 +60,16 @@ Key environment_table() {
        Key::number("latitude_deg", latitudes, "for `earth_rotation`")
            .usually_is("that of `igrf`, else 0"),
        Key::vector3_or("magnetic_field_T", Vec3::Zero(), "lab axes: east, north, up; *or*"),
-       Key::table("igrf",
-                  {Key::other("date", Key::a_number | Key::a_text | Key::a_date,
-                              "2025-06-30, the same in quotes, or 2025.5; 1900 … 2035")
-                       .optional(),
-                   Key::number("date_year", years, "instead of `date`").optional(),
-                   Key::number("latitude_deg", latitudes, "geodetic"),
-                   Key::number("longitude_deg", {}, "east"),
-                   Key::number_or("height_m", 0.0, {}, "above the ellipsoid")},
-                  "the field by IGRF-14"),
+       Key::table(
+           "igrf",
+           {Key::other("date", Key::a_number | Key::a_text | Key::a_date,
+                       "2025-06-30, the same in quotes, or 2025.5; 1900 … 2035")
+                .optional(),
+            Key::number("date_year", years, "instead of `date`").optional(),
+            Key::number("latitude_deg", latitudes, "geodetic"),
+            Key::number("longitude_deg", {}, "east"),
+            Key::number_or("height_m", 0.0, {-12e3, 1e10, false, false}, "above the ellipsoid")},
+           "the field by IGRF-14"),
        sun_table().optional(),
        Key::number_or("air_temperature_K", usual.air_temperature_K, {100.0, 1000.0, false, false},
                       "of the air around"),

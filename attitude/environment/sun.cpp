@@ -20,19 +20,24 @@ Mat3 equatorial_from_ecliptic() {
   return Eigen::AngleAxisd(obliquity_rad, Vec3::UnitX()).toRotationMatrix();
 }
 
-// Starts from the series to the second order in the eccentricity.
-double eccentric_anomaly(double mean_rad, double eccentricity) {
+// In [-pi, pi]. Starts from the series to the second order in the eccentricity, or, where that is
+// no approximation any more, from the aphelion: between there and the root Kepler's equation is
+// convex, and Newton's steps do not pass the root.
+double eccentric_anomaly(double any_mean_rad, double eccentricity) {
+  const double mean_rad = std::remainder(any_mean_rad, 2.0 * pi);
   const double sine = eccentricity * std::sin(mean_rad);
-  double e = mean_rad + sine * (1.0 + eccentricity * std::cos(mean_rad));
-  constexpr int most = 50;
+  double e = eccentricity < 0.3 ? mean_rad + sine * (1.0 + eccentricity * std::cos(mean_rad))
+                                : std::copysign(pi, mean_rad);
+  constexpr int most = 100;
   for (int i = 0; i < most; ++i) {
     const double step =
         (mean_rad - e + eccentricity * std::sin(e)) / (1.0 - eccentricity * std::cos(e));
     e += step;
     // The error after a step is below the square of the step over 1 - eccentricity.
-    if (step * step < 1e-16 * (1.0 - eccentricity)) break;
+    if (step * step < 1e-16 * (1.0 - eccentricity)) return e;
   }
-  return e;
+  throw NumericalError("Kepler's equation: no solution at an eccentricity of " +
+                       std::to_string(eccentricity));
 }
 
 Epoch read_date(const Settings& settings, const char* key) {

@@ -92,6 +92,25 @@ Quat read_initial_attitude(const Settings& settings) {
   return attitude.normalized();
 }
 
+// Bearings leave one axis: what begins beside it is a motion that they do not allow.
+void check_begins_about_axis(const Settings& settings, const Platform& platform,
+                             const Quat& lab_from_body, const Vec3& rate_rad_s) {
+  if (!platform.turns_about_one_axis()) return;
+  const auto beside = [&](const Vec3& v) {
+    return (v - platform.axis.dot(v) * platform.axis).norm();
+  };
+  constexpr double rounding = 1e-6;
+  if (beside(rate_rad_s) > rounding * rate_rad_s.norm()) {
+    throw settings.error("initial_rate_rad_s", "a rate beside the axis that the bearings leave",
+                         "a rate about platform.axis alone");
+  }
+  if (beside(lab_from_body.vec()) > rounding) {
+    throw settings.error(settings.has("initial_attitude") ? "initial_attitude" : "initial_tilt_deg",
+                         "a turn about another axis than the bearings leave",
+                         "a turn about platform.axis alone");
+  }
+}
+
 }  // namespace
 
 Settings own_table(const Settings& root, const std::string& key, bool required) {
@@ -176,6 +195,10 @@ PropagationRun read_propagation(const Settings& root) {
       settings.number_or("tolerance", run.options.tolerance, {1e-13, 1e-3, false, false});
   run.options.max_step_s =
       settings.number_or("longest_step_s", run.options.max_step_s, Range::positive());
+  if (run.duration_s / run.options.max_step_s > static_cast<double>(run.options.max_steps)) {
+    throw settings.error("longest_step_s", "more than a thousand million steps to the end",
+                         "longer steps");
+  }
   run.options.tick_rate_Hz = settings.number_or("tick_rate_Hz", 0.0, {0.0, 1e6, false, false});
   run.model.schedule = read_schedule(settings);
   run.epoch = settings.text_or("epoch", "2000-01-01T00:00:00");
@@ -185,6 +208,8 @@ PropagationRun read_propagation(const Settings& root) {
   run.initial =
       Dynamics(run.model).initial_state(settings.vector3_or("initial_rate_rad_s", Vec3::Zero()));
   run.initial.lab_from_body = read_initial_attitude(settings);
+  check_begins_about_axis(settings, run.model.platform, run.initial.lab_from_body,
+                          run.initial.rate_body_rad_s);
   read_initial_place(settings, run.model, run.initial);
   const double tilt_rad =
       std::acos(std::clamp(run.initial.lab_from_body.toRotationMatrix()(2, 2), -1.0, 1.0));
@@ -202,6 +227,11 @@ PropagationRun read_propagation(const Settings& root) {
         "at most the " + std::to_string(*capacity_C / 3600.0) + " of platform.battery_capacity_Ah");
   }
   run.initial.time_s = settings.number_or("initial_time_s", 0.0);
+  // A calendar time has four digits of the year in attitude.aem.
+  const double left_s = parse_epoch("9999-12-31T23:59:59")->seconds_since(*parse_epoch(run.epoch));
+  if (run.initial.time_s + run.duration_s > left_s) {
+    throw settings.error("epoch", "an end after the year 9999", "an earlier time");
+  }
   settings.finish();
   return run;
 }

@@ -202,7 +202,7 @@ std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesig
     if (!known.insert(one.index).second) {
       throw s.error("index", std::to_string(one.index), "each cell at most once");
     }
-    one.photocurrent_factor = s.number_or("photocurrent_factor", 1.0, Range::not_negative());
+    one.photocurrent_factor = s.number_or("photocurrent_factor", 1.0, {0.0, 1e6, false, false});
     const bool own_area = s.has("reference_area_m2");
     const CellModel others =
         own_area ? stated_for(s.number("reference_area_m2", Range::positive()), design.cell)

@@ -61,7 +61,7 @@ std::vector<Key> one_cell_keys() {
   constexpr const char* usual = "that of the others";
   return joined(
       {{Key::integer("index", 0, most_cells - 1, "row · columns + column").range_that_varies(),
-        Key::number_or("photocurrent_factor", 1.0, Range::not_negative(),
+        Key::number_or("photocurrent_factor", 1.0, {0.0, 1e6, false, false},
                        "of what its light would give"),
         Key::number("reference_area_m2", Range::positive(),
                     "the area that the currents and resistances of this table belong to; "

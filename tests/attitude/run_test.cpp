@@ -132,6 +132,30 @@ TEST(Experiment, WrongInputIsOneClearLine) {
                 at(r, "propagate", "commands") = node("no_such_commands.csv");
               }),
               HasSubstr("no_such_commands.csv"));
+  EXPECT_THAT(
+      complaint([](SettingsNode& r) { at(r, "propagate", "longest_step_s") = node(1e-12); }),
+      HasSubstr("propagate.longest_step_s"));
+  EXPECT_THAT(
+      complaint([](SettingsNode& r) { at(r, "propagate", "epoch") = node("9999-12-31T23:59:40"); }),
+      HasSubstr("propagate.epoch: found an end after the year 9999"));
+}
+
+TEST(Experiment, BeginsAsItsBearingsAllow) {
+  const auto about = [](const char* axis, std::vector<double> rate_rad_s, double tilt_deg) {
+    return complaint([&](SettingsNode& r) {
+      at(r, "platform", "topology") = node("one_axis");
+      at(r, "platform", "axis") = node(axis);
+      at(r, "propagate", "initial_rate_rad_s") = numbers(rate_rad_s);
+      at(r, "propagate", "initial_tilt_deg") = node(tilt_deg);
+      // A lean towards y is a turn about x.
+      at(r, "propagate", "initial_heading_deg") = node(90.0);
+    });
+  };
+  EXPECT_EQ(about("z", {0, 0, 0.05}, 0.0), "none");
+  EXPECT_EQ(about("x", {0.05, 0, 0}, 10.0), "none");
+  EXPECT_THAT(about("z", {0, 1e-3, 0.05}, 0.0), HasSubstr("propagate.initial_rate_rad_s"));
+  EXPECT_THAT(about("z", {0, 0, 0.05}, 10.0), HasSubstr("propagate.initial_tilt_deg"));
+  EXPECT_THAT(about("y", {0, 0.05, 0}, 10.0), HasSubstr("propagate.initial_tilt_deg"));
 }
 
 TEST(Run, GivesHistoryPlotsAndRecording) {

@@ -69,6 +69,28 @@ TEST(Sun, OrbitIsKepler) {
               0.0, 1e-12);
 }
 
+// Kepler's equation read backwards: from the eccentric anomaly to the time, in closed form.
+TEST(Sun, KeplersEquationHoldsForEveryEllipse) {
+  for (const double eccentricity : {0.0, 0.0167, 0.29, 0.31, 0.7, 0.97, 0.9999}) {
+    for (const double e_rad : {-3.1, -1.0, -1e-3, 0.0, 1e-6, 0.02, 0.5, 1.6, 3.0, 3.14}) {
+      for (const double turns : {0.0, -3.0, 1000.0}) {
+        HeliocentricOrbit orbit;
+        orbit.eccentricity = eccentricity;
+        orbit.mean_anomaly_rad = e_rad - eccentricity * std::sin(e_rad) + 2.0 * pi * turns;
+        const Eigen::Vector2d seen = orbit.in_plane(0.0)[0];
+        // The mean anomaly is rounded to 1e-12 after a thousand turns, and dE/dM is as large as
+        // this.
+        const double rounding = 1e-15 + (turns != 0.0 ? 2e-12 : 4e-16);
+        const double tolerance = 1e-15 + rounding / (1.0 - eccentricity * std::cos(e_rad));
+        EXPECT_NEAR(seen[0], std::cos(e_rad) - eccentricity, tolerance) << eccentricity << e_rad;
+        EXPECT_NEAR(seen[1], std::sqrt(1.0 - eccentricity * eccentricity) * std::sin(e_rad),
+                    tolerance)
+            << eccentricity << " " << e_rad;
+      }
+    }
+  }
+}
+
 TEST(Sun, SlopesAreThoseOfThePath) {
   const auto path = environment_of(
                         "[sun]\ndate = \"2015-04-27T03:00\"\npointing = { axis = \"x\", "

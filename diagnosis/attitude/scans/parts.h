@@ -10,10 +10,10 @@
 
 namespace photorque {
 
-// From the first reading to the last [s]: of several recordings the longest, of the pieces of one
-// all of it. What acts at one frequency keeps its phase from piece to piece.
+// From the first reading to the last [s], of all pieces and recordings on their clock: what acts at
+// one frequency keeps its phase from piece to piece.
 inline double span_s(const std::vector<Observation>& runs) {
-  double start_s = runs.front().time_s.front(), end_s = 0.0;
+  double start_s = runs.front().time_s.front(), end_s = runs.front().time_s.back();
   for (const Observation& seen : runs) {
     start_s = std::min(start_s, seen.time_s.front());
     end_s = std::max(end_s, seen.time_s.back());
