@@ -28,6 +28,8 @@ class Misreading {
       } else if (const auto possible = of_every_choice(keys); find(possible, key) == nullptr) {
         // Whatever was meant by the choice, it knows no such key.
         refuse(value, possible, key, full);
+      } else {
+        check_as_any(value, possible, key, full);
       }
     }
   }
@@ -43,6 +45,20 @@ class Misreading {
       }
     }
     return all;
+  }
+
+  // A value that no choice would take is wrong whatever was meant.
+  void check_as_any(const SettingsNode& value, const std::vector<const Key*>& possible,
+                    const std::string& key, const std::string& full) {
+    std::vector<InputError> first;
+    for (const Key* one : possible) {
+      if (find({one}, key) == nullptr) continue;
+      Misreading as_one;
+      as_one.check(value, *one, key, full);
+      if (as_one.errors_.empty()) return;
+      if (first.empty()) first = std::move(as_one.errors_);
+    }
+    errors_.insert(errors_.end(), first.begin(), first.end());
   }
 
   // Whether every choice that brings keys is made, so that all keys are known.

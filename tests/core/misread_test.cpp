@@ -33,6 +33,14 @@ TEST(MisreadKeys, AWrongChoiceHidesNoMisspeltKey) {
                                     "perhaps \"power_W\"")));
 }
 
+TEST(MisreadKeys, AWrongChoiceHidesNoWrongValue) {
+  EXPECT_THAT(mistakes({{"kind", {std::string("rund")}}, {"radius_m", {-0.1}}}),
+              ElementsAre(HasSubstr("lamp.kind: found \"rund\""),
+                          HasSubstr("lamp.radius_m: found -0.1, expected a number > 0")));
+  EXPECT_THAT(mistakes({{"kind", {std::string("rund")}}, {"side_m", {0.1}}}),
+              ElementsAre(HasSubstr("lamp.kind")));
+}
+
 TEST(MisreadKeys, WithoutItsChoiceAKeyOfAnyChoiceMayStand) {
   EXPECT_THAT(mistakes({{"radius_m", {0.1}}, {"power_W", {1.0}}}), ElementsAre());
   EXPECT_THAT(mistakes({{"radus_m", {0.1}}}), ElementsAre(HasSubstr("perhaps \"radius_m\"")));
