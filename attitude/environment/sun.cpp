@@ -20,21 +20,37 @@ Mat3 equatorial_from_ecliptic() {
   return Eigen::AngleAxisd(obliquity_rad, Vec3::UnitX()).toRotationMatrix();
 }
 
-// In [-pi, pi]. Starts from the series to the second order in the eccentricity, or, where that is
-// no approximation any more, from the aphelion: between there and the root Kepler's equation is
-// convex, and Newton's steps do not pass the root.
-double eccentric_anomaly(double any_mean_rad, double eccentricity) {
-  const double mean_rad = std::remainder(any_mean_rad, 2.0 * pi);
-  const double sine = eccentricity * std::sin(mean_rad);
-  double e = eccentricity < 0.3 ? mean_rad + sine * (1.0 + eccentricity * std::cos(mean_rad))
-                                : std::copysign(pi, mean_rad);
+struct Direction {
+  double cosine, sine;
+};
+
+// Of an angle and a small step more, to the fourth power of the step.
+Direction turned(const Direction& from, double step_rad) {
+  const double square = step_rad * step_rad, c = 1.0 - 0.5 * square,
+               s = step_rad * (1.0 - square / 6.0);
+  return {c * from.cosine - s * from.sine, c * from.sine + s * from.cosine};
+}
+
+// Of the eccentric anomaly, by Newton's steps and one of Halley's at the end. They start from the
+// series to the third order in the eccentricity, or, where that is no approximation any more, from
+// the aphelion: between there and the root Kepler's equation is convex, and Newton's steps do not
+// pass the root.
+Direction eccentric_anomaly(double any_mean_rad, double eccentricity) {
+  const double mean_rad = any_mean_rad - 2.0 * pi * std::nearbyint(any_mean_rad / (2.0 * pi));
+  const double c = std::cos(mean_rad), s = eccentricity * std::sin(mean_rad);
+  double e_rad = eccentricity < 0.3
+                     ? mean_rad + s * (1.0 + eccentricity * (c + eccentricity) - 1.5 * s * s)
+                     : std::copysign(pi, mean_rad);
   constexpr int most = 100;
   for (int i = 0; i < most; ++i) {
-    const double step =
-        (mean_rad - e + eccentricity * std::sin(e)) / (1.0 - eccentricity * std::cos(e));
-    e += step;
-    // The error after a step is below the square of the step over 1 - eccentricity.
-    if (step * step < 1e-16 * (1.0 - eccentricity)) return e;
+    const Direction at{std::cos(e_rad), std::sin(e_rad)};
+    const double slope = 1.0 - eccentricity * at.cosine, bend = eccentricity * at.sine;
+    double step_rad = (mean_rad - e_rad + bend) / slope;
+    constexpr double near_rad = 1e-2;
+    if (std::abs(step_rad) < near_rad * slope) step_rad /= 1.0 + 0.5 * step_rad * bend / slope;
+    const double error_rad = std::abs(step_rad * step_rad * step_rad) / (slope * slope);
+    if (error_rad < 1e-16) return turned(at, step_rad);
+    e_rad += step_rad;
   }
   throw NumericalError("Kepler's equation: no solution at an eccentricity of " +
                        std::to_string(eccentricity));
@@ -80,8 +96,8 @@ Pointing read_pointing(const Settings& settings) {
 std::array<Eigen::Vector2d, 2> HeliocentricOrbit::in_plane(double time_s) const {
   const double motion_rad_s =
       gaussian_motion_rad_s / (semi_major_axis_au * std::sqrt(semi_major_axis_au));
-  const double e = eccentric_anomaly(mean_anomaly_rad + motion_rad_s * time_s, eccentricity);
-  const double sine = std::sin(e), cosine = std::cos(e);
+  const auto [cosine, sine] =
+      eccentric_anomaly(mean_anomaly_rad + motion_rad_s * time_s, eccentricity);
   const double minor_au = semi_major_axis_au * std::sqrt(1.0 - eccentricity * eccentricity);
   const double rate_rad_s = motion_rad_s / (1.0 - eccentricity * cosine);
   return {Eigen::Vector2d(semi_major_axis_au * (cosine - eccentricity), minor_au * sine),
