@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/constants.h"
 #include "core/snapshots/snapshot.h"
@@ -72,7 +73,7 @@ Plot::Curve curve(const std::string& label, const std::vector<double>& x,
 }
 
 // The largest of every stretch, for a logarithmic axis: what swings through zero shows its swing.
-// Values below `least` are left out.
+// Values below `least` leave a gap.
 Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
                      const std::vector<double>& size, double least) {
   constexpr size_t most = 240;
@@ -83,9 +84,9 @@ Plot::Curve envelope(const std::string& label, const std::vector<double>& x,
     const size_t begin = s * x.size() / stretches, end = (s + 1) * x.size() / stretches;
     const double largest = *std::max_element(size.begin() + static_cast<std::ptrdiff_t>(begin),
                                              size.begin() + static_cast<std::ptrdiff_t>(end));
-    if (!(largest >= least) || largest == 0.0) continue;
+    const bool shows = largest >= least && largest > 0.0;
     c.x.push_back(0.5 * (x[begin] + x[end - 1]));
-    c.y.push_back(largest);
+    c.y.push_back(shows ? largest : std::numeric_limits<double>::quiet_NaN());
   }
   return c;
 }
@@ -205,7 +206,7 @@ Product TimeHistory::product(const std::vector<Event>& events,
   add_plot("heading", "Heading", "Heading [deg]", {curve("", t, unwrapped_deg(values(heading)))});
   add_vector_plot("rates", "Body rates", "rad/s", rate_x);
   if (any_nonzero(values(charge))) {
-    add_plot("charge", "Charge drawn from the battery", "Charge [Ah]",
+    add_plot("charge", "Charge missing from the battery", "Charge [Ah]",
              {curve("", t, values(charge))});
   }
   if (any_nonzero(values(power))) {
@@ -230,7 +231,9 @@ Product TimeHistory::product(const std::vector<Event>& events,
     for (size_t i = 0; i < shown.size(); ++i) {
       all.push_back(envelope(labels_[shown[i]], t, sizes[i], min_fraction * largest_N_m));
     }
-    std::erase_if(all, [](const Plot::Curve& one) { return one.x.empty(); });
+    std::erase_if(all, [](const Plot::Curve& one) {
+      return std::none_of(one.y.begin(), one.y.end(), [](double y) { return std::isfinite(y); });
+    });
     add_plot("torques", "Size of every torque, largest within each 240th of the run",
              "Torque [N m]", std::move(all));
     product.plots.back().y_log = true;

@@ -87,7 +87,7 @@ Map component_map(const WrenchTable& table, const VectorColumn& column, int axis
   Map map;
   map.name = column.name + ("_" + letter(axis)) + "_" + name;
   map.title = (std::string(column.name) == "force" ? "Force along " : "Torque about ") +
-              ("body " + letter(axis)) + " on " + name;
+              ("body " + letter(axis)) + (name == "body" ? "" : " on " + name);
   map.unit = column.unit;
   // Where the table goes all the way round, its first nodes once more close the picture.
   const size_t around_nodes = table.around_rad.size();

@@ -1,5 +1,6 @@
 // The first step of reading an experiment: the text, without the scene.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/constants.h"
@@ -165,10 +166,25 @@ std::optional<DirectionGrid> read_light_directions(const Settings& root) {
                        read_direction_axis(table, "azimuth", pi)};
 }
 
+// A mistyped name is told before what would fit another kind of file.
+void require_model(const Settings& scene, const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    if (!scene.has("unit") && !scene.has("up")) return;  // its reader says so
+    throw scene.error("file", "no file " + file.string(), "a model (glTF, GLB, STL or OBJ)");
+  }
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending == ".gltf" || ending == ".glb") return;
+  throw scene.error("file", "\"" + file.filename().string() + "\"",
+                    "a model that ends in .gltf, .glb, .stl or .obj");
+}
+
 // Of an STL or OBJ file, which says neither; a glTF file does.
 std::optional<CadConventions> read_cad_conventions(const Settings& scene,
                                                    const std::filesystem::path& file) {
   if (!cad_format(file)) {
+    require_model(scene, file);
     for (const char* key : {"unit", "up"}) {
       if (!scene.has(key)) continue;
       throw scene.error(

@@ -187,7 +187,8 @@ void print_light_table(const Console& console, const RotationTable& table) {
   console.line(table.twists() == 1 ? "  the same at every yaw, by trial"
                                    : "  depends on the yaw: " + std::to_string(table.twists()) +
                                          " values over " + show(360.0 / table.fold()) + " deg");
-  console.line("  " + std::to_string(table.leaves()) + " patches over tilt and heading; at " +
+  console.line("  " + std::to_string(table.leaves()) +
+               (table.leaves() == 1 ? " patch" : " patches") + " over tilt and heading; at " +
                std::to_string(error.points) + " fresh attitudes off by at most");
   for (size_t g = 0; g < error.scale.size(); ++g) {
     if (!(error.scale[g] > 0.0)) continue;

@@ -1,5 +1,6 @@
 // The program: reads the command line, runs one verb, turns exceptions into exit statuses.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <limits>
@@ -51,7 +52,8 @@ void add_options(CLI::App& command, const Verb& verb, CommandLine& line) {
         ->allow_extra_args(false);
   }
   if (verb.writes) {
-    command.add_option("--out", line.out, "Folder for the results (default: out/EXPERIMENT/VERB)");
+    command.add_option("-o,--out", line.out,
+                       "Folder for the results (default: out/EXPERIMENT/VERB)");
   }
   command.add_option("--threads", line.threads, "Threads to use (default: all)")
       ->check(CLI::Range(0, 1024));
@@ -103,6 +105,16 @@ int run_verb(const Verb& verb, const CommandLine& line) {
     std::fprintf(stderr, "%s: %s\n", line.experiment.c_str(), what.c_str());
     return 2;
   }
+}
+
+// A list behind --recording would swallow an experiment that follows it: each has its own option.
+std::string hint_at(const CLI::ParseError& error, int argc, char** argv) {
+  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return "";
+  for (const char* option : {"--recording", "--holdout", "--set"}) {
+    if (std::find(argv + 1, argv + argc, std::string_view(option)) == argv + argc) continue;
+    return std::string("; repeat ") + option + " before each of several";
+  }
+  return "";
 }
 
 int run(int argc, char** argv, Interruption& interruption) {
@@ -197,6 +209,13 @@ int run(int argc, char** argv, Interruption& interruption) {
     std::set<std::string> known;
     for (const Verb& verb : verbs) known.insert(verb.name);
     if (!known.contains(argv[1])) {
+      if (std::string_view(argv[1]).ends_with(".toml")) {
+        std::fprintf(stderr,
+                     "photorque: found %s, expected a command before it: did you forget it? e.g. "
+                     "photorque power %s (see photorque --help)\n",
+                     argv[1], argv[1]);
+        return 2;
+      }
       const std::string likest = nearest(argv[1], known);
       std::fprintf(stderr, "photorque: unknown command \"%s\"%s (see photorque --help)\n", argv[1],
                    likest.empty() ? "" : (", perhaps \"" + likest + "\"").c_str());
@@ -207,7 +226,8 @@ int run(int argc, char** argv, Interruption& interruption) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::fprintf(stderr, "photorque: %s (see photorque --help)\n", error.what());
+    std::fprintf(stderr, "photorque: %s%s (see photorque --help)\n", error.what(),
+                 hint_at(error, argc, argv).c_str());
     return 2;
   }
   if (manual.page || !manual.shell.empty()) {

@@ -16,6 +16,7 @@
 #include "images/drawing/plot_picture.h"
 #include "images/publishing/staged_files.h"
 #include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml_writer.h"
 #include "tools/runs/attitude_run.h"
 
 namespace photorque {
@@ -34,21 +35,57 @@ std::vector<NamedRecording> read_all(const std::vector<fs::path>& paths,
   return all;
 }
 
+// Whether the text ends in a key whose words are names of its own, not of files.
+bool is_name(const std::string& before) {
+  static const std::regex own_names(
+      R"((^|[\s{,.])(name|node|receiver|kind|source|body|topology)\s*=\s*$)");
+  const size_t line = before.rfind('\n');
+  return std::regex_search(line == std::string::npos ? before : before.substr(line), own_names);
+}
+
 // The text of an experiment with the files that it names found from another folder.
 std::string seen_from(const std::string& text, const fs::path& experiment, const fs::path& folder) {
-  static const std::regex quoted("\"([^\"\n]+)\"");
+  static const std::regex quoted(R"x("([^"\n]+)"|'([^'\n]+)')x");
   std::string result;
   size_t done = 0;
   for (std::sregex_iterator it(text.begin(), text.end(), quoted), end; it != end; ++it) {
-    const fs::path file = fs::absolute(experiment).parent_path() / (*it)[1].str();
-    std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) continue;
+    const std::string name = (*it)[1].matched ? (*it)[1].str() : (*it)[2].str();
+    const fs::path file = fs::absolute(experiment).parent_path() / name;
     const auto at = static_cast<size_t>(it->position());
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored) || is_name(text.substr(done, at - done))) continue;
     result += text.substr(done, at - done) + "\"" +
               file.lexically_proximate(fs::absolute(folder)).generic_string() + "\"";
     done = at + static_cast<size_t>(it->length());
   }
   return result + text.substr(done);
+}
+
+// The text with what the command line changes; then without its comments.
+std::string with_overrides(const std::string& text, const std::vector<std::string>& overrides) {
+  if (overrides.empty()) return text;
+  SettingsNode root = parse_toml(text, "");
+  std::string head;
+  for (const std::string& assignment : overrides) {
+    apply_override(root, assignment);
+    head += "# --set " + assignment + "\n";
+  }
+  return head + toml_document(std::get<SettingsNode::Table>(root.value));
+}
+
+// Whether the recordings are of light. InputError naming the first that is of another kind.
+bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs::path>& holdouts) {
+  const bool of_light = is_light_recording(recordings.front());
+  for (const auto* all : {&recordings, &holdouts}) {
+    for (const fs::path& path : *all) {
+      if (!fs::exists(path) || is_light_recording(path) == of_light) continue;
+      throw InputError({path.string()}, "",
+                       of_light ? "no recording of light" : "a recording of light",
+                       std::string(of_light ? "one" : "one of motion") + " as " +
+                           recordings.front().filename().string());
+    }
+  }
+  return of_light;
 }
 
 std::vector<LightRecording> read_light(const std::vector<fs::path>& paths,
@@ -86,7 +123,8 @@ DiagnosisRun diagnose_light_recordings(const RunOptions& options,
   how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
   Diagnosis diagnosis =
       diagnose_light(lab, nominal, std::move(recordings), std::move(holdouts), how);
-  return {std::move(diagnosis), std::move(provenance), options.experiment, text, true};
+  return {std::move(diagnosis), std::move(provenance), options.experiment,
+          with_overrides(text, options.all_overrides()), true};
 }
 
 // Curves of a module in sunlight: no scene is needed.
@@ -106,7 +144,8 @@ DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& r
   ModuleDiagnoseOptions how;
   how.threads = options.threads;
   Diagnosis diagnosis = diagnose_module(design, recordings, holdouts, how);
-  return {std::move(diagnosis), std::move(provenance), options.experiment, text, true};
+  return {std::move(diagnosis), std::move(provenance), options.experiment,
+          with_overrides(text, options.all_overrides()), true};
 }
 
 DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::path>& paths,
@@ -123,7 +162,7 @@ DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::pa
   how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
   Diagnosis diagnosis = diagnose(nominal, recordings, holdouts, how);
   return {std::move(diagnosis), experiment.provenance(0), options.experiment,
-          options.experiment_text(), false};
+          with_overrides(options.experiment_text(), options.overrides), false};
 }
 
 }  // namespace
@@ -133,8 +172,7 @@ std::string DiagnosisRun::json() const {
 }
 
 std::string DiagnosisRun::improved(const fs::path& folder) const {
-  return improved_experiment(of_light ? seen_from(text, experiment, folder) : text, diagnosis,
-                             fs::absolute(folder));
+  return improved_experiment(seen_from(text, experiment, folder), diagnosis, fs::absolute(folder));
 }
 
 std::string DiagnosisRun::report() const {
@@ -151,8 +189,7 @@ DiagnosisRun diagnose_experiment(const RunOptions& options, const std::vector<fs
   for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
   const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
   if (root.has("module")) return diagnose_module_curves(options, root, recordings, holdouts);
-  // One recording of light among them, and all are meant to be.
-  return is_light_recording(recordings.front())
+  return are_of_light(recordings, holdouts)
              ? diagnose_light_recordings(options, recordings, holdouts, console)
              : diagnose_motion(options, recordings, holdouts, console);
 }

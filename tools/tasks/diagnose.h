@@ -17,7 +17,7 @@ struct DiagnosisRun {
   Diagnosis diagnosis;
   Provenance provenance;
   std::filesystem::path experiment;
-  std::string text;       // of the experiment
+  std::string text;       // of the experiment, with the changes of the command line
   bool of_light = false;  // of scans, sweeps and runs instead of motion
 
   std::string json() const;
@@ -27,7 +27,7 @@ struct DiagnosisRun {
   std::string report() const;
 };
 
-// Recordings of motion, or of light and power: told apart by the first one's header. At least one.
+// Recordings of motion, or of light and power: told apart by their headers. At least one.
 DiagnosisRun diagnose_experiment(const RunOptions& options,
                                  const std::vector<std::filesystem::path>& recordings,
                                  const std::vector<std::filesystem::path>& holdouts,

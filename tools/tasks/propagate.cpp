@@ -12,7 +12,8 @@
 namespace photorque {
 namespace {
 
-void print_run(const Console& console, const PropagationRun& run, const PropagationResult& result) {
+void print_run(const Console& console, const PropagationRun& run, const CoupledResult& coupled) {
+  const PropagationResult& result = coupled.motion;
   console.line("Disturbances");
   for (const Disturbance& disturbance : run.model.disturbances)
     console.line("  " + disturbance.kind);
@@ -25,8 +26,12 @@ void print_run(const Console& console, const PropagationRun& run, const Propagat
   row("tilt at the end", tilt_rad(end) / degree_rad, "deg");
   row("heading at the end", heading_rad(end) / degree_rad, "deg");
   row("rate at the end", end.rate_body_rad_s.norm(), "rad/s");
-  if (end.charge_drawn_C != 0.0) row("charge drawn", end.charge_drawn_C / 3600.0, "Ah");
+  if (end.charge_drawn_C != 0.0) row("charge missing", end.charge_drawn_C / 3600.0, "Ah");
   console.line("  in " + std::to_string(result.statistics.steps) + " steps");
+  if (coupled.attitude_error_rad) {
+    console.line("  the error of the table of light turns the body by less than " +
+                 show(*coupled.attitude_error_rad / degree_rad) + " deg until then");
+  }
   constexpr size_t max_events = 12;
   if (!result.events.empty()) console.heading("Events");
   for (size_t i = 0; i < std::min(max_events, result.events.size()); ++i) {
@@ -78,10 +83,8 @@ void add_light(const Console& console, const CoupledResult& coupled, const Propa
                Product& product) {
   if (coupled.table) append(product, table_product(*coupled.table));
   if (coupled.attitude_error_rad) {
-    const double bound_deg = *coupled.attitude_error_rad / degree_rad;
-    console.line("  the error of the table of light turns the body by less than " +
-                 show(bound_deg) + " deg until then");
-    product.quantities.push_back({"light_table_attitude_error_deg", {bound_deg, 0.0}});
+    product.quantities.push_back(
+        {"light_table_attitude_error_deg", {*coupled.attitude_error_rad / degree_rad, 0.0}});
   }
   if (!coupled.beside) return;
   print_power(console, *coupled.beside);
@@ -118,7 +121,7 @@ MotionRun propagate_experiment(const RunOptions& options, const Console& console
   if (coupled->light) add_inputs(result.provenance, coupled->light->inputs());
   add_inputs(result.provenance, seen);
   add_inputs(result.provenance, further.inputs);
-  print_run(console, *run, motion);
+  print_run(console, *run, *coupled);
   result.product = std::move(motion.product);
   add_light(console, *coupled, *run, result.product);
   const Product pointing = pointing_product(motion.states);
