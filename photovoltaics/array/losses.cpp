@@ -7,6 +7,16 @@
 
 namespace photorque {
 
+namespace {
+
+// What differs by the rounding of sums alone is no loss.
+double without_rounding(double power_W, double next_W) {
+  constexpr double rounding = 1e-12;
+  return std::abs(power_W - next_W) < rounding * std::abs(next_W) ? next_W : power_W;
+}
+
+}  // namespace
+
 std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs& in) {
   std::vector<LossStage> stages;
   const double lamps_W = in.emitted_W / in.collimator_efficiency.value_or(1.0);
@@ -25,14 +35,15 @@ std::vector<LossStage> loss_waterfall(const ArrayResult& array, const LossInputs
   if (array.entry_known) stages.push_back({"light that enters", entering_W, "angle of incidence"});
   stages.push_back({"photons converted", entering_W * in.quantum_efficiency,
                     "quantum efficiency, reflection included"});
-  stages.push_back({"every cell by itself", array.sum_of_cells_W.value,
-                    "voltage below the photon's, fill factor"});
   double cells_W = 0.0;
   for (size_t i = 0; i < array.cells.voltages_V.size(); ++i) {
     cells_W += array.cells.voltages_V[i] * array.cells.currents_A[i];
   }
-  stages.push_back({"cells in the network", cells_W, "uneven light"});
   double left_W = array.power_W.value;
+  cells_W = without_rounding(cells_W, left_W);
+  stages.push_back({"every cell by itself", without_rounding(array.sum_of_cells_W.value, cells_W),
+                    "voltage below the photon's, fill factor"});
+  stages.push_back({"cells in the network", cells_W, "uneven light"});
   stages.push_back({"array", left_W, "bypass and blocking diodes"});
   if (in.tracker_efficiency) {
     left_W *= *in.tracker_efficiency;

@@ -24,7 +24,7 @@ void print_run(const Console& console, const PropagationRun& run, const CoupledR
   };
   row("until", end.time_s, "s");
   row("tilt at the end", tilt_rad(end) / degree_rad, "deg");
-  row("heading at the end", heading_rad(end) / degree_rad, "deg");
+  row("heading at the end", heading_rad(end) / degree_rad, "deg, between -180 and 180");
   row("rate at the end", end.rate_body_rad_s.norm(), "rad/s");
   if (end.charge_drawn_C != 0.0) row("charge missing", end.charge_drawn_C / 3600.0, "Ah");
   console.line("  in " + std::to_string(result.statistics.steps) + " steps");
