@@ -257,9 +257,17 @@ TEST(Cad, ExperimentsSayTheUnit) {
               HasSubstr("lab.toml:3: scene.unit: found \"yd\""));
   EXPECT_THAT(refusal_of_scene("file = \"house.obj\"\nmetres_per_unit = 0.001"),
               HasSubstr("lab.toml:3: scene.metres_per_unit: found an STL or OBJ file"));
-  EXPECT_THAT(refusal_of_scene("file = \"house.gltf\"\nunit = \"mm\""),
+  const std::string gltf = "file = \"../gltf/lights.gltf\"\n";
+  EXPECT_THAT(refusal_of_scene(gltf + "unit = \"mm\""),
               HasSubstr("lab.toml:3: scene.unit: found a glTF file"));
-  EXPECT_THAT(refusal_of_scene("file = \"house.gltf\"\nup = \"z\""), HasSubstr("scene.up"));
+  EXPECT_THAT(refusal_of_scene(gltf + "up = \"z\""), HasSubstr("scene.up"));
+}
+
+TEST(Cad, AMistypedNameIsToldBeforeTheUnit) {
+  EXPECT_THAT(refusal_of_scene("file = \"no_house.gltf\"\nunit = \"mm\""),
+              HasSubstr("lab.toml:2: scene.file: found no file"));
+  EXPECT_THAT(refusal_of_scene("file = \"house.ob\"\nunit = \"mm\""),
+              HasSubstr("lab.toml:2: scene.file: found no file"));
 }
 
 }  // namespace
