@@ -110,6 +110,8 @@ int run_verb(const Verb& verb, const CommandLine& line) {
 // A list behind --recording would swallow an experiment that follows it: each has its own option.
 std::string hint_at(const CLI::ParseError& error, int argc, char** argv) {
   if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return "";
+  // An option that nobody knows is no item of a list.
+  if (std::string_view(error.what()).find(" -") != std::string_view::npos) return "";
   for (const char* option : {"--recording", "--holdout", "--set"}) {
     if (std::find(argv + 1, argv + argc, std::string_view(option)) == argv + argc) continue;
     return std::string("; repeat ") + option + " before each of several";
