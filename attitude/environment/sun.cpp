@@ -21,35 +21,40 @@ Mat3 equatorial_from_ecliptic() {
 }
 
 struct Direction {
-  double cosine, sine;
+  Lanes cosine, sine;
 };
 
 // Of an angle and a small step more, to the fourth power of the step.
-Direction turned(const Direction& from, double step_rad) {
-  const double square = step_rad * step_rad, c = 1.0 - 0.5 * square,
-               s = step_rad * (1.0 - square / 6.0);
+Direction turned(const Direction& from, const Lanes& step_rad) {
+  const Lanes square = step_rad * step_rad, c = 1.0 - 0.5 * square,
+              s = step_rad * (1.0 - square / 6.0);
   return {c * from.cosine - s * from.sine, c * from.sine + s * from.cosine};
 }
 
-// Of the eccentric anomaly, by Newton's steps and one of Halley's at the end. They start from the
-// series to the third order in the eccentricity, or, where that is no approximation any more, from
-// the aphelion: between there and the root Kepler's equation is convex, and Newton's steps do not
-// pass the root.
-Direction eccentric_anomaly(double any_mean_rad, double eccentricity) {
-  const double mean_rad = any_mean_rad - 2.0 * pi * std::nearbyint(any_mean_rad / (2.0 * pi));
-  const double c = std::cos(mean_rad), s = eccentricity * std::sin(mean_rad);
-  double e_rad = eccentricity < 0.3
-                     ? mean_rad + s * (1.0 + eccentricity * (c + eccentricity) - 1.5 * s * s)
-                     : std::copysign(pi, mean_rad);
+// Of the eccentric anomaly, by Newton's steps and Halley's near the end. They start from the series
+// to the third order in the eccentricity, or, where that is no approximation any more, from the
+// aphelion: between there and the root Kepler's equation is convex, and Newton's steps do not pass
+// the root.
+Direction eccentric_anomaly(const Lanes& any_mean_rad, double eccentricity) {
+  const auto to_nearest_turn = [](double x) {
+    return x - 2.0 * pi * std::nearbyint(x / (2.0 * pi));
+  };
+  const Lanes mean_rad = each_lane(any_mean_rad, to_nearest_turn);
+  const Lanes c = cos(mean_rad), s = eccentricity * sin(mean_rad);
+  Lanes e_rad = eccentricity < 0.3
+                    ? mean_rad + s * (1.0 + eccentricity * (c + eccentricity) - 1.5 * s * s)
+                    : where_at_least(mean_rad, 0.0, pi, -pi);
   constexpr int most = 100;
   for (int i = 0; i < most; ++i) {
-    const Direction at{std::cos(e_rad), std::sin(e_rad)};
-    const double slope = 1.0 - eccentricity * at.cosine, bend = eccentricity * at.sine;
-    double step_rad = (mean_rad - e_rad + bend) / slope;
+    const Direction at{cos(e_rad), sin(e_rad)};
+    const Lanes slope = 1.0 - eccentricity * at.cosine, bend = eccentricity * at.sine;
+    Lanes step_rad = (mean_rad - e_rad + bend) / slope;
     constexpr double near_rad = 1e-2;
-    if (std::abs(step_rad) < near_rad * slope) step_rad /= 1.0 + 0.5 * step_rad * bend / slope;
-    const double error_rad = std::abs(step_rad * step_rad * step_rad) / (slope * slope);
-    if (error_rad < 1e-16) return turned(at, step_rad);
+    const Lanes halley = step_rad / (1.0 + 0.5 * step_rad * bend / slope);
+    step_rad =
+        where_at_least(larger_magnitude(step_rad, 0.0) - near_rad * slope, 0.0, step_rad, halley);
+    const Lanes error_rad = step_rad * step_rad * step_rad / (slope * slope);
+    if (largest(larger_magnitude(error_rad, 0.0)) < 1e-16) return turned(at, step_rad);
     e_rad += step_rad;
   }
   throw NumericalError("Kepler's equation: no solution at an eccentricity of " +
@@ -93,15 +98,15 @@ Pointing read_pointing(const Settings& settings) {
 
 }  // namespace
 
-std::array<Eigen::Vector2d, 2> HeliocentricOrbit::in_plane(double time_s) const {
+HeliocentricOrbit::InPlane HeliocentricOrbit::in_plane(const Lanes& time_s) const {
   const double motion_rad_s =
       gaussian_motion_rad_s / (semi_major_axis_au * std::sqrt(semi_major_axis_au));
   const auto [cosine, sine] =
       eccentric_anomaly(mean_anomaly_rad + motion_rad_s * time_s, eccentricity);
   const double minor_au = semi_major_axis_au * std::sqrt(1.0 - eccentricity * eccentricity);
-  const double rate_rad_s = motion_rad_s / (1.0 - eccentricity * cosine);
-  return {Eigen::Vector2d(semi_major_axis_au * (cosine - eccentricity), minor_au * sine),
-          Eigen::Vector2d(-semi_major_axis_au * sine, minor_au * cosine) * rate_rad_s};
+  const Lanes rate_rad_s = motion_rad_s / (1.0 - eccentricity * cosine);
+  return {{semi_major_axis_au * (cosine - eccentricity), minor_au * sine},
+          {-semi_major_axis_au * sine * rate_rad_s, minor_au * cosine * rate_rad_s}};
 }
 
 Mat3 HeliocentricOrbit::ecliptic_from_plane() const {
@@ -112,9 +117,12 @@ Mat3 HeliocentricOrbit::ecliptic_from_plane() const {
 }
 
 std::array<Vec3, 2> HeliocentricOrbit::position_and_velocity(double time_s) const {
-  const auto axes = ecliptic_from_plane().leftCols<2>().eval();
-  const auto [position, velocity] = in_plane(time_s);
-  return {axes * position, axes * velocity};
+  const InPlane now = in_plane(time_s);
+  const Mat3 axes = ecliptic_from_plane();
+  const auto in_space = [&](const std::array<Lanes, 2>& v) {
+    return Vec3(axes * Vec3(v[0][0], v[1][0], 0.0));
+  };
+  return {in_space(now.position_au), in_space(now.velocity_au_s)};
 }
 
 HeliocentricOrbit orbit_of_earth(double since_J2000_s) {
@@ -151,11 +159,35 @@ SunPath SunPath::orbit(const HeliocentricOrbit& orbit, const Mat3& lab_from_ecli
   return path;
 }
 
-std::array<Vec3, 2> SunPath::at(double time_s) const {
+std::array<Vec3Of<Lanes>, 2> SunPath::at(const Lanes& time_s) const {
+  std::array<Vec3Of<Lanes>, 2> result;
   if (orbit_) {
-    const auto [position, velocity] = orbit_->in_plane(time_s);
-    return {-(lab_from_plane_ * position), -(lab_from_plane_ * velocity)};
+    const HeliocentricOrbit::InPlane now = orbit_->in_plane(time_s);
+    const auto towards = [&](const std::array<Lanes, 2>& v, Eigen::Index k) {
+      return -(lab_from_plane_(k, 0) * v[0] + lab_from_plane_(k, 1) * v[1]);
+    };
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      result[0][k] = towards(now.position_au, k);
+      result[1][k] = towards(now.velocity_au_s, k);
+    }
+    return result;
   }
+  for (int lane = 0; lane < Lanes::count; ++lane) {
+    const std::array<Vec3, 2> one = of_table(time_s[lane]);
+    for (size_t of = 0; of < 2; ++of) {
+      for (Eigen::Index k = 0; k < 3; ++k) result[of][k].set(lane, one[of][k]);
+    }
+  }
+  return result;
+}
+
+std::array<Vec3, 2> SunPath::at(double time_s) const {
+  if (!orbit_) return of_table(time_s);
+  const auto [value, slope] = at(Lanes(time_s));
+  return {Vec3(value[0][0], value[1][0], value[2][0]), Vec3(slope[0][0], slope[1][0], slope[2][0])};
+}
+
+std::array<Vec3, 2> SunPath::of_table(double time_s) const {
   if (!table_) return {fixed_au_, Vec3::Zero()};
   Vec3 value, slope;
   for (int k = 0; k < 3; ++k) {

@@ -6,6 +6,7 @@
 
 #include "attitude/environment/time_series.h"
 #include "core/constants.h"
+#include "core/numerics/dual.h"
 #include "core/settings/settings.h"
 #include "core/vector.h"
 
@@ -22,8 +23,12 @@ struct HeliocentricOrbit {
 
   // From the Sun to the spacecraft [au], and its velocity [au/s], ecliptic axes.
   std::array<Vec3, 2> position_and_velocity(double time_s) const;
-  // The same in axes of the orbit's plane: x to the perihelion, y along the motion there.
-  std::array<Eigen::Vector2d, 2> in_plane(double time_s) const;
+  // The same at eight instants, in axes of the orbit's plane: x to the perihelion, y along the
+  // motion there.
+  struct InPlane {
+    std::array<Lanes, 2> position_au, velocity_au_s;
+  };
+  InPlane in_plane(const Lanes& time_s) const;
   Mat3 ecliptic_from_plane() const;
 };
 
@@ -42,8 +47,12 @@ class SunPath {
 
   // Value and time derivative of each component.
   std::array<Vec3, 2> at(double time_s) const;
+  std::array<Vec3Of<Lanes>, 2> at(const Lanes& time_s) const;
 
  private:
+  // Of a table, or fixed.
+  std::array<Vec3, 2> of_table(double time_s) const;
+
   Vec3 fixed_au_ = Vec3::UnitX();
   std::optional<TimeSeries> table_;
   std::optional<HeliocentricOrbit> orbit_;

@@ -38,6 +38,7 @@ MotionModel::Derivatives MotionModel::derivatives_of(const FilterState& state,
   const int variables = component::charge + extras_ + static_cast<int>(places_.size());
   MatX by_variable(rows, variables);
   std::vector<Lanes> out(static_cast<size_t>(rows) * DualLanes::block);
+  Dynamics::Workspace room;
   for (int first = 0; first < variables; first += DualLanes::block) {
     Dynamics::Block block;
     block.state.fill(-1);
@@ -58,9 +59,9 @@ MotionModel::Derivatives MotionModel::derivatives_of(const FilterState& state,
     }
     if (of_readings) {
       dynamics.reading_derivatives(state.mean.time_s, in_all_lanes(held), y.data(), block,
-                                   out.data());
+                                   out.data(), room);
     } else {
-      dynamics.derivatives(state.mean.time_s, held, y.data(), block, out.data());
+      dynamics.derivatives(state.mean.time_s, held, y.data(), block, out.data(), room);
     }
     for (int r = 0; r < rows; ++r) {
       for (int k = 0; k < count; ++k) {

@@ -297,9 +297,9 @@ Dynamics::Instants Dynamics::at(const Lanes& time_s,
 
 EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const Command& command,
                                                      const Lanes* y, const Block& block,
-                                                     bool with_instruments,
-                                                     std::vector<DualLanes>& rates) const {
-  std::vector<DualLanes> y_dual(y, y + size_), own_parameters;
+                                                     bool with_instruments, Workspace& room) const {
+  std::vector<DualLanes>&y_dual = room.y, &own_parameters = room.parameters, &rates = room.rates;
+  y_dual.assign(y, y + size_);
   // Any law may change the inertia that all torques are divided by.
   bool everything = inertia_changes_;
   for (int k = 0; k < DualLanes::block; ++k) {
@@ -326,7 +326,9 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
     return false;
   };
   // Torques and what follows from them reach the instruments through the state alone.
-  std::vector<size_t> acting, owners;
+  std::vector<size_t>&acting = room.acting, &owners = room.owners;
+  acting.clear();
+  owners.clear();
   for (const size_t d : order_) {
     if (with_instruments && model_.disturbances[d].stage == Stage::torque) continue;
     acting.push_back(d);
@@ -365,20 +367,19 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
 }
 
 void Dynamics::derivatives(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
-                           const Block& block, Lanes* derivatives) const {
-  std::vector<DualLanes> rates;
-  differentiate(time_s, broadcast(held, time_s), y, block, false, rates);
-  for (const DualLanes& rate : rates) {
+                           const Block& block, Lanes* derivatives, Workspace& room) const {
+  differentiate(time_s, broadcast(held, time_s), y, block, false, room);
+  for (const DualLanes& rate : room.rates) {
     derivatives = std::copy(rate.partial.begin(), rate.partial.end(), derivatives);
   }
 }
 
 void Dynamics::reading_derivatives(const Lanes& time_s,
                                    const std::array<ZeroOrderHold, Lanes::count>& held,
-                                   const Lanes* y, const Block& block, Lanes* derivatives) const {
-  std::vector<DualLanes> rates;
+                                   const Lanes* y, const Block& block, Lanes* derivatives,
+                                   Workspace& room) const {
   const EvaluationContext<DualLanes> now =
-      differentiate(time_s, gather(held, time_s), y, block, true, rates);
+      differentiate(time_s, gather(held, time_s), y, block, true, room);
   const auto put = [&](const DualLanes& x) {
     derivatives = std::copy(x.partial.begin(), x.partial.end(), derivatives);
   };

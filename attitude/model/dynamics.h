@@ -76,9 +76,19 @@ class Dynamics {
     std::array<int, DualLanes::block> state;
     std::array<int, DualLanes::block> parameter;
   };
+  // Room for an evaluation with derivatives. Who asks often keeps it from one to the next.
+  struct Workspace {
+    std::vector<DualLanes> y, parameters, rates;
+    std::vector<size_t> acting, owners;
+  };
   // ∂(dy/dt)/∂(variable k) of every component c at derivatives[c·block + k].
   void derivatives(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
-                   const Block& block, Lanes* derivatives) const;
+                   const Block& block, Lanes* derivatives, Workspace& room) const;
+  void derivatives(const Lanes& time_s, const ZeroOrderHold& held, const Lanes* y,
+                   const Block& block, Lanes* derivatives) const {
+    Workspace room;
+    this->derivatives(time_s, held, y, block, derivatives, room);
+  }
 
   // Everything known about eight instants. `held`, the commands of each instant, may differ from
   // lane to lane.
@@ -103,7 +113,8 @@ class Dynamics {
   // [3, 6), camera delay [6], each a row of `block` numbers.
   static constexpr int reading_count = 7;
   void reading_derivatives(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
-                           const Lanes* y, const Block& block, Lanes* derivatives) const;
+                           const Lanes* y, const Block& block, Lanes* derivatives,
+                           Workspace& room) const;
 
  private:
   struct Layout {
@@ -136,8 +147,7 @@ class Dynamics {
   // Evaluates with derivatives, leaving out disturbances that cannot depend on the block.
   EvaluationContext<DualLanes> differentiate(const Lanes& time_s, const Command& command,
                                              const Lanes* y, const Block& block,
-                                             bool with_instruments,
-                                             std::vector<DualLanes>& rates) const;
+                                             bool with_instruments, Workspace& room) const;
 
   AttitudeModel model_;
   int size_ = component::extra;

@@ -116,8 +116,8 @@ CollocationStep::Outcome CollocationStep::attempt_stiff(double h_s, const ZeroOr
     place_stages();
     dynamics_.rates(times_s, held, stages_.data(), rates_.data());
     for (size_t c = 0; c < y_.size(); ++c) move[c] = weighted_h_s * rates_[c] - increments_[c];
-    const std::vector<RateDerivative> jacobian =
-        rate_derivatives(dynamics_, state_blocks_, times_s, held, stages_.data());
+    const std::vector<RateDerivative>& jacobian =
+        rate_derivatives(dynamics_, state_blocks_, times_s, held, stages_.data(), room_);
     StageSystem(y_.size(), h_s, jacobian).solve(move, 1);
     Lanes largest_change = 0.0, finite = 0.0;
     for (size_t c = 0; c < y_.size(); ++c) {

@@ -82,6 +82,7 @@ class CollocationStep {
   bool is_stiff_ = false;
   double stiffness_ = 0.0;
   std::vector<Dynamics::Block> state_blocks_;
+  RateWorkspace room_;
   bool has_polynomial_ = false;             // increments_ describe the accepted step before
   std::vector<double> y_, carry_;           // the start and what rounding has taken from it
   std::vector<Lanes> increments_;           // h b_j f_j of the attempt

@@ -48,12 +48,15 @@ std::vector<double> tangent(std::span<const double> y, std::span<const double> c
 
 Sensitivity::Sensitivity(const Dynamics& dynamics, std::vector<Variable> variables,
                          std::span<const double> y)
-    : dynamics_(dynamics), variables_(std::move(variables)) {
+    : dynamics_(dynamics),
+      variables_(std::move(variables)),
+      moving_(moving_among(variables_, dynamics)) {
   const size_t n = static_cast<size_t>(dynamics.size()), count = variables_.size();
   start_.assign(n * count, 0.0);
   increments_.assign(n * count, Lanes(0.0));
   accepted_increments_ = increments_;
   source_ = increments_;
+  stages_ = rates_ = increments_;
   const Quat q(y[0], y[1], y[2], y[3]);
   for (size_t v = 0; v < count; ++v) {
     const int initial = variables_[v].initial;
@@ -125,13 +128,13 @@ void Sensitivity::make_blocks() {
 
 void Sensitivity::differentiate_rates(const CollocationStep& step, const ZeroOrderHold& held) {
   const size_t n = static_cast<size_t>(dynamics_.size()), count = variables_.size();
-  jacobian_ =
-      rate_derivatives(dynamics_, state_blocks_, step.stage_times_s(), held, step.stages().data());
-  std::vector<Lanes> partials(n * DualLanes::block);
+  rate_derivatives(dynamics_, state_blocks_, step.stage_times_s(), held, step.stages().data(),
+                   room_);
+  std::vector<Lanes>& partials = room_.partials;
   for (const ParameterBlock& block : parameter_blocks_) {
     if (only_reads(dynamics_, variables_[static_cast<size_t>(block.variable[0])])) continue;
     dynamics_.derivatives(step.stage_times_s(), held, step.stages().data(), block.block,
-                          partials.data());
+                          partials.data(), room_.evaluation);
     for (size_t c = 0; c < n; ++c) {
       for (size_t k = 0; k < DualLanes::block; ++k) {
         if (block.variable[k] < 0) continue;
@@ -150,10 +153,9 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
     solve_at_once(step);
     return is_resolved(step);
   }
-  const std::vector<size_t> moving = moving_among(variables_, dynamics_);
   const auto each = [&](const auto& visit) {
     for (size_t c = 0; c < n; ++c) {
-      for (const size_t v : moving) visit(c * count + v);
+      for (const size_t v : moving_) visit(c * count + v);
     }
   };
   if (has_polynomial_) {
@@ -163,7 +165,6 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
     std::fill(increments_.begin(), increments_.end(), Lanes(0.0));
   }
   const Lanes weighted_h_s = h_s_ * Lanes(gauss::weights);
-  std::vector<Lanes> stages(start_.size()), rates(start_.size());
   // Linear, and of the same contraction as the stages, which have settled: mostly it will, however
   // the mixed units of the components swell the first changes. Not where a swing of no amplitude
   // yet let the stages settle in a step too long for it.
@@ -171,22 +172,22 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
   Settling settling(tolerance, 1e-13, patience);
   for (int iteration = 1; iteration <= max_sweeps; ++iteration) {
     each([&](size_t i) {
-      stages[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);
-      rates[i] = source_[i];
+      stages_[i] = start_[i] + gauss::times(gauss::mu_columns, increments_[i]);
+      rates_[i] = source_[i];
     });
-    for (const RateDerivative& entry : jacobian_) {
-      const Lanes* from = stages.data() + entry.column * count;
-      Lanes* to = rates.data() + entry.row * count;
-      for (const size_t v : moving) to[v] += entry.value * from[v];
+    for (const RateDerivative& entry : room_.jacobian) {
+      const Lanes* from = stages_.data() + entry.column * count;
+      Lanes* to = rates_.data() + entry.row * count;
+      for (const size_t v : moving_) to[v] += entry.value * from[v];
     }
     // The derivatives by different variables have different units: each is its own scale.
     double change = 0.0;
-    for (const size_t v : moving) {
+    for (const size_t v : moving_) {
       Lanes size = 0.0, moved = 0.0;
       for (size_t i = v; i < start_.size(); i += count) {
-        const Lanes increment = weighted_h_s * rates[i];
+        const Lanes increment = weighted_h_s * rates_[i];
         moved = larger_magnitude(moved, increment - increments_[i]);
-        size = larger_magnitude(size, stages[i]);
+        size = larger_magnitude(size, stages_[i]);
         increments_[i] = increment;
       }
       const double of_size = std::max(largest(size), next_to_nothing * largest_[v]);
@@ -203,14 +204,14 @@ bool Sensitivity::solve(const CollocationStep& step, const ZeroOrderHold& held, 
 void Sensitivity::solve_at_once(const CollocationStep& step) {
   const size_t count = variables_.size();
   increments_ = source_;
-  for (const RateDerivative& entry : jacobian_) {
+  for (const RateDerivative& entry : room_.jacobian) {
     const double* from = start_.data() + entry.column * count;
     Lanes* to = increments_.data() + entry.row * count;
     for (size_t v = 0; v < count; ++v) to[v] += entry.value * from[v];
   }
   const Lanes weighted_h_s = h_s_ * Lanes(gauss::weights);
   for (Lanes& x : increments_) x = weighted_h_s * x;
-  StageSystem(step.start().size(), h_s_, jacobian_).solve(increments_, count);
+  StageSystem(step.start().size(), h_s_, room_.jacobian).solve(increments_, count);
 }
 
 // No iteration has seen how fast the derivatives change: the last Legendre term of their
@@ -251,9 +252,8 @@ void Sensitivity::dense(const Lanes& fraction, Lanes* derivatives) const {
   const gauss::DenseWeights polynomial = gauss::dense_weights(fraction);
   const size_t count = variables_.size(), n = static_cast<size_t>(dynamics_.size());
   std::fill_n(derivatives, n * count, Lanes(0.0));
-  const std::vector<size_t> moving = moving_among(variables_, dynamics_);
   for (size_t c = 0; c < n; ++c) {
-    for (const size_t v : moving) {
+    for (const size_t v : moving_) {
       const size_t i = c * count + v;
       derivatives[i] = start_[i] + gauss::times(polynomial, increments_[i]);
     }
@@ -265,8 +265,9 @@ void Sensitivity::readings(const Lanes& time_s, const std::array<ZeroOrderHold, 
   const size_t count = variables_.size();
   std::fill(readings, readings + Dynamics::reading_count * count, Lanes(0.0));
   std::array<Lanes, Dynamics::reading_count * DualLanes::block> partials;
+  Dynamics::Workspace room;
   for (const Dynamics::Block& block : state_blocks_) {
-    dynamics_.reading_derivatives(time_s, held, y, block, partials.data());
+    dynamics_.reading_derivatives(time_s, held, y, block, partials.data(), room);
     for (size_t i = 0; i < partials.size(); ++i) {
       const size_t r = i / DualLanes::block, k = i % DualLanes::block;
       if (block.state[k] < 0 || is_zero(partials[i])) continue;
@@ -283,7 +284,7 @@ void Sensitivity::readings(const Lanes& time_s, const std::array<ZeroOrderHold, 
   };
   for (const ParameterBlock& block : parameter_blocks_) {
     if (std::none_of(block.variable.begin(), block.variable.end(), reaches_instruments)) continue;
-    dynamics_.reading_derivatives(time_s, held, y, block.block, partials.data());
+    dynamics_.reading_derivatives(time_s, held, y, block.block, partials.data(), room);
     for (size_t i = 0; i < partials.size(); ++i) {
       const size_t r = i / DualLanes::block, k = i % DualLanes::block;
       if (block.variable[k] < 0) continue;

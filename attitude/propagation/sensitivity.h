@@ -81,8 +81,10 @@ class Sensitivity {
   void note_extent();
   void solve_at_once(const CollocationStep& step);
   bool is_resolved(const CollocationStep& step) const;
-  std::vector<RateDerivative> jacobian_;
-  std::vector<Lanes> source_;  // ∂(dy_c/dt)/∂(variable)
+  std::vector<size_t> moving_;  // variables on which the motion depends
+  RateWorkspace room_;          // its `jacobian` is that of the step
+  std::vector<Lanes> source_;   // ∂(dy_c/dt)/∂(variable)
+  std::vector<Lanes> stages_, rates_;
 };
 
 }  // namespace photorque

@@ -20,15 +20,17 @@ std::vector<Dynamics::Block> state_blocks(const Dynamics& dynamics) {
   return blocks;
 }
 
-std::vector<RateDerivative> rate_derivatives(const Dynamics& dynamics,
-                                             std::span<const Dynamics::Block> blocks,
-                                             const Lanes& times_s, const ZeroOrderHold& held,
-                                             const Lanes* stages) {
+const std::vector<RateDerivative>& rate_derivatives(const Dynamics& dynamics,
+                                                    std::span<const Dynamics::Block> blocks,
+                                                    const Lanes& times_s, const ZeroOrderHold& held,
+                                                    const Lanes* stages, RateWorkspace& room) {
   const size_t n = static_cast<size_t>(dynamics.size());
-  std::vector<Lanes> partials(n * DualLanes::block);
-  std::vector<RateDerivative> jacobian;
+  std::vector<Lanes>& partials = room.partials;
+  partials.resize(n * DualLanes::block);
+  std::vector<RateDerivative>& jacobian = room.jacobian;
+  jacobian.clear();
   for (const Dynamics::Block& block : blocks) {
-    dynamics.derivatives(times_s, held, stages, block, partials.data());
+    dynamics.derivatives(times_s, held, stages, block, partials.data(), room.evaluation);
     for (size_t c = 0; c < n; ++c) {
       for (size_t k = 0; k < DualLanes::block; ++k) {
         const Lanes& value = partials[c * DualLanes::block + k];

@@ -26,11 +26,18 @@ struct RateDerivative {
 // The components of the state in blocks for Dynamics::derivatives.
 std::vector<Dynamics::Block> state_blocks(const Dynamics& dynamics);
 
-// Those derivatives that are not zero at every stage.
-std::vector<RateDerivative> rate_derivatives(const Dynamics& dynamics,
-                                             std::span<const Dynamics::Block> blocks,
-                                             const Lanes& times_s, const ZeroOrderHold& held,
-                                             const Lanes* stages);
+// Room for derivatives of the rates, kept from one step to the next.
+struct RateWorkspace {
+  Dynamics::Workspace evaluation;
+  std::vector<Lanes> partials;
+  std::vector<RateDerivative> jacobian;
+};
+
+// Those derivatives that are not zero at every stage; they stand in `room`.
+const std::vector<RateDerivative>& rate_derivatives(const Dynamics& dynamics,
+                                                    std::span<const Dynamics::Block> blocks,
+                                                    const Lanes& times_s, const ZeroOrderHold& held,
+                                                    const Lanes* stages, RateWorkspace& room);
 
 // How fast small deviations change, at most [1/s]: the largest row sum of |∂f/∂y| with each
 // component in units of its scale. Fixed-point iteration with eight stages contracts by about a

@@ -77,13 +77,13 @@ TEST(Sun, KeplersEquationHoldsForEveryEllipse) {
         HeliocentricOrbit orbit;
         orbit.eccentricity = eccentricity;
         orbit.mean_anomaly_rad = e_rad - eccentricity * std::sin(e_rad) + 2.0 * pi * turns;
-        const Eigen::Vector2d seen = orbit.in_plane(0.0)[0];
+        const auto seen = orbit.in_plane(0.0).position_au;
         // The mean anomaly is rounded to 1e-12 after a thousand turns, and dE/dM is as large as
         // this.
         const double rounding = 1e-15 + (turns != 0.0 ? 2e-12 : 4e-16);
         const double tolerance = 1e-15 + rounding / (1.0 - eccentricity * std::cos(e_rad));
-        EXPECT_NEAR(seen[0], std::cos(e_rad) - eccentricity, tolerance) << eccentricity << e_rad;
-        EXPECT_NEAR(seen[1], std::sqrt(1.0 - eccentricity * eccentricity) * std::sin(e_rad),
+        EXPECT_NEAR(seen[0][0], std::cos(e_rad) - eccentricity, tolerance) << eccentricity << e_rad;
+        EXPECT_NEAR(seen[1][0], std::sqrt(1.0 - eccentricity * eccentricity) * std::sin(e_rad),
                     tolerance)
             << eccentricity << " " << e_rad;
       }

@@ -158,10 +158,10 @@ TEST_F(ProofScore, AnImprovedExperimentHasToFlyAsStated) {
                              "fit": {"chi2_per_sample_after": 1.1}})");
   };
   EXPECT_TRUE(replays_as_stated(
-      flight(R"({"wall_s": 3.0, "exit_status": 0, "replay_status": 0, "replay_chi2": 1.2})")));
+      flight(R"({"processor_s": 3.0, "exit_status": 0, "replay_status": 0, "replay_chi2": 1.2})")));
   EXPECT_FALSE(replays_as_stated(
-      flight(R"({"wall_s": 3.0, "exit_status": 0, "replay_status": 0, "replay_chi2": 4.0})")));
-  const CaseScore failed = flight(R"({"wall_s": 61.0, "exit_status": 3, "replay_status": 2})");
+      flight(R"({"processor_s": 3.0, "exit_status": 0, "replay_status": 0, "replay_chi2": 4.0})")));
+  const CaseScore failed = flight(R"({"processor_s": 61.0, "exit_status": 3, "replay_status": 2})");
   EXPECT_FALSE(replays_as_stated(failed));
   EXPECT_EQ(row_of({failed}, "exits other than 0").fraction.hits, 1);
 }

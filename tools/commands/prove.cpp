@@ -29,7 +29,7 @@ struct ProveSettings {
   bool oracle = true;              // also diagnose with the truth told, for the held-out error
   bool replay = true;              // also propagate every improved.toml
   int at_once = 1;                 // diagnoses side by side
-  double max_time_s = 900.0;       // for one diagnosis
+  double max_processor_s = 900.0;  // for one diagnosis
   size_t max_cases = 100000;
   std::optional<fs::path> document;  // whose section is renewed
   std::string section = "prove";
@@ -77,7 +77,7 @@ ProveSettings read_settings(const CommandLine& line) {
   settings.oracle = s.flag_or("oracle", settings.oracle);
   settings.replay = s.flag_or("replay", settings.replay);
   settings.at_once = static_cast<int>(s.integer_or("at_once", 1, 1, 1024));
-  settings.max_time_s = s.number_or("longest_s", settings.max_time_s, Range::positive());
+  settings.max_processor_s = s.number_or("longest_s", settings.max_processor_s, Range::positive());
   settings.max_cases = static_cast<size_t>(s.integer_or("most_cases", most, 1, most));
   settings.section = s.text_or("section", settings.section);
   if (s.has("document")) {
@@ -204,7 +204,7 @@ nlohmann::json replayed(const fs::path& blind, const std::array<double, 3>& nois
       run_child(own_program(),
                 {"propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads",
                  "1", "--set", "sensors.camera.noise_arcsec=[0, 0, 0]"},
-                blind, settings.max_time_s);
+                blind, settings.max_processor_s);
   replay["replay_status"] = result.status;
   if (result.status == 0) {
     replay["replay_chi2"] =
@@ -240,9 +240,9 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
                {"--out", "diagnosis", "--quiet", "--threads", std::to_string(threads)});
   if (fs::exists(case_folder / "scene.gltf")) names.emplace_back("scene.gltf");
   for (const std::string& name : names) fs::copy_file(case_folder / name, blind / name);
-  const ChildResult result = run_child(own_program(), words, blind, settings.max_time_s);
+  const ChildResult result = run_child(own_program(), words, blind, settings.max_processor_s);
   fs::create_directories(out);
-  nlohmann::json runs = {{"wall_s", result.wall_s}, {"exit_status", result.status}};
+  nlohmann::json runs = {{"processor_s", result.processor_s}, {"exit_status", result.status}};
   if (settings.replay && result.status == 0 && !files.of_light) {
     runs.update(replayed(blind, camera_noise_arcsec(case_folder), settings));
   }

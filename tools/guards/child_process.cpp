@@ -3,7 +3,9 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -19,6 +21,18 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// What a process has used so far; 0 when it is gone.
+double processor_time_s(pid_t process) {
+  clockid_t clock;
+  timespec used = {};
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0.0;
+  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+}
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
 pid_t start(const std::filesystem::path& program, const std::vector<std::string>& arguments,
@@ -54,23 +68,25 @@ pid_t start(const std::filesystem::path& program, const std::vector<std::string>
 
 ChildResult run_child(const std::filesystem::path& program,
                       const std::vector<std::string>& arguments, const std::filesystem::path& in,
-                      double max_time_s) {
+                      double max_processor_s) {
   const auto folder = std::filesystem::absolute(in);
   const auto errors = folder / "stderr.txt";
   const Clock::time_point begin = Clock::now();
   const pid_t child = start(program, arguments, folder, errors);
   ChildResult result;
+  constexpr double most_idle = 30.0;
   int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    if (since(begin) > max_time_s) {
+  rusage used = {};
+  while (wait4(child, &status, WNOHANG, &used) == 0) {
+    if (processor_time_s(child) > max_processor_s || since(begin) > most_idle * max_processor_s) {
       kill(child, SIGKILL);
-      waitpid(child, &status, 0);
-      result.errors = "stopped after " + std::to_string(static_cast<int>(max_time_s)) + " s\n";
+      wait4(child, &status, 0, &used);
+      result.errors = "stopped after " + std::to_string(static_cast<int>(max_processor_s)) + " s\n";
       break;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  result.wall_s = since(begin);
+  result.processor_s = seconds(used.ru_utime) + seconds(used.ru_stime);
   if (WIFEXITED(status)) result.status = WEXITSTATUS(status);
   std::ifstream in_file(errors);
   std::string text(4096, '\0');

@@ -96,13 +96,13 @@ Table proof_calibration(const std::vector<CaseScore>& scores) {
 std::vector<Quantity> proof_quantities(const std::vector<CaseScore>& scores) {
   std::vector<double> pulls, ratios, times;
   const auto slow = std::ranges::count_if(
-      scores, [](const CaseScore& s) { return s.answered && s.wall_s > 60.0; });
+      scores, [](const CaseScore& s) { return s.answered && s.processor_s > 60.0; });
   for (const CaseScore& s : scores) {
     if (s.right && is_visible(s)) pulls.insert(pulls.end(), s.pulls.begin(), s.pulls.end());
     if (s.right && is_visible(s) && s.holdout_chi2 > 0.0 && s.oracle_chi2 > 0.0) {
       ratios.push_back(std::sqrt(s.holdout_chi2 / s.oracle_chi2));
     }
-    if (s.answered) times.push_back(s.wall_s);
+    if (s.answered) times.push_back(s.processor_s);
   }
   std::vector<Quantity> quantities = {{"cases", {static_cast<double>(scores.size()), 0.0}}};
   const auto n = static_cast<double>(pulls.size());
@@ -140,9 +140,9 @@ std::vector<Quantity> proof_quantities(const std::vector<CaseScore>& scores) {
     quantities.push_back({"name_calibration_error", {calibration_error(claims), 0.0}});
   }
   if (!times.empty()) {
-    quantities.push_back({"wall_median_s", {median(times), 0.0}});
-    quantities.push_back({"wall_largest_s", {*std::ranges::max_element(times), 0.0}});
-    quantities.push_back({"wall_over_60_s", {static_cast<double>(slow), 0.0}});
+    quantities.push_back({"processor_median_s", {median(times), 0.0}});
+    quantities.push_back({"processor_largest_s", {*std::ranges::max_element(times), 0.0}});
+    quantities.push_back({"processor_over_60_s", {static_cast<double>(slow), 0.0}});
   }
   return quantities;
 }

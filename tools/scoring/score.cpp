@@ -202,7 +202,7 @@ void read_runs(const std::filesystem::path& folder, CaseScore& score) {
   }
   if (!std::filesystem::exists(folder / "runs.json")) return;
   const Json runs = parsed(folder / "runs.json");
-  score.wall_s = number_or_nan(runs, "wall_s");
+  score.processor_s = number_or_nan(runs, "processor_s");
   score.exit_status = runs.value("exit_status", 0);
   score.replay_status = number_or_nan(runs, "replay_status");
   score.replay_chi2 = number_or_nan(runs, "replay_chi2");

@@ -44,7 +44,7 @@ struct CaseScore {
   // improved.toml run by `propagate`: exit status, and deviation from the recorded attitudes per
   // number (replayed_chi2). NaN: not run.
   double replay_status = 0.0, replay_chi2 = 0.0;
-  double wall_s = 0.0;
+  double processor_s = 0.0;
 };
 
 // Reads truth.json of `truth_folder`, and diagnosis.json of `diagnosis_folder` and, where there is

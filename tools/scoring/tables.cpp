@@ -33,7 +33,7 @@ Table proof_by_family(const std::vector<CaseScore>& scores) {
       ++group.right.of;
       group.right.hits += s.right ? 1 : 0;
       group.wrong_name += s.wrong_name ? 1 : 0;
-      group.times_s.push_back(s.wall_s);
+      group.times_s.push_back(s.processor_s);
     }
   }
   Table table = Table::of("proof_by_family", "By family and by maker",
@@ -98,7 +98,7 @@ Table proof_cases(const std::vector<CaseScore>& scores) {
       {"case",        "true_verdict",       "concealed",        "verdict",     "named",
        "right",       "right_within_group", "chi2_gain",        "confidence",  "holdout_chi2",
        "oracle_chi2", "predictive_chi2",    "predictive_sigma", "replay_chi2", "pulls_rms",
-       "impossible",  "exit_status",        "wall_s",           "family",      "maker"});
+       "impossible",  "exit_status",        "processor_s",      "family",      "maker"});
   for (const CaseScore& s : scores) {
     double squares = 0.0;
     for (const double pull : s.pulls) squares += pull * pull;
@@ -121,7 +121,7 @@ Table proof_cases(const std::vector<CaseScore>& scores) {
         .set("pulls_rms", rms)
         .set("impossible", joined(s.impossible))
         .set("exit_status", s.exit_status)
-        .set("wall_s", s.wall_s)
+        .set("processor_s", s.processor_s)
         .set("family", s.family)
         .set("maker", s.maker.empty() ? no_maker : s.maker);
   }

@@ -60,22 +60,10 @@ DualLanes moved(const DualLanes& time_s, const Lanes& value, const Lanes& slope)
   return result;
 }
 
-// From the spacecraft to the Sun [au], lab axes: the path is asked once an instant, because
-// Kepler's equation costs more than all the rest of the law.
+// From the spacecraft to the Sun [au], lab axes.
 template <class T>
 Vec3Of<T> towards_sun(const SunPath& sun, const T& time_s) {
-  std::array<Lanes, 3> value, slope;
-  for (int lane = 0; lane < Lanes::count; ++lane) {
-    const bool again = lane > 0 && values(time_s)[lane] == values(time_s)[lane - 1];
-    const auto [place, speed] =
-        again ? std::array{Vec3(value[0][lane - 1], value[1][lane - 1], value[2][lane - 1]),
-                           Vec3(slope[0][lane - 1], slope[1][lane - 1], slope[2][lane - 1])}
-              : sun.at(values(time_s)[lane]);
-    for (size_t k = 0; k < 3; ++k) {
-      value[k].set(lane, place[static_cast<Eigen::Index>(k)]);
-      slope[k].set(lane, speed[static_cast<Eigen::Index>(k)]);
-    }
-  }
+  const auto [value, slope] = sun.at(values(time_s));
   return {moved(time_s, value[0], slope[0]), moved(time_s, value[1], slope[1]),
           moved(time_s, value[2], slope[2])};
 }
