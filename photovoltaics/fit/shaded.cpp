@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "core/errors.h"
@@ -109,9 +110,34 @@ std::vector<NamedBound> named_bounds(Index substrings) {
   return all;
 }
 
-// Errors of the current over their standard deviations, the voltage's carried over by the slope.
+// How steeply the measured curve falls at each point [S], over its neighbours.
+VectorXd measured_slopes_S(const IvSweep& sweep) {
+  const size_t points = sweep.voltage_V.size();
+  VectorXd slopes(static_cast<Index>(points));
+  for (size_t i = 0; i < points; ++i) {
+    const size_t from = i > 0 ? i - 1 : 0, to = std::min(i + 1, points - 1);
+    const double apart_V = sweep.voltage_V[to] - sweep.voltage_V[from];
+    slopes[static_cast<Index>(i)] =
+        apart_V != 0.0 ? std::abs((sweep.current_A[to] - sweep.current_A[from]) / apart_V) : 0.0;
+  }
+  return slopes;
+}
+
+VectorXd fitted_slopes_S(const IvSweep& sweep, const VectorXd& x) {
+  const ShadedString string(x);
+  VectorXd slopes(static_cast<Index>(sweep.voltage_V.size()));
+  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
+    const double slope =
+        string.voltage(string.current_A(sweep.voltage_V[i], sweep.current_A[i])).slope;
+    slopes[static_cast<Index>(i)] = slope < 0.0 ? -1.0 / slope : 0.0;
+  }
+  return slopes;
+}
+
+// Errors of the current over their standard deviations, the voltage's carried over by slopes that
+// the fit does not change: else it would find a string so steep that any error is the voltage's.
 VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double max_A,
-                         const VectorXd& x) {
+                         const VectorXd& slopes_S, const VectorXd& x) {
   const auto points = static_cast<Index>(sweep.voltage_V.size());
   VectorXd errors = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
   if (!reasonable(x)) return errors;
@@ -119,13 +145,44 @@ VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double m
   for (Index i = 0; i < points; ++i) {
     const double v = sweep.voltage_V[static_cast<size_t>(i)],
                  measured_A = sweep.current_A[static_cast<size_t>(i)];
-    const double current_A = string.current_A(v, measured_A);
-    const double slope = string.voltage(current_A).slope;
-    const double from_voltage_A = slope < 0 ? noise.voltage_fraction * std::abs(v) / -slope : 0.0;
-    const double from_light_A = noise.current_fraction * max_A;
-    errors[i] = (measured_A - current_A) / std::hypot(from_voltage_A, from_light_A);
+    const double from_voltage_A = noise.voltage_fraction * std::abs(v) * slopes_S[i];
+    errors[i] = (measured_A - string.current_A(v, measured_A)) /
+                std::hypot(from_voltage_A, noise.current_fraction * max_A);
   }
   return errors;
+}
+
+struct StringFit {
+  inference::Fit fit;
+  inference::ResidualFunction residuals;
+};
+
+StringFit fitted_from(const VectorXd& start, const IvSweep& sweep, const SweepNoise& noise,
+                      const VectorXd& slopes_S) {
+  const SweepEnds ends = sweep_ends(sweep);
+  const inference::ResidualFunction residuals =
+      inference::with_differences([&sweep, noise, ends, slopes_S](const VectorXd& x) {
+        return weighted_errors(sweep, noise, ends.short_circuit_A, slopes_S, x);
+      });
+  const inference::ResidualModel model(parameters_from(start, ends), residuals);
+  return {inference::fit(model, start, inference::Options::to_rounding()), residuals};
+}
+
+// The best from several starts with the slopes as measured, and from there with those of the fit.
+StringFit best_fit(const IvSweep& sweep, int substrings, const SweepNoise& noise) {
+  std::optional<StringFit> best;
+  const VectorXd measured_S = measured_slopes_S(sweep);
+  // The open-circuit voltage over n V_t of silicon is 18 to 27.
+  for (const double knee : {20.0, 27.0, 14.0}) {
+    StringFit one = fitted_from(first_guess(sweep, substrings, knee), sweep, noise, measured_S);
+    if (!best || one.fit.chi2 < best->fit.chi2) best = std::move(one);
+  }
+  constexpr int rounds = 3;
+  for (int round = 0; round < rounds && std::isfinite(best->fit.chi2); ++round) {
+    const VectorXd slopes_S = fitted_slopes_S(sweep, best->fit.at);
+    best = fitted_from(best->fit.at, sweep, noise, slopes_S);
+  }
+  return *best;
 }
 
 }  // namespace
@@ -137,14 +194,7 @@ ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoi
     throw InputError({}, "substrings", std::to_string(substrings),
                      "at least 1, and fewer parameters than points");
   }
-  const SweepEnds ends = sweep_ends(sweep);
-  const double max_A = ends.short_circuit_A;
-  constexpr double knee = 20.0;  // open-circuit voltage over n V_t of silicon: 18 to 27
-  const VectorXd start = first_guess(sweep, substrings, knee);
-  const inference::ResidualFunction residuals = inference::with_differences(
-      [&](const VectorXd& x) { return weighted_errors(sweep, noise, max_A, x); });
-  const inference::ResidualModel model(parameters_from(start, ends), residuals);
-  const inference::Fit best = inference::fit(model, start, inference::Options::to_rounding());
+  const auto [best, residuals] = best_fit(sweep, substrings, noise);
   if (!std::isfinite(best.chi2)) {
     throw InputError({}, "curves", "a sweep and noise that no string fits",
                      "a current-voltage curve of a lit string and its noise");
