@@ -142,7 +142,8 @@ class Rows {
       const double t_s = recording_.time_s[i];
       const Quat q = attitude(i);
       const Vec3 rate = rate_at(i, interval_s);
-      if (!std::isfinite(q.norm()) || !rate.allFinite()) continue;
+      const bool is_attitude = q.norm() > 0.0 && std::isfinite(q.norm());
+      if (!is_attitude || !rate.allFinite()) continue;
       rows.push_back({t_s, q.normalized(), rate, schedule.at(t_s).command_body_N_m});
     }
     return rows;
@@ -216,7 +217,10 @@ Vec3 offset_from_momentum_m(const Platform& platform, const Vec3& gravity_lab_m_
     first = std::max(last, first + 1);
   }
   if (intervals < 3) {
-    throw InputError({}, "recording", std::to_string(intervals) + " intervals with attitudes",
+    throw InputError({}, "recording",
+                     std::to_string(rows.size()) + " rows with an attitude and a rate, of " +
+                         std::to_string(recording.rows()) + ": " + std::to_string(intervals) +
+                         " intervals without a gap",
                      "at least three");
   }
   // Along gravity the offset has no torque: a platform that stays level leaves it at zero.

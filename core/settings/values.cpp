@@ -217,7 +217,10 @@ Mat3 Settings::matrix3(std::string_view key) const {
   double factor = 1.0;
   const SettingsNode& node = require(key, &factor, "an array of 3 rows of 3 numbers");
   const auto* rows = std::get_if<SettingsNode::Array>(&node.value);
-  if (rows == nullptr || rows->size() != 3) {
+  const auto is_row = [](const SettingsNode& row) {
+    return std::holds_alternative<SettingsNode::Array>(row.value);
+  };
+  if (rows == nullptr || rows->size() != 3 || !std::ranges::all_of(*rows, is_row)) {
     throw InputError(node.where, full_name(key), describe(node), "an array of 3 rows of 3 numbers");
   }
   Mat3 m;

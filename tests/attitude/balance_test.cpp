@@ -1,7 +1,9 @@
 #include "attitude/studies/balance.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "attitude/propagation/run.h"
@@ -172,6 +174,20 @@ TEST(Balance, RefusesRecordingsWithoutAttitude) {
   std::erase_if(run.recording.channels, [](const Channel& c) { return c.name == "q_w"; });
   EXPECT_THROW(balance(run), InputError);
   EXPECT_THROW(observe(run.recording, "recording"), InputError);
+}
+
+TEST(Balance, AttitudesOfNoLengthAreNone) {
+  BalanceRun run = unbalanced(true, 8);
+  for (Channel& c : run.recording.channels) {
+    if (c.name.starts_with("q_")) std::ranges::fill(c.values, 0.0);
+  }
+  try {
+    offset_from_momentum_m(run.model.platform, run.model.environment.gravity_lab_m_s2,
+                           run.recording);
+    FAIL() << "an offset from no attitudes";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("found 0 rows with an attitude and a rate"));
+  }
 }
 
 // Standard errors mean what they say: over many recordings the estimates scatter by them.

@@ -128,6 +128,13 @@ TEST(Values, WrongTypesSayWhatWasFound) {
   EXPECT_THAT(message([&] { settings.integer("n", 0, 9); }),
               testing::HasSubstr("found 2.5, expected a whole number"));
   EXPECT_THAT(message([&] { settings.vector3("v"); }), testing::HasSubstr("an array of 1"));
+  // A diagonal is no matrix yet.
+  const SettingsNode diagonal =
+      leaf(SettingsNode::Array{leaf(1.0, 3), leaf(2.0, 3), leaf(3.0, 3)}, 3);
+  EXPECT_THAT(message([&] {
+                lab({{"m", diagonal}}).matrix3("m");
+              }),
+              testing::HasSubstr("found an array of 3, expected an array of 3 rows of 3 numbers"));
   EXPECT_THAT(message([&] {
                 settings.choice("kind", {"led", "sun"});
               }),
