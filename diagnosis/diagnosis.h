@@ -39,6 +39,16 @@ struct FoundEffect {
   std::string explanation;                          // one sentence of physics
   // What is no number: the node of a wall, the axes of a box.
   std::vector<std::pair<std::string, std::string>> texts = {};
+  // Under which table an experiment has it; empty: Diagnosis::effect_table.
+  std::string table = {};
+};
+
+// What recordings of one kind say, where motion and light were recorded together.
+struct DomainAnswer {
+  std::string of;  // "motion", "light"
+  Verdict verdict = Verdict::consistent;
+  double confidence = 0.0;
+  std::string sentence;
 };
 
 // Part of the torque that no known law explains, fitted without a law as a function of one
@@ -153,6 +163,16 @@ struct RecordingSeries {
   bool is_held_out = false;  // all of it
 };
 
+// The array on its receiver, map coordinates [m], and what something found acts on.
+struct DrawnArray {
+  struct Cell {
+    double u_low, u_high, v_low, v_high;
+  };
+  std::vector<Cell> cells;       // by their numbers
+  std::vector<size_t> suspects;  // of them
+  std::vector<Cell> shadows;     // regions that something hides
+};
+
 // State and length of the first recording, so that improved.toml can propagate it again.
 struct Replay {
   std::string recording;  // path as given: commands and currents are read from it
@@ -203,6 +223,7 @@ struct Diagnosis {
   std::string because = {};  // of "unexplained": which evidence decided it
   Where where;
   std::vector<FoundEffect> effects;
+  std::vector<DomainAnswer> domains = {};  // of motion and light together; else empty
   // Under which table an experiment has such effects: [[disturbance]] of motion, [[effect]] of
   // light.
   std::string effect_table = "disturbance";
@@ -223,6 +244,7 @@ struct Diagnosis {
   std::vector<std::string> warnings;     // "the quaternions look conjugated", …
   DataQuality data;
   std::vector<RecordingSeries> series;
+  std::optional<DrawnArray> array = {};
   std::optional<Replay> replay;
 };
 

@@ -23,6 +23,8 @@ struct EffectKey {
   // Start and scale are multiples of the platform's mean moment of inertia.
   bool times_inertia = false;
   bool is_fixed = false;  // says which law it is; not fitted
+  // Fixed at the largest that the recordings have of the channel of the key's name.
+  bool is_largest_recorded = false;
 
   // A strength of either sign, one that cannot be negative, and one for each body axis.
   static EffectKey number(const std::string& key, double scale) { return {key, {0.0}, scale}; }
@@ -35,6 +37,11 @@ struct EffectKey {
   static EffectKey fixed_at(const std::string& key, double value) {
     EffectKey fixed{key, {value}, 0.0};
     fixed.is_fixed = true;
+    return fixed;
+  }
+  static EffectKey largest_recorded(const std::string& key) {
+    EffectKey fixed = fixed_at(key, 1.0);
+    fixed.is_largest_recorded = true;
     return fixed;
   }
   static EffectKey vector_not_negative(const std::string& key, double scale) {
@@ -67,6 +74,7 @@ enum class Requirement {
                        // latitude
   turning_laboratory,  // the same, seen by what turns about all axes
   wheel,               // the measured speed of one
+  lamps,               // the measured current of some, and not always the same
   plane,               // a platform that slides: the effect is a force
 };
 

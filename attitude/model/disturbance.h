@@ -96,6 +96,8 @@ struct EvaluationContext {
   Vec3Of<T> command_body_N_m;       // torque commanded; acts on the body by itself
   T battery_current_A;              // drawn from the battery (positive discharges)
   bool current_is_measured;         // Schedule::current_is_measured
+  T led_current_A;                  // ZeroOrderHold::led_current_A
+  T lamps_as_stated;                // ZeroOrderHold::lamps_as_stated
   T array_power_W;                  // that the solar array delivers
   Vec3Of<T> traced_light_body_N_m;  // ZeroOrderHold::light_body, now
   Vec3Of<T> wheel_rad_s;            // of wheels about the body's axes, relative to the body

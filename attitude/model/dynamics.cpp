@@ -93,7 +93,13 @@ PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
 Dynamics::Command Dynamics::broadcast(const ZeroOrderHold& held, const Lanes& time_s) {
   const ContinuedTorque& light = held.light_body;
   const Lanes t = time_s - light.from_s;
-  Command command{held.command_body_N_m.cast<Lanes>(), held.battery_current_A, {}, {}, {}};
+  Command command{.torque_body_N_m = held.command_body_N_m.cast<Lanes>(),
+                  .battery_current_A = held.battery_current_A,
+                  .led_current_A = held.led_current_A,
+                  .lamps_as_stated = held.lamps_as_stated,
+                  .light_body_N_m = {},
+                  .wheel_rad_s = {},
+                  .wheel_rad_s2 = {}};
   for (int k = 0; k < 3; ++k) {
     command.light_body_N_m[k] =
         light.value_N_m[k] + t * (light.rate_N_m_s[k] + t * light.curvature_N_m_s2[k]);
@@ -117,6 +123,8 @@ Dynamics::Command Dynamics::gather(const std::array<ZeroOrderHold, Lanes::count>
       command.wheel_rad_s2[k].set(i, lane.wheel.acceleration_rad_s2[k]);
     }
     command.battery_current_A.set(i, lane.battery_current_A);
+    command.led_current_A.set(i, lane.led_current_A);
+    command.lamps_as_stated.set(i, lane.lamps_as_stated);
   }
   return command;
 }
@@ -150,6 +158,8 @@ EvaluationContext<T> Dynamics::begin(const T& time_s, const Command& command, co
           .command_body_N_m = command.torque_body_N_m.template cast<T>(),
           .battery_current_A = command.battery_current_A,
           .current_is_measured = model_.schedule.current_is_measured,
+          .led_current_A = command.led_current_A,
+          .lamps_as_stated = command.lamps_as_stated,
           .array_power_W = 0.0,
           .traced_light_body_N_m = command.light_body_N_m.template cast<T>(),
           .wheel_rad_s = command.wheel_rad_s.template cast<T>(),

@@ -125,6 +125,7 @@ class Dynamics {
   struct Command {
     Vec3Of<Lanes> torque_body_N_m;
     Lanes battery_current_A;
+    Lanes led_current_A, lamps_as_stated;
     Vec3Of<Lanes> light_body_N_m;
     Vec3Of<Lanes> wheel_rad_s, wheel_rad_s2;
   };

@@ -36,6 +36,8 @@ struct WheelSpeeds {
 struct ZeroOrderHold {
   Vec3 command_body_N_m = Vec3::Zero();
   double battery_current_A = 0.0;   // positive discharges
+  double led_current_A = 0.0;       // through lamps in the laboratory, where it is known
+  double lamps_as_stated = 1.0;     // 1: it is not, and they shine as the model states; else 0
   ContinuedTorque light_body = {};  // of light that is traced beside the motion
   WheelSpeeds wheel = {};
 

@@ -34,15 +34,17 @@ Key propagate_table() {
        Key::number_or("initial_charge_Ah", 0.0, {}, "drawn before"),
        Key::number_or("initial_time_s", 0.0, {},
                       "of the first row; commands, measured series and laws in time count in it"),
-       Key::text(
-           "commands",
-           "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `battery_current_A`, each "
-           "row held until the next (zero-order hold); *or*")
+       Key::text("commands",
+                 "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `battery_current_A`, "
+                 "`led_current_A`, each row held until the next (zero-order hold); *or*")
            .usually_is("none"),
        Key::tables("command",
                    {Key::number("time_s", {}, "rising"),
                     Key::vector3_or("torque_N_m", Vec3::Zero(), "commanded, body axes"),
-                    Key::number_or("battery_current_A", 0.0, {}, "drawn")},
+                    Key::number_or("battery_current_A", 0.0, {}, "drawn"),
+                    Key::number("led_current_A", Range::not_negative(),
+                                "of lamps; not given: they shine as ever")
+                        .optional()},
                    "each held until the next"),
        Key::text_or("epoch", "2000-01-01T00:00:00",
                     "calendar time of t = 0, for `attitude.aem`; does not move `igrf` or `orbit`")},

@@ -66,8 +66,13 @@ Schedule read_schedule(const Settings& settings) {
                           "commands in order of time");
     }
     before_s = time_s;
-    schedule.append(time_s, {command.vector3_or("torque_N_m", Vec3::Zero()),
-                             command.number_or("battery_current_A", 0.0)});
+    ZeroOrderHold held{.command_body_N_m = command.vector3_or("torque_N_m", Vec3::Zero()),
+                       .battery_current_A = command.number_or("battery_current_A", 0.0)};
+    if (command.has("led_current_A")) {
+      held.led_current_A = command.number("led_current_A", Range::not_negative());
+      held.lamps_as_stated = 0.0;
+    }
+    schedule.append(time_s, held);
   }
   return schedule;
 }

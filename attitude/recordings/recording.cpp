@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "attitude/recordings/cleaning.h"
+#include "attitude/recordings/lamp_current.h"
 #include "attitude/recordings/text_lines.h"
 #include "core/files.h"
 #include "core/text/lines.h"
@@ -333,6 +334,7 @@ Schedule Recording::schedule() const {
   const Channel* current = find("battery_current_A");
   Schedule schedule;
   schedule.current_is_measured = current != nullptr;
+  const LampCurrent lamps(find("led_current_A"));
   const std::vector<WheelSpeeds> knots = wheel_speeds(*this);
   size_t next = 0;
   ZeroOrderHold held;
@@ -345,6 +347,7 @@ Schedule Recording::schedule() const {
   for (size_t i = 0; i < rows(); ++i) {
     for (int k = 0; k < 3; ++k) update(command[k], i, held.command_body_N_m[k]);
     update(current, i, held.battery_current_A);
+    lamps.hold(i, held);
     for (; next < knots.size() && knots[next].from_s <= time_s[i]; ++next) held.wheel = knots[next];
     schedule.append(time_s[i], held);
   }
@@ -384,7 +387,7 @@ Schedule read_command_file(const std::filesystem::path& path) {
                      "commands in order of time");
   }
   for (const char* name : {"command_x_N_m", "command_y_N_m", "command_z_N_m", "battery_current_A",
-                           "wheel_x_rad_s", "wheel_y_rad_s", "wheel_z_rad_s"}) {
+                           "led_current_A", "wheel_x_rad_s", "wheel_y_rad_s", "wheel_z_rad_s"}) {
     if (recording.find(name) != nullptr) return recording.schedule();
   }
   throw InputError({path.string(), 0}, "header", "no command",

@@ -145,6 +145,10 @@ Sensors read_sensors(const Settings& settings, const DisturbanceContext& context
     sensors.power.power_noise_W = s.number_or("power_noise_W", 0.0, not_negative);
   }
   sensors.noise_is_stated = settings.choice_or("noise_is", {"found", "stated"}, 0) == 1;
+  // Whoever reads light reads its instruments.
+  for (const char* of_light : {"irradiance", "array"}) {
+    if (settings.has(of_light)) settings.raw(of_light);
+  }
   return sensors;
 }
 

@@ -42,7 +42,7 @@ bool is_declared(const Sensors& sensors, int scalar) {
 }
 
 void say_unused(const NamedRecording& r, const NominalModel& nominal,
-                std::vector<std::string>& warnings) {
+                const std::set<std::string>& read_elsewhere, std::vector<std::string>& warnings) {
   const Platform& platform = nominal.model.platform;
   std::string names, undeclared;
   const MotionColumns motion(r.recording, platform, r.name);
@@ -57,6 +57,7 @@ void say_unused(const NamedRecording& r, const NominalModel& nominal,
                        "[sensors.magnetometer] for them");
   }
   for (const std::string& column : motion.unused()) {
+    if (read_elsewhere.contains(column)) continue;
     names += (names.empty() ? "" : ", ") + column;
   }
   if (!names.empty()) warnings.push_back(r.name + ": columns that are not used: " + names);
@@ -74,14 +75,15 @@ void say_assumed_sequence(const NamedRecording& r, const Platform& platform,
 
 // The stretches of each recording.
 std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecording>& recordings,
-                                                  const NominalModel& nominal, size_t max_blocks,
+                                                  const NominalModel& nominal,
+                                                  const DiagnoseOptions& options,
                                                   std::vector<std::string>& warnings) {
   const Platform& platform = nominal.model.platform;
   std::vector<std::vector<Observation>> all;
   for (const NamedRecording& r : recordings) {
-    Segments segments = observe_segments(r.recording, r.name, platform, max_blocks);
+    Segments segments = observe_segments(r.recording, r.name, platform, options.max_blocks);
     say_cuts(r.name, segments, warnings);
-    say_unused(r, nominal, warnings);
+    say_unused(r, nominal, options.read_elsewhere, warnings);
     say_assumed_sequence(r, platform, warnings);
     if (MotionColumns(r.recording, platform, r.name).has_scalar(Scalar::tilt)) {
       warnings.push_back(r.name +
@@ -155,14 +157,14 @@ RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecor
                        const std::vector<NamedRecording>& holdouts,
                        const DiagnoseOptions& options) {
   RecordedData data;
-  for (auto& stretches : observe_all(recordings, nominal, options.max_blocks, data.warnings)) {
+  for (auto& stretches : observe_all(recordings, nominal, options, data.warnings)) {
     if (holdouts.empty()) {
       hold_out(std::move(stretches), options.holdout_fraction, data);
     } else {
       append_to(data.train, std::move(stretches));
     }
   }
-  for (auto& stretches : observe_all(holdouts, nominal, options.max_blocks, data.warnings)) {
+  for (auto& stretches : observe_all(holdouts, nominal, options, data.warnings)) {
     append_to(data.held, std::move(stretches));
   }
   const NoiseLevels noise = noise_of(nominal.sensors, data.train, data.warnings);

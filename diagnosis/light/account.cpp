@@ -225,6 +225,19 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
     const LightTrial rival = fit_light(all, candidates, x, chosen.priors, runs, 25);
     if (rival.log_evidence > own.log_evidence - within) rivals.insert(c.kind.name);
   }
+  // And what was fitted in its place and came out as well.
+  for (const LightTrial& t : answer.trials) {
+    if (t.candidates.size() != chosen.candidates.size()) continue;
+    if (!(t.log_evidence > chosen.log_evidence - within) || !t.objection.empty()) continue;
+    std::vector<size_t> rest = t.candidates;
+    for (const size_t other : without.candidates) std::erase(rest, other);
+    if (rest.size() != 1) continue;
+    const LightCandidate& c = all[rest.front()];
+    const bool is_elsewhere = c.kind.index == named.kind.index && c.index != named.index;
+    if (!c.is_empirical() && !is_elsewhere && c.kind.name != named.kind.name) {
+      rivals.insert(c.kind.name);
+    }
+  }
   return {rivals.begin(), rivals.end()};
 }
 

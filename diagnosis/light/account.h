@@ -27,6 +27,9 @@ std::vector<Where::Dependence> light_dependences(const LightTrial& about,
                                                  const LightCandidates& all,
                                                  const std::vector<FittedRun>& runs);
 
+// The array with the cells that what was found acts on; nothing where there is none, or nothing.
+std::optional<DrawnArray> drawn_array(const LightLab& lab, const std::vector<FoundEffect>& effects);
+
 // What was known to within an error, after the fit.
 std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer);
 

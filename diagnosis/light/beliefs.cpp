@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/light/written.h"
 #include "scenes/experiment/toml_writer.h"
@@ -63,6 +64,26 @@ LightBelief light_belief(const LightLab& lab, const std::vector<UncertainKey>& u
     }
   }
   return belief;
+}
+
+void believe_tilt(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_rad,
+                  LightBelief& belief) {
+  belief.state.attitude_bias_rad += bias_rad;
+  const std::shared_ptr<const LightLab> same(std::shared_ptr<void>(), &lab);
+  const Vec2 bias_deg = bias_rad / degree_rad;
+  for (int k = 0; k < 2; ++k) {
+    const auto side = [&](double errors) {
+      LightPrior::Side s{same, belief.state, errors};
+      s.state.attitude_bias_rad[k] += errors * sigma_rad[k];
+      return s;
+    };
+    belief.uncertain.push_back({tilt_belief,
+                                {bias_deg.x(), bias_deg.y()},
+                                static_cast<size_t>(k),
+                                sigma_rad[k] / degree_rad,
+                                side(-LightPrior::part),
+                                side(LightPrior::part)});
+  }
 }
 
 }  // namespace photorque

@@ -14,4 +14,13 @@ namespace photorque {
 LightBelief light_belief(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
                          const std::function<Experiment(const std::string&)>& reread);
 
+// The key of the prior on how the body stands in the light, among the refined ones; no experiment
+// has it.
+constexpr const char* tilt_belief = "attitude_bias.bias_deg";
+
+// A prior: the body stands turned against its recorded attitude by a rotation vector about lab x
+// and y, to within errors. The lab must outlive it.
+void believe_tilt(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_rad,
+                  LightBelief& belief);
+
 }  // namespace photorque

@@ -271,6 +271,7 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
   d.holdout = light_holdout(answer, data.held);
   for (const FittedRun& run : data.train) d.series.push_back(light_series(answer, run, false));
   for (const FittedRun& run : data.held) d.series.push_back(light_series(answer, run, true));
+  d.array = drawn_array(lab, d.effects);
   d.data = data.quality;
   if (answer.decision.undecided) {
     d.warnings.push_back(

@@ -223,7 +223,7 @@ std::string improved_experiment(const std::string& text, const Diagnosis& diagno
   if (!improved.empty() && improved.back() != '\n') improved += '\n';
   improved += "\n" + comment("---- Added by the diagnosis: " + diagnosis.sentence);
   for (const FoundEffect& effect : diagnosis.effects) {
-    improved += effect_text(effect, diagnosis.effect_table);
+    improved += effect_text(effect, effect.table.empty() ? diagnosis.effect_table : effect.table);
   }
   for (const FoundEffect& effect : diagnosis.unnamed) improved += unnamed_text(effect);
   for (const EmpiricalTorque& torque : diagnosis.empirical) improved += empirical_text(torque);

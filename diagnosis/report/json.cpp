@@ -68,6 +68,13 @@ Json effect_json(const FoundEffect& effect) {
           {"explanation", effect.explanation}};
 }
 
+Json domain_json(const DomainAnswer& answer) {
+  return {{"of", answer.of},
+          {"verdict", name_of(answer.verdict)},
+          {"confidence", number(answer.confidence)},
+          {"sentence", answer.sentence}};
+}
+
 Json empirical_json(const EmpiricalTorque& torque) {
   return {{"variable", torque.variable},
           {"formula", torque.formula.empty() ? Json() : Json(torque.formula)},
@@ -154,6 +161,7 @@ std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
   json["confidence"] = number(d.confidence);
   json["sentence"] = d.sentence;
   json["because"] = d.because;
+  if (!d.domains.empty()) json["domains"] = list(d.domains, domain_json);
   json["where"] = where_json(d.where);
   json["effects"] = list(d.effects, effect_json);
   json["fit"] = {{"chi2_per_sample_before", number(d.chi2_per_sample_before)},

@@ -5,6 +5,7 @@
 
 #include "core/text/display.h"
 #include "diagnosis/report/charts.h"
+#include "diagnosis/report/light_charts.h"
 #include "diagnosis/report/style.h"
 #include "diagnosis/report/text.h"
 
@@ -142,6 +143,13 @@ std::string effects(const Diagnosis& d) {
   if (d.effects.empty() && d.manoeuvres.empty()) return "";
   std::string section = tag("h2", d.effects.empty() ? "What would tell more" : "What acts");
   for (const FoundEffect& effect : d.effects) section += effect_card(effect);
+  const std::string drawing = array_drawing(d);
+  if (!drawing.empty()) {
+    const bool is_some = !d.array->suspects.empty() || !d.array->shadows.empty();
+    section += tag("figure", tag("figcaption", std::string("The array, cells by their numbers") +
+                                                   (is_some ? ", those concerned marked" : "")) +
+                                 drawing);
+  }
   return tag("section", section + manoeuvres(d));
 }
 
@@ -201,6 +209,48 @@ std::string channel_figure(const ChannelSeries& channel, const RecordingSeries& 
   return tag("figure", tag("figcaption", xml_text(plot.title)) + draw.plot(plot));
 }
 
+// Scans at each attitude: measured, nominal, and what either model leaves.
+std::string scan_figures(const RecordingSeries& recording, bool found, const ChartDrawer& draw) {
+  constexpr size_t most = 6;  // attitudes
+  std::string figures;
+  const std::vector<RecordingSeries> alone = {recording};
+  const std::vector<ScanGroup> groups = scan_groups(alone);
+  for (size_t g = 0; g < std::min(most, groups.size()); ++g) {
+    std::string maps;
+    for (const ScanView& view : views_of_scans(found)) {
+      maps += tag("figure", tag("figcaption", view.title) + draw.map(scan_map(groups[g], view, g)));
+    }
+    figures += tag("p", "At " + attitude_words(groups[g].lab_from_body) + ":");
+    figures += tag("div", maps, "maps");
+  }
+  if (groups.size() > most) {
+    figures += tag("p", "Of " + std::to_string(groups.size()) + " attitudes the first " +
+                            std::to_string(most) + ".");
+  }
+  return figures;
+}
+
+std::string sweep_figures(const RecordingSeries& recording, bool found, const ChartDrawer& draw) {
+  constexpr size_t most = 8;
+  std::string figures;
+  const std::vector<int> sweeps = sweeps_of(*recording.light);
+  for (size_t i = 0; i < std::min(most, sweeps.size()); ++i) {
+    const Plot plot = sweep_plot(recording, sweeps[i], found);
+    figures += tag("figure", tag("figcaption", xml_text(plot.title)) + draw.plot(plot));
+  }
+  if (sweeps.size() > most) {
+    figures += tag("p", "Of " + std::to_string(sweeps.size()) + " curves the first " +
+                            std::to_string(most) + ".");
+  }
+  return figures;
+}
+
+std::string light_figures(const RecordingSeries& recording, bool found, const ChartDrawer& draw) {
+  if (!recording.light) return "";
+  return recording.light->u_m.empty() ? sweep_figures(recording, found, draw)
+                                      : scan_figures(recording, found, draw);
+}
+
 std::string overlays(const Diagnosis& d, const ChartDrawer& draw) {
   if (d.series.empty()) return "";
   std::string section = tag("h2", "Readings and models");
@@ -216,6 +266,7 @@ std::string overlays(const Diagnosis& d, const ChartDrawer& draw) {
     for (const ChannelSeries& channel : recording.channels) {
       section += channel_figure(channel, recording, draw);
     }
+    section += light_figures(recording, d.verdict != Verdict::consistent, draw);
   }
   return tag("section", section);
 }

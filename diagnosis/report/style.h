@@ -39,6 +39,12 @@ th, td { padding: 4px 26px 4px 0; border-bottom: 1px solid #e7eaed; vertical-ali
 sup { line-height: 0; }
 figure { margin: 18px 0 22px; }
 figcaption { font-weight: 600; font-size: 15px; margin-bottom: 2px; }
+.maps { display: grid; grid-template-columns: 1fr 1fr; gap: 4px 20px; }
+.maps figure { margin: 6px 0; }
+svg.array { max-width: 560px; }
+svg.array .cell { fill: #e6edf5; stroke: #1b1f24; stroke-width: 0.8; }
+svg.array .suspect { fill: #d55e00; fill-opacity: 0.75; stroke: #1b1f24; stroke-width: 0.8; }
+svg.array .shadow { fill: #1b1f24; fill-opacity: 0.35; stroke: #1b1f24; stroke-dasharray: 4 3; }
 svg.chart { display: block; width: 100%; height: auto; }
 .legend { max-width: none; font-size: 14px; }
 .key { display: inline-block; width: 26px; height: 0; vertical-align: middle;

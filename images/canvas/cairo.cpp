@@ -65,6 +65,26 @@ cairo_status_t append_bytes(void* text, const unsigned char* bytes, unsigned cou
   return CAIRO_STATUS_SUCCESS;
 }
 
+CairoOwner<cairo_surface_t> surface_of(int width, int height, std::span<const uint32_t> argb) {
+  CairoOwner<cairo_surface_t> cells(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
+  check(cairo_surface_status(cells.get()));
+  unsigned char* const bytes = cairo_image_surface_get_data(cells.get());
+  const int stride = cairo_image_surface_get_stride(cells.get());
+  for (int row = 0; row < height; ++row) {
+    auto* const out = reinterpret_cast<uint32_t*>(bytes + static_cast<ptrdiff_t>(row) * stride);
+    for (int column = 0; column < width; ++column) {
+      const uint32_t pixel = argb[static_cast<size_t>(row) * width + column];
+      const uint32_t alpha = pixel >> 24;
+      const auto channel = [&](int bits) {
+        return ((((pixel >> bits) & 0xFFu) * alpha + 127u) / 255u) << bits;
+      };
+      out[column] = (alpha << 24) | channel(16) | channel(8) | channel(0);
+    }
+  }
+  cairo_surface_mark_dirty(cells.get());
+  return cells;
+}
+
 // cairo numbers surfaces through the life of the process; here from 1 in every document.
 std::string with_own_surface_numbers(const std::string& svg) {
   constexpr std::string_view stem = "surface";
@@ -185,23 +205,7 @@ void CairoPage::text(const std::string& clean, const PagePoint& at, const TextSt
 }
 
 void CairoPage::image(const PageBox& box, int width, int height, std::span<const uint32_t> argb) {
-  const CairoOwner<cairo_surface_t> cells(
-      cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
-  check(cairo_surface_status(cells.get()));
-  unsigned char* const bytes = cairo_image_surface_get_data(cells.get());
-  const int stride = cairo_image_surface_get_stride(cells.get());
-  for (int row = 0; row < height; ++row) {
-    auto* const out = reinterpret_cast<uint32_t*>(bytes + static_cast<ptrdiff_t>(row) * stride);
-    for (int column = 0; column < width; ++column) {
-      const uint32_t pixel = argb[static_cast<size_t>(row) * width + column];
-      const uint32_t alpha = pixel >> 24;
-      const auto channel = [&](int bits) {
-        return ((((pixel >> bits) & 0xFFu) * alpha + 127u) / 255u) << bits;
-      };
-      out[column] = (alpha << 24) | channel(16) | channel(8) | channel(0);
-    }
-  }
-  cairo_surface_mark_dirty(cells.get());
+  const CairoOwner<cairo_surface_t> cells = surface_of(width, height, argb);
   cairo_t* const context = context_.get();
   cairo_save(context);
   cairo_translate(context, box.x, box.y);
@@ -254,6 +258,13 @@ std::string CairoPage::finish_svg() {
 }
 
 }  // namespace
+
+std::string png_of(int width, int height, std::span<const uint32_t> argb) {
+  const CairoOwner<cairo_surface_t> cells = surface_of(width, height, argb);
+  std::string png;
+  check(cairo_surface_write_to_png_stream(cells.get(), &append_bytes, &png));
+  return png;
+}
 
 double text_width(const std::string& text, const TextStyle& style) {
   const CairoOwner<cairo_surface_t> surface(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));

@@ -1,6 +1,7 @@
 // Pages of vectors as an <svg> element of an HTML page, written without cairo: its glyphs become
 // outlines with ids, which clash where a page holds several pictures.
 #include "core/errors.h"
+#include "core/text/base64.h"
 #include "core/text/display.h"
 #include "images/canvas/page.h"
 
@@ -125,9 +126,13 @@ class HtmlPage final : public Canvas::Page {
             xml_text(clean) + "</text>\n";
   }
 
-  void image(const PageBox& /*box*/, int /*width*/, int /*height*/,
-             std::span<const uint32_t> /*argb*/) override {
-    throw NumericalError("drawing failed: pages of HTML hold no pictures of pixels");
+  // Its pixels stay sharp however large they are drawn.
+  void image(const PageBox& box, int width, int height, std::span<const uint32_t> argb) override {
+    const std::string png = png_of(width, height, argb);
+    svg_ += "<image" + box_attributes(box) + attribute("preserveAspectRatio", "none") +
+            attribute("style", "image-rendering:pixelated") +
+            attribute("href", "data:image/png;base64," + base64(std::as_bytes(std::span(png)))) +
+            "/>\n";
   }
 
   // A picture in the picture cuts off what leaves it, without an id to refer to.

@@ -20,4 +20,7 @@ struct Canvas::Page {
   virtual std::string finish_svg() = 0;
 };
 
+// A PNG file of pixels, row 0 on top, not premultiplied.
+std::string png_of(int width, int height, std::span<const uint32_t> argb);
+
 }  // namespace photorque

@@ -4,6 +4,7 @@
 #include "images/drawing/consistency.h"
 #include "images/drawing/map_grid.h"
 #include "images/drawing/page_layout.h"
+#include "images/drawing/plot_picture.h"
 
 namespace photorque {
 namespace {
@@ -153,6 +154,39 @@ MapPicture map_picture(const Map& map, const Provenance& provenance) {
   draw_page_text(canvas, layout.text, layout.body_height);
   result.picture = canvas.finish_pixels();
   return result;
+}
+
+std::string map_html(const Map& map) {
+  require_consistent(map);
+  constexpr double width = 0.5 * html_chart_width, top = 14.0, gap = 14.0;
+  const ColourScale scale = colour_scale(map);
+  PageBox grid = grid_size(map);
+  // The bar's width does not depend on its height.
+  const double bar_width = colour_bar(scale, map.unit, grid.height).width();
+  Axis x, y;
+  // Ticks of the axis take room that they themselves depend on: two rounds are enough.
+  for (int round = 0; round < 2; ++round) {
+    x = horizontal_axis({map.x_low, map.x_high}, false, map.x_label, grid.width);
+    y = vertical_axis({map.y_low, map.y_high}, false, map.y_label, grid.height);
+    const double room = width - vertical_axis_width(y) - gap - bar_width - 4.0;
+    const double ratio = grid.width / grid.height;
+    grid.width = std::min(room, 340.0 * ratio);
+    grid.height = grid.width / ratio;
+  }
+  grid.x = 2.0 + vertical_axis_width(y);
+  grid.y = top + colour_bar_unit_height;
+  const double bar_height = std::max(grid.height, 90.0);
+  const ColourBar bar = colour_bar(scale, map.unit, bar_height);
+  const double bottom =
+      std::max(grid.bottom() + horizontal_axis_height(x), grid.y + bar_height + 8.0);
+  Canvas canvas = Canvas::of_html(width, std::ceil(bottom + 4.0), map.title);
+  if (!map.smooth) draw_hatching(canvas, grid);
+  canvas.image(grid, map.width, map.height, map_pixels(map, scale, map.width, map.height));
+  canvas.outline(grid, {ink, 0.8});
+  draw_horizontal_axis(canvas, grid, x);
+  draw_vertical_axis(canvas, grid, y, vertical_axis_width(y));
+  draw_colour_bar(canvas, bar, {grid.right() + gap, grid.y}, bar_height);
+  return canvas.finish_svg();
 }
 
 std::string map_caption(const Map& map) {

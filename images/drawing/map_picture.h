@@ -21,6 +21,10 @@ struct MapPicture {
 // kept up to a ratio of 8 between the sides. InputError if the map's sizes disagree.
 MapPicture map_picture(const Map& map, const Provenance& provenance);
 
+// Axes, colours and their bar alone as an <svg> element for the inside of an HTML page, half as
+// wide as plots are there.
+std::string map_html(const Map& map);
+
 // "min … · mean … · max … W/m² · 100 × 100 bins · standard error … (rms)".
 std::string map_caption(const Map& map);
 

@@ -52,6 +52,7 @@ std::map<std::string, Entries> examples() {
       {"air_friction", {{"coefficient", node(4e-5)}}},
       {"air_pressure_drag", {{"coefficient_N_m_s2", node(7e-4)}}},
       {"room_draft", {{"torque_lab_N_m", numbers({0, 0, 2e-6})}}},
+      {"lamp_pressure", {{"torque_lab_N_m", numbers({0, 0, 2e-6})}, {"led_current_A", node(0.7)}}},
       {"magnetic_dipole", {{"dipole_A_m2", numbers({0.01, 0.03, -0.02})}}},
       {"helmholtz_cage", {{"gain_error", node(0.1)}}},
       {"eddy_damping", {{"coefficient_N_m_s_per_T2", node(40)}}},
@@ -125,6 +126,8 @@ AttitudeModel model_with(const std::string& kind) {
   AttitudeModel model = bench_model();
   model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
                               .battery_current_A = 2.0,
+                              .led_current_A = 0.3,
+                              .lamps_as_stated = 0.0,
                               .wheel = {0.0, {20.0, -10.0, 30.0}, {0.3, 0.2, -0.1}}});
   // Forces act on what slides.
   const DisturbanceKind* known = find_kind(kind);
@@ -282,6 +285,8 @@ TEST(Disturbances, DerivativesAgreeWhenAllActTogether) {
   AttitudeModel model = bench_model();
   model.schedule.append(0.0, {.command_body_N_m = {1e-4, -2e-4, 3e-4},
                               .battery_current_A = 2.0,
+                              .led_current_A = 0.3,
+                              .lamps_as_stated = 0.0,
                               .wheel = {0.0, {20.0, -10.0, 30.0}, {0.3, 0.2, -0.1}}});
   for (const auto& [kind, entries] : examples()) model = with(model, kind, entries);
   std::mt19937_64 engine(11);

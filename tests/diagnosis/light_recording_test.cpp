@@ -52,6 +52,21 @@ TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
   EXPECT_EQ(run.rejected.at("unreadable attitude"), 1);
 }
 
+// Currents read to a hundredth where the lamps are darkest: the light of a steady stretch is that
+// of their mean, 0.7 A and 0.07 A but for ± 1 mA in turn.
+TEST(LightRecordings, NoiseOfTheLampsCurrentIsNoneOfTheirLight) {
+  std::string rows = "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,led_current_A\n";
+  for (int i = 0; i < 40; ++i) {
+    rows += std::to_string(i) + ",1,0,0,0,8,0.3," +
+            std::to_string((i < 20 ? 0.7 : 0.07) + (i % 2 == 0 ? 1e-3 : -1e-3)) + "\n";
+  }
+  const LightRecording noisy = read_light_recording(light_file("noisy.csv", rows), {});
+  ASSERT_EQ(noisy.lamp_light.size(), 40u);
+  for (size_t i = 0; i < 40; ++i) {
+    EXPECT_NEAR(noisy.lamp_light[i], i < 20 ? 1.0 : 0.1, 1e-12) << i;
+  }
+}
+
 // Lamps that are dimmed say so by their current; a constant one says nothing. Rows chosen keep what
 // is theirs.
 TEST(LightRecordings, DimmedLampsAreRelativeToTheirBrightest) {

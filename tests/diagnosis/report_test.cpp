@@ -28,8 +28,35 @@ std::string words_of_bars(const BarChart& chart) {
   return words + "</svg>";
 }
 
+std::string words_of_map(const Map& map) {
+  std::string words = "<svg>" + map.title + ":";
+  for (const double value : map.value) words += " " + std::to_string(std::lround(value));
+  return words + "</svg>";
+}
+
 std::string report(const Diagnosis& d) {
-  return report_html(d, "lab/experiment", build_provenance(), {words_of, words_of_bars});
+  return report_html(d, "lab/experiment", build_provenance(),
+                     {words_of, words_of_bars, words_of_map});
+}
+
+// A scan of 3 × 2 places, read in a serpentine, and an array of two cells.
+Diagnosis diagnosis_of_light() {
+  Diagnosis d = sample_diagnosis();
+  LightSeries scan;
+  scan.name = "irradiance_W_m2";
+  scan.u_m = {0.0, 0.1, 0.2, 0.2, 0.1, 0.0};
+  scan.v_m = {0.0, 0.0, 0.0, 0.1, 0.1, 0.1};
+  scan.lab_from_body.assign(6, Quat::Identity());
+  scan.measured = {10, 20, 30, 40, 50, 60};
+  scan.before = {9, 18, 27, 36, 45, 54};
+  scan.after = {10, 20, 30, 40, 49, 60};
+  RecordingSeries recording;
+  recording.recording = "scan1.csv";
+  recording.light = scan;
+  d.series = {recording};
+  d.array =
+      DrawnArray{{{0.0, 0.1, 0.0, 0.1}, {0.1, 0.2, 0.0, 0.1}}, {1}, {{0.05, 0.15, 0.0, 0.02}}};
+  return d;
 }
 
 // The first tag that is closed wrongly, or that is never closed; empty if all is well.
@@ -48,6 +75,33 @@ std::string unbalanced(const std::string& page) {
     }
   }
   return open.empty() ? "" : "<" + open.back() + ">";
+}
+
+// In the order of the places, v upwards.
+TEST(Report, ShowsScansBesideTheirModels) {
+  const std::string page = report(diagnosis_of_light());
+  EXPECT_EQ(unbalanced(page), "");
+  EXPECT_THAT(page, HasSubstr("At tilt 0:"));
+  EXPECT_THAT(page, HasSubstr("<svg>Measured: scan1.csv, tilt 0: 10 20 30 60 50 40</svg>"));
+  EXPECT_THAT(page, HasSubstr("<svg>Nominal model: scan1.csv, tilt 0: 9 18 27 54 45 36</svg>"));
+  EXPECT_THAT(page, HasSubstr("<svg>Measured minus nominal model: scan1.csv, tilt 0: 1 2 3 6 5 4"));
+  EXPECT_THAT(page, HasSubstr("found: scan1.csv, tilt 0: 0 0 0 0 1 0</svg>"));
+}
+
+// Cell 1, on the right, is marked; the shadow is the lowest fifth of the middle.
+TEST(Report, DrawsTheArrayWithWhatWasFound) {
+  const std::string page = report(diagnosis_of_light());
+  EXPECT_THAT(page, HasSubstr("The array, cells by their numbers, those concerned marked"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(R"(<rect class="cell" x="8.0000" y="8.0000" width="272.00" height="272.00"/>)"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(R"(<rect class="suspect" x="280.00" y="8.0000" width="272.00" height="272.00"/>)"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(R"(<rect class="shadow" x="144.00" y="225.60" width="272.00" height="54.400"/>)"));
+  EXPECT_THAT(report(sample_diagnosis()), Not(HasSubstr("class=\"chart array\"")));
 }
 
 TEST(Report, SaysTheFindingFirstAndEscapesIt) {

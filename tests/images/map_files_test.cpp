@@ -163,6 +163,44 @@ TEST(MapPicture, BinsHaveTheColourOfTheirValue) {
   }
 }
 
+// As a part of an HTML page: the bins are a PNG of a pixel each, read back from its own text; a
+// second one is the colour bar.
+TEST_F(MapFiles, AMapInAPageIsAPixelForEachBin) {
+  const Map map = sample_map();
+  const std::string svg = map_html(map);
+  const std::string mark = "data:image/png;base64,";
+  const size_t begin = svg.find(mark);
+  ASSERT_NE(begin, std::string::npos);
+  const size_t bar = svg.find(mark, begin + 1);
+  ASSERT_NE(bar, std::string::npos);
+  EXPECT_EQ(svg.find(mark, bar + 1), std::string::npos);
+  std::string png;
+  uint32_t bits = 0;
+  int count = 0;
+  static const std::string digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (size_t i = begin + mark.size(); svg[i] != '"' && svg[i] != '='; ++i) {
+    bits = bits << 6 | static_cast<uint32_t>(digits.find(svg[i]));
+    if ((count += 6) < 8) continue;
+    count -= 8;
+    png += static_cast<char>(bits >> count & 0xFFu);
+  }
+  write_file_whole(folder / "bins.png", png);
+  const Page page = read_page(folder / "bins.png", 0);
+  ASSERT_EQ(page.spec.width, map.width);
+  ASSERT_EQ(page.spec.height, map.height);
+  const ColourMap colours = viridis();
+  for (int iy = 0; iy < map.height; ++iy) {
+    for (int ix = 0; ix < map.width; ++ix) {
+      const auto expected = rgb_bytes(colours((iy * map.width + ix + 1) / 35.0));
+      for (const auto& [channel, byte] :
+           {std::pair{"R", expected[0]}, {"G", expected[1]}, {"B", expected[2]}}) {
+        EXPECT_EQ(std::lround(255.0F * page.at(ix, map.height - 1 - iy, channel)), byte);
+      }
+    }
+  }
+}
+
 // A smooth map of x from node to node: colours change steadily, with lines at even steps.
 TEST(MapPicture, SmoothMapsAreDrawnBetweenTheirNodes) {
   Map map;

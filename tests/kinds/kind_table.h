@@ -19,6 +19,7 @@ inline std::string number_text(double value) {
 inline std::string widths_text(const Parametrisation& p) {
   std::string text;
   for (const EffectKey& key : p.keys) {
+    if (key.is_fixed) continue;
     text += (text.empty() ? "" : ", ") + ("`" + key.key + "` " + number_text(key.scale));
     if (key.times_inertia) text += " of the mean inertia";
     if (key.start.size() > 1) text += " each";
@@ -49,6 +50,7 @@ inline std::string screening_text(const Screening& screening) {
       "a bearing, or a free body's attitude in a laboratory of stated latitude",
       "an air bearing, or a free body's attitude in a laboratory of stated latitude",
       "the measured speed of a wheel",
+      "the measured current of lamps, and that it changes",
       "a planar platform"};
   if (screening.needs != Requirement::none) {
     text += "; needs " + std::string(needs[int(screening.needs)]);

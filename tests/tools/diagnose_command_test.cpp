@@ -1,12 +1,29 @@
 // What `diagnose` writes works where it lies, and what it is given is of one kind.
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
 #include "tests/tools/command_test.h"
 
 namespace photorque {
 namespace {
 
 using ::testing::HasSubstr;
+
+// A table of which every row ends in the same cells more.
+std::string with_columns(const std::string& table, const std::string& names,
+                         const std::string& cells) {
+  std::istringstream rows(table);
+  std::string row, wider;
+  bool is_header = true;
+  while (std::getline(rows, row)) {
+    if (row.starts_with('#')) continue;
+    wider += row + (std::exchange(is_header, false) ? names : cells) + "\n";
+  }
+  return wider;
+}
 
 class DiagnoseCommand : public CommandTest {
  protected:
@@ -74,6 +91,106 @@ TEST_F(DiagnoseCommand, RecordingsOfTwoKindsAreToldByName) {
                            " --out " + at("answer"));
   EXPECT_EQ(list.status, 2);
   EXPECT_THAT(list.err, HasSubstr("repeat --recording before each of several"));
+}
+
+// A plate that turns under a lamp straight above it, on a platform that nothing else acts on: what
+// `propagate` recorded of its motion, beside the maximum that `power` gives at every attitude.
+TEST_F(DiagnoseCommand, AScenePlatformAndARunOfTheArrayAreOneAnswer) {
+  write("plate.obj",
+        "o array\nv -0.05 -0.05 0\nv 0.05 -0.05 0\nv 0.05 0.05 0\nv -0.05 0.05 0\nf 1 2 3 4\n");
+  const std::string lab = write("both.toml", R"([scene]
+file = "plate.obj"
+unit = "m"
+[[source]]
+kind = "led_array"
+layout = "grid"
+count = [1, 1]
+pitch_m = [0.1, 0.1]
+position_m = [0, 0, 1]
+direction = [0, 0, -1]
+power_W = 5
+aperture_diameter_m = 0.02
+profile = "gaussian"
+fwhm_deg = 10
+wavelength_nm = 730
+[[receiver]]
+kind = "flux_map"
+node = "array"
+facing = [0, 0, 1]
+[trace]
+rays = 200000
+[array]
+receiver = "array"
+cells = [1, 1]
+gap_m = 0
+margin_m = 0
+strings = 1
+bypass_every = 1
+bypass = "ideal"
+[array.bypass_diode]
+drop_V = 0.5
+[array.quantum_efficiency]
+wavelength_nm = [600, 860]
+efficiency = [0.9, 0.9]
+[array.cell_parameters]
+reference_area_m2 = 0.01
+reference_temperature_K = 298.15
+saturation_1_A = 1e-11
+saturation_2_A = 0
+ideality_1 = 1
+series_ohm = 0.01
+shunt_ohm = 100
+breakdown_fraction = 0
+gap_eV = 1.121
+gap_slope_per_K = -0.0002677
+photocurrent_slope_per_K = 0.0004
+[platform]
+topology = "tabletop"
+mass_kg = 7
+inertia_kg_m2 = [[0.11, 0, 0], [0, 0.12, 0], [0, 0, 0.19]]
+[environment]
+gravity_m_s2 = 9.80665
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = { value = [0, 0, -1e-5], sigma = [1e-7, 1e-7, 1e-7] }
+[sensors.camera]
+noise_arcsec = [30, 30, 30]
+[sensors.gyro]
+noise_rad_s = 2e-4
+[sensors.array]
+voltage_noise_V = 0.002
+current_noise_A = 0.01
+[light]
+mode = "off"
+[propagate]
+duration_s = 30
+initial_rate_rad_s = [0, 0, 0.05]
+)");
+  Outcome got = run("power " + lab + " --quiet --out " + at("power"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  got = run("propagate " + lab + " --quiet --out " + at("flown"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const auto power = nlohmann::json::parse(file_text(at("power/summary.json")));
+  const auto figure = [&](const char* name) { return power[name]["value"].dump(); };
+  const std::string both =
+      write("run.csv",
+            with_columns(file_text(at("flown/recording.csv")), ",array_voltage_V,array_current_A",
+                         "," + figure("array_voltage_V") + "," + figure("array_current_A")));
+  got = run("diagnose " + lab + " --recording " + both + " --quiet --out " + at("answer"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  const auto json = nlohmann::json::parse(file_text(at("answer/diagnosis.json")));
+  EXPECT_EQ(json["verdict"], "consistent") << json["sentence"];
+  ASSERT_EQ(json["domains"].size(), 2u);
+  EXPECT_EQ(json["domains"][0]["of"], "motion");
+  EXPECT_EQ(json["domains"][1]["of"], "light");
+  EXPECT_THAT(file_text(at("answer/report.html")), HasSubstr("array_voltage_V"));
+  got = run("check " + at("answer/improved.toml"));
+  EXPECT_EQ(got.status, 0) << got.err;
+  // No light among the recordings, no light held out.
+  got = run("diagnose " + lab + " --recording " + at("flown/recording.csv") + " --holdout " + both +
+            " --quiet --out " + at("answer"));
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, HasSubstr("run.csv: found a recording of light"));
 }
 
 TEST_F(DiagnoseCommand, AnExperimentWithoutACommandIsToldSo) {

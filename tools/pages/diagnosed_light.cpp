@@ -2,165 +2,13 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "core/text/display.h"
+#include "diagnosis/report/light_charts.h"
 #include "raytrace/tracing/shown_rays.h"
 #include "tools/pages/diagnosed.h"
 #include "tools/pages/stage.h"
 
 namespace photorque {
 namespace {
-
-constexpr size_t most_bins_across = 400;
-
-// "tilt 12 deg, heading 60 deg"
-std::string attitude_words(const Quat& lab_from_body) {
-  const Vec3 up = lab_from_body * Vec3::UnitZ();
-  const auto whole = [](double angle_rad) {
-    return readable_number(std::round(angle_rad / degree_rad * 10.0) / 10.0, 3);
-  };
-  const double tilt = std::atan2(up.head<2>().norm(), up.z());
-  if (tilt < 0.01 * degree_rad) return "tilt 0";
-  return "tilt " + whole(tilt) + " deg, heading " + whole(std::atan2(up.y(), up.x())) + " deg";
-}
-
-// The rows of a scan at one attitude.
-struct ScanGroup {
-  const RecordingSeries* recording;
-  Quat lab_from_body;
-  std::vector<size_t> rows;
-  std::string name() const { return recording->recording + ", " + attitude_words(lab_from_body); }
-};
-
-std::vector<ScanGroup> scan_groups(const std::vector<RecordingSeries>& recordings) {
-  std::vector<ScanGroup> groups;
-  for (const RecordingSeries& recording : recordings) {
-    if (!recording.light || recording.light->u_m.empty()) continue;
-    const size_t before = groups.size();
-    for (size_t i = 0; i < recording.light->measured.size(); ++i) {
-      const Quat& q = recording.light->lab_from_body[i];
-      const auto at = std::find_if(
-          groups.begin() + static_cast<ptrdiff_t>(before), groups.end(),
-          [&](const ScanGroup& group) { return group.lab_from_body.angularDistance(q) < 1e-6; });
-      if (at == groups.end()) {
-        groups.push_back({&recording, q, {i}});
-      } else {
-        at->rows.push_back(i);
-      }
-    }
-  }
-  return groups;
-}
-
-// Coordinates that differ by less than a tenth of the step between neighbours are one.
-std::vector<double> distinct(std::vector<double> values) {
-  std::ranges::sort(values);
-  const double span = values.back() - values.front();
-  const double least = std::max(1e-9, 1e-4 * span);
-  std::vector<double> all;
-  for (const double value : values) {
-    if (all.empty() || value - all.back() > least) all.push_back(value);
-  }
-  return all;
-}
-
-// One direction of a regular grid: where its first place is and how far apart they are.
-struct Steps {
-  double first = 0.0, step = 1.0;
-  size_t count = 1;
-  double low() const { return first - 0.5 * step; }
-  double high() const { return first + (static_cast<double>(count) - 0.5) * step; }
-  std::optional<size_t> at(double value) const {
-    const double k = std::round((value - first) / step);
-    if (!(k >= 0.0) || k >= static_cast<double>(count)) return std::nullopt;
-    return static_cast<size_t>(k);
-  }
-};
-
-// The places of a scan, or, where they lie on no grid, as many as there are readings.
-Steps steps_of(const std::vector<double>& values, size_t readings) {
-  const std::vector<double> all = distinct(values);
-  if (all.size() == 1) return {all.front(), 0.01, 1};
-  std::vector<double> gaps;
-  for (size_t i = 1; i < all.size(); ++i) gaps.push_back(all[i] - all[i - 1]);
-  std::ranges::nth_element(gaps, gaps.begin() + static_cast<ptrdiff_t>(gaps.size() / 2));
-  const double span = all.back() - all.front();
-  double step = gaps[gaps.size() / 2];
-  const double most =
-      std::min(static_cast<double>(most_bins_across), static_cast<double>(readings));
-  if (!(span / step < most)) step = span / std::sqrt(static_cast<double>(readings));
-  const auto count = static_cast<size_t>(std::lround(span / step)) + 1;
-  return {all.front(), span / static_cast<double>(std::max<size_t>(1, count - 1)), count};
-}
-
-struct ScanGrid {
-  Steps u, v;
-};
-
-ScanGrid grid_of(const ScanGroup& group) {
-  std::vector<double> u, v;
-  for (const size_t i : group.rows) {
-    u.push_back(group.recording->light->u_m[i]);
-    v.push_back(group.recording->light->v_m[i]);
-  }
-  return {steps_of(u, group.rows.size()), steps_of(v, group.rows.size())};
-}
-
-// What a scan shows: readings, models, differences.
-struct ScanView {
-  const char* name;
-  const char* title;
-  bool is_difference;
-  double (*value)(const LightSeries&, size_t);
-};
-
-const std::vector<ScanView>& scan_views() {
-  static const std::vector<ScanView> all = {
-      {"measured", "Measured", false, [](const LightSeries& l, size_t i) { return l.measured[i]; }},
-      {"nominal", "Nominal model", false,
-       [](const LightSeries& l, size_t i) { return l.before[i]; }},
-      {"residual", "Measured minus nominal model", true,
-       [](const LightSeries& l, size_t i) { return l.measured[i] - l.before[i]; }},
-      {"after", "Measured minus model with what was found", true,
-       [](const LightSeries& l, size_t i) { return l.measured[i] - l.after[i]; }}};
-  return all;
-}
-
-Map scan_map(const ScanGroup& group, const ScanView& shown, size_t number) {
-  const LightSeries& light = *group.recording->light;
-  const ScanGrid grid = grid_of(group);
-  Map map;
-  map.name = std::string(shown.name) + "_" + std::to_string(number);
-  map.title = std::string(shown.title) + ": " + group.name();
-  map.unit = "W/m²";
-  map.width = static_cast<int>(grid.u.count);
-  map.height = static_cast<int>(grid.v.count);
-  map.x_low = grid.u.low();
-  map.x_high = grid.u.high();
-  map.y_low = grid.v.low();
-  map.y_high = grid.v.high();
-  map.x_label = "u [m]";
-  map.y_label = "v [m]";
-  map.signed_values = shown.is_difference;
-  const size_t bins = grid.u.count * grid.v.count;
-  map.value.assign(bins, NAN);
-  std::vector<double> sum(bins, 0.0), variance(bins, 0.0), count(bins, 0.0);
-  for (const size_t i : group.rows) {
-    const auto x = grid.u.at(light.u_m[i]), y = grid.v.at(light.v_m[i]);
-    if (!x || !y) continue;
-    const size_t bin = *y * grid.u.count + *x;
-    sum[bin] += shown.value(light, i);
-    variance[bin] += light.noise.empty() ? 0.0 : light.noise[i] * light.noise[i];
-    count[bin] += 1.0;
-  }
-  const bool has_error = std::string(shown.name) != "nominal" && !light.noise.empty();
-  if (has_error) map.standard_error.assign(bins, 0.0);
-  for (size_t bin = 0; bin < bins; ++bin) {
-    if (!(count[bin] > 0.0)) continue;
-    map.value[bin] = sum[bin] / count[bin];
-    if (has_error) map.standard_error[bin] = std::sqrt(variance[bin]) / count[bin];
-  }
-  return map;
-}
 
 // Bins of the receiver, as fine as the finest of some scans.
 struct PaintedBins {
@@ -201,12 +49,6 @@ Map on_receiver(const Map& scan, const SurfaceGrid& grid, const PaintedBins& bin
     }
   }
   return map;
-}
-
-std::vector<ScanView> views_of_scans(bool found) {
-  std::vector<ScanView> all = scan_views();
-  if (!found) all.pop_back();
-  return all;
 }
 
 void add_maps(const std::vector<ScanGroup>& groups, bool found, RunPage& page) {
@@ -301,58 +143,9 @@ void show_runs(const std::vector<RecordingSeries>& runs, const OpticalRun& optic
   page.stage = std::move(stage);
 }
 
-// A sweep: points beside both models, and what they miss.
-Plot sweep_plot(const RecordingSeries& recording, int sweep, bool found) {
-  const LightSeries& light = *recording.light;
-  Plot plot;
-  plot.name = "sweep_" + std::to_string(sweep) + "_of_" + recording.recording;
-  plot.title = recording.recording + ", curve " + std::to_string(sweep) +
-               (recording.is_held_out ? ", never fitted" : "");
-  plot.x_label = "Voltage [V]";
-  plot.y_label = "Current [A]";
-  Plot::Curve measured, before, after, off_before, off_after;
-  measured.dots = true;
-  measured.colour = Plot::Colour::grey;
-  before.dashed = true;
-  before.colour = off_before.colour = Plot::Colour::vermilion;
-  after.colour = off_after.colour = Plot::Colour::blue;
-  measured.label = "measured";
-  before.label = "nominal model";
-  after.label = "with what was found";
-  off_before.label = "measured minus nominal model";
-  off_after.label = "measured minus model with what was found";
-  std::vector<size_t> rows;
-  for (size_t i = 0; i < light.measured.size(); ++i) {
-    if (light.sweep.empty() || light.sweep[i] == sweep) rows.push_back(i);
-  }
-  std::ranges::stable_sort(rows, {}, [&](size_t i) { return light.voltage_V[i]; });
-  for (const size_t i : rows) {
-    for (Plot::Curve* curve : {&measured, &before, &after, &off_before, &off_after}) {
-      curve->x.push_back(light.voltage_V[i]);
-    }
-    measured.y.push_back(light.measured[i]);
-    before.y.push_back(light.before[i]);
-    after.y.push_back(light.after[i]);
-    off_before.y.push_back(light.measured[i] - light.before[i]);
-    off_after.y.push_back(light.measured[i] - light.after[i]);
-  }
-  plot.curves = {std::move(measured), std::move(before)};
-  Plot::Panel residual{"Difference [A]", {std::move(off_before)}};
-  if (found) {
-    plot.curves.push_back(std::move(after));
-    residual.curves.push_back(std::move(off_after));
-  }
-  plot.below = {std::move(residual)};
-  return plot;
-}
-
 void add_sweeps(const RecordingSeries& recording, bool found, RunPage& page) {
   constexpr size_t most_sweeps = 24;  // on a page
-  std::vector<int> sweeps = recording.light->sweep;
-  if (sweeps.empty()) sweeps = {0};
-  std::ranges::sort(sweeps);
-  sweeps.erase(std::ranges::unique(sweeps).begin(), sweeps.end());
-  for (const int sweep : sweeps) {
+  for (const int sweep : sweeps_of(*recording.light)) {
     if (page.product.plots.size() == most_sweeps) {
       page.notes.push_back("More curves than " + std::to_string(most_sweeps) +
                            " were swept; the first of them are shown.");

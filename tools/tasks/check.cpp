@@ -155,12 +155,18 @@ class Checker {
     for (const InputError& mistake : light_mistakes(*run)) add_mistake(mistake);
     say_light(*run);
     if (file_->settings.has("array")) attempt([&] { check_array(*run); });
-    if (!file_->settings.has("platform")) check_recordings_of_light(*run);
+    check_recordings_of_light(*run);
   }
 
   // An experiment that says how light is read, or what is missing from it, is meant for them.
   void check_recordings_of_light(const OpticalRun& run) {
-    if (!file_->settings.has("sensors") && !file_->settings.has("effect")) return;
+    const auto are_of_light = [](const Settings& sensors) {
+      return sensors.has("irradiance") || sensors.has("array");
+    };
+    const bool is_meant = file_->settings.has("platform")
+                              ? std::ranges::any_of(file_->others("sensors"), are_of_light)
+                              : file_->settings.has("sensors") || file_->settings.has("effect");
+    if (!is_meant) return;
     attempt([&] {
       const LightLab lab(run.experiment());
       add("diagnose", "scans, sweeps and runs (--recording FILE) of " +

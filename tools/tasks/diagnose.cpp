@@ -1,11 +1,16 @@
 #include "tools/tasks/diagnose.h"
 
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <regex>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
+#include "diagnosis/joint/together.h"
 #include "diagnosis/light/beliefs.h"
 #include "diagnosis/light/diagnose.h"
 #include "diagnosis/module/diagnose.h"
@@ -13,6 +18,7 @@
 #include "diagnosis/report/json.h"
 #include "diagnosis/report/page.h"
 #include "images/drawing/bar_chart.h"
+#include "images/drawing/map_picture.h"
 #include "images/drawing/plot_picture.h"
 #include "images/publishing/staged_files.h"
 #include "scenes/experiment/toml_reader.h"
@@ -98,33 +104,55 @@ std::vector<LightRecording> read_light(const std::vector<fs::path>& paths,
   return all;
 }
 
-DiagnosisRun diagnose_light_recordings(const RunOptions& options,
-                                       const std::vector<fs::path>& paths,
-                                       const std::vector<fs::path>& holdout_paths,
-                                       const Console& console) {
+using Progress = std::function<void(const std::string&)>;
+
+Progress progress_on(const Console& console, const std::string& of) {
+  return [&console, of](const std::string& what) { console.line("  " + of + what + " ..."); };
+}
+
+// Lamps and array of an experiment, and their recordings.
+struct LightInput {
+  Experiment experiment;
+  LightLab lab{experiment};
+  LightBelief nominal{lab.nominal(), {}};
+  std::vector<LightRecording> recordings = {}, holdouts = {};
+  Provenance provenance = {};
+};
+
+std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
+                                             const std::vector<fs::path>& paths,
+                                             const std::vector<fs::path>& holdout_paths) {
   const std::string text = options.experiment_text();
   const auto reread = [&](const std::string& assignment) {
     std::vector<std::string> overrides = options.all_overrides();
     if (!assignment.empty()) overrides.push_back(assignment);
     return resolve_experiment(read_experiment_text(options.experiment, text, overrides));
   };
-  const Experiment experiment = reread("");
-  Provenance provenance = build_provenance();
-  provenance.inputs = experiment.inputs;
-  const LightLab lab(experiment);
-  const LightBelief nominal =
-      light_belief(lab, uncertain_keys(options.experiment, text, options.all_overrides()), reread);
-  const UsualCircumstances usual{experiment.lab_from_body.rotation,
-                                 lab.has_array() ? lab.design().temperature_K : 298.15};
-  std::vector<LightRecording> recordings = read_light(paths, usual, provenance),
-                              holdouts = read_light(holdout_paths, usual, provenance);
+  std::unique_ptr<LightInput> input(new LightInput{reread("")});
+  input->provenance = build_provenance();
+  input->provenance.inputs = input->experiment.inputs;
+  input->nominal = light_belief(
+      input->lab, uncertain_keys(options.experiment, text, options.all_overrides()), reread);
+  const UsualCircumstances usual{
+      input->experiment.lab_from_body.rotation,
+      input->lab.has_array() ? input->lab.design().temperature_K : 298.15};
+  input->recordings = read_light(paths, usual, input->provenance);
+  input->holdouts = read_light(holdout_paths, usual, input->provenance);
+  return input;
+}
+
+DiagnosisRun diagnose_light_recordings(const RunOptions& options,
+                                       const std::vector<fs::path>& paths,
+                                       const std::vector<fs::path>& holdout_paths,
+                                       const Console& console) {
+  const auto input = read_light_input(options, paths, holdout_paths);
   LightDiagnoseOptions how;
   how.threads = options.threads;
-  how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
-  Diagnosis diagnosis =
-      diagnose_light(lab, nominal, std::move(recordings), std::move(holdouts), how);
-  return {std::move(diagnosis), std::move(provenance), options.experiment,
-          with_overrides(text, options.all_overrides()), true};
+  how.progress = progress_on(console, "");
+  Diagnosis diagnosis = diagnose_light(input->lab, input->nominal, std::move(input->recordings),
+                                       std::move(input->holdouts), how);
+  return {std::move(diagnosis), std::move(input->provenance), options.experiment,
+          with_overrides(options.experiment_text(), options.all_overrides()), true};
 }
 
 // Curves of a module in sunlight: no scene is needed.
@@ -148,21 +176,64 @@ DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& r
           with_overrides(text, options.all_overrides()), true};
 }
 
-DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::path>& paths,
-                             const std::vector<fs::path>& holdout_paths, const Console& console) {
-  AttitudeExperiment experiment(options);
-  const NominalModel nominal = read_attitude_model(experiment.settings());
+MotionRecorded read_motion(const RunOptions& options, AttitudeExperiment& experiment,
+                           const std::vector<fs::path>& paths,
+                           const std::vector<fs::path>& holdout_paths) {
+  MotionRecorded motion{read_attitude_model(experiment.settings()), {}, {}, {}};
   const Settings recording = own_table(experiment.settings(), "recording", false);
   const RecordingOptions reading = read_recording_options(recording);
   recording.finish();
-  const std::vector<NamedRecording> recordings = read_all(paths, reading, experiment);
-  const std::vector<NamedRecording> holdouts = read_all(holdout_paths, reading, experiment);
-  DiagnoseOptions how;
-  how.threads = options.threads;
-  how.progress = [&](const std::string& what) { console.line("  " + what + " ..."); };
-  Diagnosis diagnosis = diagnose(nominal, recordings, holdouts, how);
+  motion.recordings = read_all(paths, reading, experiment);
+  motion.holdouts = read_all(holdout_paths, reading, experiment);
+  motion.how.threads = options.threads;
+  return motion;
+}
+
+DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::path>& paths,
+                             const std::vector<fs::path>& holdout_paths, const Console& console) {
+  AttitudeExperiment experiment(options);
+  MotionRecorded motion = read_motion(options, experiment, paths, holdout_paths);
+  motion.how.progress = progress_on(console, "");
+  Diagnosis diagnosis = diagnose(motion.nominal, motion.recordings, motion.holdouts, motion.how);
   return {std::move(diagnosis), experiment.provenance(0), options.experiment,
           with_overrides(options.experiment_text(), options.overrides), false};
+}
+
+// Recordings by what they hold. A run of the array says how the platform moved, too.
+struct Sorted {
+  std::vector<fs::path> motion, light;
+};
+
+Sorted sorted_by_content(const std::vector<fs::path>& paths) {
+  Sorted sorted;
+  for (const fs::path& path : paths) {
+    const std::optional<LightRecording::Kind> kind = light_kind_of(path);
+    if (kind) sorted.light.push_back(path);
+    if (!kind || *kind == LightRecording::Kind::run) sorted.motion.push_back(path);
+  }
+  return sorted;
+}
+
+DiagnosisRun diagnose_both(const RunOptions& options, const Sorted& recordings,
+                           const Sorted& holdouts, const Console& console) {
+  AttitudeExperiment experiment(options);
+  MotionRecorded motion = read_motion(options, experiment, recordings.motion, holdouts.motion);
+  motion.how.progress = progress_on(console, "motion: ");
+  motion.how.read_elsewhere = {"array_voltage_V", "array_current_A", "cell_temperature_K"};
+  const auto input = read_light_input(options, recordings.light, holdouts.light);
+  LightRecorded light{
+      input->lab, input->nominal, std::move(input->recordings), std::move(input->holdouts), {}};
+  light.how.threads = options.threads;
+  light.how.progress = progress_on(console, "light: ");
+  Diagnosis diagnosis = diagnose_together(std::move(motion), std::move(light));
+  Provenance provenance = experiment.provenance(0);
+  for (const auto& one : input->provenance.inputs) {
+    if (std::ranges::find(provenance.inputs, one) == provenance.inputs.end()) {
+      provenance.inputs.push_back(one);
+    }
+  }
+  return {std::move(diagnosis), std::move(provenance), options.experiment,
+          with_overrides(options.experiment_text(), options.all_overrides()), true};
 }
 
 }  // namespace
@@ -177,7 +248,7 @@ std::string DiagnosisRun::improved(const fs::path& folder) const {
 
 std::string DiagnosisRun::report() const {
   return report_html(diagnosis, experiment.stem().string(), provenance,
-                     {plot_html, bar_chart_html});
+                     {plot_html, bar_chart_html, map_html});
 }
 
 DiagnosisRun diagnose_experiment(const RunOptions& options, const std::vector<fs::path>& recordings,
@@ -189,6 +260,11 @@ DiagnosisRun diagnose_experiment(const RunOptions& options, const std::vector<fs
   for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
   const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
   if (root.has("module")) return diagnose_module_curves(options, root, recordings, holdouts);
+  const Sorted sorted = sorted_by_content(recordings);
+  if (root.has("platform") && root.has("scene") && !sorted.light.empty() &&
+      !sorted.motion.empty()) {
+    return diagnose_both(options, sorted, sorted_by_content(holdouts), console);
+  }
   return are_of_light(recordings, holdouts)
              ? diagnose_light_recordings(options, recordings, holdouts, console)
              : diagnose_motion(options, recordings, holdouts, console);

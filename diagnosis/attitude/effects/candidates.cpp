@@ -52,10 +52,19 @@ CoveredMotion covered_by(const std::vector<Observation>& runs) {
     covered.duration_s = std::max(covered.duration_s, seen.time_s.back());
     const Observation last = seen.part(seen.blocks() - 1, seen.blocks());
     covered.charge_C = std::max(covered.charge_C, std::abs(last.initial_charge_C));
+    double dimmest_A = 1e308, brightest_A = 0.0;
     for (const ZeroOrderHold& held : seen.schedule.held) {
+      if (held.lamps_as_stated == 0.0) {
+        dimmest_A = std::min(dimmest_A, held.led_current_A);
+        brightest_A = std::max(brightest_A, held.led_current_A);
+      }
       covered.has_commands = covered.has_commands || held.command_body_N_m.norm() > 0.0;
       covered.has_wheel = covered.has_wheel || held.wheel != WheelSpeeds{};
     }
+    // Light that is always the same pushes as a draught does.
+    constexpr double least_change = 0.05;
+    covered.led_current_A = std::max(covered.led_current_A, brightest_A);
+    covered.has_lamps = covered.has_lamps || dimmest_A < (1.0 - least_change) * brightest_A;
     for (size_t i = 0; i < seen.blocks(); ++i) {
       Vec3 rate_rad_s = Vec3::Zero();
       for (int k = 0; k < 3; ++k) {
@@ -164,6 +173,8 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
         return context.platform.has_air_bearing() || floats_in_laboratory;
       case Requirement::wheel:
         return covered.has_wheel;
+      case Requirement::lamps:
+        return covered.has_lamps;
       case Requirement::plane:
         return context.platform.slides();
       case Requirement::none:
@@ -175,7 +186,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
   for (const Observation& seen : runs) {
     all.longest_run_s = std::max(all.longest_run_s, seen.duration_s());
   }
-  for (const Effect& effect : catalogue(context)) {
+  for (Effect& effect : catalogue(context)) {
     if (!has_channel(effect.how.needs)) continue;
     // A law without parameters acts already or not.
     const auto& acting = nominal.model.disturbances;
@@ -186,6 +197,9 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     if (effect.how.inertia_change_kg_m2 != nullptr && context.platform.turns_about_one_axis() &&
         !covered.has_commands) {
       continue;
+    }
+    for (EffectKey& key : effect.keys) {
+      if (key.is_largest_recorded) key.start = {covered.led_current_A};
     }
     all.list.push_back(candidate_of(effect, context));
   }

@@ -30,6 +30,9 @@ struct CoveredMotion {
   double charge_C = 0.0;    // 0: no current was recorded
   bool has_commands = false;
   bool has_wheel = false;  // the speed of one was recorded
+  // Of lamps, the largest in all recordings, and whether it changes within one.
+  double led_current_A = 0.0;
+  bool has_lamps = false;
 };
 
 // The laws that compete on such recordings. `torque_N_m` is a typical torque.

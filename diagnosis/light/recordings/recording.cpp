@@ -1,5 +1,6 @@
 #include "diagnosis/light/recordings/recording.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -7,6 +8,7 @@
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/steady_stretches.h"
 #include "core/settings/settings.h"
 #include "core/text/lines.h"
 #include "core/text/numbers.h"
@@ -186,6 +188,19 @@ class RowReader {
   const std::vector<std::string_view>* cells_ = nullptr;
 };
 
+// Steady stretches of the lamps' current by their means: its noise is none of the light's.
+void smooth_steady(std::vector<double>& lamps) {
+  if (lamps.size() < 3) return;
+  std::vector<double> steps;
+  for (size_t i = 1; i < lamps.size(); ++i) steps.push_back(std::abs(lamps[i] - lamps[i - 1]));
+  const auto middle = steps.begin() + static_cast<ptrdiff_t>((steps.size() - 1) / 2);
+  std::ranges::nth_element(steps, middle);
+  // The median of |difference of two readings| is 0.954 of their noise.
+  constexpr double median_of_noise = 0.954, beyond = 5.0, least_change = 0.01;
+  hold_means(lamps,
+             std::min(beyond * *middle / median_of_noise, least_change * std::ranges::max(lamps)));
+}
+
 // Currents of lamps over the largest. What hardly changes is noise of a constant one.
 void make_relative(std::vector<double>& lamps) {
   constexpr double changes = 0.05;
@@ -195,7 +210,9 @@ void make_relative(std::vector<double>& lamps) {
     lamps.clear();
     return;
   }
-  for (double& current : lamps) current /= high;
+  smooth_steady(lamps);
+  const double brightest = std::ranges::max(lamps);
+  for (double& current : lamps) current /= brightest;
 }
 
 }  // namespace
