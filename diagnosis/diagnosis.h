@@ -97,6 +97,7 @@ struct Alternative {
   std::optional<double> holdout_chi2_per_sample = {};
   std::string remark = {};  // why it was not chosen: "would feed energy"
   bool chosen = false;      // its model is the one that is reported
+  std::string of = {};      // "motion" or "light", where both were recorded together
 };
 
 // Recordings against the prediction, numbers never used in the fit.

@@ -8,6 +8,7 @@
 #include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/lamp_current.h"
 #include "attitude/recordings/text_lines.h"
+#include "attitude/recordings/wheel_speeds.h"
 #include "core/files.h"
 #include "core/text/lines.h"
 #include "core/text/numbers.h"
@@ -289,45 +290,6 @@ const Channel* Recording::find(std::string_view name) const {
                                [&](const Channel& channel) { return channel.name == name; });
   return it == channels.end() ? nullptr : &*it;
 }
-
-namespace {
-
-// The measured speeds of wheels as straight lines between means over neighbouring rows, so many
-// that what lies between is straight, and no more: each begins a step of the propagation.
-std::vector<WheelSpeeds> wheel_speeds(const Recording& recording) {
-  const Channel* wheel[3] = {recording.find("wheel_x_rad_s"), recording.find("wheel_y_rad_s"),
-                             recording.find("wheel_z_rad_s")};
-  std::vector<WheelSpeeds> knots;
-  if (wheel[0] == nullptr && wheel[1] == nullptr && wheel[2] == nullptr) return knots;
-  constexpr size_t most_knots = 400;
-  const size_t rows = recording.rows();
-  const size_t together = (rows + most_knots - 1) / most_knots;
-  for (size_t first = 0; first < rows; first += together) {
-    const size_t last = std::min(rows, first + together);
-    WheelSpeeds knot;
-    for (size_t i = first; i < last; ++i) knot.from_s += recording.time_s[i];
-    knot.from_s /= static_cast<double>(last - first);
-    for (int k = 0; k < 3; ++k) {
-      double sum = 0.0, count = 0.0;
-      for (size_t i = first; wheel[k] != nullptr && i < last; ++i) {
-        if (std::isnan(wheel[k]->values[i])) continue;
-        sum += wheel[k]->values[i];
-        count += 1.0;
-      }
-      // A block without a reading goes on as the one before it.
-      const double before = knots.empty() ? 0.0 : knots.back().speed_rad_s[k];
-      knot.speed_rad_s[k] = count > 0.0 ? sum / count : before;
-    }
-    knots.push_back(knot);
-  }
-  for (size_t i = 0; i + 1 < knots.size(); ++i) {
-    knots[i].acceleration_rad_s2 =
-        (knots[i + 1].speed_rad_s - knots[i].speed_rad_s) / (knots[i + 1].from_s - knots[i].from_s);
-  }
-  return knots;
-}
-
-}  // namespace
 
 Schedule Recording::schedule() const {
   const Channel* command[3] = {find("command_x_N_m"), find("command_y_N_m"), find("command_z_N_m")};

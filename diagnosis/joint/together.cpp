@@ -309,7 +309,11 @@ Diagnosis joined(const Diagnosis& motion, const Diagnosis& light, const std::opt
   } else if (light.holdout) {
     d.holdout = light.holdout;
   }
+  for (Alternative& a : d.alternatives) a.of = "motion";
   append(d.alternatives, light.alternatives);
+  for (Alternative& a : d.alternatives) {
+    if (a.of.empty()) a.of = "light";
+  }
   append(d.manoeuvres, light.manoeuvres);
   append(d.priors_refined, with_light.priors_refined);
   append(d.warnings, light.warnings);

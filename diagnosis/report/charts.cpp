@@ -91,24 +91,28 @@ BarChart dependence_chart(const Where& where) {
   return chart;
 }
 
-BarChart ranking_chart(const Diagnosis& d) {
+BarChart ranking_chart(const Diagnosis& d, const std::string& of) {
   constexpr size_t max_bars = 14;
   // Explanations that the recordings rule out would only flatten the rest.
   constexpr double ruled_out = -50.0;
   BarChart chart{
       "ranking", "Log evidence of the alternatives", "log evidence over “nothing missing”", {}};
   std::vector<std::string> chosen;
-  for (const FoundEffect& effect : d.effects) chosen.push_back(effect.kind);
+  for (const FoundEffect& effect : d.effects) {
+    const bool is_of_light = effect.table == "effect";
+    if (of.empty() || is_of_light == (of == "light")) chosen.push_back(effect.kind);
+  }
   std::ranges::sort(chosen);
+  const auto best = std::ranges::find(d.alternatives, of, &Alternative::of);
   for (const Alternative& a : d.alternatives) {
+    if (a.of != of) continue;
     if (chart.bars.size() == max_bars) break;
     if (a.log_evidence_relative < ruled_out && !a.chosen) continue;
     std::vector<std::string> kinds = a.kinds;
     std::ranges::sort(kinds);
     const bool named = d.verdict != Verdict::unexplained && kinds == chosen && a.label.empty();
     chart.bars.push_back({name_of(a), a.log_evidence_relative,
-                          note_on(a, d.alternatives.front().log_evidence_relative),
-                          a.chosen || named});
+                          note_on(a, best->log_evidence_relative), a.chosen || named});
   }
   return chart;
 }

@@ -19,7 +19,8 @@ BarChart misfit_chart(const Where& where);
 BarChart dependence_chart(const Where& where);
 
 // Log evidence of the best alternatives; those that the recordings rule out are left out.
-BarChart ranking_chart(const Diagnosis& diagnosis);
+// `of`: which domain's, where motion and light were recorded together.
+BarChart ranking_chart(const Diagnosis& diagnosis, const std::string& of = {});
 
 // Readings beside both models, where the channel has them, above the residuals of both; what was
 // held out is shaded, twice the noise of a reading dotted.

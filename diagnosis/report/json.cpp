@@ -111,6 +111,7 @@ Json alternative_json(const Alternative& alternative) {
   json["holdout_chi2_per_sample"] =
       alternative.holdout_chi2_per_sample ? number(*alternative.holdout_chi2_per_sample) : Json();
   if (!alternative.remark.empty()) json["remark"] = alternative.remark;
+  if (!alternative.of.empty()) json["of"] = alternative.of;
   return json;
 }
 

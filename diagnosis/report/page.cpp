@@ -197,10 +197,15 @@ std::string ranking(const Diagnosis& d, const ChartDrawer& draw) {
       d.verdict == Verdict::unexplained
           ? " No name was chosen: the model that is reported is bold and blue."
           : " The chosen one is bold and blue.";
-  return tag("section",
-             tag("h2", "Ranking of the alternatives") +
-                 tag("p", "Further right is better; a lead of 3 makes the odds 20 to 1." + chosen) +
-                 draw.bars(ranking_chart(d)));
+  std::string section =
+      tag("h2", "Ranking of the alternatives") +
+      tag("p", "Further right is better; a lead of 3 makes the odds 20 to 1." + chosen);
+  if (d.domains.empty()) section += draw.bars(ranking_chart(d));
+  for (const DomainAnswer& domain : d.domains) {
+    section += tag("figure", tag("figcaption", "Of the " + domain.of) +
+                                 draw.bars(ranking_chart(d, domain.of)));
+  }
+  return tag("section", section);
 }
 
 std::string channel_figure(const ChannelSeries& channel, const RecordingSeries& recording,

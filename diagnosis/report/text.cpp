@@ -50,7 +50,8 @@ std::string html_number(double value, int digits) {
 
 std::string html_estimate(double value, double sigma) {
   if (!(sigma > 0.0) || !std::isfinite(sigma) || !std::isfinite(value)) {
-    return html_number(value, 4);
+    const bool is_whole = value == std::round(value) && std::abs(value) < 1e5;
+    return is_whole ? fixed(value, 0) : html_number(value, 4);
   }
   const int last = magnitude(sigma) - 1;
   const double largest = std::max(std::abs(value), sigma);

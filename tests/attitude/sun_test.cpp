@@ -91,6 +91,29 @@ TEST(Sun, KeplersEquationHoldsForEveryEllipse) {
   }
 }
 
+// Eight instants at once are eight: each lane has an anomaly of its own.
+TEST(Sun, KeplersEquationHoldsInEveryLane) {
+  const double e_rad[] = {-3.0, -1.7, -0.4, -1e-4, 0.0, 0.3, 1.5, 2.9};
+  for (const double eccentricity : {0.0167, 0.29, 0.6, 0.95}) {
+    HeliocentricOrbit orbit;
+    orbit.eccentricity = eccentricity;
+    // Gauss's year; at 1 au.
+    const double motion_rad_s = 0.01720209895 / 86400.0;
+    Lanes times_s;
+    for (int lane = 0; lane < Lanes::count; ++lane) {
+      times_s.set(lane, (e_rad[lane] - eccentricity * std::sin(e_rad[lane])) / motion_rad_s);
+    }
+    const auto seen = orbit.in_plane(times_s).position_au;
+    for (int lane = 0; lane < Lanes::count; ++lane) {
+      const double tolerance = 4e-15 / (1.0 - eccentricity * std::cos(e_rad[lane]));
+      EXPECT_NEAR(seen[0][lane], std::cos(e_rad[lane]) - eccentricity, tolerance) << lane;
+      EXPECT_NEAR(seen[1][lane],
+                  std::sqrt(1.0 - eccentricity * eccentricity) * std::sin(e_rad[lane]), tolerance)
+          << lane;
+    }
+  }
+}
+
 TEST(Sun, SlopesAreThoseOfThePath) {
   const auto path = environment_of(
                         "[sun]\ndate = \"2015-04-27T03:00\"\npointing = { axis = \"x\", "

@@ -8,6 +8,7 @@
 #include "diagnosis/joint/together.h"
 #include "diagnosis/light/beliefs.h"
 #include "scenes/experiment/experiment.h"
+#include "tests/diagnosis/named.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 #include "tools/proof/light/files.h"
 
@@ -140,22 +141,6 @@ class Together : public testing::Test {
   std::optional<Experiment> experiment_;
   std::optional<LightLab> lab_;
 };
-
-std::vector<std::string> kinds_of(const Diagnosis& d) {
-  std::vector<std::string> kinds;
-  for (const FoundEffect& effect : d.effects) kinds.push_back(effect.kind);
-  return kinds;
-}
-
-const FittedParameter& parameter(const Diagnosis& d, const std::string& kind,
-                                 const std::string& key) {
-  for (const FoundEffect& effect : d.effects) {
-    for (const FittedParameter& p : effect.parameters) {
-      if (effect.kind == kind && p.key == key) return p;
-    }
-  }
-  throw std::runtime_error(kind + "." + key + " was not found");
-}
 
 TEST_F(Together, NothingIsMissing) {
   const Diagnosis d = diagnosed();

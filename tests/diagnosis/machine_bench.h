@@ -1,4 +1,4 @@
-// Machines by their experiment, recordings by their channels, and the kinds that a diagnosis names.
+// Machines by their experiment, recordings by their channels.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,7 @@
 
 #include "diagnosis/attitude/diagnose.h"
 #include "scenes/experiment/toml_reader.h"
+#include "tests/diagnosis/named.h"
 
 namespace photorque {
 
@@ -24,12 +25,6 @@ inline Recording recording_of(double interval_s, const std::vector<Channel>& cha
   recording.report.rows_read = recording.report.rows_kept = static_cast<int64_t>(rows);
   recording.report.median_interval_s = interval_s;
   return recording;
-}
-
-inline std::vector<std::string> kinds_of(const Diagnosis& d) {
-  std::vector<std::string> kinds;
-  for (const FoundEffect& effect : d.effects) kinds.push_back(effect.kind);
-  return kinds;
 }
 
 }  // namespace photorque

@@ -22,16 +22,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-const FittedParameter& parameter(const Diagnosis& d, const std::string& kind,
-                                 const std::string& key) {
-  for (const FoundEffect& effect : d.effects) {
-    for (const FittedParameter& p : effect.parameters) {
-      if (effect.kind == kind && p.key == key) return p;
-    }
-  }
-  throw std::runtime_error(kind + "." + key + " was not found");
-}
-
 const char* const puck_toml =
     "[platform]\ntopology = \"planar\"\n[sensors.position]\nnoise_m = 3e-4\n";
 

@@ -15,6 +15,7 @@
 #include "tools/guards/child_process.h"
 #include "tools/proof/files.h"
 #include "tools/proof/light/files.h"
+#include "tools/proof/settings.h"
 #include "tools/scoring/document.h"
 #include "tools/scoring/replay.h"
 
@@ -36,6 +37,19 @@ struct ProveSettings {
   std::string hash;  // of the settings
 };
 
+// Of light and power: what the two plans share, and `below`.
+LightPlan light_plan_of(const InjectedPlan& shared, const Settings& prove) {
+  LightPlan light;
+  light.seed = shared.seed;
+  light.per_kind = shared.per_kind;
+  light.none = shared.none;
+  light.pairs = shared.pairs;
+  light.outside = shared.outside;
+  light.below = static_cast<int>(prove.integer_or("below", light.below, 0, 100000));
+  light.dirty_share = shared.dirty_fraction;
+  return light;
+}
+
 // [prove] of the settings file; docs/proof.md says what the keys mean.
 ProveSettings read_settings(const CommandLine& line) {
   SettingsNode node = read_toml(line.experiment);
@@ -43,36 +57,11 @@ ProveSettings read_settings(const CommandLine& line) {
   const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
   const Settings s = root.table("prove");
   ProveSettings settings;
-  InjectedPlan& plan = settings.plan;
   constexpr int64_t most = 100000;
-  plan.seed = static_cast<uint64_t>(s.integer_or("seed", 1, 0, INT64_MAX));
-  if (line.seed) plan.seed = *line.seed;
-  plan.per_kind = static_cast<int>(s.integer_or("per_kind", plan.per_kind, 0, most));
-  plan.none = static_cast<int>(s.integer_or("none", plan.none, 0, most));
-  plan.pairs = static_cast<int>(s.integer_or("pairs", plan.pairs, 0, most));
-  plan.outside = static_cast<int>(s.integer_or("outside", plan.outside, 0, most));
-  plan.triples = static_cast<int>(s.integer_or("triples", plan.triples, 0, most));
-  plan.known_unknown = static_cast<int>(s.integer_or("known_unknown", plan.known_unknown, 0, most));
-  plan.noise_none = static_cast<int>(s.integer_or("noise_none", plan.noise_none, 0, most));
-  plan.noise_effect = static_cast<int>(s.integer_or("noise_effect", plan.noise_effect, 0, most));
-  plan.strong_fraction = s.number_or("strong_share", plan.strong_fraction, Range::fraction());
-  plan.second_fraction = s.number_or("second_maker_share", plan.second_fraction, Range::fraction());
-  const Range seconds{20.0, 1e5, false, false}, rate{1.0, 1000.0, false, false};
-  plan.duration_s = s.number_or("duration_s", plan.duration_s, seconds);
-  plan.holdout_s = s.number_or("holdout_s", plan.holdout_s, seconds);
-  if (s.has("rates_Hz")) plan.rates_Hz = s.numbers("rates_Hz", rate);
-  if (plan.rates_Hz.empty()) throw s.error("rates_Hz", "[]", "at least one rate");
-  plan.dirty_fraction = s.number_or("dirty_share", plan.dirty_fraction, Range::fraction());
+  settings.plan = read_plan(s);
+  if (line.seed) settings.plan.seed = *line.seed;
   if (s.choice_or("of", {"motion", "light"}, 0) == 1) {
-    LightPlan light;
-    light.seed = plan.seed;
-    light.per_kind = plan.per_kind;
-    light.none = plan.none;
-    light.pairs = plan.pairs;
-    light.outside = plan.outside;
-    light.below = static_cast<int>(s.integer_or("below", light.below, 0, most));
-    light.dirty_share = plan.dirty_fraction;
-    settings.light = light;
+    settings.light = light_plan_of(settings.plan, s);
   }
   settings.oracle = s.flag_or("oracle", settings.oracle);
   settings.replay = s.flag_or("replay", settings.replay);

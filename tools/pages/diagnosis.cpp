@@ -153,7 +153,11 @@ void add_figures(const Diagnosis& d, RunPage& page) {
 void add_charts(const Diagnosis& d, RunPage& page) {
   if (!d.where.channels.empty()) page.charts.push_back(misfit_chart(d.where));
   if (!d.where.depends_on.empty()) page.charts.push_back(dependence_chart(d.where));
-  if (!d.alternatives.empty()) page.charts.push_back(ranking_chart(d));
+  if (d.domains.empty() && !d.alternatives.empty()) page.charts.push_back(ranking_chart(d));
+  for (const DomainAnswer& domain : d.domains) {
+    page.charts.push_back(ranking_chart(d, domain.of));
+    page.charts.back().title += ", of the " + domain.of;
+  }
 }
 
 void add_notes(const Diagnosis& d, RunPage& page) {
