@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/settings/settings.h"
+#include "diagnosis/light/domain.h"
 
 namespace photorque {
 namespace {
@@ -189,6 +190,22 @@ Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
   return left;
 }
 
+// The same of an effect that acts or does not, `own` with it fitted: how far χ² would stay above
+// that where each of `others` acted in its place.
+Eigen::VectorXd unlike_switched(const LightTrial& own, const LightTrial& without,
+                                const LightCandidates& all, const std::vector<size_t>& others,
+                                const std::vector<FittedRun>& runs) {
+  const LightTrial bare = fit_light(all, without.candidates, without.x, without.priors, runs, 25);
+  const std::vector<double> gains = LightDomain(all).gains(bare, others, runs);
+  const double whole = bare.fit.chi2 - own.fit.chi2;
+  Eigen::VectorXd left(static_cast<Eigen::Index>(others.size()) + 1);
+  left[0] = whole;
+  for (size_t k = 0; k < others.size(); ++k) {
+    left[static_cast<Eigen::Index>(k) + 1] = whole - gains[k];
+  }
+  return left;
+}
+
 // Whether a candidate in the place of another explains the recordings as well.
 std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
                                       const std::vector<FittedRun>& runs) {
@@ -209,7 +226,9 @@ std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
     others.push_back(i);
     terms.push_back({i, {c.start()}});
   }
-  const Eigen::VectorXd left = unlike(without, all, terms, runs, chosen.x[which]);
+  const Eigen::VectorXd left = named.has_strength()
+                                   ? unlike(without, all, terms, runs, chosen.x[which])
+                                   : unlike_switched(own, without, all, others, runs);
   std::set<std::string> rivals;
   for (size_t k = 0; k < others.size(); ++k) {
     const LightCandidate& c = all[others[k]];

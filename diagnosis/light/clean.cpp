@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace photorque {
 namespace {
@@ -32,6 +33,12 @@ std::vector<size_t> nearest_in_time(const LightRecording& r, size_t row) {
     near.push_back(j);
   }
   return near;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 // How far a value is from the plane through its neighbours, beyond what these scatter about it.
@@ -89,6 +96,40 @@ std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::Vect
   std::vector<size_t> good;
   for (size_t row = 0; row < r.rows(); ++row) {
     if (!wild[row]) good.push_back(row);
+  }
+  return good;
+}
+
+std::vector<size_t> rows_without_strays(const LightRun& run, const Eigen::VectorXd& residuals) {
+  constexpr double stray_sigma = 5.0, from_all_sigma = 3.0, median_of_normal = 0.6745;
+  const LightRecording& r = run.recording();
+  const size_t channels = run.channels().size();
+  const auto residual = [&](size_t row, size_t channel) {
+    return residuals[static_cast<Eigen::Index>(row * channels + channel)];
+  };
+  const auto strays = [&](size_t row, size_t channel) {
+    const double own = residual(row, channel);
+    if (std::abs(own) < stray_sigma) return false;
+    const std::vector<size_t> near =
+        r.kind == LightRecording::Kind::scan ? nearest_in_place(r, row) : nearest_in_time(r, row);
+    if (near.size() < 4) return false;
+    std::vector<double> others, sizes;
+    double least = std::numeric_limits<double>::infinity();
+    for (const size_t j : near) {
+      others.push_back(residual(j, channel));
+      sizes.push_back(std::abs(others.back()));
+      least = std::min(least, std::abs(own - others.back()));
+    }
+    // Where something is left, neighbours are off as well.
+    const double level = std::max(1.0, median_of(std::move(sizes)) / median_of_normal);
+    return least > from_all_sigma &&
+           std::abs(own - median_of(std::move(others))) > stray_sigma * level;
+  };
+  std::vector<size_t> good;
+  for (size_t row = 0; row < r.rows(); ++row) {
+    bool stays = true;
+    for (size_t c = 0; c < channels; ++c) stays = stays && !strays(row, c);
+    if (stays) good.push_back(row);
   }
   return good;
 }

@@ -12,4 +12,9 @@ namespace photorque {
 std::vector<size_t> rows_without_outliers(const LightRun& run, const Eigen::VectorXd& residuals,
                                           const Thresholds::Noise& limits);
 
+// The same by a model that explains all but them: a reading that is off by five of its errors, and
+// as far from the middle of its neighbours, is drawn once in a million. (One that is multiplied
+// where there is little light is not off by more, and its place says much about where a beam ends.)
+std::vector<size_t> rows_without_strays(const LightRun& run, const Eigen::VectorXd& residuals);
+
 }  // namespace photorque

@@ -3,16 +3,11 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "diagnosis/light/model/bounce.h"
 #include "diagnosis/light/model/illumination.h"
 
 namespace photorque {
 namespace {
-
-// A small piece of a wall, its normal on the side of the receiver.
-struct WallPatch {
-  Vec3 centre_m, normal;
-  double area_m2;
-};
 
 void cut_triangle(const std::array<Vec3, 3>& t, double largest_m2, std::vector<WallPatch>& into,
                   const Vec3& towards) {
@@ -30,7 +25,7 @@ void cut_triangle(const std::array<Vec3, 3>& t, double largest_m2, std::vector<W
   const Vec3 centre = (t[0] + t[1] + t[2]) / 3.0;
   Vec3 normal = area / size;
   if (normal.dot(towards - centre) < 0.0) normal = -normal;
-  into.push_back({centre, normal, size});
+  into.push_back({t, centre, normal, size});
 }
 
 std::vector<WallPatch> patches_of(const LightLab& lab, const LightWall& wall) {
@@ -45,55 +40,69 @@ std::vector<WallPatch> patches_of(const LightLab& lab, const LightWall& wall) {
   return patches;
 }
 
-// π times the share of what a patch throws back diffusely that meets a unit area at a point.
-double exchange(const WallPatch& patch, const Vec3& point, const Vec3& normal) {
+// The share of what leaves a triangle diffusely that meets a unit area at a point, over its area:
+// Lambert's sum over the edges of the part above the point's horizon (M. Cohen, J. Wallace,
+// Radiosity and Realistic Image Synthesis, 1993, eq. 4.13).
+double near_share(const std::array<Vec3, 3>& triangle, const Vec3& point, const Vec3& normal) {
+  std::array<Vec3, 4> corner;
+  size_t corners = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const Vec3 a = triangle[i] - point, b = triangle[(i + 1) % 3] - point;
+    const double up_a = normal.dot(a), up_b = normal.dot(b);
+    if (up_a >= 0.0) corner[corners++] = a;
+    if ((up_a > 0.0 && up_b < 0.0) || (up_a < 0.0 && up_b > 0.0)) {
+      corner[corners++] = a + up_a / (up_a - up_b) * (b - a);
+    }
+  }
+  double sum = 0.0;
+  for (size_t i = 0; i < corners; ++i) {
+    const Vec3 &a = corner[i], &b = corner[(i + 1) % corners], across = a.cross(b);
+    const double size = across.norm();
+    if (size > 0.0) sum += std::atan2(size, a.dot(b)) * normal.dot(across) / size;
+  }
+  return std::abs(sum) / (2.0 * pi);
+}
+
+// The same of a patch: as if all of it were at its middle, where that is far.
+double share_of(const WallPatch& patch, const Vec3& point, const Vec3& normal) {
+  constexpr double far2 = 64.0;  // distance over size, squared: good to some tenths of a per cent
   const Vec3 to = point - patch.centre_m;
   const double r2 = to.squaredNorm();
   const double leaves = patch.normal.dot(to), arrives = -normal.dot(to);
-  if (leaves <= 0.0 || arrives <= 0.0) return 0.0;
-  return leaves * arrives / (r2 * r2) * patch.area_m2;
+  if (leaves <= 0.0) return 0.0;
+  if (r2 < far2 * patch.area_m2) return near_share(patch.corners_m, point, normal);
+  return arrives > 0.0 ? leaves * arrives / (r2 * r2) * patch.area_m2 / pi : 0.0;
 }
 
-// Of every group of places, by patch: the light on it over that which leaves the patch.
-using Shares = std::vector<std::vector<float>>;
-
-Shares shares_of(const LightLab& lab, const LightSites& sites,
-                 const std::vector<WallPatch>& patches) {
-  Shares share(sites.groups.size());
-  std::vector<double> sum(patches.size());
-  for (size_t g = 0; g < sites.groups.size(); ++g) {
-    std::ranges::fill(sum, 0.0);
-    const LightSites::Group& group = sites.groups[g];
-    for (size_t i = group.first_point; i < group.first_point + group.count; ++i) {
-      for (size_t k = 0; k < patches.size(); ++k) {
-        sum[k] +=
-            sites.weights[i] / pi * exchange(patches[k], sites.points_body_m[i], lab.normal_body());
+// Of all lamps at once. Outputs of one attitude stand side by side, and so do their groups.
+std::vector<LampField> diffuse_fields(const LightSites& sites, std::vector<Illumination>& lamps,
+                                      const WallExchange& wall, size_t index) {
+  const auto patches = static_cast<Eigen::Index>(wall.patches.size());
+  Eigen::MatrixXf on_patch(patches, static_cast<Eigen::Index>(lamps.size()));
+  std::vector<LampField> fields(lamps.size(), LampField(sites.outputs.size(), 0.0));
+  for (size_t first = 0, last = 0; first < sites.outputs.size(); first = last) {
+    const LightSites::Output& from = sites.outputs[first];
+    while (last < sites.outputs.size() && sites.outputs[last].attitude == from.attitude &&
+           sites.outputs[last].group == from.group + (last - first)) {
+      ++last;
+    }
+    for (size_t l = 0; l < lamps.size(); ++l) {
+      lamps[l].move_to(from.attitude);
+      for (Eigen::Index k = 0; k < patches; ++k) {
+        const WallPatch& patch = wall.patches[static_cast<size_t>(k)];
+        on_patch(k, static_cast<Eigen::Index>(l)) =
+            static_cast<float>(lamps[l].on(patch.centre_m, patch.normal, index));
       }
     }
-    share[g].assign(sum.begin(), sum.end());
-  }
-  return share;
-}
-
-LampField diffuse_field(const LightSites& sites, Illumination& lamp,
-                        const std::vector<WallPatch>& patches, const Shares& share, size_t index) {
-  LampField field(sites.outputs.size(), 0.0);
-  std::vector<float> on_patch(patches.size());
-  size_t attitude = no_wall;
-  for (size_t o = 0; o < sites.outputs.size(); ++o) {
-    if (sites.outputs[o].attitude != attitude) {
-      attitude = sites.outputs[o].attitude;
-      lamp.move_to(attitude);
-      for (size_t k = 0; k < patches.size(); ++k) {
-        on_patch[k] = static_cast<float>(lamp.on(patches[k].centre_m, patches[k].normal, index));
-      }
+    const Eigen::MatrixXf light = wall.shares.middleRows(static_cast<Eigen::Index>(from.group),
+                                                         static_cast<Eigen::Index>(last - first)) *
+                                  on_patch;
+    for (size_t l = 0; l < lamps.size(); ++l) {
+      const auto of_lamp = light.col(static_cast<Eigen::Index>(l));
+      std::ranges::copy(of_lamp, fields[l].begin() + static_cast<std::ptrdiff_t>(first));
     }
-    const std::vector<float>& to = share[sites.outputs[o].group];
-    double sum = 0.0;
-    for (size_t k = 0; k < patches.size(); ++k) sum += to[k] * on_patch[k];
-    field[o] = sum;
   }
-  return field;
+  return fields;
 }
 
 // A mirror shows a point what the point's own mirror image would see through the wall.
@@ -123,22 +132,37 @@ LampField specular_field(const LightLab& lab, Illumination& lamp, const LightWal
 
 }  // namespace
 
+WallExchange exchange_with(const LightLab& lab, const LightSites& sites, size_t wall) {
+  WallExchange result{patches_of(lab, lab.walls()[wall]), {}};
+  const std::vector<WallPatch>& patches = result.patches;
+  result.shares.resize(static_cast<Eigen::Index>(sites.groups.size()),
+                       static_cast<Eigen::Index>(patches.size()));
+  std::vector<double> sum(patches.size());
+  for (size_t g = 0; g < sites.groups.size(); ++g) {
+    std::ranges::fill(sum, 0.0);
+    const LightSites::Group& group = sites.groups[g];
+    for (size_t i = group.first_point; i < group.first_point + group.count; ++i) {
+      for (size_t k = 0; k < patches.size(); ++k) {
+        sum[k] +=
+            sites.weights[i] * share_of(patches[k], sites.points_body_m[i], lab.normal_body());
+      }
+    }
+    const Eigen::Map<const Eigen::RowVectorXd> row(sum.data(), result.shares.cols());
+    result.shares.row(static_cast<Eigen::Index>(g)) = row.cast<float>();
+  }
+  return result;
+}
+
 std::vector<LampField> wall_fields(const LightLab& lab, const LampSet& lamps,
                                    const LightSites& sites,
                                    const std::vector<LampGeometry>& geometries, size_t wall,
-                                   bool specular) {
-  const LightWall& w = lab.walls()[wall];
-  std::vector<WallPatch> patches;
-  Shares share;
-  if (!specular) {
-    patches = patches_of(lab, w);
-    share = shares_of(lab, sites, patches);
-  }
+                                   const WallExchange* diffuse) {
+  std::vector<Illumination> lit;
+  for (const LampGeometry& geometry : geometries) lit.emplace_back(lab, lamps, sites, geometry);
+  if (diffuse != nullptr) return diffuse_fields(sites, lit, *diffuse, wall);
   std::vector<LampField> fields;
-  for (const LampGeometry& geometry : geometries) {
-    Illumination lamp(lab, lamps, sites, geometry);
-    fields.push_back(specular ? specular_field(lab, lamp, w, wall)
-                              : diffuse_field(sites, lamp, patches, share, wall));
+  for (Illumination& lamp : lit) {
+    fields.push_back(specular_field(lab, lamp, lab.walls()[wall], wall));
   }
   return fields;
 }

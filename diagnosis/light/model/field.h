@@ -49,12 +49,6 @@ using LampField = std::vector<double>;
 LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
                      const LampGeometry& geometry);
 
-// The same of each lamp by way of a wall that throws back all that it gets.
-std::vector<LampField> wall_fields(const LightLab& lab, const LampSet& lamps,
-                                   const LightSites& sites,
-                                   const std::vector<LampGeometry>& geometries, size_t wall,
-                                   bool specular);
-
 // The lamp's pose where it stands and looks, in the lab.
 RigidTransform pose_of(const Beam& beam, const LampGeometry& geometry);
 

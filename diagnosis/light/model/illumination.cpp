@@ -44,8 +44,20 @@ double Illumination::on(const Vec3& point, const Vec3& normal, size_t skipped) c
   const double E = light_.irradiance_W_m2(p, n);
   if (!(E > 0.0)) return 0.0;
   if (!obstacles_->any()) return E;
-  return E *
-         obstacles_->visible(point, at_->body_from_lamp.translation_m, at_->side, at_->up, skipped);
+  const Obstacles::Open open =
+      obstacles_->visible(point, at_->body_from_lamp.translation_m, at_->side, at_->up, skipped);
+  if (open.moment.isZero()) return open.fraction * E;
+  // One side of an aperture gives a point more light than the other: to first order as much as all
+  // of it would if it stood there.
+  constexpr double aside = 0.5;
+  const double step_m = aside * at_->side.norm();
+  double E_open = open.fraction * E;
+  for (int k = 0; k < 2; ++k) {
+    const Vec3 step = step_m * Vec3::Unit(k);
+    const double more = light_.irradiance_W_m2(p - step, n) - light_.irradiance_W_m2(p + step, n);
+    E_open += open.moment[k] * more / (2.0 * aside);
+  }
+  return std::max(0.0, E_open);
 }
 
 }  // namespace photorque

@@ -49,10 +49,14 @@ class LitNetwork {
   struct Maximum {
     double voltage_V = 0.0, current_A = 0.0;
     std::vector<double> voltage_by_photocurrent, current_by_photocurrent;
+    // No maximum, but the corner where one has just vanished, or would come up next: a little
+    // other light makes it one. Without derivatives.
+    bool is_corner = false;
     double power_W() const { return voltage_V * current_A; }
   };
-  // Local maxima of the power, the highest first: all, or the highest alone. Empty in the dark.
-  enum class Which { all, highest };
+  // Local maxima of the power, the highest first: all, the highest alone, or all with such corners
+  // after them. Empty in the dark.
+  enum class Which { all, highest, with_corners };
   std::vector<Maximum> maxima(Which which, bool derivatives) const;
 
   double short_circuit_A() const;

@@ -168,14 +168,33 @@ std::vector<LitNetwork::Maximum> LitNetwork::maxima(Which which, bool derivative
                      [](const Span& a, const Span& b) { return a.bound_W > b.bound_W; });
   }
   double best_W = 0.0;
+  std::vector<Maximum> corners;
+  // `state` is that at x.
+  const auto add_corner = [&](double x) {
+    if (which != Which::with_corners) return;
+    Maximum corner = maximum_at(state, false);
+    // By d ln P/d ln x: some thousandths of the light turn it round.
+    constexpr double nearly_level = 0.1;
+    if (std::abs(power_slope(state)) * x > nearly_level * corner.power_W()) return;
+    corner.is_corner = true;
+    corner.voltage_by_photocurrent.assign(photocurrents_A_.size(), 0.0);
+    corner.current_by_photocurrent.assign(photocurrents_A_.size(), 0.0);
+    corners.push_back(std::move(corner));
+  };
   for (const Span& span : spans) {
     if (which == Which::highest && span.bound_W < best_W) break;
     const double width = span.high - span.low;
     double low = span.low + 1e-9 * width, high = span.high - 1e-9 * width;
     at(high, state);
-    if (power_slope(state) >= 0.0) continue;
+    if (power_slope(state) >= 0.0) {
+      if (span.high < end) add_corner(high);
+      continue;
+    }
     at(low, state);
-    if (power_slope(state) <= 0.0) continue;
+    if (power_slope(state) <= 0.0) {
+      if (span.low > 0.0) add_corner(low);
+      continue;
+    }
     double x = 0.5 * (low + high);
     for (int k = 0; k < 80; ++k) {
       at(x, state);
@@ -198,6 +217,7 @@ std::vector<LitNetwork::Maximum> LitNetwork::maxima(Which which, bool derivative
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const Maximum& a, const Maximum& b) { return a.power_W() > b.power_W(); });
+  found.insert(found.end(), corners.begin(), corners.end());
   return found;
 }
 

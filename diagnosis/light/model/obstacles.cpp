@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "core/constants.h"
 
@@ -44,27 +46,55 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// The signed area that the disc of radius 1 shares with the triangle of its centre and two points.
-double disc_part(const Vec2& a, const Vec2& b) {
-  const auto sector = [](const Vec2& p, const Vec2& q) {
-    return 0.5 * std::atan2(cross(p, q), p.dot(q));
-  };
+// Of a part of the disc of radius 1.
+struct DiscPart {
+  double area = 0.0;
+  Vec2 moment = Vec2::Zero();  // ∫ d dA
+
+  DiscPart& operator+=(const DiscPart& other) {
+    area += other.area;
+    moment += other.moment;
+    return *this;
+  }
+};
+
+// Between two directions from the centre, with the sign of the turn from the first to the second.
+DiscPart sector(const Vec2& p, const Vec2& q) {
+  const Vec2 from = p.normalized(), to = q.normalized();
+  return {0.5 * std::atan2(cross(p, q), p.dot(q)),
+          Vec2(to.y() - from.y(), from.x() - to.x()) / 3.0};
+}
+
+// Of the disc and the triangle of its centre and two points, signed likewise.
+DiscPart disc_part(const Vec2& a, const Vec2& b) {
   const Vec2 d = b - a;
   const double square = d.squaredNorm(), along = a.dot(d);
   const double root2 = along * along - square * (a.squaredNorm() - 1.0);
-  if (!(square > 0.0)) return 0.0;
+  if (!(square > 0.0)) return {};
   if (root2 <= 0.0) return sector(a, b);
   const double root = std::sqrt(root2);
   const double enter = (-along - root) / square, leave = (-along + root) / square;
   if (leave <= 0.0 || enter >= 1.0) return sector(a, b);
   const Vec2 p = a + std::max(enter, 0.0) * d, q = a + std::min(leave, 1.0) * d;
-  return 0.5 * cross(p, q) + (enter > 0.0 ? sector(a, p) : 0.0) +
-         (leave < 1.0 ? sector(q, b) : 0.0);
+  const double area = 0.5 * cross(p, q);
+  DiscPart part{area, area / 3.0 * (p + q)};
+  if (enter > 0.0) part += sector(a, p);
+  if (leave < 1.0) part += sector(q, b);
+  return part;
 }
 
-// The area that the disc of radius 1 shares with the convex hull of some points. The hull by
-// A. Andrew, Information Processing Letters 9, 216 (1979).
-double area_on_disc(std::array<Vec2, 8>& points) {
+// What the disc shares with a polygon, whichever way round it goes.
+DiscPart shared_with(std::span<const Vec2> polygon) {
+  DiscPart sum;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    sum += disc_part(polygon[i], polygon[(i + 1) % polygon.size()]);
+  }
+  return sum.area < 0.0 ? DiscPart{-sum.area, -sum.moment} : sum;
+}
+
+// What the disc shares with the convex hull of some points. The hull by A. Andrew, Information
+// Processing Letters 9, 216 (1979).
+DiscPart shared_with_hull(std::array<Vec2, 8>& points) {
   std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
   });
@@ -79,9 +109,55 @@ double area_on_disc(std::array<Vec2, 8>& points) {
   for (const Vec2& p : points) extend(p, 2);
   const size_t least = count + 1;
   for (size_t i = points.size() - 1; i-- > 0;) extend(points[i], least);
-  double area = 0.0;
-  for (size_t i = 0; i + 1 < count; ++i) area += disc_part(hull[i], hull[i + 1]);
-  return std::clamp(area, 0.0, pi);
+  return shared_with({hull.data(), count - 1});
+}
+
+Obstacles::Open without(const DiscPart& hidden, double opacity) {
+  const double part = opacity / pi;
+  return {std::clamp(1.0 - part * hidden.area, 0.0, 1.0), -part * hidden.moment};
+}
+
+// A point's view onto an aperture, in radii from its middle.
+class View {
+ public:
+  View(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up)
+      : point_(point), away_(lamp - point), side_(side), up_(up), normal_(side.cross(up)) {
+    height_ = normal_.dot(away_);
+  }
+  // Of the way to the aperture's plane.
+  double part(const Vec3& at) const { return normal_.dot(at - point_) / height_; }
+  // Of what is neither behind the point nor beyond the aperture.
+  Vec2 project(const Vec3& at) const {
+    const Vec3 there = (at - point_) / part(at) - away_;
+    return Vec2(there.dot(side_), there.dot(up_)) / side_.squaredNorm();
+  }
+
+ private:
+  Vec3 point_, away_, side_, up_, normal_;
+  double height_;
+};
+
+constexpr double nearest_part = 1e-4;
+
+// What a wall hides of the aperture; nothing where it reaches beyond its plane. What the point has
+// behind it hides nothing.
+std::optional<DiscPart> hidden_by(const LightWall& wall, const View& view) {
+  DiscPart hidden;
+  for (const std::array<Vec3, 3>& t : wall.triangles) {
+    std::array<Vec2, 4> seen;
+    size_t corners = 0;
+    for (size_t i = 0; i < t.size(); ++i) {
+      const Vec3 &a = t[i], &b = t[(i + 1) % t.size()];
+      const double from = view.part(a) - nearest_part, to = view.part(b) - nearest_part;
+      if (from >= 1.0 - nearest_part) return std::nullopt;
+      if (from > 0.0) seen[corners++] = view.project(a);
+      if ((from > 0.0) != (to > 0.0)) {
+        seen[corners++] = view.project(a + from / (from - to) * (b - a));
+      }
+    }
+    hidden += shared_with({seen.data(), corners});
+  }
+  return hidden;
 }
 
 }  // namespace
@@ -128,8 +204,8 @@ Obstacles::Obstacles(const LightLab& lab, const std::vector<ShadowBox>& boxes,
   }
 }
 
-double Obstacles::visible(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up,
-                          size_t skipped) const {
+Obstacles::Open Obstacles::visible(const Vec3& point, const Vec3& lamp, const Vec3& side,
+                                   const Vec3& up, size_t skipped) const {
   const double radius = side.norm();
   near_walls_.clear();
   near_boxes_.clear();
@@ -145,29 +221,29 @@ double Obstacles::visible(const Vec3& point, const Vec3& lamp, const Vec3& side,
       near_boxes_.push_back(b);
     }
   }
-  if (near_walls_.empty() && near_boxes_.empty()) return 1.0;
-  if (!near_walls_.empty() || near_boxes_.size() > 1 || !(radius > 0.0)) {
+  if (near_walls_.empty() && near_boxes_.empty()) return {};
+  if (near_walls_.size() + near_boxes_.size() > 1 || !(radius > 0.0)) {
     return sampled(point, lamp, side, up);
   }
-  // The box as it is seen from the point, projected onto the aperture.
+  const View view(point, lamp, side, up);
+  if (!near_walls_.empty()) {
+    const std::optional<DiscPart> hidden = hidden_by(lab_.walls()[near_walls_.front()], view);
+    return hidden ? without(*hidden, 1.0) : sampled(point, lamp, side, up);
+  }
   const BodyBox& box = in_body_[near_boxes_.front()];
-  const Vec3 normal = side.cross(up), away = lamp - point;
-  const double height = normal.dot(away), per_radius = 1.0 / (radius * radius);
   std::array<Vec2, 8> seen;
   for (size_t k = 0; k < seen.size(); ++k) {
-    const Vec3 to = box.corners[k] - point;
-    const double part = normal.dot(to) / height;
-    if (!(part > 1e-6 && part < 1.0)) return sampled(point, lamp, side, up);
-    const Vec3 at = to / part - away;
-    seen[k] = per_radius * Vec2(at.dot(side), at.dot(up));
+    const double part = view.part(box.corners[k]);
+    if (!(part > nearest_part && part < 1.0)) return sampled(point, lamp, side, up);
+    seen[k] = view.project(box.corners[k]);
   }
-  return 1.0 - boxes_[near_boxes_.front()].opacity * area_on_disc(seen) / pi;
+  return without(shared_with_hull(seen), boxes_[near_boxes_.front()].opacity);
 }
 
-double Obstacles::sampled(const Vec3& point, const Vec3& lamp, const Vec3& side,
-                          const Vec3& up) const {
+Obstacles::Open Obstacles::sampled(const Vec3& point, const Vec3& lamp, const Vec3& side,
+                                   const Vec3& up) const {
   static const std::vector<Vec2> disc = even_disc(100);
-  double sum = 0.0;
+  Open open{0.0, Vec2::Zero()};
   const Vec3 point_lab = lab_from_body_ * point;
   for (const Vec2& d : disc) {
     const Vec3 to = lamp + d.x() * side + d.y() * up;
@@ -185,9 +261,10 @@ double Obstacles::sampled(const Vec3& point, const Vec3& lamp, const Vec3& side,
           box.on_body ? crosses(box, point, to) : crosses(box, point_lab, lab_from_body_ * to);
       if (hit) passes *= 1.0 - box.opacity;
     }
-    sum += passes;
+    open.fraction += passes / static_cast<double>(disc.size());
+    open.moment += passes / static_cast<double>(disc.size()) * d;
   }
-  return sum / static_cast<double>(disc.size());
+  return open;
 }
 
 }  // namespace photorque

@@ -20,11 +20,18 @@ class Obstacles {
 
   bool any() const { return !boxes_.empty() || !lab_.walls().empty(); }
 
-  // The fraction of a lamp's aperture that is open to a point. Body frame; `side` and `up` span the
-  // disc and have its radius. `skipped`: a wall that does not count, none where it is past the
-  // last. Exact for a box alone, and smooth as it moves; else from 100 points of the aperture.
-  double visible(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up,
-                 size_t skipped) const;
+  // What of a lamp's aperture is open to a point: its fraction, and the mean over the whole
+  // aperture of the distance from its middle, in radii along `side` and `up`, where it is open, 0
+  // elsewhere.
+  struct Open {
+    double fraction = 1.0;
+    Vec2 moment = Vec2::Zero();
+  };
+  // Body frame; `side` and `up` span the disc and have its radius. `skipped`: a wall that does not
+  // count, none where it is past the last. Exact for a wall or a box alone, and smooth as it moves;
+  // else from 100 points of the aperture.
+  Open visible(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up,
+               size_t skipped) const;
 
  private:
   struct BodyBox {
@@ -32,7 +39,7 @@ class Obstacles {
     Vec3 centre;
     double radius;
   };
-  double sampled(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up) const;
+  Open sampled(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up) const;
 
   const LightLab& lab_;
   const std::vector<ShadowBox>& boxes_;

@@ -46,6 +46,7 @@ LightRun::LightRun(const LightLab& lab, LightRecording recording, const PartOf* 
   } else {
     place_cells();
   }
+  face_walls();
   find_noise();
   find_circumstances(known);
   number_samples();
@@ -102,6 +103,12 @@ void LightRun::place_cells() {
     auto& known = cells_at_[r.temperature_K[i]];
     if (known) continue;
     known = std::make_shared<const LitCells>(lab_->lit(r.temperature_K[i], 0.0, true));
+  }
+}
+
+void LightRun::face_walls() {
+  for (size_t w = 0; w < lab_->walls().size(); ++w) {
+    exchange_.push_back(std::make_shared<const WallExchange>(exchange_with(*lab_, sites_, w)));
   }
 }
 

@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 
+#include "diagnosis/light/model/bounce.h"
 #include "diagnosis/light/model/field.h"
 #include "diagnosis/light/model/network.h"
 #include "diagnosis/light/recordings/recording.h"
@@ -114,6 +115,7 @@ class LightRun {
   bool holds_maximum() const { return is_run() && !lab_->noise().tracker_step_V; }
   void place_scan();
   void place_cells();
+  void face_walls();
   void find_noise();
   // Of some rows of a scan whose light is known already.
   struct PartOf {
@@ -141,6 +143,7 @@ class LightRun {
   const LightLab* lab_;
   LightRecording recording_;
   LightSites sites_;
+  std::vector<std::shared_ptr<const WallExchange>> exchange_;  // with each wall
   std::vector<Between> between_;  // of runs, per row; empty: light is evaluated where it counts
   std::map<double, std::shared_ptr<const LitCells>> cells_at_;  // of sweeps, by temperature
   std::vector<size_t> first_output_;      // of each row; rows of one curve share theirs

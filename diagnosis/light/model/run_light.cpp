@@ -91,7 +91,8 @@ LightFields LightRun::fields(const LightState& state, const LightFields* near, W
       const auto key = std::pair(share.wall, specular);
       if (part == 0.0 || result.walls.contains(key)) continue;
       std::vector<LampField> by_lamp =
-          wall_fields(*lab_, lamp_set(), sites_, geometries, share.wall, specular);
+          wall_fields(*lab_, lamp_set(), sites_, geometries, share.wall,
+                      specular ? nullptr : exchange_[share.wall].get());
       for (size_t l = 0; l < geometries.size(); ++l) {
         result.walls[key].push_back(
             {geometries[l], std::make_shared<const LampField>(expanded(std::move(by_lamp[l])))});

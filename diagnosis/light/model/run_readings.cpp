@@ -9,13 +9,14 @@ namespace photorque {
 namespace {
 
 // Of the maxima, highest first, the one at which the tracker stands: the highest, or, where it is
-// trapped, of all others the one from which the reading is least far. `chi2` is that of a maximum.
+// trapped, the one from which the reading is least far. (One that the light has just taken away or
+// brought up may stand in the model's light and not in the true one, or the other way round: a
+// corner counts, and so does the highest.) `chi2` is that of a maximum.
 template <class Chi2>
 size_t held_maximum(const std::vector<LitNetwork::Maximum>& maxima, bool is_trapped,
                     const Chi2& chi2) {
-  if (!is_trapped || maxima.size() < 2) return 0;
-  size_t nearest = 1;
-  for (size_t i = 2; i < maxima.size(); ++i) {
+  size_t nearest = 0;
+  for (size_t i = 1; is_trapped && i < maxima.size(); ++i) {
     if (chi2(maxima[i]) < chi2(maxima[nearest])) nearest = i;
   }
   return nearest;
@@ -118,7 +119,7 @@ Eigen::VectorXd LightRun::residuals(const LightState& state, const std::vector<d
     }
     const bool trapped = is_trapped(state, row);
     const std::vector<LitNetwork::Maximum> maxima = network_of_row->maxima(
-        trapped ? LitNetwork::Which::all : LitNetwork::Which::highest, slopes != nullptr);
+        trapped ? LitNetwork::Which::with_corners : LitNetwork::Which::highest, slopes != nullptr);
     const bool dark = maxima.empty();
     const LitNetwork::Maximum none;
     const LitNetwork::Maximum& m = dark ? none : maxima[held_maximum(maxima, trapped, off(row))];
@@ -160,11 +161,14 @@ std::vector<double> LightRun::gain_if_trapped(const LightState& state,
                                               const std::vector<double>& signals) const {
   std::vector<double> gain(rows(), 0.0);
   if (!holds_maximum()) return gain;
+  // Of a reading at the highest: few of those may lie between the others.
+  constexpr double loss = 10.0;
   for (size_t row = 0; row < rows(); ++row) {
-    const auto maxima = network(state, signals, row).maxima(LitNetwork::Which::all, false);
+    const auto maxima = network(state, signals, row).maxima(LitNetwork::Which::with_corners, false);
     if (maxima.size() < 2) continue;
     const auto chi2 = off(row);
-    gain[row] = chi2(maxima[0]) - chi2(maxima[held_maximum(maxima, true, chi2)]);
+    const size_t held = held_maximum(maxima, true, chi2);
+    gain[row] = held > 0 ? chi2(maxima[0]) - chi2(maxima[held]) : -loss;
   }
   return gain;
 }
@@ -188,7 +192,7 @@ std::vector<LightRun::Expected> LightRun::expected(const LightState& state) cons
       e.current_A = p.current_A + current_law(state, row, e.voltage_V);
       continue;
     }
-    const auto maxima = at.maxima(LitNetwork::Which::all, false);
+    const auto maxima = at.maxima(LitNetwork::Which::with_corners, false);
     if (maxima.empty()) continue;
     const auto& m = maxima[held_maximum(maxima, is_trapped(state, row), off(row))];
     e.voltage_V = m.voltage_V;
