@@ -120,8 +120,9 @@ std::vector<size_t> rows_without_strays(const LightRun& run, const Eigen::Vector
       sizes.push_back(std::abs(others.back()));
       least = std::min(least, std::abs(own - others.back()));
     }
-    // Where something is left, neighbours are off as well.
-    const double level = std::max(1.0, median_of(std::move(sizes)) / median_of_normal);
+    // Where something is left, neighbours are off as well; by chance the middle one of eight is
+    // seldom off by half as much again as usual.
+    const double level = std::max(1.0, median_of(std::move(sizes)) / (1.5 * median_of_normal));
     return least > from_all_sigma &&
            std::abs(own - median_of(std::move(others))) > stray_sigma * level;
   };

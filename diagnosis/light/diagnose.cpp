@@ -97,12 +97,17 @@ LightData read_light_data(const LightLab& lab, const LightBelief& nominal,
   return data;
 }
 
-// Leaves out the readings that are wild by the best explanation; whether there were any.
-bool drop_strays(const LightTrial& about, const LightCandidates& all, LightData& data) {
+// Leaves out the readings that are wild by the best explanation; whether there were any. Where
+// there is none yet, a small shadow looks like a stray.
+bool drop_wild(const LightTrial& about, const LightCandidates& all, LightData& data) {
   int64_t dropped = 0;
   for (std::vector<FittedRun>* runs : {&data.train, &data.held}) {
     for (FittedRun& run : *runs) {
-      const std::vector<size_t> good = rows_without_strays(*run.run, residuals_of(about, all, run));
+      const Eigen::VectorXd residuals = residuals_of(about, all, run);
+      const std::vector<size_t> good =
+          about.candidates.empty() || runs == &data.held
+              ? rows_without_outliers(*run.run, residuals, all.limits.noise)
+              : rows_without_strays(*run.run, residuals);
       if (good.size() == run.run->rows() || good.empty()) continue;
       dropped += static_cast<int64_t>(run.run->rows() - good.size());
       run = part_of(run, good, all.nominal);
@@ -124,7 +129,7 @@ LightAnswer explain_light(const LightLab& lab, const LightBelief& nominal, Light
   // Where something is missing, a wild reading looks like a part of it. It stands out once the best
   // explanation is known, and the search goes on from there.
   const LightTrial best = answer.trials[inference::by_evidence(answer.trials).front()];
-  if (drop_strays(best, answer.all, data)) {
+  if (drop_wild(best, answer.all, data)) {
     const LightTrial base = nominal_light_trial(answer.all, data.train);
     const LightTrial from = domain.refit(best, data.train, {}, inference::patient(domain.limits()));
     answer.trials =

@@ -71,6 +71,35 @@ TEST_P(LightNetwork, MaximaAreThoseOfTheArrayCurve) {
   EXPECT_NEAR(highest.front().power_W(), expected.front().power_W(), 1e-9);
 }
 
+// As a shaded cell gets more light, a maximum goes away: in a corner of the curve, which stays
+// where the maximum was last, and is told as long as a little less light brings it back.
+TEST_P(LightNetwork, MaximumThatVanishesLeavesACorner) {
+  ArrayUnderTest array(GetParam());
+  std::ranges::fill(array.photocurrents_A, 1.0);
+  const auto at = [&](double light) {
+    array.photocurrents_A[4] = light;
+    return array.network().maxima(LitNetwork::Which::with_corners, false);
+  };
+  const auto count = [](const std::vector<LitNetwork::Maximum>& found) {
+    return std::ranges::count_if(found, [](const auto& m) { return !m.is_corner; });
+  };
+  double with = 0.5, without = 1.0;
+  ASSERT_EQ(count(at(with)), 2);
+  ASSERT_EQ(count(at(without)), 1);
+  while (without - with > 1e-7) {
+    const double middle = 0.5 * (with + without);
+    (count(at(middle)) == 2 ? with : without) = middle;
+  }
+  const auto last = at(with)[1];
+  const auto after = at(without);
+  ASSERT_EQ(after.size(), 2u);
+  ASSERT_TRUE(after[1].is_corner);
+  EXPECT_NEAR(after[1].voltage_V, last.voltage_V, 2e-3 * last.voltage_V);
+  EXPECT_NEAR(after[1].current_A, last.current_A, 2e-3 * last.current_A);
+  EXPECT_EQ(at(without + 0.001).size(), 2u);
+  EXPECT_EQ(at(1.0).size(), 1u);
+}
+
 TEST_P(LightNetwork, MaximumMovesAsItsDerivativesSay) {
   ArrayUnderTest array(GetParam());
   array.series_ohm = 0.15;

@@ -3,14 +3,37 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.h"
+#include "core/numerics/root.h"
+#include "photovoltaics/cell/front.h"
+
 namespace photorque {
+namespace {
+
+// Of light at 45°, by Fresnel, beyond what is lost at normal incidence.
+double slant_loss(double index) {
+  CellFront front;
+  front.index = index;
+  constexpr double any_wavelength_m = 1e-6;
+  return 1.0 - front.modifier(std::cos(0.25 * pi), any_wavelength_m);
+}
+
+constexpr double most_slanting = 2.0;
+
+double index_of(double x) {
+  const double loss = std::clamp(x, 0.0, 1.0) * slant_loss(most_slanting);
+  const auto takes_less = [&](double index) { return slant_loss(index) < loss; };
+  return bisect(1.0, most_slanting, takes_less, {50}).high;
+}
+
+}  // namespace
 
 double value_of(const EffectParameter& parameter, double x) {
   switch (parameter.form) {
     case EffectParameter::Form::reciprocal:
       return x != 0.0 ? 1.0 / x : std::numeric_limits<double>::infinity();
-    case EffectParameter::Form::root:
-      return parameter.neutral + std::sqrt(std::max(0.0, x));
+    case EffectParameter::Form::slant:
+      return index_of(x);
     case EffectParameter::Form::tangent:
       return std::atan(x);
     case EffectParameter::Form::offset:
@@ -23,8 +46,12 @@ double slope_of(const EffectParameter& parameter, double x) {
   switch (parameter.form) {
     case EffectParameter::Form::reciprocal:
       return -1.0 / (x * x);
-    case EffectParameter::Form::root:
-      return 0.5 / std::sqrt(std::max(1e-300, x));
+    case EffectParameter::Form::slant: {
+      // Infinite at both ends: over a step.
+      constexpr double step = 0.02;
+      const double low = std::clamp(x - step, 0.0, 1.0 - 2.0 * step), high = low + 2.0 * step;
+      return (index_of(high) - index_of(low)) / (high - low);
+    }
     case EffectParameter::Form::tangent:
       return 1.0 / (1.0 + x * x);
     case EffectParameter::Form::offset:
@@ -38,8 +65,8 @@ double x_of(const EffectParameter& parameter, double value) {
   switch (parameter.form) {
     case EffectParameter::Form::reciprocal:
       return std::isinf(value) ? 0.0 : 1.0 / value;
-    case EffectParameter::Form::root:
-      return off * off;
+    case EffectParameter::Form::slant:
+      return slant_loss(value) / slant_loss(most_slanting);
     case EffectParameter::Form::tangent:
       return std::tan(value);
     case EffectParameter::Form::offset:

@@ -20,7 +20,8 @@ struct EffectParameter {
   enum class Form {
     offset,      // neutral + x
     reciprocal,  // 1/x
-    root,        // neutral + √x
+    slant,       // the refractive index of a glass that takes x of what one of index 2 takes of
+                 // light at 45°; beyond 2 glass takes less again
     tangent,     // atan x, of an angle
   };
   std::string key;  // as diagnosis.json and experiments name it, with its unit
