@@ -51,89 +51,164 @@ CarvingData carving_data(const LightTrial& parent, const LightCandidates& all,
 }
 
 struct CarvedBox {
-  double gain = 0.0;
+  double gain = 0.0, opacity = 1.0;
   Vec3 centre = Vec3::Zero();
   Vec2 size = Vec2::Zero();
 };
 
-// The largest patch of elements that may be opaque in the plane z, and what it would explain.
-CarvedBox carve(const CarvingData& data, double z) {
-  constexpr int cells = 48;
+// The rays where they cross a plane z, on a grid of elements.
+class CarvedPlane {
+ public:
+  CarvedPlane(const CarvingData& data, double z) : data_(data), z_(z) {
+    for (const CarvingRay& ray : data.rays) {
+      const double t = (z - ray.to.z()) / (ray.from.z() - ray.to.z());
+      if (!(t > 0.0 && t < 1.0)) continue;
+      const Vec3 at = ray.to + t * (ray.from - ray.to);
+      hits_.push_back({&ray, {at.x(), at.y()}, 0, 0});
+      low_ = low_.cwiseMin(hits_.back().at);
+      high_ = high_.cwiseMax(hits_.back().at);
+    }
+    if (is_empty()) return;
+    step_ = (high_ - low_) / cells;
+    for (Hit& hit : hits_) {
+      const Vec2 k = (hit.at - low_).cwiseQuotient(step_);
+      hit.x = std::clamp(static_cast<int>(k.x()), 0, cells - 1);
+      hit.y = std::clamp(static_cast<int>(k.y()), 0, cells - 1);
+    }
+  }
+
+  bool is_empty() const { return hits_.empty() || !((high_ - low_).minCoeff() > 0.0); }
+
+  // The patch of elements that may be opaque which would explain most: those whose light is missing
+  // where it would arrive, in means that tolerate a few places.
+  CarvedBox largest_patch() const {
+    std::vector<double> sum(cells * cells, 0.0), weight(cells * cells, 0.0);
+    for (const Hit& h : hits_) {
+      const double share = std::clamp(data_.missing[h.ray->place] / h.ray->light, -0.5, 1.0);
+      sum[element(h)] += h.ray->light * share;
+      weight[element(h)] += h.ray->light;
+    }
+    constexpr double opaque = 0.6;
+    std::vector<bool> is_open(cells * cells, true);
+    for (size_t e = 0; e < is_open.size(); ++e) {
+      is_open[e] = !(weight[e] > 0.0 && sum[e] > opaque * weight[e]);
+    }
+    CarvedBox best;
+    for (size_t seed = 0; seed < is_open.size(); ++seed) {
+      if (is_open[seed]) continue;
+      const CarvedBox box = explained(patch_about(seed, is_open));
+      if (box.gain > best.gain) best = box;
+    }
+    return best;
+  }
+
+  // The element that would explain most, if it let some of the light through, which is not asked to
+  // be missing altogether: a box smaller than the apertures has no full shadow. Grown as long as
+  // that explains more.
+  CarvedBox best_element() const {
+    std::vector<double> with(cells * cells, 0.0), square(cells * cells, 0.0);
+    for (const Hit& h : hits_) {
+      with[element(h)] += h.ray->light * data_.missing[h.ray->place];
+      square[element(h)] += h.ray->light * h.ray->light;
+    }
+    size_t best = 0;
+    double gain = 0.0;
+    for (size_t e = 0; e < with.size(); ++e) {
+      if (with[e] <= 0.0 || with[e] * with[e] <= gain * square[e]) continue;
+      gain = with[e] * with[e] / square[e];
+      best = e;
+    }
+    const int x = static_cast<int>(best) % cells, y = static_cast<int>(best) / cells;
+    return explained({x, x, y, y});
+  }
+
+  CarvedBox grown(CarvedBox box) const {
+    const Vec2 half = 0.5 * box.size, middle(box.centre.x(), box.centre.y());
+    const Vec2 from = (middle - half - low_).cwiseQuotient(step_),
+               to = (middle + half - low_).cwiseQuotient(step_);
+    Rectangle r{static_cast<int>(std::lround(from.x())), static_cast<int>(std::lround(to.x())) - 1,
+                static_cast<int>(std::lround(from.y())), static_cast<int>(std::lround(to.y())) - 1};
+    for (bool grows = true; grows;) {
+      grows = false;
+      const Rectangle wider[] = {{r.x0 - 1, r.x1, r.y0, r.y1},
+                                 {r.x0, r.x1 + 1, r.y0, r.y1},
+                                 {r.x0, r.x1, r.y0 - 1, r.y1},
+                                 {r.x0, r.x1, r.y0, r.y1 + 1}};
+      for (const Rectangle& w : wider) {
+        if (w.x0 < 0 || w.y0 < 0 || w.x1 >= cells || w.y1 >= cells) continue;
+        const CarvedBox more = explained(w);
+        if (more.gain <= box.gain) continue;
+        box = more;
+        r = w;
+        grows = true;
+      }
+    }
+    return box;
+  }
+
+ private:
+  static constexpr int cells = 48;
   struct Hit {
     const CarvingRay* ray;
     Vec2 at;
+    int x, y;
   };
-  std::vector<Hit> hits;
-  Vec2 low(1e300, 1e300), high(-1e300, -1e300);
-  for (const CarvingRay& ray : data.rays) {
-    const double t = (z - ray.to.z()) / (ray.from.z() - ray.to.z());
-    if (!(t > 0.0 && t < 1.0)) continue;
-    const Vec3 at = ray.to + t * (ray.from - ray.to);
-    hits.push_back({&ray, {at.x(), at.y()}});
-    low = low.cwiseMin(hits.back().at);
-    high = high.cwiseMax(hits.back().at);
-  }
-  CarvedBox best;
-  if (hits.empty() || !((high - low).minCoeff() > 0.0)) return best;
-  const Vec2 step = (high - low) / cells;
-  const auto element = [&](const Vec2& at) {
-    const Vec2 k = (at - low).cwiseQuotient(step);
-    return static_cast<size_t>(std::clamp(static_cast<int>(k.y()), 0, cells - 1) * cells +
-                               std::clamp(static_cast<int>(k.x()), 0, cells - 1));
+  struct Rectangle {
+    int x0, x1, y0, y1;  // elements, both ends included
   };
-  // How much of the light through an element is missing where it would arrive, in means that
-  // tolerate a few places.
-  std::vector<double> sum(cells * cells, 0.0), weight(cells * cells, 0.0);
-  for (const Hit& h : hits) {
-    const size_t e = element(h.at);
-    const double share = std::clamp(data.missing[h.ray->place] / h.ray->light, -0.5, 1.0);
-    sum[e] += h.ray->light * share;
-    weight[e] += h.ray->light;
-  }
-  constexpr double opaque = 0.6;
-  std::vector<int> patch(cells * cells, 0);
-  for (size_t e = 0; e < patch.size(); ++e) {
-    patch[e] = weight[e] > 0.0 && sum[e] > opaque * weight[e] ? -1 : 0;
-  }
-  // Connected patches, each tried as the rectangle about it.
-  int patches = 0;
-  for (size_t seed = 0; seed < patch.size(); ++seed) {
-    if (patch[seed] != -1) continue;
-    ++patches;
-    int x0 = cells, x1 = -1, y0 = cells, y1 = -1;
-    std::vector<size_t> open = {seed};
-    patch[seed] = patches;
-    while (!open.empty()) {
-      const auto e = static_cast<int>(open.back());
-      open.pop_back();
+  static size_t element(const Hit& h) { return static_cast<size_t>(h.y * cells + h.x); }
+
+  // The rectangle about all that hangs together with an element; it becomes open.
+  static Rectangle patch_about(size_t seed, std::vector<bool>& is_open) {
+    Rectangle r{cells, -1, cells, -1};
+    std::vector<size_t> todo = {seed};
+    is_open[seed] = true;
+    while (!todo.empty()) {
+      const auto e = static_cast<int>(todo.back());
+      todo.pop_back();
       const int x = e % cells, y = e / cells;
-      x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+      r = {std::min(r.x0, x), std::max(r.x1, x), std::min(r.y0, y), std::max(r.y1, y)};
       const int near[4][2] = {{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}};
       for (const auto& [nx, ny] : near) {
         if (nx < 0 || ny < 0 || nx >= cells || ny >= cells) continue;
         const auto k = static_cast<size_t>(ny * cells + nx);
-        if (patch[k] != -1) continue;
-        patch[k] = patches;
-        open.push_back(k);
+        if (is_open[k]) continue;
+        is_open[k] = true;
+        todo.push_back(k);
       }
     }
-    const Vec2 from = low + Vec2(x0 * step.x(), y0 * step.y()),
-               to = low + Vec2((x1 + 1) * step.x(), (y1 + 1) * step.y());
-    std::vector<double> hidden(data.missing.size(), 0.0);
-    for (const Hit& h : hits) {
-      const bool in = (h.at - from).minCoeff() >= 0.0 && (to - h.at).minCoeff() >= 0.0;
-      if (in) hidden[h.ray->place] += h.ray->light;
-    }
-    double gain = 0.0;
-    for (size_t i = 0; i < hidden.size(); ++i) {
-      gain += hidden[i] * (2.0 * data.missing[i] - hidden[i]);
-    }
-    if (gain > best.gain) {
-      best = {gain, Vec3(0.5 * (from.x() + to.x()), 0.5 * (from.y() + to.y()), z), to - from};
-    }
+    return r;
   }
-  return best;
-}
+
+  // By how much χ² falls with a rectangle of the opacity that explains most.
+  CarvedBox explained(const Rectangle& r) const {
+    std::vector<double> hidden(data_.missing.size(), 0.0);
+    for (const Hit& h : hits_) {
+      if (h.x >= r.x0 && h.x <= r.x1 && h.y >= r.y0 && h.y <= r.y1) {
+        hidden[h.ray->place] += h.ray->light;
+      }
+    }
+    double with = 0.0, square = 0.0;
+    for (size_t i = 0; i < hidden.size(); ++i) {
+      with += hidden[i] * data_.missing[i];
+      square += hidden[i] * hidden[i];
+    }
+    CarvedBox box;
+    if (!(with > 0.0)) return box;
+    box.opacity = std::min(1.0, with / square);
+    box.gain = box.opacity * (2.0 * with - box.opacity * square);
+    const Vec2 from = low_ + Vec2(r.x0 * step_.x(), r.y0 * step_.y()),
+               to = low_ + Vec2((r.x1 + 1) * step_.x(), (r.y1 + 1) * step_.y());
+    box.centre = Vec3(0.5 * (from.x() + to.x()), 0.5 * (from.y() + to.y()), z_);
+    box.size = to - from;
+    return box;
+  }
+
+  const CarvingData& data_;
+  double z_;
+  std::vector<Hit> hits_;
+  Vec2 low_ = Vec2::Constant(1e300), high_ = Vec2::Constant(-1e300), step_ = Vec2::Zero();
+};
 
 }  // namespace
 
@@ -146,20 +221,39 @@ std::vector<LightStart> shadow_starts(const LightTrial& parent, const LightCandi
     highest = std::max(highest, ray.to.z());
     lowest = std::min(lowest, ray.from.z());
   }
-  std::vector<CarvedBox> found;
-  constexpr int planes = 24;
+  // Planes near enough to each other that the shadows of lamps a fifth of a radian apart fall
+  // together to some millimetres.
+  constexpr int planes = 60;
+  const double spacing = 0.9 * (lowest - highest) / planes;
+  const auto by_gain = [](const CarvedBox& a, const CarvedBox& b) { return a.gain > b.gain; };
+  const auto height_of = [&](int k) { return highest + (k + 0.5) * spacing; };
+  std::vector<CarvedBox> found, elements;
   for (int k = 0; k < planes; ++k) {
-    const double part = (k + 0.5) / planes;
-    const CarvedBox box = carve(data, highest + 0.9 * part * (lowest - highest));
-    if (box.gain > all.limits.scoring.min_scan_gain) found.push_back(box);
+    const CarvedPlane plane(data, height_of(k));
+    if (plane.is_empty()) continue;
+    found.push_back(plane.largest_patch());
+    elements.push_back(plane.best_element());
   }
-  std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.gain > b.gain; });
-  constexpr size_t most = 3;
-  if (found.size() > most) found.resize(most);
-  std::vector<LightStart> starts;
+  constexpr size_t grown = 6, most = 4;
+  std::ranges::stable_sort(elements, by_gain);
+  elements.resize(std::min(grown, elements.size()));
+  for (const CarvedBox& box : elements) {
+    if (box.gain > 0.0) found.push_back(CarvedPlane(data, box.centre.z()).grown(box));
+  }
+  std::ranges::stable_sort(found, by_gain);
+  std::vector<CarvedBox> apart;
   for (const CarvedBox& box : found) {
-    starts.push_back(
-        {{1.0, box.centre.x(), box.centre.y(), box.centre.z(), box.size.x(), box.size.y()}});
+    const bool is_known = std::ranges::any_of(apart, [&](const CarvedBox& other) {
+      return std::abs(box.centre.z() - other.centre.z()) < 1.5 * std::abs(spacing) &&
+             (box.centre - other.centre).head<2>().norm() < 0.5 * other.size.norm();
+    });
+    if (is_known || box.gain < all.limits.scoring.min_scan_gain || apart.size() == most) continue;
+    apart.push_back(box);
+  }
+  std::vector<LightStart> starts;
+  for (const CarvedBox& box : apart) {
+    starts.push_back({{box.opacity, box.centre.x(), box.centre.y(), box.centre.z(), box.size.x(),
+                       box.size.y()}});
   }
   return starts;
 }
