@@ -91,7 +91,7 @@ class LitNetwork {
     double voltage_V = 0.0, current_A = 0.0, slope_S = 0.0, curvature = 0.0;  // I, −I′, I″ by V
     std::vector<StringPoint> strings;
   };
-  // `x`: the current of the only string, else the voltage of the network.
+  // `x`: the current of the only string, unless a diode blocks it; else the voltage of the network.
   void at(double x, State& state) const;
   double end_x() const;
   std::vector<double> breakpoints(double end) const;
@@ -99,7 +99,8 @@ class LitNetwork {
   double power_slope(const State& state) const;
   std::vector<double> current_derivatives(const State& state) const;
   Maximum maximum_at(const State& state, bool derivatives) const;
-  bool by_current() const { return strings_.size() == 1; }
+  // Beyond its open circuit a string behind a blocking diode has no current of its own.
+  bool by_current() const { return strings_.size() == 1 && !strings_.front().is_blocking; }
 
   std::vector<String> strings_;
   std::shared_ptr<const LitCells> cells_;
