@@ -28,6 +28,7 @@ struct FittedParameter {
   std::string key;                 // "dipole_A_m2"
   std::vector<double> value;       // one number, or an array in the order of the file
   std::vector<double> sigma = {};  // one standard error of each; 0: was not fitted
+  double neutral = 0.0;            // the value with which nothing acts
 };
 
 // An effect of the catalogue that acts in addition to what the experiment states.

@@ -133,7 +133,7 @@ FoundEffect found_light_effect(const LightTrial& trial, const LightCandidates& a
     }
     const double to_SI = unit_of_key(p.key).to_SI, x = trial.x[which][k];
     if (effect.parameters.empty() || effect.parameters.back().key != p.key) {
-      effect.parameters.push_back({p.key, {}, {}});
+      effect.parameters.push_back({p.key, {}, {}, p.neutral});
     }
     effect.parameters.back().value.push_back(value_of(p, x) / to_SI);
     if (c.numbers[k].is_fitted) {

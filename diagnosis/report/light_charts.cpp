@@ -154,7 +154,7 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
   const LightSeries& light = *recording.light;
   Plot plot;
   plot.name = "sweep_" + std::to_string(sweep) + "_of_" + recording.recording;
-  plot.title = recording.recording + ", curve " + std::to_string(sweep) +
+  plot.title = "Curve " + std::to_string(sweep) + " of " + recording.recording +
                (recording.is_held_out ? ", never fitted" : "");
   plot.x_label = "Voltage [V]";
   plot.y_label = "Current [A]";

@@ -94,7 +94,7 @@ std::string parameter_rows(const std::vector<FittedParameter>& parameters) {
                                                       : " " + std::to_string(i + 1);
       const double sigma = i < p.sigma.size() ? p.sigma[i] : 0.0;
       const std::string significance =
-          sigma > 0.0 ? html_number(std::abs(p.value[i]) / sigma, 2) + " σ" : "–";
+          sigma > 0.0 ? html_number(std::abs(p.value[i] - p.neutral) / sigma, 2) + " σ" : "–";
       rows += row({spoken_key(p.key) + index, html_estimate(p.value[i], sigma), spoken_unit(p.key),
                    significance});
     }
@@ -104,10 +104,10 @@ std::string parameter_rows(const std::vector<FittedParameter>& parameters) {
 
 std::string parameter_table(const std::vector<FittedParameter>& parameters) {
   if (parameters.empty()) return "";
-  return tag(
-      "table",
-      row({"Parameter", "Value ± 1 σ", "Unit", "From zero"}, "th") + parameter_rows(parameters),
-      "numbers");
+  return tag("table",
+             row({"Parameter", "Value ± 1 σ", "Unit", "From no effect"}, "th") +
+                 parameter_rows(parameters),
+             "numbers");
 }
 
 std::string effect_card(const FoundEffect& effect) {
