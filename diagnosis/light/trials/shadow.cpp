@@ -222,8 +222,9 @@ std::vector<LightStart> shadow_starts(const LightTrial& parent, const LightCandi
     lowest = std::min(lowest, ray.from.z());
   }
   // Planes near enough to each other that the shadows of lamps a fifth of a radian apart fall
-  // together to some millimetres.
-  constexpr int planes = 60;
+  // together to some millimetres; of many rays some planes have to do.
+  constexpr size_t many_rays = 200'000;
+  const int planes = data.rays.size() < many_rays ? 60 : 24;
   const double spacing = 0.9 * (lowest - highest) / planes;
   const auto by_gain = [](const CarvedBox& a, const CarvedBox& b) { return a.gain > b.gain; };
   const auto height_of = [&](int k) { return highest + (k + 0.5) * spacing; };
