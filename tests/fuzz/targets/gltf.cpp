@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     return std::string(4096, '\0');
   };
   GltfOptions options;
-  options.largest_bytes = 1 << 26;
+  options.largest_bytes = 1 << 24;
   options.picture = [](const std::string& picture) -> BaseColours {
     if (picture.size() < 4) throw InputError({"picture"}, "", "nothing", "a picture");
     return {1, 1, {0.2F, 0.5F, 0.8F}};
