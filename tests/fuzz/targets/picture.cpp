@@ -15,7 +15,7 @@ uint64_t big_endian(const std::string& bytes, size_t at, size_t count) {
   return value;
 }
 
-// By the header: of a PNG its first chunk, of a JPEG the largest of its frames.
+// By the header: of a PNG its first chunk, of a JPEG what looks like the largest of its frames.
 uint64_t declared_texels(const std::string& bytes) {
   if (bytes.starts_with("\x89PNG")) return big_endian(bytes, 16, 4) * big_endian(bytes, 20, 4);
   uint64_t most = 0;
@@ -31,10 +31,10 @@ uint64_t declared_texels(const std::string& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace photorque;
   const std::string bytes = fuzz::text_of(data, size);
-  // Larger ones take their time, which is no fault; those beyond the limit are refused at once.
-  constexpr uint64_t slow = 1 << 14, limit = 1 << 26;
+  // Larger ones take their time, which is no fault; what its bytes cannot hold is refused at once.
+  constexpr uint64_t slow = 1 << 14, texels_per_byte = 8 * 1032;
   const uint64_t texels = declared_texels(bytes);
-  if (texels > slow && texels <= limit) return 0;
+  if (texels > slow && texels <= size * texels_per_byte) return 0;
   fuzz::may_refuse([&] {
     const LinearPicture picture = read_picture(bytes);
     for (const float value : picture.rgb) {
