@@ -2,6 +2,7 @@
 
 #include "core/errors.h"
 #include "core/text/lines.h"
+#include "core/text/numbers.h"
 
 namespace photorque {
 namespace {
@@ -51,7 +52,10 @@ class AcmReader {
     attitude.type = required(block, "ATT_TYPE");
     if (const std::string* rate = block.find("RATE_TYPE")) attitude.rate_type = *rate;
     if (const std::string* euler = block.find("EULER_ROT_SEQ")) attitude.euler_sequence = *euler;
-    const auto states = static_cast<size_t>(number(block, "NUMBER_STATES", ""));
+    constexpr int most_states = 100;
+    const size_t states =
+        require_count(number(block, "NUMBER_STATES", ""), {path_.string(), block.line},
+                      "NUMBER_STATES", 1, most_states);
     for (const KvnItem& item : block.items) {
       if (item.kind != KvnItem::Kind::data) continue;
       std::vector<double> row = kvn_numbers(words_of(item.value), 0, path_, item.line);

@@ -101,6 +101,9 @@ class AemReader {
     size_t length = 0;
     for (const KvnItem& item : data.items) {
       if (item.kind == KvnItem::Kind::comment) continue;
+      if (item.kind != KvnItem::Kind::data) {
+        throw error(item, in_quotes(item.key), "rows of an epoch and numbers");
+      }
       const std::vector<std::string_view> words = words_of(item.value);
       segment.rows.push_back({std::string(words.front()), kvn_numbers(words, 1, path_, item.line)});
       const size_t now = segment.rows.back().values.size();

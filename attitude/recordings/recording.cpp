@@ -76,16 +76,26 @@ struct FileColumn {
   double to_SI = 1.0;
 };
 
+// Found once: a preamble may have a million cells that could be names.
+const std::vector<KeyUnit>& units_of_known_channels() {
+  static const std::vector<KeyUnit> units = [] {
+    std::vector<KeyUnit> all;
+    for (const std::string_view channel : known_channels) all.push_back(unit_of_key(channel));
+    return all;
+  }();
+  return units;
+}
+
 FileColumn column_named(const std::string& in_file, const RecordingOptions& options) {
   std::string name = in_file;
   for (const auto& [channel, written] : options.columns) {
     if (written == in_file) name = channel;
   }
   const KeyUnit unit = unit_of_key(name);
-  for (const std::string_view channel : known_channels) {
-    const KeyUnit known = unit_of_key(channel);
-    if (known.stem == unit.stem && known.dimension == unit.dimension) {
-      return {std::string(channel), unit.to_SI};
+  const std::vector<KeyUnit>& known = units_of_known_channels();
+  for (size_t i = 0; i < known.size(); ++i) {
+    if (known[i].stem == unit.stem && known[i].dimension == unit.dimension) {
+      return {std::string(known_channels[i]), unit.to_SI};
     }
   }
   return {name, 1.0};
@@ -166,14 +176,14 @@ class RecordingReader {
       return;
     }
     const std::optional<double> time = to_number(cells_[time_column_]);
-    if (!time || std::isnan(*time)) {
+    const double time_s = time.value_or(empty_cell) * columns_[time_column_].to_SI;
+    if (!std::isfinite(time_s)) {  // of hours, say, as seconds
       if (!time) require_decimal_points(time_column_);
       if (++report.rows_without_time == 1) {
         first_without_time_ = error("t_s", in_quotes(cells_[time_column_]), "a number");
       }
       return;
     }
-    const double time_s = *time * columns_[time_column_].to_SI;
     if (!recording_.time_s.empty() && time_s <= recording_.time_s.back()) {
       if (time_s == recording_.time_s.back()) {
         if (++report.repeated_times == 1) report.first_repeated_line = lines_.number();
@@ -198,6 +208,9 @@ class RecordingReader {
         value = empty_cell;
       } else if (std::isnan(*value)) {
         ++report.empty_cells;
+      } else if (std::isinf(*value * columns_[i].to_SI)) {
+        ++report.unreadable_cells;
+        value = empty_cell;
       }
       recording_.channels[channel++].values.push_back(*value * columns_[i].to_SI);
     }

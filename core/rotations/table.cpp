@@ -33,6 +33,7 @@ struct Lagrange {
 };
 
 constexpr size_t max_twists = 64;
+constexpr int64_t most_repeats = 1000;  // in a turn
 
 // 1, cos θ, sin θ, cos 2θ, … and their slopes by ψ, θ = fold · ψ: what the `count` numbers that are
 // kept over ψ multiply.
@@ -243,6 +244,7 @@ bool RotationTable::read(const std::string& bytes) {
   if (!in.good || in.at != bytes.size() || channels == 0 || twists == 0 || twists > max_twists) {
     return false;
   }
+  if (fold < 1 || fold > most_repeats) return false;
   table.axis_from_lab_ = Quat(w, x, y, z);
   table.channels_ = channels;
   table.twists_ = twists;

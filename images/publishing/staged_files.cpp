@@ -9,6 +9,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/json_extent.h"
 
 namespace photorque {
 namespace {
@@ -28,7 +29,9 @@ bool is_head(const std::string& name) {
 Json read_lists(const fs::path& path) {
   std::error_code failure;
   if (!fs::is_regular_file(path, failure)) return Json::object();
-  const Json read = Json::parse(read_file(path), nullptr, false);
+  const std::string text = read_file(path);
+  if (extent_of_json(text).depth > deepest_json) return Json::object();
+  const Json read = Json::parse(text, nullptr, false);
   // Whatever stands there, it is read as far as it has the form that is written here.
   const bool known = read.is_object() && read.contains("schema") &&
                      read["schema"] == "photorque.files/1" && read.contains("commands") &&

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "core/errors.h"
@@ -60,17 +61,65 @@ bool has_whole_chunks(std::string_view png) {
   return false;
 }
 
+// Width and height by the header: libraries make room for all of a progressive JPEG as soon as they
+// open it. Nothing where there is no header, of which they tell.
+// Source: ITU-T T.81, annex B; ISO/IEC 15948:2003, clause 11.2.2.
+std::optional<std::array<int64_t, 2>> stated_size(std::string_view bytes) {
+  constexpr size_t png_width = 16, png_end = 24, frame_bytes = 9;
+  if (bytes.starts_with("\x89PNG")) {
+    if (bytes.size() < png_end) return std::nullopt;
+    return {{word_of(bytes.substr(png_width)), word_of(bytes.substr(png_width + 4))}};
+  }
+  for (size_t at = 2; at + frame_bytes <= bytes.size();) {
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    if (bytes[at] != '\xff' || marker == 0x00 || marker == 0xff) {
+      ++at;  // what stands between segments is passed over
+      continue;
+    }
+    const bool is_frame =
+        (marker & 0xf0) == 0xc0 && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (is_frame) {
+      const uint32_t height_and_width = word_of(bytes.substr(at + 5));
+      return {{height_and_width & 0xffff, height_and_width >> 16}};
+    }
+    const bool stands_alone = marker == 0x01 || (marker & 0xf8) == 0xd0;
+    at += 2 + (stands_alone ? 0 : word_of(bytes.substr(at + 2)) >> 16);
+  }
+  return std::nullopt;
+}
+
+// Throws InputError for a picture that is too large, or that is not whole: a byte of deflated data
+// stands for 1032 bytes at most, of eight texels each, one of a JPEG for fewer, and a decoder would
+// make up the rest.
+void require_affordable(const std::array<int64_t, 2>& size, size_t bytes) {
+  // Three floats each: 0.8 GB.
+  constexpr int64_t max_texels = int64_t{1} << 26, texels_per_byte = int64_t{8} * 1032;
+  // Each side has 32 bits; the product of such may have 64.
+  const auto [width, height] = size;
+  if (width > max_texels || height > max_texels || width * height > max_texels) {
+    throw InputError({"picture"}, "",
+                     std::to_string(width) + " x " + std::to_string(height) + " texels",
+                     "at most " + std::to_string(max_texels) + " of them");
+  }
+  const int64_t most = static_cast<int64_t>(bytes) * texels_per_byte;
+  if (width * height > most) {
+    throw InputError(
+        {"picture"}, "",
+        std::to_string(width * height) + " texels in " + std::to_string(bytes) + " bytes",
+        "a whole picture, of " + std::to_string(most) + " texels at most");
+  }
+}
+
 }  // namespace
 
 LinearPicture read_picture(const std::string& bytes) {
   const InputError wrong({"picture"}, "", "bytes that are no picture", "a PNG or JPEG");
-  // Three floats each: 0.8 GB.
-  constexpr int64_t max_texels = int64_t{1} << 26;
   const bool is_png = bytes.starts_with("\x89PNG");
   if (!is_png && !bytes.starts_with("\xFF\xD8")) throw wrong;
   if (is_png && !has_whole_chunks(bytes)) {
     throw InputError({"picture"}, "", "a PNG that is damaged or cut off", "a whole one");
   }
+  if (const auto size = stated_size(bytes)) require_affordable(*size, bytes.size());
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
   const auto input =
       OIIO::ImageInput::open(is_png ? "picture.png" : "picture.jpg", nullptr, &memory);
@@ -81,14 +130,10 @@ LinearPicture read_picture(const std::string& bytes) {
   const OIIO::ImageSpec& spec = input->spec();
   const int channels = spec.nchannels;
   if (spec.width < 1 || spec.height < 1 || channels < 1) throw wrong;
-  if (int64_t{spec.width} * spec.height > max_texels) {
-    throw InputError({"picture"}, "",
-                     std::to_string(spec.width) + " x " + std::to_string(spec.height) + " texels",
-                     "at most " + std::to_string(max_texels) + " of them");
-  }
+  require_affordable({spec.width, spec.height}, bytes.size());
   const auto width = static_cast<size_t>(spec.width);
   LinearPicture picture{spec.width, spec.height, {}};
-  // As rows come, so that no header makes this allocate what the file does not bear out.
+  picture.rgb.reserve(3 * width * static_cast<size_t>(spec.height));
   constexpr int rows_at_once = 64;
   std::vector<float> values(width * rows_at_once * static_cast<size_t>(channels));
   for (int row = 0; row < spec.height; row += rows_at_once) {

@@ -22,7 +22,8 @@ Vec2 cell_of(const SurfaceGrid& grid, const Vec3& position_m) {
 
 // A fan of triangles for every piece of a face.
 void add_pieces(const SurfaceGrid& grid, const SurfaceFace& face, std::vector<CellPiece>& pieces) {
-  const auto& [a, b, c] = face.corner_body_m;
+  // No structured binding: Clang 14 captures none.
+  const Vec3 &a = face.corner_body_m[0], &b = face.corner_body_m[1], &c = face.corner_body_m[2];
   const auto place = [&](const Vec2& weight) {
     return Vec3(a + weight.x() * (b - a) + weight.y() * (c - a));
   };

@@ -99,8 +99,7 @@ std::vector<Beam> make_beams(const ExperimentFile& file, GltfModel& model) {
     if (at_light) source.finish();
   }
   for (const Beam& beam : file.further_beams) {
-    const Settings lamp(std::make_shared<const SettingsNode>(SettingsNode::Table{}),
-                        "lamp \"" + beam.name + "\"");
+    const Settings lamp(std::make_shared<const SettingsNode>(), "lamp \"" + beam.name + "\"");
     require_spectrum_inside(lamp, beam, scene.bands);
     require_traceable(lamp, beam);
     beams.push_back(beam);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
+#include "core/text/json_extent.h"
 
 namespace photorque {
 namespace {
@@ -73,7 +74,10 @@ fs::path named_file(const fs::path& folder, const std::string& text) {
 }
 
 std::vector<fs::path> files_named_in(const fs::path& path, const std::string& bytes) {
-  const auto json = nlohmann::json::parse(json_of(path, bytes), nullptr, false);
+  const std::string text_of_json = json_of(path, bytes);
+  // Whoever reads the model says what is wrong with it.
+  if (extent_of_json(text_of_json).depth > deepest_json) return {};
+  const auto json = nlohmann::json::parse(text_of_json, nullptr, false);
   std::vector<std::string> texts;
   if (!json.is_discarded()) collect_texts(json, texts);
   std::vector<fs::path> files;

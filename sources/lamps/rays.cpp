@@ -90,6 +90,7 @@ void RayLamp::tabulate_intensity(const RaySet& set) {
   std::sort(rises.begin(), rises.end());
   // Steps of 1 % of the rays, and finer in the tail, where directions thin out.
   constexpr size_t steps = 100, fewest_rays = 4;
+  constexpr double narrowest = 1e-30;  // rises of 1e-15 rad: one direction
   double inner = 0.0, flux = 0.0, largest = 0.0;
   size_t first = 0;
   for (size_t i = 0; i < rises.size(); ++i) {
@@ -99,9 +100,15 @@ void RayLamp::tabulate_intensity(const RaySet& set) {
     const size_t wanted = std::max(fewest_rays, std::min(rises.size() / steps, left / 8));
     if (!is_last && i + 1 - first < wanted) continue;
     const double outer = is_last ? rises[i].first : 0.5 * (rises[i].first + rises[i + 1].first);
-    if (!(outer > inner)) continue;  // rays of one direction: they go to the next step
-    edge_rise_.push_back(outer);
-    step_.push_back(flux / (outer - inner));
+    if (outer - inner > narrowest) {
+      edge_rise_.push_back(outer);
+      step_.push_back(flux / (outer - inner));
+    } else if (is_last && !step_.empty()) {
+      const double before = step_.size() > 1 ? edge_rise_[step_.size() - 2] : 0.0;
+      step_.back() += flux / (inner - before);
+    } else {
+      continue;  // rays of one direction: they go to the next step
+    }
     largest = std::max(largest, step_.back());
     inner = outer;
     flux = 0.0;

@@ -26,6 +26,17 @@ std::vector<double> images_of(double azimuth_deg, PlaneSymmetry symmetry) {
   return images;
 }
 
+// Turns of angles far beyond a turn would be rounding alone.
+void require_few_turns(const std::vector<double>& azimuth_deg, const InputLocation& where) {
+  constexpr double most_deg = 720.0;
+  for (const double angle_deg : azimuth_deg) {
+    if (std::abs(angle_deg) <= most_deg) continue;
+    std::ostringstream found;
+    found << angle_deg;
+    throw InputError(where, "horizontal angles", found.str(), "angles from -720 to 720 degrees");
+  }
+}
+
 // Types A and B: angles from 0 stand for both sides.
 void mirror(std::vector<double>& angles_deg, std::vector<size_t>& from) {
   for (size_t i = 0; i < angles_deg.size(); ++i) from.push_back(i);
@@ -48,6 +59,7 @@ PlaneSymmetry implied_symmetry(const std::vector<double>& azimuth_deg) {
 
 IntensityTable unfold(const StoredPlanes& stored, PlaneSymmetry symmetry,
                       const InputLocation& where) {
+  require_few_turns(stored.azimuth_deg, where);
   const size_t knots = stored.polar_deg.size();
   IntensityTable table;
   for (const double angle_deg : stored.polar_deg) {

@@ -35,9 +35,10 @@ void require_sound(const RaySet::Ray& ray, size_t index, const InputLocation& wh
 
 void require_flux(const RaySet& set, const InputLocation& where) {
   if (set.rays.empty()) throw InputError(where, "rays", "none", "at least one ray");
-  if (!(set.ray_flux() > 0.0) || !std::isfinite(set.ray_flux())) {
-    throw InputError(where, "flux", "rays whose flux sums to " + std::to_string(set.ray_flux()),
-                     "some light");
+  constexpr double least = 1e-60, most = 1e60;
+  if (!(set.ray_flux() >= least && set.ray_flux() <= most)) {
+    throw InputError(where, "flux", "rays whose flux sums to " + shortest(set.ray_flux()),
+                     "some light, from 1e-60 to 1e60");
   }
 }
 

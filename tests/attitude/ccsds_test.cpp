@@ -194,6 +194,31 @@ TEST(Acm, NumbersOfTheSharedFile) {
 }
 
 // Days by the calendar; day of the year 60 of a leap year is 29 February.
+// A name and a value, and a block, among the rows: a row of no words was looked into.
+TEST(Aem, DataThatAreNoRowsAreRefused) {
+  const std::string before =
+      "CCSDS_AEM_VERS = 1.0\nCREATION_DATE = 2020-01-01T00:00:00\nORIGINATOR = TEST\nMETA_START\n"
+      "OBJECT_NAME = A\nOBJECT_ID = B\nREF_FRAME_A = LAB\nREF_FRAME_B = SC\nATTITUDE_DIR = A2B\n"
+      "TIME_SYSTEM = UTC\nSTART_TIME = 2020-01-01T00:00:00\nSTOP_TIME = 2020-01-01T00:00:01\n"
+      "ATTITUDE_TYPE = QUATERNION\nQUATERNION_TYPE = LAST\nMETA_STOP\nDATA_START\n";
+  const TemporaryFile good(before + "2020-01-01T00:00:00 0 0 0 1\nDATA_STOP\n");
+  EXPECT_EQ(read_aem(good.path()).segments.front().rows.size(), 1u);
+  for (const char* rows : {"X =\n", "X = 2020-01-01T00:00:00 0 0 0 1\n", "A_START\nA_STOP\n"}) {
+    const TemporaryFile file(before + rows + "DATA_STOP\n");
+    EXPECT_THROW(read_aem(file.path()), InputError) << rows;
+  }
+}
+
+TEST(Acm, CountsOfStatesThatNoRowHasAreRefused) {
+  for (const char* count : {"-1", "1e300", "4.5", "0", "1000000000000000000000"}) {
+    const TemporaryFile file(
+        std::string("CCSDS_ACM_VERS = 2.0\nATT_START\nREF_FRAME_A = LAB\nREF_FRAME_B = SC\n"
+                    "ATT_TYPE = QUATERNION\nNUMBER_STATES = ") +
+        count + "\n0.0 0 0 0 1\nATT_STOP\n");
+    EXPECT_THROW(read_acm(file.path()), InputError) << count;
+  }
+}
+
 TEST(CalendarTimes, CountDaysAsTheCalendarDoes) {
   const auto at = [](const char* text) { return *parse_epoch(text); };
   EXPECT_EQ(at("1970-01-01T00:00:00").day, 0);

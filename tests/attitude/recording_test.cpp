@@ -299,6 +299,16 @@ TEST(Recording, WhereMostRowsAreWrongTheFirstIsNamed) {
               HasSubstr(":4: t_s: found \"noon\", expected a number"));
 }
 
+// Found by reading for it: 1e305 hours were an infinite time.
+TEST(Recording, NumbersThatOverflowInSiUnitsAreLeftOut) {
+  const Recording recording = read("t_h,x_m\n0,1\n1,1\n2,1\n1e305,1\n");
+  EXPECT_THAT(recording.time_s, ElementsAre(0.0, 3600.0, 7200.0));
+  EXPECT_EQ(recording.report.rows_without_time, 1);
+  const Recording lengths = read("t_s,x_km\n0,1\n1,1e306\n2,1\n");
+  EXPECT_TRUE(std::isnan(cells_of(lengths, "x_m").at(1)));
+  EXPECT_EQ(lengths.report.unreadable_cells, 1);
+}
+
 TEST(Recording, DamagedCompressedFilesAreRefused) {
   std::string text = "t_s,a\n";
   for (int i = 0; i < 5000; ++i)

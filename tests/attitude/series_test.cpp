@@ -221,14 +221,35 @@ TEST(WrenchTableFile, ReadsWhatTheProgramWrites) {
   const WrenchTable table = read_wrench_table(file.path());
   EXPECT_EQ(table.angles, WrenchTable::Angles::tilt_heading);
   EXPECT_EQ(table.torque_body_N_m[table.node(1, 1)], Vec3(10, 11, 12));
-  const SeriesFile twice(
-      "twice.csv",
-      "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n0,0,1,2,3\n0,0,1,2,3\n");
+  const SeriesFile twice("twice.csv",
+                         "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n"
+                         "0,0,1,2,3\n0,1,1,2,3\n1,0,1,2,3\n0,0,1,2,3\n");
   EXPECT_THROW(read_wrench_table(twice.path()), InputError);
   const SeriesFile hole(
       "hole.csv",
       "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n0,0,1,2,3\n1,1,1,2,3\n");
   EXPECT_THROW(read_wrench_table(hole.path()), InputError);
+}
+
+// 200,000 rows along a diagonal stand for 4e10 pairs of angles, 4 TB of them.
+TEST(WrenchTableFile, AnglesOfRowsThatAreNotThereTakeNoRoom) {
+  std::string text = "azimuth_deg,elevation_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
+  for (int i = 0; i < 200000; ++i) {
+    const std::string angle = std::to_string(1e-4 * i);
+    text += angle + "," + angle + ",0,0,0\n";
+  }
+  const SeriesFile file("diagonal.csv", text);
+  EXPECT_THROW(read_wrench_table(file.path()), InputError);
+}
+
+// Headings of 0 and 360 deg are one: the surface looked for a neighbour beyond them.
+TEST(WrenchTableFile, AnglesOfASingleNodeAreRefused) {
+  const std::string header = "heading_deg,tilt_deg,torque_x_N_m,torque_y_N_m,torque_z_N_m\n";
+  for (const char* rows : {"0,0,1,2,3\n0,9,1,2,3\n360,0,1,2,3\n360,9,1,2,3\n",
+                           "0,0,1,2,3\n90,0,1,2,3\n180,0,1,2,3\n"}) {
+    const SeriesFile file("one.csv", header + rows);
+    EXPECT_THROW(read_wrench_table(file.path()), InputError) << rows;
+  }
 }
 
 }  // namespace

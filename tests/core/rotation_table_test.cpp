@@ -238,6 +238,17 @@ TEST(RotationTable, BytesThatPointElsewhereAreRefused) {
   EXPECT_FALSE(table.read(with(channels + 4, 0x7fffffffu)));
 }
 
+// Found by fuzzing: a number that no integer holds was cut off to one that it does.
+TEST(RotationTable, RepeatsOfATurnThatAreNoneAreRefused) {
+  const std::string bytes = make_rotation_table(exact(sideways), up_to(30, 1e-3, 3)).bytes();
+  constexpr size_t fold = 64;
+  for (const int64_t repeats : {int64_t{0}, int64_t{-3}, int64_t{1} << 32 | 1, int64_t{1} << 62}) {
+    std::string changed = bytes;
+    std::memcpy(changed.data() + fold, &repeats, sizeof repeats);
+    EXPECT_FALSE(RotationTable().read(changed)) << repeats;
+  }
+}
+
 TEST(RotationTable, BeyondItsEdgeIsAnError) {
   const RotationTable table = make_rotation_table(exact(overhead), up_to(20, 1e-3, 3));
   std::array<double, 3> value;

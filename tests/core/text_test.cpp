@@ -7,6 +7,7 @@
 
 #include "core/files.h"
 #include "core/text/columns.h"
+#include "core/text/json_extent.h"
 #include "core/text/lines.h"
 #include "core/text/numbers.h"
 
@@ -121,6 +122,14 @@ TEST(Text, SixteenBitTextAndBytesAreToldApart) {
               testing::HasSubstr("found bytes that are no text"));
   EXPECT_EQ(message("\xef\xbb\xbft_s,Ω\n1,2\n"), "");
   EXPECT_EQ(message(""), "");
+}
+
+TEST(Text, BracketsOfJsonAreCountedOutsideOfItsStrings) {
+  EXPECT_EQ(extent_of_json(R"({"a": [1, [2]], "b": {}})").depth, 3);
+  EXPECT_EQ(extent_of_json(R"(["[[[\"[[", "\\"])").depth, 1);
+  EXPECT_EQ(extent_of_json("").depth, 0);
+  EXPECT_EQ(extent_of_json("[][][]").depth, 1);
+  EXPECT_GE(extent_of_json(R"([1, 2, {"a": 3}])").values, 4u);
 }
 
 }  // namespace

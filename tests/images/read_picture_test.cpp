@@ -1,9 +1,14 @@
 // Pictures into memory, as linear light.
 #include "images/writers/read_picture.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <utility>
+
 #include "core/errors.h"
+#include "core/files.h"
 
 namespace photorque {
 namespace {
@@ -79,6 +84,34 @@ TEST(ReadPicture, RefusesByTheHeaderWhatIsTooLarge) {
                  "picture: found 12000 x 12000 texels, expected at most 67108864 of them");
   }
   EXPECT_THROW(read_picture(of_size(8192, 8192)), InputError);  // whose rows are not there
+}
+
+// Found by fuzzing: for 862 bytes of a progressive JPEG 2.4 GB were taken as soon as it was opened.
+TEST(ReadPicture, RefusesSizesThatItsBytesCannotHold) {
+  const auto refusal = [](const std::string& bytes) -> std::string {
+    try {
+      read_picture(bytes);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::filesystem::path seeds =
+      std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "tests/fuzz/seeds/picture";
+  for (const auto& [name, marker] :
+       {std::pair{"grey.jpg", "\xff\xc0"}, {"progressive.jpg", "\xff\xc2"}}) {
+    std::string jpeg = read_file(seeds / name);
+    EXPECT_EQ(read_picture(jpeg).rgb.size(), 3u * 8 * 8);
+    const size_t frame = jpeg.find(marker);  // then length (2), depth (1), height and width
+    ASSERT_NE(frame, std::string::npos);
+    const auto sized = [&](const std::string& side) {
+      for (const size_t at : {frame + 5, frame + 7}) jpeg.replace(at, 2, side);
+      return refusal(jpeg);
+    };
+    EXPECT_THAT(sized("\x1f\xff"), testing::HasSubstr("67092481 texels in "));
+    EXPECT_THAT(sized("\xff\xff"), testing::HasSubstr("65535 x 65535 texels"));
+  }
+  EXPECT_THAT(refusal(of_size(8192, 8192)), testing::HasSubstr("67108864 texels in 72 bytes"));
 }
 
 }  // namespace

@@ -65,6 +65,18 @@ TEST_F(Staged, ListsThatWereTamperedWithReachNoOtherFolder) {
   fs::remove(outside);
 }
 
+// Found by reading for it: a list that is nested deeply ended the program by a signal after its
+// work.
+TEST_F(Staged, ListsNestedDeeplyAreNone) {
+  fs::create_directories(folder_);
+  constexpr size_t deep = 300000;
+  write_file_whole(folder_ / "files.json",
+                   R"({"schema": "photorque.files/1", "commands": {"trace": )" +
+                       std::string(deep, '[') + std::string(deep, ']') + "}}");
+  run("trace", {"summary.json"});
+  EXPECT_TRUE(there().contains("summary.json"));
+}
+
 TEST_F(Staged, WhatWasNotPublishedGoesAwayWithItsFolder) {
   {
     const StagedFiles staged(folder_ / "deep" / "er");

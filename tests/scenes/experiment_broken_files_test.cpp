@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "scenes/experiment/experiment.h"
+#include "scenes/experiment/named_files.h"
 
 namespace photorque {
 namespace {
@@ -201,6 +202,15 @@ TEST(BrokenScene, ThatIsNoJsonIsRefused) {
   lines[1] = "file = \"text.gltf\"";
   const std::string message = message_of(write_file("text_scene.toml", join(lines)));
   EXPECT_EQ(message.rfind(scene.string(), 0), 0u) << message;
+}
+
+// Found by reading for it: a sweep that looks for a model's files followed its brackets to the end
+// of the stack.
+TEST(BrokenScene, ThatIsNestedDeeplyNamesNoFiles) {
+  constexpr size_t deep = 300000;
+  const std::string model = R"({"asset": {"version": "2.0"}, "extras": )" + std::string(deep, '[') +
+                            std::string(deep, ']') + "}";
+  EXPECT_TRUE(files_named_in("/nowhere/model.gltf", model).empty());
 }
 
 }  // namespace

@@ -58,6 +58,17 @@ TEST(IesFile, CandelaThatOverflowAreRefused) {
   expect_refused(with(small_ies, "100 50 0", "1e-300 0 0"), "expected 1e-60 to 1e60");
 }
 
+// Found by fuzzing: turned back, 5e18 degrees were an azimuth below zero.
+TEST(IesFile, HorizontalAnglesOfManyTurnsAreRefused) {
+  const std::string planes =
+      with(with(small_ies, "2 3 1 1 2", "2 3 4 1 2"), "0 45 90\n0\n100 50 0\n",
+           "0 45 90\n0 90 180 270\n9 9 0 9 9 0 9 9 0 9 9 0\n");
+  EXPECT_EQ(read_ies(planes, "lamp.ies").table.planes(), 4u);
+  expect_refused(with(planes, "0 90 180 270", "0 90 180 5410163354058614529"),
+                 "horizontal angles: found 5.41016e+18");
+  expect_refused(with(planes, "0 90 180 270", "-1e300 90 180 270"), "horizontal angles");
+}
+
 // A count that is one too low takes the last angle for an azimuth and shifts the whole table.
 TEST(IesFile, WrongVerticalCountsAreRefused) {
   const std::string many = "0 30 60 90\n0\n100 90 50 0\n";

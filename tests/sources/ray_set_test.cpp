@@ -124,6 +124,30 @@ TEST(RayLamp, GivesEachRayItsShareOfTheFlux) {
   EXPECT_EQ(aslant, 1024);
 }
 
+// Found by fuzzing: with nothing but darkness before the last direction all intensities were NaN.
+TEST(RayLamp, LightOfTheLastDirectionCounts) {
+  const auto ray = [](double sine, double flux) {
+    return RaySet::Ray{{0, 0, 0}, {sine, 0, std::sqrt(1.0 - sine * sine)}, flux, 0.0};
+  };
+  RaySet set;
+  for (const double sine : {0.1, 0.2, 0.3, 0.4}) set.rays.push_back(ray(sine, 0.0));
+  set.rays.push_back(ray(0.4, 2.0));
+  const RayLamp dark_before(1.0, set);
+  EXPECT_EQ(dark_before.relative_intensity(0.2), 1.0);
+  EXPECT_EQ(dark_before.relative_intensity(0.5), 0.0);
+  // Directions that no number tells from the axis are one.
+  set.rays = {ray(0.0, 1.0), ray(0.0, 1.0), ray(0.0, 1.0), ray(1e-160, 1.0), ray(1e-158, 1.0)};
+  EXPECT_EQ(RayLamp(1.0, set).relative_intensity(0.0), 1.0);
+}
+
+TEST(RaySetFiles, FluxesBeyondEverythingAreRefused) {
+  const auto read = [](const std::string& flux) {
+    return read_lighttools_rays("lt_startofdata\n0 0 0 0 0 1 " + flux + "\n", "rays");
+  };
+  EXPECT_EQ(read("3").rays.size(), 1u);
+  for (const char* flux : {"1e300", "1e-300", "0"}) EXPECT_THROW(read(flux), InputError) << flux;
+}
+
 TEST(Tm25, RefusesDamage) {
   const std::string good = write_tm25(three_rays());
   const auto expect_refused = [](const std::string& bytes, const std::string& words) {

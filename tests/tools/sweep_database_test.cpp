@@ -219,6 +219,27 @@ TEST_F(SweepDatabase, ThatIsNoneIsNamed) {
   EXPECT_EQ(count("SELECT x FROM mine"), 1);
 }
 
+// Found by reading for it: a view that counts for ever in the place of a table was asked for its
+// rows; a trigger would have been run by whatever is kept.
+TEST_F(SweepDatabase, WithViewsOrTriggersThatNeverEndIsRefused) {
+  for (const char* change :
+       {"DROP VIEW figures; DROP TABLE run; CREATE VIEW run AS WITH RECURSIVE n(x) AS "
+        "(SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT x AS id, 'a' AS hash, 1 AS status, "
+        "'' AS error FROM n",
+        "CREATE TRIGGER t AFTER INSERT ON run BEGIN INSERT INTO quantity(name) WITH RECURSIVE "
+        "n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT 'q' || x FROM n; END"}) {
+    fs::remove_all(at("out"));
+    ASSERT_EQ(sweep().status, 0);
+    sqlite3* hostile = nullptr;
+    sqlite3_open(database().c_str(), &hostile);
+    EXPECT_EQ(sqlite3_exec(hostile, change, nullptr, nullptr, nullptr), SQLITE_OK) << change;
+    sqlite3_close(hostile);
+    const Outcome got = sweep();
+    EXPECT_EQ(got.status, 2);
+    EXPECT_THAT(got.err, HasSubstr("other tables than a sweep's"));
+  }
+}
+
 TEST_F(SweepDatabase, HoldsTheTableForOtherTools) {
   ASSERT_EQ(sweep().status, 0);
   const auto table = csv_rows(at("out/sweep.csv"));

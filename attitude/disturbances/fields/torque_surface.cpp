@@ -44,18 +44,25 @@ size_t interval(const std::vector<double>& nodes, double& x, const char* name) {
   return static_cast<size_t>(std::max<std::ptrdiff_t>(above - nodes.begin() - 1, 0));
 }
 
+// A last node a whole turn after the first is the same once more.
+size_t different_around(const std::vector<double>& nodes_rad) {
+  const bool repeats =
+      nodes_rad.size() > 1 && nodes_rad.back() - nodes_rad.front() > 2.0 * pi - 1e-9;
+  return nodes_rad.size() - (repeats ? 1 : 0);
+}
+
 }  // namespace
 
 TorqueSurface::TorqueSurface(const WrenchTable& table) : table_(single_valued(table)) {
   std::vector<double>& around = table_.around_rad;
-  if (table_.polar_rad.size() < 2 || around.size() < 2) {
+  if (table_.polar_rad.size() < 2 || different_around(around) < 2) {
     throw NumericalError("wrench table: two angles or more are needed along both axes");
   }
   double widest = 0.0;
   for (size_t i = 1; i < around.size(); ++i) widest = std::max(widest, around[i] - around[i - 1]);
   const double span = around.back() - around.front();
   closed_ = span + widest > 2.0 * pi - 1e-9;
-  if (closed_ && span > 2.0 * pi - 1e-9) {  // the last node repeats the first
+  if (different_around(around) < around.size()) {  // the last node repeats the first
     around.pop_back();
     table_.torque_body_N_m.resize(table_.nodes());
   }
@@ -219,6 +226,26 @@ TorqueSurface::Sample TorqueSurface::through_nodes(const TableAngles& angles) co
   return {by_polar.value, held ? Vec3::Zero() : by_polar.slope, by_around.value};
 }
 
+namespace {
+
+// Before room is made for what the file cannot hold.
+void require_grid(const std::filesystem::path& path, size_t rows,
+                  const std::vector<double>& polar_rad, const std::vector<double>& around_rad) {
+  const size_t polar = polar_rad.size(), around = different_around(around_rad);
+  if (polar < 2 || around < 2) {
+    throw InputError({path.string()}, "",
+                     std::to_string(polar) + " by " + std::to_string(around) + " different angles",
+                     "two or more along both axes");
+  }
+  const size_t nodes = polar * around_rad.size();
+  if (rows < nodes) {
+    throw InputError({path.string()}, "", std::to_string(rows) + " rows",
+                     std::to_string(nodes) + " rows, one for every pair of angles");
+  }
+}
+
+}  // namespace
+
 WrenchTable read_wrench_table(const std::filesystem::path& path) {
   const std::vector<std::string> header = read_column_names(path);
   const bool tilt = std::find(header.begin(), header.end(), "tilt_deg") != header.end();
@@ -237,6 +264,7 @@ WrenchTable read_wrench_table(const std::filesystem::path& path) {
     return nodes;
   };
   const std::vector<double> polar_rad = number(polar), around_rad = number(around);
+  require_grid(path, file.lines.size(), polar_rad, around_rad);
   WrenchTable table = make_wrench_table(
       tilt ? WrenchTable::Angles::tilt_heading : WrenchTable::Angles::azimuth_elevation, polar_rad,
       around_rad);
@@ -250,10 +278,6 @@ WrenchTable read_wrench_table(const std::filesystem::path& path) {
     }
     filled[node] = true;
     table.torque_body_N_m[node] = {file.columns[2][i], file.columns[3][i], file.columns[4][i]};
-  }
-  if (file.lines.size() != table.nodes()) {
-    throw InputError({path.string()}, "", std::to_string(file.lines.size()) + " rows",
-                     std::to_string(table.nodes()) + " rows, one for every pair of angles");
   }
   return table;
 }

@@ -60,8 +60,9 @@ class FacetQuadrature {
     return wrench_of(force, at_m - about_m_);
   }
   WrenchSum mean_of(const Piece& piece) const {
-    const auto& [origin, b, c] = piece.corner_m;
-    const Vec3 edge1 = b - origin, edge2 = c - origin;
+    // No structured binding: Clang 14 captures none.
+    const Vec3& origin = piece.corner_m[0];
+    const Vec3 edge1 = piece.corner_m[1] - origin, edge2 = piece.corner_m[2] - origin;
     return triangle_mean(
         [&](double s, double t) { return density(origin + s * edge1 + t * edge2); });
   }

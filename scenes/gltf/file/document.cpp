@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/text/json_extent.h"
 #include "scenes/gltf/file/compression.h"
 #include "scenes/gltf/file/container.h"
 #include "scenes/gltf/file/schema.h"
@@ -44,30 +45,16 @@ bool is_harmless(std::string_view extension) {
 }
 
 // Refuses what would cost more than it can mean, before anything is built from it: deep nesting,
-// and more values than there is memory for. Every value follows one of [ { , : outside a string.
+// and more values than there is memory for.
 void check_extent(std::string_view text, const std::string& file, MemoryBudget* budget) {
   constexpr uint64_t bytes_per_value = 256;
-  uint64_t values = 0;
-  int depth = 0;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-      continue;
-    }
-    if (c == '"') in_string = true;
-    if (c == '{' || c == '[' || c == ',' || c == ':') ++values;
-    if (c == '{' || c == '[') ++depth;
-    if (c == '}' || c == ']') --depth;
-    if (depth > deepest_nesting) {
-      throw InputError({file}, "", "JSON nested deeper than " + std::to_string(deepest_nesting),
-                       "a glTF document");
-    }
+  const JsonExtent extent = extent_of_json(text);
+  if (extent.depth > deepest_nesting) {
+    throw InputError({file}, "", "JSON nested deeper than " + std::to_string(deepest_nesting),
+                     "a glTF document");
   }
   budget->charge(text.size(), 2, "");
-  budget->charge(values, bytes_per_value, "");
+  budget->charge(extent.values, bytes_per_value, "");
 }
 
 // "[json.exception.parse_error.101] parse error at line 1, column 2: unexpected end" → "unexpected

@@ -9,11 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace photorque;
   namespace fs = std::filesystem;
-  static const fs::path folder = [] {
-    std::string name = "/dev/shm/photorque_fuzz_XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) std::abort();
-    return fs::path(name);
-  }();
+  const fs::path& folder = fuzz::folder_in_memory();
   static const fs::path results = folder / "results";
   fs::create_directories(results);
   std::ofstream(folder / "precious") << "of others";

@@ -12,6 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const LightRecording recording = read_light_recording(file.path(), {});
     if (!told) std::abort();
     if (recording.temperature_K.size() != recording.rows()) std::abort();
+    if (recording.part({recording.rows() - 1}).rows() != 1) std::abort();
     for (const double voltage_V : recording.voltage_V) {
       if (!std::isfinite(voltage_V)) std::abort();
     }

@@ -142,6 +142,15 @@ RunDatabase::~RunDatabase() {
   sqlite3_close(handle_);
 }
 
+// A file from elsewhere may have views in their place, or triggers, that never end.
+void RunDatabase::require_plain_tables() const {
+  Statement others(*this,
+                   "SELECT count(*) FROM sqlite_master WHERE type = 'trigger' OR "
+                   "(lower(name) IN ('run', 'quantity', 'figure') AND "
+                   "(type <> 'table' OR rootpage = 0))");
+  if (others.step() && others.whole(0) > 0) fail("a database with other tables than a sweep's");
+}
+
 // Readers do not wait for writers (WAL), and what is committed stays after a power cut (FULL).
 void RunDatabase::prepare_tables() {
   Statement tables(*this, "SELECT count(*) FROM sqlite_master");
@@ -153,6 +162,7 @@ void RunDatabase::prepare_tables() {
   if (found == application && pragma("user_version") > format) {
     fail("a database of a newer version");
   }
+  if (found == application) require_plain_tables();
   // Two processes that open a new file at once: SQLite does not wait here by itself.
   const auto begin = std::chrono::steady_clock::now();
   while (sqlite3_exec(handle_, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr) !=

@@ -54,6 +54,7 @@ class RunDatabase {
   void execute(const std::string& sql) const;
   int pragma(const std::string& name) const;
   void prepare_tables();
+  void require_plain_tables() const;
   [[noreturn]] void fail(const std::string& what = "") const;
 
   std::filesystem::path path_;
