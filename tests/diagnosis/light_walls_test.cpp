@@ -107,6 +107,32 @@ TEST_F(LightWithWall, PlacesSeeAllOfTheWall) {
   EXPECT_LT(nearest, 0.04);
 }
 
+// Of fields whose shadows are known only those places are looked at again that either shadow
+// reaches.
+TEST_F(LightWithWall, LightBesideAKnownShadowIsThatFoundAfresh) {
+  const LightRun run(*lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));
+  LightState state = lab_->nominal();
+  const LightFields open = run.fields(state, nullptr);
+  const auto with_box = [&](double x, bool on_body) {
+    LightState shaded = state;
+    const Vec3 middle(x, 0.01, 0.2), half(0.02, 0.015, 0.001);
+    shaded.boxes.push_back({on_body, middle - half, middle + half, 0.7});
+    return shaded;
+  };
+  const LightState first = with_box(0.0, false), second = with_box(0.03, true);
+  const LightFields of_first = run.fields(first, &open), of_second = run.fields(second, &of_first);
+  const LightFields afresh = run.fields(second, nullptr);
+  double moved = 0.0;
+  for (size_t l = 0; l < lab_->lamps(); ++l) {
+    const LampField &found = *of_second.lamps[l].field, &expected = *afresh.lamps[l].field;
+    ASSERT_EQ(found, expected) << l;
+    for (size_t o = 0; o < found.size(); ++o) {
+      moved = std::max(moved, std::abs(found[o] - (*of_first.lamps[l].field)[o]));
+    }
+  }
+  EXPECT_GT(moved, 1.0);
+}
+
 // One reading far off among usual ones strays; a line of them is a thing.
 TEST_F(LightWithWall, ReadingsStrayAlone) {
   const LightRun run(*lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));

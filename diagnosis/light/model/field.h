@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "diagnosis/light/model/lab.h"
@@ -46,8 +47,14 @@ LampGeometry geometry_of(const LightState& state, size_t lamp, bool enters_cells
 // Irradiance [W/m²] of one lamp at full power on every output.
 using LampField = std::vector<double>;
 
+// A field that is known, whose geometry may differ in the boxes: it holds wherever none of either
+// comes near.
+struct KnownField {
+  const LampGeometry* geometry;
+  const LampField* field;
+};
 LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
-                     const LampGeometry& geometry);
+                     const LampGeometry& geometry, const std::optional<KnownField>& known = {});
 
 // The lamp's pose where it stands and looks, in the lab.
 RigidTransform pose_of(const Beam& beam, const LampGeometry& geometry);

@@ -39,6 +39,16 @@ void Illumination::move_to(size_t attitude) {
   obstacles_.emplace(lab_, geometry_.boxes, q);
 }
 
+bool Illumination::meets_boxes(size_t output) const {
+  const LightSites::Group& group = sites_.groups[sites_.outputs[output].group];
+  for (size_t i = group.first_point; i < group.first_point + group.count; ++i) {
+    if (obstacles_->meets_boxes(sites_.points_body_m[i], lamp_body_m(), at_->side.norm())) {
+      return true;
+    }
+  }
+  return false;
+}
+
 double Illumination::on(const Vec3& point, const Vec3& normal, size_t skipped) const {
   const Vec3 p = at_->lamp_from_body * point + at_->offset_m, n = at_->lamp_from_body * normal;
   const double E = light_.irradiance_W_m2(p, n);

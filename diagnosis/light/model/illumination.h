@@ -35,13 +35,21 @@ class Illumination {
   const Vec3& lamp_body_m() const { return at_->body_from_lamp.translation_m; }
   const LampAtAttitude& lamp() const { return *at_; }
 
-  // Sums weight times at(point) over the places of each output, in turn.
-  template <typename At>
-  LampField over_places(const At& at) {
+  // Whether a box may stand between the lamp and any point of an output, at the attitude moved to.
+  bool meets_boxes(size_t output) const;
+
+  // Sums weight times at(point) over the places of each output, in turn; where known(output) points
+  // to a number, that is the sum.
+  template <typename At, typename Known>
+  LampField over_places(const At& at, const Known& known) {
     LampField field(sites_.outputs.size(), 0.0);
     size_t attitude = std::numeric_limits<size_t>::max();
     for (size_t o = 0; o < sites_.outputs.size(); ++o) {
       if (sites_.outputs[o].attitude != attitude) move_to(attitude = sites_.outputs[o].attitude);
+      if (const double* sum = known(o)) {
+        field[o] = *sum;
+        continue;
+      }
       const LightSites::Group& group = sites_.groups[sites_.outputs[o].group];
       for (size_t i = group.first_point; i < group.first_point + group.count; ++i) {
         field[o] += sites_.weights[i] * at(sites_.points_body_m[i]);

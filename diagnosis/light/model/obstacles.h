@@ -20,6 +20,9 @@ class Obstacles {
 
   bool any() const { return !boxes_.empty() || !lab_.walls().empty(); }
 
+  // Whether a box may hide a part of an aperture of this radius from a point.
+  bool meets_boxes(const Vec3& point, const Vec3& lamp, double radius_m) const;
+
   // What of a lamp's aperture is open to a point: its fraction, and the mean over the whole
   // aperture of the distance from its middle, in radii along `side` and `up`, where it is open, 0
   // elsewhere.

@@ -71,8 +71,13 @@ LightFields LightRun::fields(const LightState& state, const LightFields* near, W
       result.lamps.push_back(near->lamps[l]);
       continue;
     }
+    // Between the attitudes at which a run is evaluated nothing is known of single outputs.
+    std::optional<KnownField> known;
+    if (near != nullptr && between_.empty()) {
+      known = {&near->lamps[l].geometry, near->lamps[l].field.get()};
+    }
     auto field = std::make_shared<const LampField>(
-        expanded(lamp_field(*lab_, lamp_set(), sites_, geometry)));
+        expanded(lamp_field(*lab_, lamp_set(), sites_, geometry, known)));
     result.lamps.push_back({std::move(geometry), std::move(field)});
   }
   // Light by way of walls takes long, and is kept as long as the lamps stay where they are.
