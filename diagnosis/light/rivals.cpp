@@ -1,0 +1,130 @@
+#include "diagnosis/light/rivals.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "diagnosis/light/domain.h"
+
+namespace photorque {
+namespace {
+
+// How much of what the first of `terms` changes the recordings by, at the numbers x, the strengths
+// of each other term cannot make: χ², the first entry the whole of it.
+Eigen::VectorXd unlike(const LightTrial& about, const LightCandidates& all,
+                       const std::vector<inference::Term<LightStart>>& terms,
+                       const std::vector<FittedRun>& runs, const std::vector<double>& x) {
+  Eigen::MatrixXd H;
+  for (const FittedRun& run : runs) {
+    const LightSlopes s = slopes_of(about, all, terms, run);
+    const Eigen::MatrixXd square = s.slopes.transpose() * s.slopes;
+    H = H.size() == 0 ? square : Eigen::MatrixXd(H + square);
+  }
+  Eigen::Index fitted = static_cast<Eigen::Index>(about.priors.size());
+  for (const size_t c : about.candidates) fitted += static_cast<Eigen::Index>(all[c].fitted());
+  if (fitted > 0) {
+    const Eigen::MatrixXd inner = H.topLeftCorner(fitted, fitted),
+                          cross = H.bottomLeftCorner(H.rows() - fitted, fitted);
+    H = Eigen::MatrixXd(H.bottomRightCorner(H.rows() - fitted, H.cols() - fitted) -
+                        cross * inner.ldlt().solve(cross.transpose()));
+  }
+  std::vector<double> strengths;
+  const LightCandidate& named = all[terms.front().candidate];
+  for (size_t k = 0; k < named.numbers.size(); ++k) {
+    if (named.numbers[k].is_strength) strengths.push_back(x[k]);
+  }
+  const auto own = static_cast<Eigen::Index>(strengths.size());
+  const Eigen::Map<const Eigen::VectorXd> theta(strengths.data(), own);
+  Eigen::VectorXd left(static_cast<Eigen::Index>(terms.size()));
+  left[0] = own > 0 ? theta.dot(H.topLeftCorner(own, own) * theta) : 0.0;
+  Eigen::Index at = own;
+  for (size_t t = 1; t < terms.size(); ++t) {
+    const LightCandidate& c = all[terms[t].candidate];
+    const auto n = static_cast<Eigen::Index>(
+        std::ranges::count_if(c.numbers, [](const auto& number) { return number.is_strength; }));
+    left[static_cast<Eigen::Index>(t)] = left[0];
+    if (n > 0 && own > 0) {
+      Eigen::MatrixXd S = H.block(at, at, n, n);
+      S.diagonal() *= 1.0 + 1e-9;
+      const Eigen::VectorXd shared = H.block(at, 0, n, own) * theta;
+      const double taken = shared.dot(S.ldlt().solve(shared));
+      if (std::isfinite(taken)) left[static_cast<Eigen::Index>(t)] -= taken;
+    }
+    at += n;
+  }
+  return left;
+}
+
+// The same of an effect that acts or does not, `own` with it fitted: how far χ² would stay above
+// that where each of `others` acted in its place.
+Eigen::VectorXd unlike_switched(const LightTrial& own, const LightTrial& without,
+                                const LightCandidates& all, const std::vector<size_t>& others,
+                                const std::vector<FittedRun>& runs) {
+  const LightTrial bare = fit_light(all, without.candidates, without.x, without.priors, runs, 25);
+  const std::vector<double> gains = LightDomain(all).gains(bare, others, runs);
+  const double whole = bare.fit.chi2 - own.fit.chi2;
+  Eigen::VectorXd left(static_cast<Eigen::Index>(others.size()) + 1);
+  left[0] = whole;
+  for (size_t k = 0; k < others.size(); ++k) {
+    left[static_cast<Eigen::Index>(k) + 1] = whole - gains[k];
+  }
+  return left;
+}
+
+}  // namespace
+
+std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
+                                      const std::vector<FittedRun>& runs) {
+  const LightTrial& chosen = answer.chosen();
+  const LightCandidates& all = answer.all;
+  LightTrial without = chosen;
+  without.candidates.erase(without.candidates.begin() + static_cast<std::ptrdiff_t>(which));
+  without.x.erase(without.x.begin() + static_cast<std::ptrdiff_t>(which));
+  const double within = all.limits.search.min_log_evidence_gain;
+  const LightTrial own = fit_light(all, chosen.candidates, chosen.x, chosen.priors, runs, 25);
+  const LightCandidate& named = all[chosen.candidates[which]];
+  std::vector<size_t> others;
+  std::vector<inference::Term<LightStart>> terms = {{chosen.candidates[which], {chosen.x[which]}}};
+  for (size_t i = 0; i < all.list.size(); ++i) {
+    const LightCandidate& c = all[i];
+    if (c.is_empirical() || c.kind.name == named.kind.name || !c.is_linear()) continue;
+    if (c.kind.index == named.kind.index && c.index != named.index) continue;
+    others.push_back(i);
+    terms.push_back({i, {c.start()}});
+  }
+  const Eigen::VectorXd left = named.has_strength()
+                                   ? unlike(without, all, terms, runs, chosen.x[which])
+                                   : unlike_switched(own, without, all, others, runs);
+  std::set<std::string> rivals;
+  for (size_t k = 0; k < others.size(); ++k) {
+    const LightCandidate& c = all[others[k]];
+    // χ² that the other cannot take up, to first order; large effects bend.
+    constexpr double beyond = 10.0, of_all = 0.02;
+    const double gain = left[0];
+    if (left[static_cast<Eigen::Index>(k) + 1] > beyond * within + of_all * gain) continue;
+    if (rivals.contains(c.kind.name)) continue;
+    std::vector<size_t> candidates = without.candidates;
+    candidates.push_back(others[k]);
+    std::vector<std::vector<double>> x = without.x;
+    x.push_back(c.start());
+    const LightTrial rival = fit_light(all, candidates, x, chosen.priors, runs, 25);
+    if (rival.log_evidence > own.log_evidence - within) rivals.insert(c.kind.name);
+  }
+  // And what was fitted in its place and came out as well.
+  for (const LightTrial& t : answer.trials) {
+    if (t.candidates.size() != chosen.candidates.size()) continue;
+    if (!(t.log_evidence > chosen.log_evidence - within) || !t.objection.empty()) continue;
+    std::vector<size_t> rest = t.candidates;
+    for (const size_t other : without.candidates) std::erase(rest, other);
+    if (rest.size() != 1) continue;
+    const LightCandidate& c = all[rest.front()];
+    const bool is_elsewhere = c.kind.index == named.kind.index && c.index != named.index;
+    if (!c.is_empirical() && !is_elsewhere && c.kind.name != named.kind.name) {
+      rivals.insert(c.kind.name);
+    }
+  }
+  return {rivals.begin(), rivals.end()};
+}
+
+}  // namespace photorque
