@@ -1,6 +1,7 @@
 // Readers of scans, sweeps and runs: told apart by their headers, and what is dropped is counted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "core/errors.h"
@@ -110,6 +111,37 @@ TEST(LightRecordings, RowsOfAnotherLengthThanTheHeaderAreNamedWhereMostAre) {
               std::string::npos)
         << error.what();
   }
+}
+
+// A scan at a tilt without its heading was taken to be at the experiment's attitude.
+TEST(LightRecordings, PartsOfAnAttitudeAreRefused) {
+  for (const char* columns :
+       {"tilt_deg", "heading_deg", "tilt_degrees,heading_deg", "q_w,q_x,q_y"}) {
+    const std::string header = std::string("u_m,v_m,irradiance_W_m2,") + columns;
+    const auto cells = static_cast<int>(std::ranges::count(header, ','));
+    std::string row = "0.1,0.2,300";
+    for (int i = 2; i < cells; ++i) row += ",0.5";
+    try {
+      read_light_recording(light_file("part.csv", header + "\n" + row + "\n"), {});
+      ADD_FAILURE() << columns;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("alone of an attitude"), std::string::npos) << e.what();
+    }
+  }
+}
+
+TEST(LightRecordings, SpreadsheetsMayMarkTheirByteOrder) {
+  const auto scan = read_light_recording(
+      light_file("marked.csv", "\xEF\xBB\xBFu_m,v_m,irradiance_W_m2\r\n0.1,0.2,300\r\n"), {});
+  EXPECT_EQ(scan.kind, LightRecording::Kind::scan);
+  EXPECT_EQ(scan.rows(), 1u);
+}
+
+TEST(LightRecordings, LampsWithoutAnyCurrentAreRefused) {
+  const auto file = light_file("dark.csv",
+                               "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A,led_current_A\n"
+                               "0,1,0,0,0,8,0.3,0\n1,1,0,0,0,8,0.3,0\n");
+  EXPECT_THROW(read_light_recording(file, {}), InputError);
 }
 
 TEST(LightRecordings, OthersAreRefused) {

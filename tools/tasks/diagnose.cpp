@@ -251,11 +251,30 @@ std::string DiagnosisRun::report() const {
                      {plot_html, bar_chart_html, map_html});
 }
 
+// A recording counts once, and one that was fitted cannot judge the fit.
+void require_each_once(const std::vector<fs::path>& recordings,
+                       const std::vector<fs::path>& holdouts) {
+  std::vector<fs::path> known;
+  for (const auto* all : {&recordings, &holdouts}) {
+    for (const fs::path& path : *all) {
+      if (!fs::exists(path)) continue;
+      const bool is_known = std::ranges::any_of(
+          known, [&](const fs::path& other) { return fs::equivalent(path, other); });
+      if (is_known) {
+        throw InputError({path.string()}, all == &holdouts ? "--holdout" : "--recording",
+                         "a file that was given already", "another recording");
+      }
+      known.push_back(path);
+    }
+  }
+}
+
 DiagnosisRun diagnose_experiment(const RunOptions& options, const std::vector<fs::path>& recordings,
                                  const std::vector<fs::path>& holdouts, const Console& console) {
   if (recordings.empty()) {
     throw InputError({options.experiment.string()}, "--recording", "nothing", "a recording (CSV)");
   }
+  require_each_once(recordings, holdouts);
   SettingsNode node = parse_toml(options.experiment_text(), options.experiment.string());
   for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
   const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
@@ -265,7 +284,8 @@ DiagnosisRun diagnose_experiment(const RunOptions& options, const std::vector<fs
       !sorted.motion.empty()) {
     return diagnose_both(options, sorted, sorted_by_content(holdouts), console);
   }
-  return are_of_light(recordings, holdouts)
+  // Without a platform nothing but light is meant: its reader says what a file is not.
+  return are_of_light(recordings, holdouts) || (root.has("scene") && !root.has("platform"))
              ? diagnose_light_recordings(options, recordings, holdouts, console)
              : diagnose_motion(options, recordings, holdouts, console);
 }

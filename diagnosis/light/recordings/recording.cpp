@@ -28,7 +28,9 @@ struct LightColumn {
 class LightHeader {
  public:
   explicit LightHeader(std::string_view line) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // as spreadsheets write it
     for (std::string_view cell : cells_of(line)) {
+      if (cell.starts_with(byte_order_mark)) cell.remove_prefix(byte_order_mark.size());
       if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
         cell = cell.substr(1, cell.size() - 2);
       }
@@ -41,6 +43,7 @@ class LightHeader {
     }
   }
   size_t columns() const { return names_.size(); }
+  const std::vector<std::string>& names() const { return names_; }
 
   // By its name in SI, or in another unit of the same quantity.
   std::optional<LightColumn> find(const std::string& name) const {
@@ -111,6 +114,21 @@ ColumnsOfLight columns_of(const LightHeader& header, LightRecording::Kind kind) 
   c.sweep = header.find("sweep");
   if (run) c.lamps = header.find("led_current_A");
   return c;
+}
+
+// An attitude of which a part is missing, or named otherwise, would pass for that of the
+// experiment.
+void require_whole_attitude(const LightHeader& header, const ColumnsOfLight& columns,
+                            const std::filesystem::path& path) {
+  if (columns.q[0] && columns.q[1] && columns.q[2] && columns.q[3]) return;
+  if (columns.tilt && columns.heading) return;
+  for (const std::string& name : header.names()) {
+    const bool is_attitude =
+        name.starts_with("tilt") || name.starts_with("heading") || name.starts_with("q_");
+    if (!is_attitude) continue;
+    throw InputError({path.string()}, "header", "the column " + name + " alone of an attitude",
+                     "tilt_deg and heading_deg, or q_w, q_x, q_y and q_z");
+  }
 }
 
 // One row of a file; each reader says why it is left out, or nothing.
@@ -262,6 +280,7 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   recording.kind = *header->kind();
   recording.name = path.string();
   const ColumnsOfLight columns = columns_of(*header, recording.kind);
+  require_whole_attitude(*header, columns, path);
   recording.has_temperatures = columns.temperature.has_value();
   recording.has_attitudes = columns.q[0].has_value() || (columns.tilt && columns.heading);
   RowReader reader(columns, usual, recording);
@@ -291,6 +310,10 @@ LightRecording read_light_recording(const std::filesystem::path& path,
   if (recording.rows() == 0) {
     throw InputError({path.string(), static_cast<int>(lines.number())}, "rows", "no usable row",
                      "at least one row of numbers");
+  }
+  if (columns.lamps && !(std::ranges::max(recording.lamp_light) > 0.0)) {
+    throw InputError({path.string()}, "led_current_A", "no current in any row",
+                     "the current of the lamps that shone, or no such column");
   }
   make_relative(recording.lamp_light);
   return recording;
