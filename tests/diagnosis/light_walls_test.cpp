@@ -77,6 +77,22 @@ TEST_F(LightWithWall, EdgeLeavesASegmentOfTheAperture) {
       1e-9);
 }
 
+TEST(LightWalls, SheetsLieSideBySideAndLookOneWay) {
+  const Vec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0), above(0.5, 0.5, 0.01);
+  const std::vector<std::array<Vec3, 3>> square = {{a, b, c}, {a, c, d}};
+  EXPECT_TRUE(is_sheet(square));
+  auto with = [&](std::initializer_list<std::array<Vec3, 3>> more) {
+    auto all = square;
+    all.insert(all.end(), more);
+    return is_sheet(all);
+  };
+  EXPECT_FALSE(with({{c, b, a}, {d, c, a}}));  // both sides
+  EXPECT_FALSE(with({{a, b, c}}));             // one twice
+  EXPECT_FALSE(with({{a, b, d}}));             // over another
+  EXPECT_FALSE(with({{b, c, above}}));         // out of the plane
+  EXPECT_FALSE(is_sheet({}));
+}
+
 // From an element of the receiver to a rectangle that stands on its plane at a distance c, of
 // height a and from the foot point so far b to one side: (1/2π)(atan(b/c) − c/h atan(b/h)), h² = a²
 // + c² (D. Hamilton, W. Morgan, NACA TN 2836, 1952, configuration P-4).

@@ -159,18 +159,18 @@ class Unit:
         self.root = ElementTree.parse(folder / "modelDescription.xml").getroot()
         self.reference = {one.get("name"): int(one.get("valueReference")) for one in self.root.find("ModelVariables")}
         identifier = self.root.find("CoSimulation").get("modelIdentifier")
-        self.library = ctypes.CDLL(str(folder / "binaries" / "x86_64-linux" / (identifier + ".so")))
-        self.library.fmi3GetVersion.restype = ctypes.c_char_p
-        self.library.fmi3InstantiateCoSimulation.restype = ctypes.c_void_p
+        self.unit = ctypes.CDLL(str(folder / "binaries" / "x86_64-linux" / (identifier + ".so")))
+        self.unit.fmi3GetVersion.restype = ctypes.c_char_p
+        self.unit.fmi3InstantiateCoSimulation.restype = ctypes.c_void_p
         self.said = []
         self.log = Log(lambda _, status, category, message: self.said.append((status, category.decode(), message.decode())))
-        self.handle = self.library.fmi3InstantiateCoSimulation(
+        self.handle = self.unit.fmi3InstantiateCoSimulation(
             b"one", (token or self.root.get("instantiationToken")).encode(), (str(folder / "resources") + "/").encode(),
             ctypes.c_bool(False), ctypes.c_bool(True), ctypes.c_bool(False), ctypes.c_bool(False), None,
             ctypes.c_size_t(0), None, self.log, None)
 
     def call(self, name, *arguments):
-        return getattr(self.library, name)(ctypes.c_void_p(self.handle), *arguments)
+        return getattr(self.unit, name)(ctypes.c_void_p(self.handle), *arguments)
 
     def initialise(self, start=0.5, stop=2.0):
         status = self.call("fmi3EnterInitializationMode", ctypes.c_bool(False), ctypes.c_double(0), ctypes.c_double(start),

@@ -48,7 +48,10 @@ void add_figure(Table& table, const std::vector<Design>& designs, const std::str
 const std::vector<Quantity>& first_figures(const SweepResult& result) {
   const auto first =
       std::ranges::find_if(result.designs, [](const Design& d) { return d.error.empty(); });
-  if (first == result.designs.end()) throw NumericalError("no design of the sweep succeeded");
+  if (first == result.designs.end()) {
+    const std::string why = result.designs.empty() ? "" : ", the first: " + result.designs[0].error;
+    throw InputError({}, "sweep", "no design that succeeds" + why, "one at least");
+  }
   return first->figures;
 }
 

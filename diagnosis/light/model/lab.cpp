@@ -163,6 +163,39 @@ void LightLab::read_noise() {
   }
 }
 
+bool is_sheet(const std::vector<std::array<Vec3, 3>>& triangles) {
+  constexpr size_t most = 64;
+  constexpr double flat = 1e-6;  // of the triangles' size, and of their directions
+  if (triangles.empty() || triangles.size() > most) return false;
+  const auto area = [](const std::array<Vec3, 3>& t) {
+    return Vec3((t[1] - t[0]).cross(t[2] - t[0]));
+  };
+  const Vec3 first = triangles.front()[0];
+  const Vec3 normal = area(triangles.front()).normalized();
+  double size_m = 0.0;
+  for (const auto& t : triangles) {
+    for (const Vec3& p : t) size_m = std::max(size_m, (p - first).norm());
+  }
+  for (const auto& t : triangles) {
+    if (!(normal.dot(area(t)) > (1.0 - flat) * area(t).norm())) return false;
+    for (const Vec3& p : t) {
+      if (std::abs(normal.dot(p - first)) > flat * size_m) return false;
+    }
+    // The middle of one within another.
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3.0;
+    const auto holds_middle = [&](const std::array<Vec3, 3>& other) {
+      if (&other == &t) return false;
+      for (size_t k = 0; k < 3; ++k) {
+        const Vec3 edge = other[(k + 1) % 3] - other[k];
+        if (normal.dot(edge.cross(middle - other[k])) <= 0.0) return false;
+      }
+      return true;
+    };
+    if (std::ranges::any_of(triangles, holds_middle)) return false;
+  }
+  return true;
+}
+
 void LightLab::find_walls() {
   const Scene& scene = experiment_.scene;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
@@ -184,6 +217,7 @@ void LightLab::find_walls() {
     for (const auto& t : wall.triangles) {
       for (const Vec3& p : t) wall.radius_m = std::max(wall.radius_m, (p - wall.centre_m).norm());
     }
+    wall.is_sheet = is_sheet(wall.triangles);
     walls_.push_back(std::move(wall));
   }
 }

@@ -29,7 +29,12 @@ struct LightWall {
   std::vector<std::array<Vec3, 3>> triangles;  // body frame
   Vec3 centre_m = Vec3::Zero();
   double radius_m = 0.0;  // of the sphere about the centre that holds it
+  bool is_sheet = false;  // see is_sheet()
 };
+
+// Whether triangles lie side by side in one plane and look the same way, so that no two of them
+// hide the same. (More than 64 are not looked at.)
+bool is_sheet(const std::vector<std::array<Vec3, 3>>& triangles);
 
 // All lamps with beams of one width.
 struct LampSet {

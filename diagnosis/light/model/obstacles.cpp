@@ -139,9 +139,10 @@ class View {
 
 constexpr double nearest_part = 1e-4;
 
-// What a wall hides of the aperture; nothing where it reaches beyond its plane. What the point has
-// behind it hides nothing.
+// What a sheet hides of the aperture; nothing for other walls, whose parts may hide the same, and
+// where it reaches beyond the aperture's plane. What the point has behind it hides nothing.
 std::optional<DiscPart> hidden_by(const LightWall& wall, const View& view) {
+  if (!wall.is_sheet) return std::nullopt;
   DiscPart hidden;
   for (const std::array<Vec3, 3>& t : wall.triangles) {
     std::array<Vec2, 4> seen;

@@ -31,8 +31,8 @@ class Obstacles {
     Vec2 moment = Vec2::Zero();
   };
   // Body frame; `side` and `up` span the disc and have its radius. `skipped`: a wall that does not
-  // count, none where it is past the last. Exact for a wall or a box alone, and smooth as it moves;
-  // else from 100 points of the aperture.
+  // count, none where it is past the last. Exact for a flat wall or a box alone, and smooth as it
+  // moves; else from 100 points of the aperture.
   Open visible(const Vec3& point, const Vec3& lamp, const Vec3& side, const Vec3& up,
                size_t skipped) const;
 

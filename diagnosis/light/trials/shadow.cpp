@@ -161,11 +161,11 @@ class CarvedPlane {
   // The rectangle about all that hangs together with an element; it becomes open.
   static Rectangle patch_about(size_t seed, std::vector<bool>& is_open) {
     Rectangle r{cells, -1, cells, -1};
-    std::vector<size_t> todo = {seed};
+    std::vector<size_t> edge = {seed};
     is_open[seed] = true;
-    while (!todo.empty()) {
-      const auto e = static_cast<int>(todo.back());
-      todo.pop_back();
+    while (!edge.empty()) {
+      const auto e = static_cast<int>(edge.back());
+      edge.pop_back();
       const int x = e % cells, y = e / cells;
       r = {std::min(r.x0, x), std::max(r.x1, x), std::min(r.y0, y), std::max(r.y1, y)};
       const int near[4][2] = {{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}};
@@ -174,7 +174,7 @@ class CarvedPlane {
         const auto k = static_cast<size_t>(ny * cells + nx);
         if (is_open[k]) continue;
         is_open[k] = true;
-        todo.push_back(k);
+        edge.push_back(k);
       }
     }
     return r;
