@@ -225,7 +225,8 @@ std::string scan_figures(const RecordingSeries& recording, bool found, const Cha
     for (const ScanView& view : views_of_scans(found)) {
       maps += tag("figure", tag("figcaption", view.title) + draw.map(scan_map(groups[g], view, g)));
     }
-    figures += tag("p", "At " + attitude_words(groups[g].lab_from_body) + ":");
+    figures += tag("p", "At " + attitude_words(groups[g].lab_from_body) +
+                            ". Differences in grey are less than twice the error of a reading.");
     figures += tag("div", maps, "maps");
   }
   if (groups.size() > most) {

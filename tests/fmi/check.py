@@ -159,18 +159,18 @@ class Unit:
         self.root = ElementTree.parse(folder / "modelDescription.xml").getroot()
         self.reference = {one.get("name"): int(one.get("valueReference")) for one in self.root.find("ModelVariables")}
         identifier = self.root.find("CoSimulation").get("modelIdentifier")
-        self.unit = ctypes.CDLL(str(folder / "binaries" / "x86_64-linux" / (identifier + ".so")))
-        self.unit.fmi3GetVersion.restype = ctypes.c_char_p
-        self.unit.fmi3InstantiateCoSimulation.restype = ctypes.c_void_p
+        self.shared_object = ctypes.CDLL(str(folder / "binaries" / "x86_64-linux" / (identifier + ".so")))
+        self.shared_object.fmi3GetVersion.restype = ctypes.c_char_p
+        self.shared_object.fmi3InstantiateCoSimulation.restype = ctypes.c_void_p
         self.said = []
         self.log = Log(lambda _, status, category, message: self.said.append((status, category.decode(), message.decode())))
-        self.handle = self.unit.fmi3InstantiateCoSimulation(
+        self.handle = self.shared_object.fmi3InstantiateCoSimulation(
             b"one", (token or self.root.get("instantiationToken")).encode(), (str(folder / "resources") + "/").encode(),
             ctypes.c_bool(False), ctypes.c_bool(True), ctypes.c_bool(False), ctypes.c_bool(False), None,
             ctypes.c_size_t(0), None, self.log, None)
 
     def call(self, name, *arguments):
-        return getattr(self.unit, name)(ctypes.c_void_p(self.handle), *arguments)
+        return getattr(self.shared_object, name)(ctypes.c_void_p(self.handle), *arguments)
 
     def initialise(self, start=0.5, stop=2.0):
         status = self.call("fmi3EnterInitializationMode", ctypes.c_bool(False), ctypes.c_double(0), ctypes.c_double(start),
@@ -288,7 +288,7 @@ def check_refusals(folder):
     stranger = Unit(folder, token="{of another unit}")
     expect(stranger.handle is None and stranger.said and stranger.said[0][0] == ERROR, "a wrong token")
     unit = Unit(folder)
-    expect(unit.library.fmi3GetVersion() == b"3.0", "fmi3GetVersion")
+    expect(unit.shared_object.fmi3GetVersion() == b"3.0", "fmi3GetVersion")
     expect(unit.step(0.5, 0.1)[0] == ERROR, "a step before initialisation")
     unit.initialise()
     expect(unit.command([0.06, 0, 0]) == DISCARD and unit.said[-1][1] == "logStatusDiscard", "a torque too large")
