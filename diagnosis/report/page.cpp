@@ -102,19 +102,20 @@ std::string parameter_rows(const std::vector<FittedParameter>& parameters) {
   return rows;
 }
 
-std::string parameter_table(const std::vector<FittedParameter>& parameters) {
+std::string parameter_table(const std::vector<FittedParameter>& parameters,
+                            const char* significance) {
   if (parameters.empty()) return "";
-  return tag("table",
-             row({"Parameter", "Value ± 1 σ", "Unit", "From no effect"}, "th") +
-                 parameter_rows(parameters),
-             "numbers");
+  return tag(
+      "table",
+      row({"Parameter", "Value ± 1 σ", "Unit", significance}, "th") + parameter_rows(parameters),
+      "numbers");
 }
 
 std::string effect_card(const FoundEffect& effect) {
   std::string card = tag("h3", xml_text(spoken(effect.kind)) + " <small>probability " +
                                    percent(effect.probability) + "</small>");
   card += tag("p", xml_text(effect.explanation));
-  card += parameter_table(effect.parameters);
+  card += parameter_table(effect.parameters, "From no effect");
   if (!effect.indistinguishable_from.empty()) {
     card += tag("p",
                 "<b>These recordings cannot tell it from:</b> " +
@@ -280,7 +281,7 @@ std::string overlays(const Diagnosis& d, const ChartDrawer& draw) {
 std::string priors(const Diagnosis& d) {
   if (d.priors_refined.empty()) return "";
   return tag("section", tag("h2", "What the nominal model left uncertain, after these recordings") +
-                            parameter_table(d.priors_refined));
+                            parameter_table(d.priors_refined, "From zero"));
 }
 
 // What the gate asks: the same data against the prediction with its uncertainty.

@@ -81,7 +81,7 @@ std::string unbalanced(const std::string& page) {
 TEST(Report, ShowsScansBesideTheirModels) {
   const std::string page = report(diagnosis_of_light());
   EXPECT_EQ(unbalanced(page), "");
-  EXPECT_THAT(page, HasSubstr("At tilt 0:"));
+  EXPECT_THAT(page, HasSubstr("At tilt 0."));
   EXPECT_THAT(page, HasSubstr("<svg>Measured: scan1.csv, tilt 0: 10 20 30 60 50 40</svg>"));
   EXPECT_THAT(page, HasSubstr("<svg>Nominal model: scan1.csv, tilt 0: 9 18 27 54 45 36</svg>"));
   EXPECT_THAT(page, HasSubstr("<svg>Measured minus nominal model: scan1.csv, tilt 0: 1 2 3 6 5 4"));
