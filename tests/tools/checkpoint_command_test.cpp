@@ -1,4 +1,5 @@
-// `propagate --checkpoint`: runs that are killed at random moments end as if they had not been.
+// `propagate --checkpoint` and that of `torque-map`: runs that are killed at random moments end as
+// if they had not been.
 #include <signal.h>
 #include <unistd.h>
 
@@ -49,9 +50,10 @@ class CheckpointCommand : public CommandTest {
   // Kills a run until at least `least` were killed behind a checkpoint, then lets it end.
   void kill_until_done(const std::string& arguments, int least, int longest_ms) {
     std::mt19937 random(7);
+    const fs::path state = at("o/" + arguments.substr(0, arguments.find(' ')) + ".checkpoint");
     int gone_on = 0;
     for (int i = 0; i < 400 && gone_on < least; ++i) {
-      const bool has_state = fs::exists(at("o/propagate.checkpoint"));
+      const bool has_state = fs::exists(state);
       const std::chrono::milliseconds length(
           std::uniform_int_distribution<int>(100, longest_ms)(random));
       ASSERT_LE(killed_after(arguments + every + " --out " + at("o"), length), 0)
@@ -61,7 +63,7 @@ class CheckpointCommand : public CommandTest {
     EXPECT_GE(gone_on, least);
     ASSERT_EQ(killed_after(arguments + every + " --out " + at("o"), std::chrono::minutes(5)), 0)
         << file_text(at("stderr"));
-    EXPECT_FALSE(fs::exists(at("o/propagate.checkpoint")));
+    EXPECT_FALSE(fs::exists(state));
   }
 };
 
@@ -73,6 +75,23 @@ TEST_F(CheckpointCommand, KilledRunsEndAsIfTheyHadNotBeen) {
   const auto whole = numbers("whole");
   EXPECT_TRUE(whole.contains("recording.csv"));
   EXPECT_EQ(numbers("o"), whole);
+}
+
+// Directions of sunlight, one after another, by rays and by quadrature.
+TEST_F(CheckpointCommand, KilledTorqueMapsEndAsIfTheyHadNotBeen) {
+  for (const std::string direct : {"rays", "auto"}) {
+    const std::string run_it =
+        "torque-map " + (scenes / "spacecraft/light_pressure.toml").string() +
+        " --set torque_map.azimuth_step_deg=15 --set torque_map.elevation_step_deg=15"
+        " --set torque_map.rays=16384 --set 'trace.direct=\"" +
+        direct + "\"'";
+    fs::remove_all(at("o"));
+    const std::string whole = "whole_" + direct;
+    ASSERT_EQ(run(run_it + " --out " + at(whole)).status, 0);
+    kill_until_done(run_it, 3, direct == "rays" ? 2000 : 8000);
+    EXPECT_TRUE(numbers(whole).contains("wrench_table_body.csv"));
+    EXPECT_EQ(numbers("o"), numbers(whole));
+  }
 }
 
 // Light that is traced at every exchange, tracker, battery and cells that warm up.

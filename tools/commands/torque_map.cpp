@@ -11,14 +11,21 @@ namespace {
 
 void run_torque_map(const CommandLine& line) {
   const Console console = terminal(line);
-  if (!line.page) {
-    write_results(line, console, torque_map_of_experiment(line, console).result);
-    return;
+  std::optional<CheckpointFile> checkpoint;
+  if (line.checkpoint_min) {
+    checkpoint.emplace(line.out_folder() / "torque-map.checkpoint", 60.0 * *line.checkpoint_min);
   }
+  CheckpointFile* file = checkpoint ? &*checkpoint : nullptr;
   TorqueMapStage stage;
-  TorqueMapRun run = torque_map_of_experiment(line, console, stage.watch());
-  run.result.files.push_back(torque_map_page(run, std::move(stage), page_head(line)));
+  const NodeWatch watch = line.page ? stage.watch() : NodeWatch{};
+  TorqueMapRun run = torque_map_of_experiment(line, console, watch, file);
+  if (line.page) {
+    run.result.files.push_back(torque_map_page(run, std::move(stage), page_head(line)));
+  }
   write_results(line, console, run.result);
+  // Its work is done and stands in the results.
+  std::error_code stays;
+  if (checkpoint) std::filesystem::remove(checkpoint->path(), stays);
 }
 
 }  // namespace
@@ -26,6 +33,7 @@ void run_torque_map(const CommandLine& line) {
 Verb torque_map_verb() {
   Verb verb{"torque-map", "Force, torque and power over a grid of attitudes or directions of light",
             run_torque_map, true};
+  verb.takes_checkpoint = true;
   verb.draws_page = true;
   return verb;
 }

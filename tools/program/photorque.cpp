@@ -183,7 +183,7 @@ int run(int argc, char** argv, Interruption& interruption) {
       command
           ->add_option(
               "--checkpoint", line.checkpoint_min,
-              "Keep the run's state in the folder of results (propagate.checkpoint) every so "
+              "Keep the state of the run in the folder of results (VERB.checkpoint) every so "
               "many minutes; after a kill the same command goes on from there")
           ->check(minutes_above_zero);
     }

@@ -33,13 +33,19 @@ Estimate direct_bin_W(const FluxMapReceiver& map, const BinSums& sums, size_t bi
   return with_bound(estimate_from_replicates(values), bound_W);
 }
 
-DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays) {
+// `ray_W`: of one ray, on the mean.
+DirectLight compare(const FluxMapReceiver& map, const Gathered& gathered, const BinSums& rays,
+                    double ray_W) {
+  constexpr double few = 100.0;     // rays: their scatter does not tell what chance does
   constexpr double well_lit = 0.3;  // relative error of the rays' bin at most
   DirectLight light;
   light.name = map.name();
   light.gathered_W = direct_total_W(map, gathered.direct);
   light.rays_W = direct_total_W(map, rays);
-  const double sigma = std::hypot(light.gathered_W.standard_error, light.rays_W.standard_error);
+  const double expected = light.gathered_W.value / ray_W;
+  const double chance_W = expected < few ? std::sqrt(std::max(expected, 0.0)) * ray_W : 0.0;
+  const double sigma =
+      std::hypot(light.gathered_W.standard_error, light.rays_W.standard_error, chance_W);
   const double difference = light.gathered_W.value - light.rays_W.value;
   light.difference_sigma = difference / (sigma + 1e-300);
   int bins = 0;
@@ -145,6 +151,7 @@ struct Wanted {
   GatherOptions options;
   bool weigh_cost;
   uint64_t rays;
+  double ray_W;
   DirectRoute& route;
 
   // Whether it is worth while; else says so.
@@ -174,7 +181,7 @@ void gather_light(const Wanted& wanted, const FluxMapReceiver& map, size_t place
   if (!wanted.pays("direct light on " + map.name(), map.grid().bins() * beams.size())) return;
   const Gathered gathered =
       gather_direct(wanted.scene, wanted.lab_from_body, beams, map, wanted.options);
-  wanted.route.gathered.push_back(compare(map, gathered, sums));
+  wanted.route.gathered.push_back(compare(map, gathered, sums, wanted.ray_W));
   wanted.route.gathered.back().receiver = place;
   replace_direct(gathered, sums);
 }
@@ -213,6 +220,7 @@ DirectRoute gather_into(const Experiment& experiment, const TraceableScene& scen
                        .target_error = effort.target_error.value_or(0.0)},
                       effort.direct == TraceEffort::Direct::automatic && !effort.target_error,
                       result.rays,
+                      result.power_balance.emitted_W / static_cast<double>(result.rays),
                       route};
   for (size_t i = 0; i < experiment.receivers.size(); ++i) {
     const NamedReceiver& receiver = experiment.receivers[i];

@@ -2,25 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/parallel.h"
-#include "receivers/wrench/smoothing.h"
 #include "receivers/wrench/spad.h"
 #include "receivers/wrench/table_product.h"
+#include "tools/coupling/table_cache.h"
+#include "tools/sunlight/ways.h"
 
 namespace photorque {
 namespace {
-
-// The experiment's sun: the table is per unit of its pressure.
-struct SunLight {
-  Vec3 towards_lab;
-  double pressure_Pa = 0.0;  // irradiance over the speed of light
-};
 
 SunLight only_sun(const Experiment& experiment) {
   const std::vector<Settings>& sources = experiment.file.sources;
@@ -35,12 +29,6 @@ SunLight only_sun(const Experiment& experiment) {
   const double irradiance_W_m2 = sources[0].number_or("irradiance_W_m2", solar_irradiance_W_m2);
   const Vec3 travel = experiment.beams[0].lab_from_emitter.rotation * Vec3::UnitZ();
   return {-travel, irradiance_W_m2 / speed_of_light_m_s};
-}
-
-// Attitude in which the Sun stands at `towards_body`. It depends on nothing else, so that the same
-// direction, reached by two azimuths, is the same trace.
-RigidTransform lab_from_body_with_sun(const Vec3& towards_body, const Vec3& towards_lab) {
-  return {Quat::FromTwoVectors(towards_body, towards_lab), Vec3::Zero()};
 }
 
 // The earlier node with the same direction, or this one: azimuths at a pole, and a full turn.
@@ -65,7 +53,7 @@ std::vector<Direction> directions_of(const WrenchTable& table, const DirectionGr
     for (size_t e = 0; e < grid.elevation_rad.size(); ++e) {
       const Vec3 towards_body = towards_light({grid.elevation_rad[e], grid.azimuth_rad[a]});
       all.push_back({table.node(a, e), first_of_direction(table, a, e), a, e,
-                     lab_from_body_with_sun(towards_body, sun.towards_lab)});
+                     sun.lab_from_body(towards_body)});
     }
   }
   return all;
@@ -85,13 +73,6 @@ bool covers_sphere(const WrenchTable& table) {
   };
   return spans(table.around_rad, pi) && spans(table.polar_rad, 0.5 * pi) &&
          regular(table.around_rad) && regular(table.polar_rad);
-}
-
-void copy_node(WrenchTable& table, size_t to, size_t from) {
-  for (auto* values : {&table.force_body_N, &table.torque_body_N_m, &table.force_error_N,
-                       &table.torque_error_N_m}) {
-    (*values)[to] = (*values)[from];
-  }
 }
 
 // The longest of these vectors; its error is that of the component along it.
@@ -127,175 +108,151 @@ void print_summary(const Console& console, const WrenchTable& table, const SunLi
                show(mean_push_N(table) / sun.pressure_Pa) + " m2");
 }
 
-// What light that has met a surface before does, about the point of the table, twice: from either
-// half of the replicates.
-TwofoldWrench bounced_of(const WrenchReceiver& receiver, const BinSums& sums,
-                         const WrenchTable& table) {
-  const int half = sums.replicates / 2;
-  const auto mean = [&](int from, int to) {
-    WrenchComponents all{};
-    for (int r = from; r < to; ++r) {
-      const auto bins = sums.of(r);
-      for (size_t bin = receiver.direct_entries(); bin < receiver.bins(); ++bin) {
-        all[bin % all.size()] += bins[bin] / (to - from);
-      }
-    }
-    const Wrench there = wrench_about(
-        Wrench{{all[0], all[1], all[2]}, {all[3], all[4], all[5]}, receiver.about_body_m()},
-        table.about_body_m);
-    const Vec3 &f = there.force_N, &t = there.torque_N_m;
-    return WrenchComponents{f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
-  };
-  return {mean(0, half), mean(half, sums.replicates)};
-}
-
-// The bounced part of a table over the sphere, which the table does not hold yet.
-class BouncedLight {
+// What is done already, one direction after another; kept in a file now and then.
+class DoneDirections {
  public:
-  BouncedLight(const OpticalRun& run, const SunLight& sun, size_t nodes)
-      : run_(run), sun_(sun), halves_(nodes) {}
-
-  void set(size_t node, const OpticalResult& result, const WrenchTable& table) {
-    halves_[node] = bounced_of(run_.wrench(), result.sums[run_.wrench_index()], table);
+  DoneDirections(const OpticalRun& run, const Console& console, CheckpointFile* file)
+      : console_(console), file_(file) {
+    if (file_ == nullptr) return;
+    identity_ =
+        table_cache_version() + "torque-map, seed " + std::to_string(run.provenance().seed) + "\n";
+    for (const auto& [name, hash] : run.provenance().inputs) identity_ += name + " " + hash + "\n";
+    const std::optional<CheckpointFile::Kept> kept = file_->read(identity_);
+    if (!kept) return;
+    Snapshot snapshot(kept->state);
+    keep(snapshot);
+    if (!snapshot.is_whole()) {
+      throw InputError({file_->path().string()}, "", "a damaged checkpoint",
+                       "a checkpoint of this run (another --out, or none there, begins anew)");
+    }
+    console_.line("goes on from " + file_->path().string() + ": " + std::to_string(all_.size()) +
+                  " directions are done");
   }
-  void copy(size_t to, size_t from) { halves_[to] = halves_[from]; }
 
-  // Adds it to the table: smoothed, unless neighbours are too far apart for that.
-  void add_to(WrenchTable& table, const Console& console, int threads) const {
-    const SmoothWrench smooth = smooth_over_sphere(table, halves_);
-    double own_square = 0.0, smooth_square = 0.0;
-    for (size_t k = 3; k < 6; ++k) {
-      for (const TwofoldWrench& one : halves_) {
-        own_square += 0.25 * std::pow(one.first[k] - one.second[k], 2);
-      }
-      smooth_square += std::pow(smooth.error[k], 2) * static_cast<double>(halves_.size());
+  size_t count() const { return all_.size(); }
+  const DirectionWrench& operator[](size_t i) const { return all_[i]; }
+  void add(std::vector<DirectionWrench> more) {
+    std::ranges::move(more, std::back_inserter(all_));
+    if (file_ == nullptr || !file_->due()) return;
+    Snapshot snapshot;
+    keep(snapshot);
+    try {
+      file_->write(identity_, 0.0, snapshot.bytes());
+    } catch (const InputError& error) {  // a disk that is full for a while
+      console_.line("note: no checkpoint: " + std::string(error.what()));
     }
-    const bool smoother = smooth_square < own_square;
-    for (size_t node = 0; node < table.nodes(); ++node) {
-      for (size_t k = 0; k < 6; ++k) {
-        const TwofoldWrench& one = halves_[node];
-        const double value =
-            smoother ? smooth.at_node[6 * node + k] : 0.5 * (one.first[k] + one.second[k]);
-        const double error =
-            smoother ? smooth.error[k] : std::sqrt(own_square / 3.0 / halves_.size());
-        const auto axis = static_cast<Eigen::Index>(k % 3);
-        auto& values = k < 3 ? table.force_body_N : table.torque_body_N_m;
-        auto& errors = k < 3 ? table.force_error_N : table.torque_error_N_m;
-        values[node][axis] += value;
-        errors[node][axis] = std::hypot(errors[node][axis], error);
-      }
-    }
-    if (smoother) say(smooth, table, console, threads);
   }
 
  private:
-  // How far the series is off in directions that it was not made from.
-  void say(const SmoothWrench& smooth, const WrenchTable& table, const Console& console,
-           int threads) const {
-    constexpr size_t fresh = 32;
-    constexpr uint64_t more = 8;  // rays, so that their own noise counts less
-    const ExperimentFile& file = run_.experiment().file;
-    std::vector<double> square(fresh, 0.0), noise(fresh, 0.0);
-    parallel_for(fresh, threads, [&](size_t i) {
-      // Evenly over the sphere, off the nodes.
-      constexpr double golden_rad = 2.39996322972865332;
-      const double height = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / fresh;
-      const TableAngles angles{std::asin(height), golden_rad * (static_cast<double>(i) + 0.3)};
-      const RigidTransform attitude =
-          lab_from_body_with_sun(towards_light(angles), sun_.towards_lab);
-      const OpticalResult result =
-          run_.run(attitude, {}, more * file.torque_map_rays.value_or(file.trace.rays));
-      const TwofoldWrench truth =
-          bounced_of(run_.wrench(), result.sums[run_.wrench_index()], table);
-      const Eigen::VectorXd own = smooth.series.at(angles.around_rad, angles.polar_rad);
-      for (size_t k = 3; k < 6; ++k) {
-        const double mean = 0.5 * (truth.first[k] + truth.second[k]);
-        square[i] += std::pow(mean - own[static_cast<Eigen::Index>(k)], 2) / 3.0;
-        noise[i] += 0.25 * std::pow(truth.first[k] - truth.second[k], 2) / 3.0;
-      }
-    });
-    double squares = 0.0, noises = 0.0;
-    for (size_t i = 0; i < fresh; ++i) {
-      squares += square[i] / fresh;
-      noises += noise[i] / fresh;
-    }
-    const double largest_N_m = longest(table.torque_body_N_m, table.torque_error_N_m).value;
-    const double stated = std::sqrt((std::pow(smooth.error[3], 2) + std::pow(smooth.error[4], 2) +
-                                     std::pow(smooth.error[5], 2)) /
-                                    3.0);
-    console.line("  light that bounced is smoothed by spherical harmonics up to degree " +
-                 std::to_string(smooth.series.degree()) + ": torque error " +
-                 show(stated / largest_N_m) + " of the largest (rms); " + std::to_string(fresh) +
-                 " fresh directions differ by " + show(std::sqrt(squares) / largest_N_m) +
-                 ", of which " + show(std::sqrt(noises) / largest_N_m) + " is their own noise");
+  void keep(Snapshot& snapshot) {
+    snapshot.each(all_, [&](DirectionWrench& one) { snapshot(one); });
   }
 
-  const OpticalRun& run_;
-  const SunLight& sun_;
-  std::vector<TwofoldWrench> halves_;
+  const Console& console_;
+  CheckpointFile* file_;
+  std::string identity_;
+  std::vector<DirectionWrench> all_;
 };
+
+// Finds what is not done yet, so many at a time, each on one thread: a direction is too short to
+// share out.
+void find_all(const LightDirections& light, const std::vector<Direction>& distinct,
+              const Console& console, int threads, DoneDirections& done) {
+  constexpr size_t block = 64;
+  const auto progress = console.progress("directions");
+  const WallTime wall;
+  const size_t before = done.count();
+  while (done.count() < distinct.size()) {
+    const size_t from = done.count();
+    std::vector<DirectionWrench> found(std::min(block, distinct.size() - from));
+    parallel_for(found.size(), threads,
+                 [&](size_t i) { found[i] = light.at(distinct[from + i].lab_from_body); });
+    done.add(std::move(found));
+    if (progress) {
+      progress(static_cast<double>(done.count()) / static_cast<double>(distinct.size()));
+    }
+    const double left_s = wall.elapsed_s() * static_cast<double>(distinct.size() - done.count()) /
+                          static_cast<double>(done.count() - before);
+    console.note_progress("directions: " + std::to_string(done.count()) + " of " +
+                          std::to_string(distinct.size()) + " done, about " +
+                          show(std::ceil(left_s)) + " s to go");
+  }
+  console.done();
+}
+
+// Every node in their order, as a trace shows it; what the same direction gave before is not traced
+// again.
+void show_nodes(const OpticalRun& run, const std::vector<Direction>& all, size_t nodes,
+                const NodeWatch& watch) {
+  std::map<size_t, OpticalResult> earlier;
+  for (const Direction& one : all) {
+    if (one.first != one.node) {
+      watch({run, nodes, one.lab_from_body, earlier.at(one.first)});
+      continue;
+    }
+    const OpticalResult result =
+        run.run(one.lab_from_body, {}, run.experiment().file.torque_map_rays);
+    watch({run, nodes, one.lab_from_body, result});
+    if (one.around == 0) earlier.emplace(one.node, result);
+  }
+}
 
 }  // namespace
 
+RigidTransform SunLight::lab_from_body(const Vec3& towards_body) const {
+  return {Quat::FromTwoVectors(towards_body, towards_lab), Vec3::Zero()};
+}
+
+std::vector<RigidTransform> fresh_directions(size_t count, const SunLight& sun) {
+  constexpr double golden_rad = 2.39996322972865332;
+  std::vector<RigidTransform> attitudes;
+  for (size_t i = 0; i < count; ++i) {
+    const double height = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const TableAngles angles{std::asin(height), golden_rad * (static_cast<double>(i) + 0.3)};
+    attitudes.push_back(sun.lab_from_body(towards_light(angles)));
+  }
+  return attitudes;
+}
+
+double largest_torque_N_m(const WrenchTable& table) {
+  return longest(table.torque_body_N_m, table.torque_error_N_m).value;
+}
+
 TorqueMapRun map_over_direction(const Console& console,
                                 const std::shared_ptr<const OpticalRun>& shared, int threads,
-                                const NodeWatch& watch) {
+                                const NodeWatch& watch, CheckpointFile* checkpoint) {
   const OpticalRun& run = *shared;
   const DirectionGrid& grid = *run.experiment().file.light_directions;
   const SunLight sun = only_sun(run.experiment());
   WrenchTable table = make_wrench_table(WrenchTable::Angles::azimuth_elevation, grid.elevation_rad,
                                         grid.azimuth_rad);
   const bool whole = covers_sphere(table);
-  BouncedLight bounced(run, sun, table.nodes());
-  uint64_t rays = 0;
-  Warnings warnings;
   const WallTime wall;
   const std::vector<Direction> all = directions_of(table, grid, sun);
-  // For the watch alone, which sees every node: what the same direction gave before.
-  std::map<size_t, OpticalResult> earlier;
-  const auto progress = console.progress("directions");
-  // So many at a time, each on one thread: a trace of one direction is too short to share out.
-  constexpr size_t block = 64;
-  std::vector<OpticalResult> results(block);
-  for (size_t from = 0; from < all.size(); from += block) {
-    const size_t count = std::min(block, all.size() - from);
-    parallel_for(count, threads, [&](size_t i) {
-      const Direction& one = all[from + i];
-      if (one.first != one.node) return;
-      results[i] = run.run(one.lab_from_body, {}, run.experiment().file.torque_map_rays);
-    });
-    for (size_t i = 0; i < count; ++i) {
-      const Direction& one = all[from + i];
-      if (one.first != one.node) {
-        copy_node(table, one.node, one.first);
-        bounced.copy(one.node, one.first);
-        if (watch) watch({run, table.nodes(), one.lab_from_body, earlier.at(one.first)});
-        continue;
-      }
-      const OpticalResult& result = results[i];
-      if (watch) {
-        watch({run, table.nodes(), one.lab_from_body, result});
-        if (one.around == 0) earlier.emplace(one.node, result);
-      }
-      const BinSums& sums = result.sums[run.wrench_index()];
-      set_node(table, one.node, whole ? run.wrench().direct(sums) : run.wrench().total(sums));
-      bounced.set(one.node, result, table);
-      warnings.add(run.warnings(result),
-                   "azimuth " + show(stated_deg(grid.azimuth_rad[one.around])) +
-                       " deg, elevation " + show(stated_deg(grid.elevation_rad[one.polar])) +
-                       " deg");
-      rays += result.rays;
-    }
-    const size_t done = from + count;
-    if (progress) progress(static_cast<double>(done) / static_cast<double>(all.size()));
-    const double left_s = wall.elapsed_s() * static_cast<double>(all.size() - done) /
-                          static_cast<double>(std::max<size_t>(done, 1));
-    console.note_progress("directions: " + std::to_string(done) + " of " +
-                          std::to_string(all.size()) + " traced, about " + show(std::ceil(left_s)) +
-                          " s to go");
+  std::vector<Direction> distinct;
+  std::vector<size_t> place(table.nodes());  // of a node's direction among the distinct ones
+  for (const Direction& one : all) {
+    if (one.first == one.node) distinct.push_back(one);
+    place[one.node] = one.first == one.node ? distinct.size() - 1 : place[one.first];
   }
-  console.done();
-  if (whole) bounced.add_to(table, console, threads);
+  std::unique_ptr<LightDirections> light = sunlit_directions(run, sun, table.about_body_m, threads);
+  if (!light) light = traced_directions(run, sun, table.about_body_m);
+  DoneDirections done(run, console, checkpoint);
+  find_all(*light, distinct, console, threads, done);
+
+  uint64_t rays = 0;
+  Warnings warnings;
+  for (size_t i = 0; i < distinct.size(); ++i) {
+    rays += done[i].rays;
+    warnings.add(done[i].warnings,
+                 "azimuth " + show(stated_deg(grid.azimuth_rad[distinct[i].around])) +
+                     " deg, elevation " + show(stated_deg(grid.elevation_rad[distinct[i].polar])) +
+                     " deg");
+  }
+  std::vector<DirectionWrench> found;
+  for (size_t node = 0; node < table.nodes(); ++node) found.push_back(done[place[node]]);
+  light->fill(table, found, whole, console, threads);
+  if (watch) show_nodes(run, all, table.nodes(), watch);
   const double wall_s = wall.elapsed_s();
   print_summary(console, table, sun);
 

@@ -159,14 +159,15 @@ TorqueMapRun map_over_attitude(const Console& console, const std::shared_ptr<Opt
 }  // namespace
 
 TorqueMapRun torque_map_of_experiment(const RunOptions& options, const Console& console,
-                                      const NodeWatch& watch) {
+                                      const NodeWatch& watch, CheckpointFile* checkpoint) {
   RunOptions own = options;
   const ExperimentFile file =
       read_experiment_text(options.experiment, options.experiment_text(), options.all_overrides());
   if (file.light_directions) own.threads = 1;
   const auto run = std::make_shared<OpticalRun>(own, console);
-  return file.light_directions ? map_over_direction(console, run, options.threads, watch)
-                               : map_over_attitude(console, run, watch);
+  return file.light_directions
+             ? map_over_direction(console, run, options.threads, watch, checkpoint)
+             : map_over_attitude(console, run, watch);
 }
 
 }  // namespace photorque

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/wrench_table.h"
+#include "tools/coupling/checkpoint_file.h"
 #include "tools/runs/optical_run.h"
 
 namespace photorque {
@@ -26,8 +27,9 @@ struct TracedNode {
 };
 using NodeWatch = std::function<void(const TracedNode&)>;
 
-// The attitudes of [torque_map], or its directions of light.
+// The attitudes of [torque_map], or its directions of light; the latter go on from a checkpoint.
 TorqueMapRun torque_map_of_experiment(const RunOptions& options, const Console& console,
-                                      const NodeWatch& watch = {});
+                                      const NodeWatch& watch = {},
+                                      CheckpointFile* checkpoint = nullptr);
 
 }  // namespace photorque

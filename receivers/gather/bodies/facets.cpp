@@ -13,6 +13,7 @@ Facet facet_of(const SurfaceFace& face) {
   facet.area_m2 = face.area_body_m2.norm();
   facet.normal = face.area_body_m2 / facet.area_m2;
   facet.instance = face.instance;
+  facet.triangle = face.triangle;
   facet.ball = {(face.corner_body_m[0] + face.corner_body_m[1] + face.corner_body_m[2]) / 3.0, 0.0};
   for (const Vec3& corner : facet.corner_m) {
     facet.ball.radius_m = std::max(facet.ball.radius_m, (corner - facet.ball.centre_m).norm());
@@ -47,8 +48,10 @@ bool fronts_look_inwards(std::span<const Facet> facets) {
 Facets::Facets(const Scene& scene) {
   for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
     first_.push_back(facets_.size());
+    numbers_.emplace_back();
     for (const SurfaceFace& face : faces_of(scene, std::span(&instance, 1))) {
       if (face.area_body_m2.norm() > 0.0) facets_.push_back(facet_of(face));
+      numbers_.back().push_back(static_cast<uint32_t>(std::max<size_t>(facets_.size(), 1) - 1));
     }
     const auto own = std::span(facets_).subspan(first_.back());
     balls_.push_back(ball_about(own));

@@ -19,6 +19,7 @@ struct Facet {
   double area_m2 = 0.0;
   Ball ball;  // about its centroid
   uint32_t instance = 0;
+  uint32_t triangle = 0;
   // Nothing of the scene lies above the back [0] or the front [1]: whatever comes to that side is
   // not shaded.
   std::array<bool, 2> free = {false, false};
@@ -32,6 +33,10 @@ class Facets {
   std::span<const Facet> of(uint32_t instance) const {
     return std::span(facets_).subspan(first_[instance], first_[instance + 1] - first_[instance]);
   }
+  std::span<const Facet> all() const { return facets_; }
+  uint32_t instances() const { return static_cast<uint32_t>(balls_.size()); }
+  // The place in all() of each triangle of each instance; of one without area, of its neighbour.
+  const std::vector<std::vector<uint32_t>>& numbers() const { return numbers_; }
   // Holds an instance.
   const Ball& ball_of(uint32_t instance) const { return balls_[instance]; }
   size_t count() const { return facets_.size(); }
@@ -43,6 +48,7 @@ class Facets {
 
   std::vector<Facet> facets_;
   std::vector<size_t> first_;
+  std::vector<std::vector<uint32_t>> numbers_;
   std::vector<Ball> balls_;
   std::vector<std::optional<bool>> inward_;
 };

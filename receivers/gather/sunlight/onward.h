@@ -1,0 +1,60 @@
+// Light that goes on from surfaces by mirrors and through thin sheets, ray by ray, until it is
+// spent. For the files of this folder only.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "raytrace/tracing/find_hits.h"
+#include "receivers/gather/bodies/lamp.h"
+
+namespace photorque {
+
+struct OnwardRay {
+  Vec3 origin_m, direction;  // body frame
+  BandValues power_W;
+  uint32_t owner;
+};
+
+// What is done where it lands. A side is a facet's back (2 · facet) or front (2 · facet + 1).
+struct OnwardSink {
+  // Of a ray of this owner: the momentum that stays with the surface, on the whole.
+  std::function<void(uint32_t owner, const WrenchSum& wrench)> push;
+  // What Lambert's law takes on from there.
+  std::function<void(uint32_t owner, size_t side, const Vec2& uv, const BandValues& power_W)>
+      scatter;
+};
+
+// From a place on a surface straight up, so far.
+ShadowRay probe(const TraceableScene& scene, const Vec3& at_m, const Vec3& normal, double length_m);
+
+// Whether every surface goes by mirror, Lambert's law and straight passage alone.
+bool all_plain(const Scene& scene);
+
+class OnwardLight {
+ public:
+  // `facet_of` numbers the triangles of each instance, see Facets::numbers(). Both must outlive
+  // this.
+  OnwardLight(const TraceableScene& scene, const std::vector<std::vector<uint32_t>>& facet_of,
+              const Vec3& about_m);
+
+  // Follows the rays, and what goes on from where they land, until less than `cutoff` of a ray is
+  // left; leaves none.
+  void follow(std::vector<OnwardRay>& rays, double cutoff, const OnwardSink& sink);
+  uint64_t rays() const { return traced_; }
+
+ private:
+  void land(std::span<const OnwardRay> some, std::span<const double> least_W,
+            const OnwardSink& sink, std::vector<OnwardRay>& next,
+            std::vector<double>& next_least_W);
+
+  const TraceableScene::Data& scene_;
+  const std::vector<std::vector<uint32_t>>& facet_of_;
+  Vec3 about_m_;
+  std::unique_ptr<HitBuffer> buffer_;
+  std::vector<Ray> narrow_;
+  Hits::Column<int> kept_{};
+  uint64_t traced_ = 0;
+};
+
+}  // namespace photorque
