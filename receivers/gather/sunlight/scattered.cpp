@@ -224,7 +224,7 @@ std::vector<ScatteredLight::Reached> ScatteredLight::send_out(const Task& task,
     const OnwardSink sink{
         [&](uint32_t owner, const WrenchSum& wrench) { own.contact[owner] += wrench; },
         [&](uint32_t owner, size_t side, const Vec2& uv, const BandValues& power_W) {
-          own.shares.push_back({owner, node_at(side, uv), power_W[task.band]});
+          own.parts.push_back({owner, node_at(side, uv), power_W[task.band]});
         }};
     std::vector<OnwardRay> rays;
     for (size_t w = first; w < last; ++w) {
@@ -235,7 +235,7 @@ std::vector<ScatteredLight::Reached> ScatteredLight::send_out(const Task& task,
   return reached;
 }
 
-// w = contact + shares · w, by going round until nothing changes.
+// w = contact + fractions · w, by going round until nothing changes.
 void ScatteredLight::settle(const Task& task, const std::vector<Work>& work,
                             const std::vector<Reached>& reached) {
   std::vector<Pair>& per_watt = per_watt_[task.band];
@@ -247,9 +247,9 @@ void ScatteredLight::settle(const Task& task, const std::vector<Work>& work,
     parallel_for(reached.size(), task.effort.threads, [&](size_t c) {
       const auto begin = static_cast<std::ptrdiff_t>(c * chunk);
       std::ranges::copy(reached[c].contact, next.begin() + begin);
-      for (const Reached::Share& one : reached[c].shares) {
+      for (const Reached::Part& one : reached[c].parts) {
         const TwofoldSum there = mixed(per_watt[one.place], nodes_[one.place].covered);
-        next[c * chunk + one.patch] += one.share * there.segment<6>(own);
+        next[c * chunk + one.patch] += one.fraction * there.segment<6>(own);
       }
     });
     double change = 0.0, largest = 0.0;

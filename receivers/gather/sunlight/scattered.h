@@ -100,16 +100,16 @@ class ScatteredLight {
     Patch patch;
     size_t kind;
   };
-  // What the rays of some patches met: the momentum left there, and the shares that other patches
-  // scatter on.
+  // What the rays of some patches met: the momentum left there, and the fractions that other
+  // patches scatter on.
   struct Reached {
-    struct Share {
+    struct Part {
       uint32_t patch;  // of the chunk
       size_t place;
-      double share;
+      double fraction;
     };
     std::vector<WrenchSum> contact;
-    std::vector<Share> shares;
+    std::vector<Part> parts;
   };
   std::vector<Work> work_of(const Task& task) const;
   void add_starts(const Task& task, const Work& one, uint64_t number, uint32_t count,
