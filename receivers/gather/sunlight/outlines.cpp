@@ -25,6 +25,40 @@ EdgeKey key_of(uint32_t instance, const Vec3& a, const Vec3& b) {
           second.z()};
 }
 
+// Where other facets cut through one.
+std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double rounding_m) {
+  std::vector<Line> lines;
+  const auto add = [&](const Line& line) {
+    // Not of neighbours, whose planes meet it at a corner.
+    Screen screen(facet);
+    screen.add(std::span(&line, 1), facet.normal, -facet.normal, rounding_m);
+    if (!screen.traces().empty()) lines.push_back(line);
+  };
+  for (uint32_t instance = 0; instance < facets.instances(); ++instance) {
+    const Ball& all = facets.ball_of(instance);
+    if ((all.centre_m - facet.ball.centre_m).norm() > all.radius_m + facet.ball.radius_m) continue;
+    for (const Facet& other : facets.of(instance)) {
+      const double apart_m = (other.ball.centre_m - facet.ball.centre_m).norm();
+      if (&other == &facet || apart_m > other.ball.radius_m + facet.ball.radius_m) continue;
+      std::array<double, 3> height_m;
+      for (size_t i = 0; i < 3; ++i) {
+        height_m[i] = facet.normal.dot(other.corner_m[i] - facet.corner_m[0]);
+      }
+      const auto [low, high] = std::minmax_element(height_m.begin(), height_m.end());
+      if (*low > -rounding_m || *high < rounding_m) continue;
+      std::vector<Vec3> ends_m;
+      for (size_t i = 0; i < 3; ++i) {
+        const size_t j = (i + 1) % 3;
+        if ((height_m[i] < 0.0) == (height_m[j] < 0.0)) continue;
+        const double part = height_m[i] / (height_m[i] - height_m[j]);
+        ends_m.emplace_back(other.corner_m[i] + part * (other.corner_m[j] - other.corner_m[i]));
+      }
+      if (ends_m.size() == 2) add({ends_m[0], ends_m[1]});
+    }
+  }
+  return lines;
+}
+
 }  // namespace
 
 Outlines::Outlines(const Facets& facets) {
@@ -63,37 +97,10 @@ void Outlines::in_sight(const Vec3& travel, std::vector<Line>& lines) const {
   }
 }
 
-std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double rounding_m) {
-  std::vector<Line> lines;
-  const auto add = [&](const Line& line) {
-    // Not of neighbours, whose planes meet it at a corner.
-    Screen screen(facet);
-    screen.add(std::span(&line, 1), facet.normal, -facet.normal, rounding_m);
-    if (!screen.traces().empty()) lines.push_back(line);
-  };
-  for (uint32_t instance = 0; instance < facets.instances(); ++instance) {
-    const Ball& all = facets.ball_of(instance);
-    if ((all.centre_m - facet.ball.centre_m).norm() > all.radius_m + facet.ball.radius_m) continue;
-    for (const Facet& other : facets.of(instance)) {
-      const double apart_m = (other.ball.centre_m - facet.ball.centre_m).norm();
-      if (&other == &facet || apart_m > other.ball.radius_m + facet.ball.radius_m) continue;
-      std::array<double, 3> height_m;
-      for (size_t i = 0; i < 3; ++i) {
-        height_m[i] = facet.normal.dot(other.corner_m[i] - facet.corner_m[0]);
-      }
-      const auto [low, high] = std::minmax_element(height_m.begin(), height_m.end());
-      if (*low > -rounding_m || *high < rounding_m) continue;
-      std::vector<Vec3> ends_m;
-      for (size_t i = 0; i < 3; ++i) {
-        const size_t j = (i + 1) % 3;
-        if ((height_m[i] < 0.0) == (height_m[j] < 0.0)) continue;
-        const double part = height_m[i] / (height_m[i] - height_m[j]);
-        ends_m.emplace_back(other.corner_m[i] + part * (other.corner_m[j] - other.corner_m[i]));
-      }
-      if (ends_m.size() == 2) add({ends_m[0], ends_m[1]});
-    }
-  }
-  return lines;
+std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m) {
+  std::vector<std::vector<Line>> cuts;
+  for (const Facet& facet : facets.all()) cuts.push_back(cuts_through(facet, facets, rounding_m));
+  return cuts;
 }
 
 LineGrid::LineGrid(std::vector<Line> lines, const Vec3& travel, double radius_m)

@@ -27,8 +27,8 @@ class Outlines {
   std::vector<Edge> edges_;
 };
 
-// Where other facets cut through one.
-std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double rounding_m);
+// Where other facets cut through one, facet by facet.
+std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m);
 
 // Lines by where light along `travel` carries them, so that those over a facet are found fast.
 class LineGrid {

@@ -294,6 +294,8 @@ class SunlitBody::Direction {
       }
       std::swap(now, next);
     }
+    // What single pieces do not tell of their error is taken for as much as families tell.
+    if (told_m2_ > 0.0) found_.mirror_error = (thrown_m2_ / told_m2_ * square_error_).sqrt();
   }
 
   // The quarters of one cell, if all are there as a whole; else one piece.
@@ -321,8 +323,16 @@ class SunlitBody::Direction {
     if (family.size() == 4) bent = (sum - 4.0 * sums[3]).head<6>().abs() / 3.0;
     if (!(bent.tail<3>().maxCoeff() > tolerance_N_m_) || family[0].piece.cell.level >= deepest) {
       found_.bounced += sum;
-      square_error_ += bent.square();
-      found_.mirror_error = square_error_.sqrt();
+      double area_m2 = 0.0;
+      for (const LitPiece& one : family) {
+        area_m2 += one.piece.share * sides_[one.side].side.facet->area_m2;
+      }
+      thrown_m2_ += area_m2;
+      if (family.size() < 4) return;
+      // As if the four were drawn at random: the error of their sum is 2 of their deviations, of
+      // which `bent` is 1.15.
+      square_error_ += 3.0 * bent.square();
+      told_m2_ += area_m2;
       return;
     }
     for (const LitPiece& one : family) {
@@ -344,7 +354,8 @@ class SunlitBody::Direction {
   std::vector<Line> seen_;
   Vec3 seen_direction_ = Vec3::Zero();
   std::vector<Piece> parts_;
-  WrenchSum square_error_ = WrenchSum::Zero();
+  WrenchSum square_error_ = WrenchSum::Zero();  // of families of quarters
+  double thrown_m2_ = 0.0, told_m2_ = 0.0;      // of all that is thrown on; of families
   SunlitWrench found_;
 };
 
@@ -363,12 +374,6 @@ std::unique_ptr<const SunlitBody> SunlitBody::make(const TraceableScene& scene,
 }
 
 namespace {
-
-std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m) {
-  std::vector<std::vector<Line>> cuts;
-  for (const Facet& facet : facets.all()) cuts.push_back(cuts_through(facet, facets, rounding_m));
-  return cuts;
-}
 
 double area_of(const Facets& facets) {
   double area_m2 = 0.0;
