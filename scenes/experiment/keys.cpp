@@ -161,10 +161,11 @@ Key torque_map_table() {
             "or the whole sphere, which also writes `EXPERIMENT.spo` (SPAD, as GMAT reads it): a "
             "whole fraction of 360, at least 0.1"),
        step("elevation_step_deg", pi, "with it: a whole fraction of 180, at least 0.1"),
-       Key::integer("rays", 1, most_rays,
-                    "per attitude or direction; none where plain surfaces are in sunlight, which "
-                    "goes by quadrature (unless `trace.direct` is \"rays\" or `trace.max_depth` "
-                    "below its default)")
+       Key::integer(
+           "rays", 1, most_rays,
+           "per attitude or direction. Plain surfaces in sunlight go by quadrature (unless "
+           "`trace.direct` is \"rays\" or `trace.max_depth` below its default): there 128 "
+           "times as many in all, at most 2^26, for what they scatter")
            .usually_is("`trace.rays`")},
       "the attitudes, or directions of sunlight, of a table of forces and torques; without this "
       "table tilts of 0, 10, 20 and 30 deg towards eight headings");

@@ -109,6 +109,9 @@ std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const 
   if (file.effort.direct == TraceEffort::Direct::rays) return nullptr;
   if (file.trace.max_depth < TraceOptions{}.max_depth) return nullptr;
   SunlitEffort effort;
+  constexpr uint64_t for_all = 128, most = 1ull << 26;  // scattered light is found once
+  const uint64_t rays = file.torque_map_rays.value_or(file.trace.rays);
+  effort.scattered.rays = std::min(for_all * std::min(rays, most), most);
   effort.scattered.seed = run.provenance().seed;
   effort.scattered.threads = threads;
   auto body = SunlitBody::make(run.scene(), run.experiment().beams, about_body_m, effort);
