@@ -165,7 +165,7 @@ Key torque_map_table() {
            "rays", 1, most_rays,
            "per attitude or direction. Plain surfaces in sunlight go by quadrature (unless "
            "`trace.direct` is \"rays\" or `trace.max_depth` below its default): there 128 "
-           "times as many in all, at most 2^26, for what they scatter")
+           "times as many in all, at most 2^24, for what they scatter")
            .usually_is("`trace.rays`")},
       "the attitudes, or directions of sunlight, of a table of forces and torques; without this "
       "table tilts of 0, 10, 20 and 30 deg towards eight headings");

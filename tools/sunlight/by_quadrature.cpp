@@ -109,7 +109,7 @@ std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const 
   if (file.effort.direct == TraceEffort::Direct::rays) return nullptr;
   if (file.trace.max_depth < TraceOptions{}.max_depth) return nullptr;
   SunlitEffort effort;
-  constexpr uint64_t for_all = 128, most = 1ull << 26;  // scattered light is found once
+  constexpr uint64_t for_all = 128, most = 1ull << 24;  // scattered light is found once
   const uint64_t rays = file.torque_map_rays.value_or(file.trace.rays);
   effort.scattered.rays = std::min(for_all * std::min(rays, most), most);
   effort.scattered.seed = run.provenance().seed;
