@@ -82,8 +82,10 @@ void require_enough(const LightData& data, const std::string& first) {
   for (const FittedRun& run : data.train) fitted += run.run->rows();
   for (const FittedRun& run : data.held) held += run.run->rows();
   if (fitted >= fewest_fitted && held >= fewest_held) return;
-  throw InputError({first}, "", std::to_string(fitted + held) + " readings that can be used",
-                   "at least 8 to fit and 2 to hold out");
+  throw InputError(
+      {first}, "",
+      std::to_string(fitted + held) + " usable reading" + (fitted + held == 1 ? "" : "s"),
+      "at least 8 to fit and 2 to hold out");
 }
 
 LightData read_light_data(const LightLab& lab, const LightBelief& nominal,

@@ -80,8 +80,6 @@ TEST(Uncertain, ErrorsThatFitNoValueAreRefused) {
   refused("{ value = 4, sigma = \"little\" }");
   refused("{ value = \"much\", sigma = 1 }");
   refused("{ value = [], sigma = [] }");
-  SettingsNode alone = parse_toml("[[source]]\npower_W = { value = 4 }", "lamps.toml");
-  EXPECT_TRUE(take_uncertainty(alone).empty());
 }
 
 }  // namespace
