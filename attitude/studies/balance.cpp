@@ -144,12 +144,18 @@ class Rows {
       const Vec3 rate = rate_at(i, interval_s);
       const bool is_attitude = q.norm() > 0.0 && std::isfinite(q.norm());
       if (!is_attitude || !rate.allFinite()) continue;
+      if (rate.cwiseAbs().maxCoeff() > fastest_rad_s) {
+        throw InputError({}, "recording", "a rate of " + readable_number(rate.norm(), 3) + " rad/s",
+                         "rates below 1e6 rad/s");
+      }
       rows.push_back({t_s, q.normalized(), rate, schedule.at(t_s).command_body_N_m});
     }
     return rows;
   }
 
  private:
+  static constexpr double fastest_rad_s = 1e6;  // no platform holds together
+
   double value(size_t channel, size_t row) const { return channels_[channel]->values[row]; }
   Quat attitude(size_t row) const {
     return {value(0, row), value(1, row), value(2, row), value(3, row)};

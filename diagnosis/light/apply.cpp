@@ -60,6 +60,13 @@ std::vector<std::string> apply_written_effects(Experiment& experiment) {
     throw InputError({experiment.file.path.string()}, "effect", "no lamp that gives light",
                      "at least one");
   }
+  for (const Settings& effect : effects) {
+    if (effect.text("kind") != "attitude_bias" || !experiment.file.settings.has("torque_map"))
+      continue;
+    notices.push_back(effect.name() +
+                      ": attitude_bias acts at [attitude]; the attitudes of a torque map, of "
+                      "[array.tracker] and of [light] are as they are stated");
+  }
   const double angle = state.attitude_bias_rad.norm();
   if (angle > 0.0) {
     const Vec2 axis = state.attitude_bias_rad / angle;

@@ -1,9 +1,8 @@
 #include "diagnosis/light/beliefs.h"
 
-#include <optional>
-
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/display.h"
 #include "diagnosis/light/written.h"
 #include "scenes/experiment/toml_writer.h"
 
@@ -34,16 +33,21 @@ std::string assignment_of(const UncertainKey& key, const std::vector<double>& va
 
 LightPrior prior_of(const UncertainKey& key, size_t component, const LightPrior::Side& itself,
                     const std::function<Experiment(const std::string&)>& reread) {
-  std::optional<InputError> refused;
+  bool refused = false;
   const auto side = [&](double errors) {
     std::vector<double> values = key.value;
     values[component] += errors * key.sigma[component];
     try {
       return side_of(reread(assignment_of(key, values)), errors);
-    } catch (const InputError& error) {
-      // A number at the end of its range; of what can be no other at all it is the first message.
-      if (refused) throw *refused;
-      refused = error;
+    } catch (const InputError&) {
+      // A number at the end of its range; or one that can be no other at all.
+      if (refused) {
+        throw InputError({itself.lab->experiment().file.path.string()}, key.path,
+                         readable_number(key.value[component], 6) + " with a sigma of " +
+                             readable_number(key.sigma[component], 3),
+                         "a number that can be off by a tenth of its sigma");
+      }
+      refused = true;
       return itself;
     }
   };

@@ -74,6 +74,20 @@ std::pair<std::vector<size_t>, std::vector<size_t>> split(const LightRun& run, d
   return {fitted, held};
 }
 
+// What is held out and what is fitted must each be more than a few numbers: of one reading nothing
+// can be said, and everything explains it.
+void require_enough(const LightData& data, const std::string& first) {
+  constexpr size_t fewest_fitted = 8, fewest_held = 2;
+  size_t fitted = 0, held = 0;
+  for (const FittedRun& run : data.train) fitted += run.run->rows();
+  for (const FittedRun& run : data.held) held += run.run->rows();
+  if (fitted >= fewest_fitted && held >= fewest_held) return;
+  throw InputError(
+      {first}, "",
+      std::to_string(fitted + held) + " usable reading" + (fitted + held == 1 ? "" : "s"),
+      "at least 8 to fit and 2 to hold out");
+}
+
 LightData read_light_data(const LightLab& lab, const LightBelief& nominal,
                           std::vector<LightRecording> recordings,
                           std::vector<LightRecording> holdouts,
@@ -247,8 +261,10 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
   options.limits.fitting.trial_iterations = 10;
   options.limits.fitting.patient_iterations = 20;
   options.limits.search.max_effects = 3;
+  const std::string first = recordings.front().name;
   LightData data =
       read_light_data(lab, nominal, std::move(recordings), std::move(holdouts), options);
+  require_enough(data, first);
   const LightAnswer answer = explain_light(lab, nominal, data, options);
   Diagnosis d;
   d.effect_table = "effect";
@@ -280,6 +296,13 @@ Diagnosis diagnose_light(const LightLab& lab, const LightBelief& nominal,
     d.warnings.push_back(
         "the recordings and what was held out show together what neither shows alone, but not "
         "which effect it is: see the alternatives");
+  }
+  if (lab.has_array()) {
+    std::vector<WeighedSpectrum> spectra;
+    for (const Beam& beam : lab.experiment().beams) spectra.push_back({beam.spectrum, 1.0});
+    for (std::string& line : light_outside(lab.design().efficiency, spectra)) {
+      d.warnings.push_back(std::move(line));
+    }
   }
   d.sentence = light_sentence(d);
   return d;

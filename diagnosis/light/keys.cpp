@@ -8,11 +8,11 @@ namespace {
 constexpr int64_t most = 1'000'000'000;
 
 Key key_of(const EffectParameter& parameter) {
-  // Whether a value is one that the kind can have is the kind's own affair.
-  if (parameter.count > 1) {
-    return Key::numbers(parameter.key, {}, "of the effect").of_size(parameter.count);
-  }
-  return Key::number(parameter.key, {}, "of the effect");
+  // A name may be that of two kinds, which can have other values.
+  const std::string range = range_of(parameter);
+  const std::string meaning = "of the effect" + (range.empty() ? "" : ", " + range);
+  if (parameter.count > 1) return Key::numbers(parameter.key, {}, meaning).of_size(parameter.count);
+  return Key::number(parameter.key, {}, meaning);
 }
 
 std::vector<Key> place_keys(LightEffectKind::Index index) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/text/display.h"
 #include "diagnosis/light/effects/kind.h"
 
 namespace photorque {
@@ -81,7 +82,8 @@ LightState written_state(const LightLab& lab) {
       for (const double value : numbers_of(effect, p)) {
         const double number = x_of(p, value);
         if (!(number >= p.lowest && number <= p.highest)) {
-          throw effect.error(p.key, std::to_string(value), "a value that " + name + " can have");
+          throw effect.error(p.key, readable_number(value / unit_of_key(p.key).to_SI, 6),
+                             "a number of " + name + ": " + range_of(p));
         }
         x.push_back(number);
       }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/text/display.h"
 
 namespace photorque {
 namespace {
@@ -53,6 +54,17 @@ BandFraction fraction_of(const QuantumEfficiency& efficiency, const Spectrum& sp
               : smooth_fraction(efficiency, spectrum, low_m, high_m);
 }
 
+std::string name_of(const Spectrum& spectrum) {
+  switch (spectrum.shape) {
+    case Spectrum::Shape::gaussian:
+      return "the light at " + readable_number(1e9 * spectrum.centre_m, 4) + " nm";
+    case Spectrum::Shape::blackbody:
+      return "the light of a black body of " + readable_number(spectrum.temperature_K, 4) + " K";
+    default:
+      return "the sunlight";
+  }
+}
+
 }  // namespace
 
 double QuantumEfficiency::at(double wavelength) const {
@@ -100,6 +112,29 @@ BandValues band_responsivity_A_W(const QuantumEfficiency& efficiency, const Band
     responsivity[b] = power > 0 ? current / power : 0.0;
   }
   return responsivity;
+}
+
+std::vector<std::string> light_outside(const QuantumEfficiency& efficiency,
+                                       std::span<const WeighedSpectrum> spectra) {
+  constexpr double noticeable = 0.01, nearly_all = 0.99, longest_m = 1.0;
+  const double from_m = efficiency.wavelength_m.front(), to_m = efficiency.wavelength_m.back();
+  std::vector<std::string> lines;
+  for (const WeighedSpectrum& one : spectra) {
+    const BandValues parts = band_fractions(one.spectrum, Bands{{0.0, from_m, to_m, longest_m}});
+    const double outside = parts[0] + parts[2];
+    // What the ends of the table would give if they held beyond it.
+    const double cut_off =
+        parts[0] * efficiency.efficiency.front() + parts[2] * efficiency.efficiency.back();
+    if (outside < nearly_all && cut_off < noticeable) continue;
+    const std::string line = readable_number(100.0 * outside, 3) + " % of " +
+                             name_of(one.spectrum) + " lies outside of " +
+                             readable_number(1e9 * from_m, 4) + " to " +
+                             readable_number(1e9 * to_m, 4) +
+                             " nm, where the cells' quantum efficiency is stated, and gives no "
+                             "current";
+    if (std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
+  }
+  return lines;
 }
 
 }  // namespace photorque

@@ -40,4 +40,10 @@ struct WeighedSpectrum {
 BandValues band_responsivity_A_W(const QuantumEfficiency& efficiency, const Bands& bands,
                                  std::span<const WeighedSpectrum> spectra);
 
+// One line for each spectrum that gives less current than it may because the table does not reach
+// it: nearly all of its light is outside, or the table ends well above zero and cuts some of it
+// off.
+std::vector<std::string> light_outside(const QuantumEfficiency& efficiency,
+                                       std::span<const WeighedSpectrum> spectra);
+
 }  // namespace photorque

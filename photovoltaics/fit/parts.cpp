@@ -1,6 +1,7 @@
 #include "photovoltaics/fit/parts.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 
 #include "core/constants.h"
@@ -36,6 +37,11 @@ void check_sweep(const IvSweep& sweep) {
       throw InputError({}, "curves", "point " + std::to_string(i + 1) + " without a number",
                        "finite numbers");
     }
+  }
+  const std::set<double> voltages_V(sweep.voltage_V.begin(), sweep.voltage_V.end());
+  if (voltages_V.size() < fewest) {
+    throw InputError({}, "curves", std::to_string(voltages_V.size()) + " different voltages",
+                     "at least 6");
   }
 }
 

@@ -29,8 +29,21 @@ std::vector<double> plain_numbers(const SettingsNode& node) {
   return all;
 }
 
-bool is_value_with_sigma(const SettingsNode::Table& table) {
-  return table.size() == 2 && table.contains("value") && table.contains("sigma");
+// No other table of lamps, arrays or attitudes has such keys: one of them alone is half of a pair,
+// or its other key is misspelt.
+bool is_value_with_sigma(const SettingsNode::Table& table, const std::string& path) {
+  const bool has_value = table.contains("value"), has_sigma = table.contains("sigma");
+  if (!has_value && !has_sigma) return false;
+  for (const auto& [key, item] : table) {
+    if (key == "value" || key == "sigma") continue;
+    throw InputError(
+        item.where, path + "." + key, "an unknown key",
+        std::string(has_value && has_sigma ? "nothing beside" : "one of") + " value and sigma");
+  }
+  if (has_value && has_sigma) return true;
+  const SettingsNode& one = table.begin()->second;
+  throw InputError(one.where, path, has_value ? "no sigma" : "no value",
+                   "{ value = ..., sigma = ... }");
 }
 
 void take(SettingsNode& node, const std::string& path, std::vector<UncertainKey>& all) {
@@ -42,7 +55,7 @@ void take(SettingsNode& node, const std::string& path, std::vector<UncertainKey>
   }
   auto* table = std::get_if<SettingsNode::Table>(&node.value);
   if (table == nullptr) return;
-  if (!is_value_with_sigma(*table)) {
+  if (!is_value_with_sigma(*table, path)) {
     for (auto& [key, inner] : *table) take(inner, path + "." + key, all);
     return;
   }

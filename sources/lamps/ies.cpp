@@ -66,7 +66,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
   const double power_W = settings.number("power_W", Range::positive());
   PhotometricFile file = read_table(settings, context);
   if (settings.has("aperture_diameter_m")) {
-    const double diameter_m = settings.number("aperture_diameter_m", Range::positive());
+    const double diameter_m = settings.number("aperture_diameter_m", opening_diameter);
     file.opening = {Opening::Shape::ellipse, diameter_m, diameter_m};
   }
   const auto lamp = std::make_shared<PhotometricLamp>(power_W, file.opening,
@@ -101,8 +101,7 @@ SourceKind ies_kind() {
             radiant_power_key()},
            line_spectrum_keys(usual_led_width_m),
            lamp_place_keys(),
-           {Key::number("aperture_diameter_m", Range::positive(),
-                        "of the opening that light leaves")
+           {Key::number("aperture_diameter_m", opening_diameter, "of the opening that light leaves")
                 .usually_is("the file's; of a table a point"),
             Key::numbers("polar_deg", {0.0, pi}, "instead of `file`: angles from the axis, rising")
                 .optional(),

@@ -5,10 +5,8 @@
 namespace photorque {
 namespace {
 
-constexpr Range open_angle{0.0, pi, true, true};
-
 Key fwhm_key() {
-  return Key::number("fwhm_deg", open_angle, "full width at half of the maximum intensity");
+  return Key::number("fwhm_deg", beam_width, "full width at half of the maximum intensity");
 }
 
 }  // namespace
@@ -56,7 +54,7 @@ std::vector<Key> sunlight_keys() {
 
 std::vector<Key> lamp_keys() {
   return joined(
-      {{Key::number("aperture_diameter_m", Range::positive(), "of the opening that light leaves"),
+      {{Key::number("aperture_diameter_m", opening_diameter, "of the opening that light leaves"),
         Key::choice(
             "profile",
             {{"gaussian", "exp(−4 ln 2 θ²/fwhm²)", {fwhm_key()}},
@@ -66,7 +64,7 @@ std::vector<Key> lamp_keys() {
                                        "2 is a Gaussian, 100 nearly a disc")}},
              {"pillbox",
               "constant to the edge",
-              {Key::number("half_angle_deg", {0.0, 0.5 * pi, true, false}, "from axis to edge"),
+              {Key::number("half_angle_deg", beam_half_angle, "from axis to edge"),
                Key::choice("pillbox_measure", words({"angle", "solid_angle", "projected"}),
                            "over what the flux is even")}},
              {"cosine_power",
@@ -76,7 +74,7 @@ std::vector<Key> lamp_keys() {
         Key::number("halo_fraction", {0.0, 1.0, false, true},
                     "part of the flux in a wider Gaussian; with `halo_fwhm_deg`")
             .usually_is("no halo"),
-        Key::number("halo_fwhm_deg", open_angle, "of that Gaussian").optional()},
+        Key::number("halo_fwhm_deg", beam_width, "of that Gaussian").optional()},
        line_spectrum_keys(usual_led_width_m),
        {Key::number("die_size_m", Range::positive(),
                     "edge of the square that emits: warns of a beam that no optics can make")

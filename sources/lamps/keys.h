@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/constants.h"
 #include "core/settings/keys.h"
 
 namespace photorque {
@@ -24,6 +25,12 @@ std::vector<Key> sunlight_keys();
 std::vector<Key> lamp_keys();
 // place_lamps().
 std::vector<Key> lamp_place_keys();
+
+// Of what light leaves and how wide it spreads. No optics are smaller; far below, squares of them
+// are no numbers any more, or lie between the roundings of the distances.
+constexpr Range opening_diameter{1e-12, 1e308, false, false};
+constexpr Range beam_width{1e-12 * degree_rad, pi, false, true};
+constexpr Range beam_half_angle{1e-12 * degree_rad, 0.5 * pi, false, false};
 
 constexpr double usual_led_width_m = 20e-9;  // spectral_fwhm_nm of LEDs
 

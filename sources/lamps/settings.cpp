@@ -12,18 +12,16 @@
 namespace photorque {
 namespace {
 
-constexpr Range full_width{0.0, pi, true, true};
-
 AngularProfile read_core(const Settings& settings) {
   enum Shape : size_t { gaussian, super_gaussian, pillbox, cosine_power };
   switch (settings.choice("profile", {"gaussian", "super_gaussian", "pillbox", "cosine_power"})) {
     case super_gaussian:
-      return super_gaussian_profile(settings.number("fwhm_deg", full_width),
+      return super_gaussian_profile(settings.number("fwhm_deg", beam_width),
                                     settings.number("order", {2.0, 100.0, false, false}));
     case pillbox: {
       constexpr PillboxMeasure measures[] = {PillboxMeasure::angle, PillboxMeasure::solid_angle,
                                              PillboxMeasure::projected};
-      const double half_angle_rad = settings.number("half_angle_deg", {0.0, 0.5 * pi, true, false});
+      const double half_angle_rad = settings.number("half_angle_deg", beam_half_angle);
       return pillbox_profile(
           half_angle_rad,
           measures[settings.choice("pillbox_measure", {"angle", "solid_angle", "projected"})]);
@@ -31,7 +29,7 @@ AngularProfile read_core(const Settings& settings) {
     case cosine_power:
       return cosine_power_profile(settings.number("exponent", {0.0, 1e9, false, false}));
     default:
-      return gaussian_profile(settings.number("fwhm_deg", full_width));
+      return gaussian_profile(settings.number("fwhm_deg", beam_width));
   }
 }
 
@@ -94,7 +92,7 @@ AngularDistribution read_angular_distribution(const Settings& settings) {
   const double fraction = settings.number("halo_fraction", {0.0, 1.0, false, true});
   return AngularDistribution(
       std::move(core),
-      Halo{gaussian_profile(settings.number("halo_fwhm_deg", full_width)), fraction});
+      Halo{gaussian_profile(settings.number("halo_fwhm_deg", beam_width)), fraction});
 }
 
 Spectrum read_line_spectrum(const Settings& settings, double default_fwhm_m) {
@@ -125,7 +123,7 @@ Sunlight read_sunlight(const Settings& settings) {
 
 Lamp read_lamp(const Settings& settings, const SourceContext& context, const std::string& name,
                double power_W) {
-  const double diameter_m = settings.number("aperture_diameter_m", Range::positive());
+  const double diameter_m = settings.number("aperture_diameter_m", opening_diameter);
   AngularDistribution directions = read_angular_distribution(settings);
   if (const auto die = read_die(settings)) {
     const auto notice =

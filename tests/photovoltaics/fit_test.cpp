@@ -379,6 +379,9 @@ TEST(PhotovoltaicFit, PartlyShadedStringHasBothMeasuredPeaks) {
 TEST(PhotovoltaicFit, WrongDataAreRefused) {
   EXPECT_THROW(fit_sweeps({}, {}), InputError);
   EXPECT_THROW(fit_sweeps(std::array{IvSweep{{0, 1}, {1, 0}}}, {}), InputError);
+  // Eight times the same reading fits every cell.
+  const IvSweep same{std::vector<double>(8, 0.3), std::vector<double>(8, 5.0)};
+  EXPECT_THROW(fit_sweeps(std::array{same}, {}), InputError);
   const IvSweep dark{{0, 1, 2, 3, 4, 5, 6}, {0, -1, -2, -3, -4, -5, -6}};
   EXPECT_THROW(fit_sweeps(std::array{dark}, {}), InputError);
   RatedPoint impossible{1000, 298.15, 5.0, 20.0, 6.0, 16.0};

@@ -1,7 +1,7 @@
 // Photocurrent from light in bands.
 #include "photovoltaics/cell/response.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace photorque {
 namespace {
@@ -26,6 +26,28 @@ TEST(BandResponsivity, LineOnAnEdgeGivesItsCurrentInBothBands) {
     EXPECT_NEAR(responsivity[0], at_730_nm_A_W, 2e-3);
     EXPECT_NEAR(responsivity[1], at_730_nm_A_W, 2e-3);
   }
+}
+
+// 0 W without a word is no answer: light that the table does not reach is told; sunlight beyond
+// both ends of a table that falls to zero there is not.
+TEST(LightOutside, OfTheTableIsTold) {
+  const QuantumEfficiency silicon = silicon_quantum_efficiency();
+  const auto told = [](const QuantumEfficiency& efficiency, const Spectrum& spectrum) {
+    const WeighedSpectrum two[] = {{spectrum, 1.0}, {spectrum, 2.0}};
+    return light_outside(efficiency, two);
+  };
+  const auto line_at = [](double nm) {
+    return Spectrum{.shape = Spectrum::Shape::gaussian, .centre_m = 1e-9 * nm, .fwhm_m = 20e-9};
+  };
+  EXPECT_THAT(told(silicon, line_at(730)), testing::IsEmpty());
+  EXPECT_THAT(told(silicon, Spectrum{.shape = Spectrum::Shape::am0}), testing::IsEmpty());
+  EXPECT_THAT(told(silicon, line_at(1500)),
+              testing::ElementsAre(testing::HasSubstr("100 % of the light at 1500 nm")));
+  // Half of a line is beyond a table that ends at its middle.
+  const QuantumEfficiency cut{{600e-9, 730e-9}, {0.9, 0.9}};
+  EXPECT_THAT(told(cut, line_at(730)),
+              testing::ElementsAre(testing::HasSubstr("50.0 % of the light at 730.0 nm")));
+  EXPECT_THAT(told(cut, line_at(660)), testing::IsEmpty());
 }
 
 TEST(BandResponsivity, LineInsideABandGivesNothingElsewhere) {

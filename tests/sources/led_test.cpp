@@ -74,13 +74,16 @@ TEST(Led, SaysWhatIsWrong) {
   expect_error("led", changed(led(), {{"power_W", {-3.0}}}), "power_W: found -3");
   expect_error("led", changed(led(), {{"power_W", {0.0}}}), "power_W: found 0");
   expect_error("led", changed(led(), {{"aperture_diameter_m", {0.0}}}), "aperture_diameter_m");
+  // Their squares were no numbers, which was told as a failure of the computation.
+  expect_error("led", changed(led(), {{"aperture_diameter_m", {1e-160}}}), "a number >= 1e-12 m");
+  expect_error("led", changed(led(), {{"fwhm_deg", {1e-160}}}), "fwhm_deg: found 1e-160");
   expect_error("led", changed(led(), {{"aim_m", vector_node(0, 0, 0)}}), "also aim_m");
   expect_error("led", changed(led(), {}, {"direction"}), "neither direction nor aim_m");
   expect_error("led", changed(led(), {{"direction", vector_node(0, 0, 0)}}), "[0, 0, 0]");
   expect_error("led", changed(led(), {{"aim_m", vector_node(0.1, 0.2, 1.5)}}, {"direction"}),
                "position of the source itself");
-  expect_error("led", changed(led(), {{"fwhm_deg", {180.0}}}), "in (0, 180) deg");
-  expect_error("led", changed(led(), {{"fwhm_deg", {0.0}}}), "in (0, 180) deg");
+  expect_error("led", changed(led(), {{"fwhm_deg", {180.0}}}), "in [1e-12, 180) deg");
+  expect_error("led", changed(led(), {{"fwhm_deg", {0.0}}}), "in [1e-12, 180) deg");
   expect_error("led", changed(led(), {}, {"fwhm_deg"}), "fwhm_deg: found nothing");
   expect_error("led", changed(led(), {{"profile", {"gausian"}}}), "did you mean \"gaussian\"");
   expect_error("led", changed(led(), {{"profile", {"super_gaussian"}}}), "order: found nothing");

@@ -119,6 +119,20 @@ TEST_F(OutputFolders, AreLeftCleanBySignalsWithinASecond) {
   }
 }
 
+// What cleans up after a stopped run held its lock a moment longer than the run lived (found by
+// tools/faults on fit-cell).
+TEST_F(OutputFolders, AreFreeAsSoonAsARunWasStopped) {
+  for (int i = 0; i < 8; ++i) {
+    const pid_t child = start(endless + " --out " + at("o"));
+    wait_until([&] { return fs::exists(at("o")); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    ::kill(child, SIGINT);
+    ::waitpid(child, nullptr, 0);
+    const Outcome next = run("trace " + stasis + " --set trace.rays=4096 --out " + at("o"));
+    EXPECT_EQ(next.status, 0) << next.err;
+  }
+}
+
 TEST_F(OutputFolders, AreClearedOfWhatKilledRunsLeft) {
   const pid_t child = start(endless + " --out " + at("o"));
   ::kill(child, SIGKILL);

@@ -106,5 +106,82 @@ TEST_F(Stress, CellsTooColdForADiodeAreTold) {
   EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
 }
 
+// What an attacker with the documents alone found to be taken in silence, or told in words that
+// nobody wrote.
+class Attack : public CommandTest {
+ protected:
+  const std::filesystem::path lab_ = std::filesystem::path(PHOTORQUE_SOURCE_DIR) / "docs/tutorials";
+  std::string bench() const { return (lab_ / "bench.toml").string(); }
+  std::string recorded(const std::string& name) const {
+    return " --recording " + (lab_ / name).string();
+  }
+  // The same experiment with more at its end.
+  std::string bench_with(const std::string& more) const {
+    std::string text = file_text(bench());
+    text.replace(text.find("plate.gltf"), 10, (lab_ / "plate.gltf").string());
+    return write("bench.toml", text + more) + " --allow-outside";
+  }
+  void expect_refused(const std::string& arguments, const std::string& part) const {
+    const Outcome got = run(arguments + " --quiet --out " + at("o"));
+    EXPECT_EQ(got.status, 2) << arguments;
+    EXPECT_THAT(got.err, HasSubstr(part));
+    EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
+  }
+};
+
+TEST_F(Attack, OneReadingIsNoRecording) {
+  const std::string one = write("one.csv", "u_m,v_m,irradiance_W_m2\n0,0,700\n");
+  expect_refused("diagnose " + bench() + " --recording " + one,
+                 "one.csv: found 1 usable reading, expected at least 8 to fit");
+}
+
+TEST_F(Attack, NoiseWhoseSquareIsNothingIsRefused) {
+  expect_refused("diagnose " + bench() + recorded("monday_iv.csv.gz") +
+                     " --set sensors.array.voltage_noise_V=1e-300",
+                 "sensors.array: found no noise");
+}
+
+TEST_F(Attack, NumbersOfEffectsAreToldTheirRange) {
+  expect_refused("power " + bench_with("[[effect]]\nkind = \"led_derated\"\nindex = 3\n"
+                                       "factor = 2.5\n"),
+                 "effect[0].factor: found 2.50000, expected a number of led_derated: from 0 to 1");
+  expect_refused("power " + bench_with("[[effect]]\nkind = \"attitude_bias\"\n"
+                                       "bias_deg = [0, 40]\n"),
+                 "expected a number of attitude_bias: from -17.2 to 17.2");
+}
+
+// Derivatives went by a beam of 180.4 deg.
+TEST_F(Attack, WidthsBesideTheEndOfTheirRangeAreDiagnosed) {
+  const Outcome got = run("diagnose " + bench() + recorded("monday_iv.csv.gz") +
+                          " --set source[0].fwhm_deg=179.9 --quiet --out " + at("o"));
+  EXPECT_EQ(got.status, 0) << got.err;
+}
+
+TEST_F(Attack, LightThatTheCellsDoNotSeeIsTold) {
+  const Outcome got =
+      run("power " + bench() +
+          " --set source[0].wavelength_nm=1500 --set trace.rays=4096 --quiet --out " + at("o"));
+  EXPECT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(file_text(at("o/summary.json")),
+              HasSubstr("100 % of the light at 1500 nm lies outside of 600.0 to 860.0 nm"));
+}
+
+TEST_F(Attack, ATorqueMapSaysThatItHasNoBiasOfTheAttitude) {
+  const Outcome got = run("torque-map " +
+                          bench_with("[[effect]]\nkind = \"attitude_bias\"\nbias_deg = [0, 4]\n"
+                                     "[torque_map]\ntilt_deg = [0]\nheading_deg = [0]\n") +
+                          " --set trace.rays=4096 --out " + at("o"));
+  EXPECT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("attitude_bias acts at [attitude]"));
+}
+
+TEST_F(Attack, RatesThatNoPlatformHasAreNoFailureOfTheComputation) {
+  std::string rows = "t_s,q_w,q_x,q_y,q_z,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s\n";
+  for (int i = 0; i < 60; ++i) rows += std::to_string(0.1 * i) + ",1,0,0,0,1e300,0,0\n";
+  expect_refused("balance " + std::string(PHOTORQUE_SOURCE_DIR) +
+                     "/scenes/stasis/attitude.toml --recording " + write("fast.csv", rows),
+                 "rates below 1e6 rad/s");
+}
+
 }  // namespace
 }  // namespace photorque

@@ -95,8 +95,8 @@ FitTask read_fit_task(const Settings& root, const fs::path& folder) {
       task.files.push_back(folder / name);
       task.sweeps.push_back(read_sweep(task.files.back()));
     }
-    task.noise.current_fraction = s.number_or("current_noise", 1e-3, Range::positive());
-    task.noise.voltage_fraction = s.number_or("voltage_noise", 5e-4, Range::positive());
+    task.noise.current_fraction = s.number_or("current_noise", 1e-3, {1e-12, 1.0});
+    task.noise.voltage_fraction = s.number_or("voltage_noise", 5e-4, {1e-12, 1.0});
     task.noise.correlation_points = s.number_or("correlation_points", 0.0, Range::not_negative());
     task.substrings = static_cast<int>(s.integer_or("substrings", 0, 0, 100));
     if (task.substrings > 0 && task.cells_in_series > 1 &&

@@ -21,6 +21,18 @@ InputError refused(const fs::path& path, const std::string& found, const std::st
   return {{path.string()}, "--out", found, expected};
 }
 
+// What cleans up after a run that was stopped (interruption.h) holds its lock for some milliseconds
+// more.
+bool take_lock(int descriptor, int how, bool patiently) {
+  constexpr int tries = 50, apart_us = 20'000;
+  if (patiently) return ::flock(descriptor, how) == 0;
+  for (int i = 0; ::flock(descriptor, how | LOCK_NB) != 0; ++i) {
+    if (errno != EWOULDBLOCK || i == tries) return false;
+    ::usleep(apart_us);
+  }
+  return true;
+}
+
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& path, Others others) : path_(fs::absolute(path)) {
@@ -83,7 +95,7 @@ bool OutputFolder::lock(Others others) {
     throw refused(path_, std::strerror(errno), "a folder that can be read");
   }
   const int how = others == Others::share ? LOCK_SH : LOCK_EX;
-  if (::flock(descriptor_, others == Others::wait ? how : how | LOCK_NB) != 0) {
+  if (!take_lock(descriptor_, how, others == Others::wait)) {
     if (errno == EWOULDBLOCK) {
       throw refused(path_, "a folder that another run is writing into",
                     "another folder, or the end of that run");

@@ -26,10 +26,10 @@ Key fit_table() {
             rounding("rounding_V", "step of its voltages"),
             Key::number_or("tolerance", 0.0, {0.0, 0.5},
                            "a fraction of every figure of it, one sigma"),
-            Key::number_or("current_noise", 1e-3, Range::positive(),
+            Key::number_or("current_noise", 1e-3, {1e-12, 1.0},
                            "of curves: fraction of each reading (with `substrings`, of the "
                            "short-circuit current)"),
-            Key::number_or("voltage_noise", 5e-4, Range::positive(), "fraction of each reading"),
+            Key::number_or("voltage_noise", 5e-4, {1e-12, 1.0}, "fraction of each reading"),
             Key::number_or("correlation_points", 0.0, Range::not_negative(),
                            "readings over which the noise of the current falls off (slow drift of "
                            "the light)"),

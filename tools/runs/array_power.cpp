@@ -45,7 +45,8 @@ std::vector<std::string> unlike_sources(const QuantumEfficiency& efficiency, con
 }
 
 // What each watt of the lamps' light gives in each band.
-void read_responsivity(const Experiment& experiment, ArrayPower& array) {
+void read_responsivity(OpticalRun& run, ArrayPower& array) {
+  const Experiment& experiment = run.experiment();
   std::vector<WeighedSpectrum> spectra;
   for (const Beam& beam : experiment.beams) {
     spectra.push_back({beam.spectrum, beam.emitter->power_W()});
@@ -57,6 +58,9 @@ void read_responsivity(const Experiment& experiment, ArrayPower& array) {
   };
   array.responsivity_A_W = over_bands(array.design.efficiency);
   array.notices = unlike_sources(array.design.efficiency, bands, spectra);
+  for (std::string& line : light_outside(array.design.efficiency, spectra)) {
+    run.warn(std::move(line));
+  }
   array.ideal_responsivity_A_W = over_bands({{1e-8, 1e-4}, {1.0, 1.0}});
 }
 
@@ -81,7 +85,7 @@ ArrayPower read_array_power(OpticalRun& run, const ArrayPower* known) {
     array.responsivity_A_W = known->responsivity_A_W;
     array.ideal_responsivity_A_W = known->ideal_responsivity_A_W;
   } else {
-    read_responsivity(experiment, array);
+    read_responsivity(run, array);
   }
   if (array.design.front || has_own_front(experiment.scene, map.grid())) {
     const InputLocation where = tables[0].where();

@@ -62,6 +62,9 @@ double slope_of(const EffectParameter& parameter, double x);
 // And back.
 double x_of(const EffectParameter& parameter, double value);
 
+// Which values the key can have, in its own unit: "from 0 to 1"; empty where any number will do.
+std::string range_of(const EffectParameter& parameter);
+
 // Every kind named in diagnosis/CMakeLists.txt, in that order.
 std::vector<LightEffectKind> all_light_effect_kinds();
 

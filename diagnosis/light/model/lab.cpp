@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/quadrature.h"
 #include "diagnosis/light/model/lamp_table.h"
@@ -18,6 +19,15 @@ InputLocation place_of(const Experiment& experiment) {
   return {experiment.file.path.string()};
 }
 
+// A width, times a factor, that a lamp can have: nobody wrote what lies beyond.
+double widened(const std::string& key, double value, double factor) {
+  if (key == "exponent") return std::min(value / (factor * factor), std::max(value, 1e9));
+  constexpr double below = 1.0 - 1e-6;  // 180 deg itself are too many
+  const KeyUnit unit = unit_of_key(key);
+  const double widest_rad = unit.stem == "half_angle" ? 0.5 * pi : below * pi;
+  return std::min(value * factor, std::max(value, widest_rad / unit.to_SI));
+}
+
 // The keys of a source with all angular widths multiplied.
 void widen(SettingsNode& source, double scale) {
   auto* table = std::get_if<SettingsNode::Table>(&source.value);
@@ -25,12 +35,11 @@ void widen(SettingsNode& source, double scale) {
   for (auto& [key, node] : *table) {
     const std::string stem = unit_of_key(key).stem;
     const bool is_width = stem == "fwhm" || stem == "half_angle" || stem == "halo_fwhm";
-    const double factor = is_width ? scale : key == "exponent" ? 1.0 / (scale * scale) : 1.0;
-    if (factor == 1.0 || !node.is_number()) continue;
+    if ((!is_width && key != "exponent") || !node.is_number()) continue;
     const double value = std::holds_alternative<double>(node.value)
                              ? std::get<double>(node.value)
                              : static_cast<double>(std::get<int64_t>(node.value));
-    node.value = value * factor;
+    node.value = widened(key, value, scale);
   }
 }
 

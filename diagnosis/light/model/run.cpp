@@ -193,9 +193,12 @@ LampField LightRun::expanded(LampField field) const {
 void LightRun::find_noise() {
   const LightNoise& noise = lab_->noise();
   if (!is_scan()) {
-    if (!(noise.voltage_V > 0.0) || !(noise.current_A > 0.0)) {
-      throw InputError({lab_->experiment().file.path.string()}, "sensors.array", "no noise",
-                       "voltage_noise_V and current_noise_A > 0, the errors of a reading");
+    // Squares of readings over less would be no numbers.
+    constexpr double least = 1e-12;
+    if (!(noise.voltage_V >= least) || !(noise.current_A >= least)) {
+      throw InputError(
+          {lab_->experiment().file.path.string()}, "sensors.array", "no noise",
+          "voltage_noise_V and current_noise_A, the errors of a reading: 1e-12 or more");
     }
     voltage_scale_V_ = std::max(1e-9, *std::ranges::max_element(recording_.voltage_V));
     current_scale_A_ = std::max(1e-9, *std::ranges::max_element(recording_.current_A));
