@@ -1,6 +1,7 @@
 // What the runs held out say about explanations that were found without them.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -72,6 +73,8 @@ class Weighing {
   struct Leader {
     size_t at;
     Trial joint;
+    // χ² of the best and of this one when a second chance from there came to nothing.
+    std::array<double, 2> learnt = {};
   };
 
   void add_leaders(const std::vector<size_t>& places) {
@@ -100,11 +103,19 @@ class Weighing {
     return held;
   }
 
+  // As learn_from_best(), but for what came to nothing before: it would again.
   void learn() {
-    std::vector<Trial> joint;
-    for (Leader& leader : leaders_) joint.push_back(std::move(leader.joint));
-    learn_from_best(domain_, all_runs_, threads_, joint);
-    for (size_t k = 0; k < joint.size(); ++k) leaders_[k].joint = std::move(joint[k]);
+    const Trial best =
+        std::min_element(leaders_.begin(), leaders_.end(), [](const Leader& a, const Leader& b) {
+          return a.joint.fit.chi2 < b.joint.fit.chi2;
+        })->joint;
+    parallel_for(leaders_.size(), threads_, [&](size_t k) {
+      Leader& leader = leaders_[k];
+      const std::array<double, 2> now = {best.fit.chi2, leader.joint.fit.chi2};
+      if (leader.learnt == now) return;
+      inference::learn(domain_, all_runs_, best, leader.joint);
+      if (leader.joint.fit.chi2 == now[1]) leader.learnt = now;
+    });
   }
 
   // The likeliest on all runs that nothing forbids.
@@ -115,6 +126,11 @@ class Weighing {
       if (best == nullptr || leader.joint.log_evidence > best->joint.log_evidence) best = &leader;
     }
     return best != nullptr ? *best : leaders_.front();
+  }
+
+  const Leader& nominal() const {
+    return *std::find_if(leaders_.begin(), leaders_.end(),
+                         [](const Leader& l) { return l.at == 0; });
   }
 
   Predictive predictive_of(const Trial& train, const Trial& joint) const {
@@ -143,9 +159,7 @@ class Weighing {
     if (predictive_of(trials_[from.at], from.joint).sigma < limits_.decision.max_predictive_sigma)
       return;
     if (has_diverged(from.joint, limits_) || !std::isfinite(from.joint.fit.chi2)) return;
-    const auto nominal =
-        std::find_if(leaders_.begin(), leaders_.end(), [](const Leader& l) { return l.at == 0; });
-    Rounds<D> rounds(domain_, {all_runs_}, nominal->joint, limits_.search.max_effects, threads_);
+    Rounds<D> rounds(domain_, {all_runs_}, nominal().joint, limits_.search.max_effects, threads_);
     // About a law without a name the train runs were scanned for what acts fast.
     const bool is_law = std::any_of(from.joint.candidates.begin(), from.joint.candidates.end(),
                                     [&](size_t c) { return domain_.candidates()[c].is_empirical; });
@@ -193,6 +207,8 @@ class Weighing {
     const Effort growing{limits_.fitting.diverged_windows, limits_.fitting.patient_iterations};
     Trial joint = domain_.assemble(from.joint, members, all_runs_,
                                    within_reach(growing, from.joint, limits_));
+    // What is worse than the nominal model, which it contains, was not fitted: it is missed.
+    if (!(joint.fit.chi2 < nominal().joint.fit.chi2 + limits_.leaders.near_chi2)) return;
     const bool is_lost = !is_near(joint, from.joint, limits_);
     Trial train = assembled(
         joint, domain_.terms_of(joint),

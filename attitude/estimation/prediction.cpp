@@ -20,7 +20,6 @@ struct Delay {
   double time_s = 0.0;
   Vec3 rate_rad_s = Vec3::Zero(), acceleration_rad_s2 = Vec3::Zero();  // now
 
-  Vec3 rate_then_rad_s() const { return rate_rad_s - time_s * acceleration_rad_s2; }
   // From the attitude then to that now.
   Vec3 turn_rad() const { return time_s * (rate_rad_s - 0.5 * time_s * acceleration_rad_s2); }
 };
@@ -141,23 +140,40 @@ class Slopes {
                          readings_.data());
   }
 
-  // The camera sees the attitude, its own misalignment, and all of it late.
-  void fill(int lane, const PlatformState& state, const Delay& delay,
-            Eigen::Matrix<double, channel_count, Eigen::Dynamic>& slope) {
-    const Quat& q = state.lab_from_body;
-    const Mat3 lab_from_body = q.toRotationMatrix();
+  // Those of one lane, once see() was called.
+  template <class Matrix>
+  void fill(int lane, Matrix& slope) const {
+    for (Eigen::Index r = 0; r < 6; ++r) {
+      const Lanes* from = seen_.data() + static_cast<size_t>(r) * count_;
+      for (size_t v = 0; v < count_; ++v) slope(r, static_cast<Eigen::Index>(v)) = from[v][lane];
+    }
+  }
+
+  // The camera sees the attitude, its own misalignment, and all of it late, by `delay_s`.
+  void see(const Lanes& delay_s, const Vec3Of<Lanes>& rate_then_rad_s) {
+    const Lanes* y = samples_.y.data();
+    const Lanes norm = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2] + y[3] * y[3]);
+    const QuatOf<Lanes> q(y[0] / norm, y[1] / norm, y[2] / norm, y[3] / norm);
+    const Mat3Of<Lanes> lab_from_body = q.toRotationMatrix();
+    seen_.resize(6 * count_);
     for (size_t v = 0; v < count_; ++v) {
-      const auto by = [&](size_t c) { return samples_.derivatives[c * count_ + v][lane]; };
-      const auto reading = [&](size_t r) { return readings_[r * count_ + v][lane]; };
-      const Quat change(by(0), by(1), by(2), by(3));
-      const Vec3 rotation_body =
-          2.0 * (q.conjugate() * change).vec() + Vec3(reading(3), reading(4), reading(5)) -
-          reading(6) * delay.rate_then_rad_s() -
-          delay.time_s *
-              Vec3(by(component::rate), by(component::rate + 1), by(component::rate + 2));
-      const auto column = static_cast<Eigen::Index>(v);
-      slope.col(column).head<3>() = lab_from_body * rotation_body;
-      for (int k = 0; k < 3; ++k) slope(3 + k, column) = reading(static_cast<size_t>(k));
+      const auto by = [&](size_t c) -> const Lanes& {
+        return samples_.derivatives[c * count_ + v];
+      };
+      const auto reading = [&](size_t r) -> const Lanes& { return readings_[r * count_ + v]; };
+      const QuatOf<Lanes> change(by(0), by(1), by(2), by(3));
+      const Vec3Of<Lanes> turned = (q.conjugate() * change).vec();
+      Vec3Of<Lanes> rotation_body;
+      for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<size_t>(k);
+        rotation_body[k] = 2.0 * turned[k] + reading(3 + axis) - reading(6) * rate_then_rad_s[k] -
+                           delay_s * by(component::rate + axis);
+      }
+      const Vec3Of<Lanes> rotation_lab = lab_from_body * rotation_body;
+      for (size_t k = 0; k < 3; ++k) {
+        seen_[k * count_ + v] = rotation_lab[static_cast<Eigen::Index>(k)];
+        seen_[(3 + k) * count_ + v] = reading(k);
+      }
     }
   }
 
@@ -178,6 +194,7 @@ class Slopes {
   size_t count_;
   const Samples& samples_;
   std::vector<Lanes> readings_;
+  std::vector<Lanes> seen_;  // slopes of the attitude (lab axes) and of the gyro, a row each
 };
 
 // How fast a scalar says that it turns: an angle from one reading to the next, a rate as it is.
@@ -227,6 +244,42 @@ double fastest_rad_s(const Observation& seen) {
   return fastest;
 }
 
+// What noiseless instruments read at eight instants.
+struct Sight {
+  Vec3Of<Lanes> gyro_rad_s, camera_error_rad, acceleration_rad_s2;
+  Lanes delay_s = 0.0;
+
+  // When the attitude was as the camera reports it.
+  Vec3Of<Lanes> rate_then_rad_s(const Lanes* y) const {
+    Vec3Of<Lanes> rate;
+    for (int k = 0; k < 3; ++k) rate[k] = y[component::rate + k] - delay_s * acceleration_rad_s2[k];
+    return rate;
+  }
+};
+
+// The acceleration is zero where nothing that is read depends on it.
+Sight sight_of(const Dynamics& dynamics, const Samples& samples, bool needs_acceleration) {
+  Sight sight;
+  const std::optional<Dynamics::Offsets>& offsets = dynamics.offsets();
+  if (offsets && offsets->camera_delay_s == 0.0 && !needs_acceleration) {
+    for (int k = 0; k < 3; ++k) {
+      sight.gyro_rad_s[k] =
+          samples.y[static_cast<size_t>(component::rate + k)] + offsets->gyro_rad_s[k];
+      sight.camera_error_rad[k] = offsets->camera_rad[k];
+      sight.acceleration_rad_s2[k] = 0.0;
+    }
+    return sight;
+  }
+  const Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
+  sight.gyro_rad_s = now.gyro_rad_s;
+  sight.camera_error_rad = now.camera_error_rad;
+  sight.delay_s = now.camera_delay_s;
+  for (int k = 0; k < 3; ++k) {
+    sight.acceleration_rad_s2[k] = now.rates[static_cast<size_t>(component::rate + k)];
+  }
+  return sight;
+}
+
 class Comparison {
  public:
   Comparison(const Observation& seen, size_t variables, bool keep, double max_chi2)
@@ -247,12 +300,15 @@ class Comparison {
   }
 
   void add(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples) {
-    const Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
-    std::optional<Slopes> slopes;
-    if (sensitivity != nullptr) slopes.emplace(*sensitivity, samples);
     const FieldReadings fields(dynamics, seen_);
     const bool has_fields = std::any_of(scalars_.begin(), scalars_.end(),
                                         [](int s) { return s >= first_field && s < first_place; });
+    const Sight sight = sight_of(dynamics, samples, has_fields);
+    std::optional<Slopes> slopes;
+    if (sensitivity != nullptr) {
+      slopes.emplace(*sensitivity, samples);
+      slopes->see(sight.delay_s, sight.rate_then_rad_s(samples.y.data()));
+    }
     const int place = dynamics.first_of_translation();
     std::optional<AccelerationSlopes> turning;
     if (has_fields && sensitivity != nullptr && fields.feels_turning()) {
@@ -267,11 +323,9 @@ class Comparison {
       if (!(state.rate_body_rad_s.norm() < max_rate_rad_s_)) {
         throw NumericalError("the motion runs away");
       }
-      const Delay delay{now.camera_delay_s[lane],
-                        state.rate_body_rad_s,
-                        {now.rates[component::rate][lane], now.rates[component::rate + 1][lane],
-                         now.rates[component::rate + 2][lane]}};
-      if (slopes) slopes->fill(lane, state, delay, slope_);
+      const Delay delay{sight.delay_s[lane], state.rate_body_rad_s,
+                        in_lane(sight.acceleration_rad_s2, lane)};
+      if (slopes) slopes->fill(lane, slope_);
       for (Eigen::Index v = 0; has_fields && slopes && v < slope_.cols(); ++v) {
         const auto column = static_cast<size_t>(v);
         slope_.col(v).segment<first_place - first_field>(vector_channels + first_field) =
@@ -285,9 +339,10 @@ class Comparison {
         }
       }
       place_ = place < 0 ? nullptr : &y[static_cast<size_t>(place)];
-      const Vec3 camera_offset_body = in_lane(now.camera_error_rad, lane) - delay.turn_rad();
+      const Vec3 camera_offset_body = in_lane(sight.camera_error_rad, lane) - delay.turn_rad();
       add_block(samples.first + static_cast<size_t>(lane), state, camera_offset_body,
-                in_lane(now.gyro_rad_s, lane), fields.at(state, delay.acceleration_rad_s2));
+                in_lane(sight.gyro_rad_s, lane),
+                has_fields ? fields.at(state, delay.acceleration_rad_s2) : FieldRow::Zero());
     }
   }
 
@@ -356,7 +411,7 @@ class Comparison {
   const Observation& seen_;
   double max_chi2_, max_rate_rad_s_, chi2_ = 0.0;
   inference::SumsOfRows sums_;
-  Eigen::Matrix<double, channel_count, Eigen::Dynamic> slope_;
+  Eigen::Matrix<double, channel_count, Eigen::Dynamic, Eigen::RowMajor> slope_;
   std::vector<int> scalars_;          // that were read
   const double* place_ = nullptr;     // place and velocity of the state that is compared
   std::vector<Whitening> whitening_;  // of each channel

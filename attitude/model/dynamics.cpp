@@ -61,22 +61,50 @@ Dynamics::Dynamics(AttitudeModel model) : model_(std::move(model)) {
   const Eigen::FullPivLU<Mat3> lu(model_.platform.inertia_kg_m2);
   if (!lu.isInvertible()) throw NumericalError("the platform's inertia is singular");
   inverse_inertia_1_kg_m2_ = lu.inverse();
-  inertia_changes_ = changes_inertia();
+  try_laws();
 }
 
-// Whether some law changes the inertia, tried at the start: a law that does so does it always.
-bool Dynamics::changes_inertia() const {
-  const std::vector<double> start = to_vector(initial_state());
+// Which laws change the inertia, and whether what instruments add depends on the motion, whatever
+// their parameters are: tried on two states, because a law that does so does it always.
+void Dynamics::try_laws() {
+  changes_inertia_.assign(model_.disturbances.size(), false);
+  const PlatformState rest = initial_state();
+  PlatformState moving = initial_state(Vec3(0.03, -0.02, 0.05));
+  moving.lab_from_body = Quat(Eigen::AngleAxisd(0.3, Vec3(0.6, 0.0, 0.8)));
+  moving.charge_drawn_C = 100.0;
+  std::vector<Lanes> others = parameters_;
+  for (size_t p = 0; p < others.size(); ++p) others[p] += 1e-3 * static_cast<double>(p + 1);
+  const Offsets as_stated = tried(rest, parameters_);
+  if (tried(rest, others) == tried(moving, others)) offsets_ = as_stated;
+}
+
+// With these parameters of the instruments.
+Dynamics::Offsets Dynamics::tried(const PlatformState& state,
+                                  const std::vector<Lanes>& instruments) {
+  const std::vector<double> start = to_vector(state);
   const std::vector<Lanes> y(start.begin(), start.end());
   std::vector<Lanes> rates(y.size(), Lanes(0.0));
   EvaluationContext<Lanes> now = begin(Lanes(0.0), broadcast({}, 0.0), y.data());
-  run_stages(order_, now, [&](size_t d) {
+  const auto act = [&](size_t d) {
     const Layout& own = layout_[d];
-    model_.disturbances[d].law->act({parameters_.data() + own.first_parameter,
+    const bool is_instrument = model_.disturbances[d].stage == Stage::measurement;
+    const std::vector<Lanes>& parameters = is_instrument ? instruments : parameters_;
+    now.inertia_changed = false;
+    model_.disturbances[d].law->act({parameters.data() + own.first_parameter,
                                      y.data() + own.first_state, rates.data() + own.first_state},
                                     now);
-  });
-  return now.inertia_changed;
+    changes_inertia_[d] = changes_inertia_[d] || now.inertia_changed;
+  };
+  run_stages(order_, now, act);
+  for (const size_t d : instruments_) act(d);
+  Offsets offsets;
+  for (int k = 0; k < 3; ++k) {
+    offsets.gyro_rad_s[k] = now.inertial_rate_body_rad_s[k][0] - now.rate_body_rad_s[k][0];
+    offsets.gyro_rad_s[k] += now.gyro_error_rad_s[k][0];
+    offsets.camera_rad[k] = now.camera_error_rad[k][0];
+  }
+  offsets.camera_delay_s = now.camera_delay_s[0];
+  return offsets;
 }
 
 PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
@@ -310,8 +338,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
                                                      bool with_instruments, Workspace& room) const {
   std::vector<DualLanes>&y_dual = room.y, &own_parameters = room.parameters, &rates = room.rates;
   y_dual.assign(y, y + size_);
-  // Any law may change the inertia that all torques are divided by.
-  bool everything = inertia_changes_;
+  bool everything = false;
   for (int k = 0; k < DualLanes::block; ++k) {
     if (block.state[k] < 0) continue;
     y_dual[static_cast<size_t>(block.state[k])].partial[k] = 1.0;
@@ -320,7 +347,7 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
         (translation_ >= 0 && block.state[k] >= translation_ && block.state[k] < translation_ + 4);
   }
   // A torque depends on the body's state, on what is its own, and on what those of earlier stages
-  // did: these always act.
+  // did: these always act, and so do those that change the inertia that all torques are divided by.
   const auto owns = [&](size_t d) {
     const Disturbance& disturbance = model_.disturbances[d];
     const Layout& own = layout_[d];
@@ -342,9 +369,10 @@ EvaluationContext<DualLanes> Dynamics::differentiate(const Lanes& time_s, const 
   for (const size_t d : order_) {
     if (with_instruments && model_.disturbances[d].stage == Stage::torque) continue;
     acting.push_back(d);
-    const bool earlier = model_.disturbances[d].stage < Stage::torque, owner = owns(d);
-    if (earlier || owner) owners.push_back(d);
-    everything = everything || (earlier && owner);
+    const bool reaches_all = model_.disturbances[d].stage < Stage::torque || changes_inertia_[d],
+               owner = owns(d);
+    if (reaches_all || owner) owners.push_back(d);
+    everything = everything || (reaches_all && owner);
   }
   // An instrument's error may scale with what it senses.
   everything = everything ||

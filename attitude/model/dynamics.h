@@ -109,6 +109,15 @@ class Dynamics {
   Instants at(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
               const Lanes* y) const;
 
+  // What noiseless instruments add to the platform's own rate and attitude, where that does not
+  // depend on the motion.
+  struct Offsets {
+    Vec3 gyro_rad_s, camera_rad;
+    double camera_delay_s = 0.0;
+    bool operator==(const Offsets&) const = default;
+  };
+  const std::optional<Offsets>& offsets() const { return offsets_; }
+
   // Derivatives of the instruments' readings by the variables of `block`: gyro [0, 3), camera error
   // [3, 6), camera delay [6], each a row of `block` numbers.
   static constexpr int reading_count = 7;
@@ -143,7 +152,8 @@ class Dynamics {
   Vec3Of<T> about_axis(const Vec3Of<T>& torque_N_m, const Mat3Of<T>& inertia_kg_m2) const;
   template <class T>
   void solve(const EvaluationContext<T>& now, const T* y, T* rates) const;
-  bool changes_inertia() const;
+  void try_laws();
+  Offsets tried(const PlatformState& state, const std::vector<Lanes>& instruments);
   void free_body_rates(const Command& command, const Lanes* y, Lanes* rates) const;
   // Evaluates with derivatives, leaving out disturbances that cannot depend on the block.
   EvaluationContext<DualLanes> differentiate(const Lanes& time_s, const Command& command,
@@ -159,7 +169,8 @@ class Dynamics {
   std::vector<size_t> instruments_;  // disturbances of Stage::measurement
   std::vector<Lanes> parameters_;
   Mat3 inverse_inertia_1_kg_m2_;
-  bool inertia_changes_ = false;
+  std::vector<bool> changes_inertia_;  // of each disturbance
+  std::optional<Offsets> offsets_;
 };
 
 // Whether the motion would differ at another attitude: a lab's gravity, field or draught acts.

@@ -77,6 +77,7 @@ Sensitivity::Sensitivity(const Dynamics& dynamics, std::vector<Variable> variabl
   largest_scaled_.assign(count, 0.0);
   note_extent();
   make_blocks();
+  if (dynamics_.offsets()) read_offsets();
 }
 
 void Sensitivity::note_extent() {
@@ -122,6 +123,27 @@ void Sensitivity::make_blocks() {
       last.block.parameter[k] =
           dynamics_.first_parameter(variable.disturbance) + variable.parameter;
       last.variable[k++] = static_cast<int>(v);
+    }
+  }
+}
+
+// Their own parameters alone change offsets, in the same way all the time.
+void Sensitivity::read_offsets() {
+  const size_t count = variables_.size();
+  offset_slopes_.assign(Dynamics::reading_count * count, 0.0);
+  const PlatformState any = dynamics_.initial_state();
+  const std::vector<double> start = to_vector(any);
+  const std::vector<Lanes> y(start.begin(), start.end());
+  std::array<Lanes, Dynamics::reading_count * DualLanes::block> partials;
+  Dynamics::Workspace room;
+  for (const ParameterBlock& block : parameter_blocks_) {
+    if (!only_reads(dynamics_, variables_[static_cast<size_t>(block.variable[0])])) continue;
+    dynamics_.reading_derivatives(Lanes(any.time_s), {}, y.data(), block.block, partials.data(),
+                                  room);
+    for (size_t i = 0; i < partials.size(); ++i) {
+      const size_t r = i / DualLanes::block, k = i % DualLanes::block;
+      if (block.variable[k] < 0) continue;
+      offset_slopes_[r * count + static_cast<size_t>(block.variable[k])] = partials[i][0];
     }
   }
 }
@@ -263,6 +285,12 @@ void Sensitivity::dense(const Lanes& fraction, Lanes* derivatives) const {
 void Sensitivity::readings(const Lanes& time_s, const std::array<ZeroOrderHold, Lanes::count>& held,
                            const Lanes* y, const Lanes* derivatives, Lanes* readings) const {
   const size_t count = variables_.size();
+  if (dynamics_.offsets()) {
+    std::copy(offset_slopes_.begin(), offset_slopes_.end(), readings);
+    const Lanes* by_rate = derivatives + component::rate * count;
+    for (size_t i = 0; i < 3 * count; ++i) readings[i] += by_rate[i];
+    return;
+  }
   std::fill(readings, readings + Dynamics::reading_count * count, Lanes(0.0));
   std::array<Lanes, Dynamics::reading_count * DualLanes::block> partials;
   Dynamics::Workspace room;

@@ -63,6 +63,7 @@ class Sensitivity {
   };
   void seed_bound_states(size_t v, int axis);
   void make_blocks();
+  void read_offsets();
   void differentiate_rates(const CollocationStep& step, const ZeroOrderHold& held);
 
   const Dynamics& dynamics_;
@@ -82,8 +83,11 @@ class Sensitivity {
   void solve_at_once(const CollocationStep& step);
   bool is_resolved(const CollocationStep& step) const;
   std::vector<size_t> moving_;  // variables on which the motion depends
-  RateWorkspace room_;          // its `jacobian` is that of the step
-  std::vector<Lanes> source_;   // ∂(dy_c/dt)/∂(variable)
+  // Where readings are the platform's own rate and attitude and offsets (Dynamics::offsets): what
+  // the variables change of the offsets, laid out as readings() has it.
+  std::vector<double> offset_slopes_;
+  RateWorkspace room_;         // its `jacobian` is that of the step
+  std::vector<Lanes> source_;  // ∂(dy_c/dt)/∂(variable)
   std::vector<Lanes> stages_, rates_;
 };
 

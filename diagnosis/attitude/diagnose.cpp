@@ -199,6 +199,10 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
     nominal_fit = fit(nominal_fit.best, data.train);
     answer = explain(nominal, nominal_fit, data, options);
   }
+  if (!is_lost) {
+    Trial& chosen = answer.trials[answer.decision.chosen];
+    chosen = within_physics(chosen, answer.all, data.train);
+  }
   Diagnosis d;
   // What counted as noise there is far more than the noise of the readings.
   if (is_lost) leave_unexplained(answer.decision);

@@ -95,6 +95,8 @@ class Outlook {
 // A window that is not the whole only brings the start of the next one near.
 constexpr int iterations_of_first_windows = 20;
 constexpr double gain_in_first_windows = 1.0;
+// By how much χ² of one that was given time no more may be above what is worth the fit.
+constexpr double still_falling = 4.0;
 
 class Fitter {
  public:
@@ -107,8 +109,9 @@ class Fitter {
     bool is_hopeless = false;
     for (size_t w = 0; w < options_.windows.size() && !is_hopeless; ++w) {
       result.termination = fit_window(options_.windows[w]);
-      is_hopeless = result.termination == Termination::not_evaluable;
+      is_hopeless = result.termination == Termination::not_evaluable || is_lost_;
     }
+    if (is_lost_) result.termination = Termination::out_of_reach;
     const Request whole{!is_hopeless, 1.0, is_hopeless ? 0.0 : infinity};
     Evaluation last = ended_at_ ? std::move(*ended_at_) : evaluate(model_, now_, whole);
     result.parameters = model_.parameters(now_);
@@ -120,7 +123,9 @@ class Fitter {
     result.first_shared = result.parameters.first_shared();
     result.run_chi2 = std::move(last.run_chi2);
     result.run_samples = std::move(last.run_samples);
-    if (!std::isfinite(result.chi2)) result.termination = Termination::not_evaluable;
+    if (!std::isfinite(result.chi2) && !is_lost_) {
+      result.termination = Termination::not_evaluable;
+    }
     result.converged = result.termination == Termination::converged;
     result.iterations = iterations_;
     result.at = std::move(now_);
@@ -139,6 +144,9 @@ class Fitter {
     }
     Evaluation now = evaluate(model_, now_, {true, window});
     const Termination termination = iterate(now, window);
+    // χ² only grows with the window.
+    const double margin = termination == Termination::max_iterations ? still_falling : 1.0;
+    is_lost_ = window < 1.0 && now.sums.chi2 > margin * options_.worth_chi2;
     if (window == 1.0 && termination != Termination::not_evaluable) ended_at_ = std::move(now);
     return termination;
   }
@@ -219,6 +227,7 @@ class Fitter {
   Eigen::VectorXd now_;
   std::optional<Evaluation> ended_at_;
   int iterations_ = 0;
+  bool is_lost_ = false;  // a window's χ² alone is more than is worth the fit
 };
 
 }  // namespace

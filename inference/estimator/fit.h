@@ -42,7 +42,8 @@ struct Options {
   // A start whose χ² is larger is not worth its derivatives: it counts as not evaluable.
   double max_start_chi2 = infinity;
   // A fit of whole runs ends where χ² falls too slowly to come below this, and windows before only
-  // bring their start near, in 20 iterations at most. Infinite: neither.
+  // bring their start near, in 20 iterations at most; one whose χ² alone stays above it ends the
+  // fit, as if it could not be evaluated. Infinite: none of these.
   double worth_chi2 = infinity;
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;  // ≥ 0: keeps combinations that nothing determines where they are

@@ -51,5 +51,49 @@ TEST(Prediction, OfALateCameraIsWhatWasSeenThen) {
   EXPECT_GT(largest_rad, 0.0);
 }
 
+// Rotations of the camera and of the gyro without size change nothing of what is read, but make it
+// depend on the motion, and what changes by offsets is then not known beforehand.
+TEST(Prediction, SlopesOfOffsetsAreThoseOfInstrumentsThatDependOnTheMotion) {
+  AttitudeModel plain =
+      with(with(bench_model(), "static_unbalance", {{"offset_m", numbers({1e-5, 0, -1.5e-4})}}),
+           "gyro_bias", {{"bias_rad_s", numbers({1e-3, -2e-3, 5e-4})}});
+  plain = with(plain, "camera_misalignment", {{"misalignment_rad", numbers({2e-3, 0, -1e-3})}});
+  const AttitudeModel turned_gyro =
+      with(plain, "gyro_misalignment", {{"misalignment_rad", numbers({0, 0, 0})}});
+  AttitudeModel turning_lab = with(plain, "earth_rotation", {});
+  turning_lab.environment.earth_rate_lab_rad_s = Vec3(0.0, 5e-5, 5e-5);
+  EXPECT_TRUE(Dynamics(plain).offsets().has_value());
+  EXPECT_FALSE(Dynamics(turned_gyro).offsets().has_value());
+  EXPECT_FALSE(Dynamics(turning_lab).offsets().has_value());
+
+  Observation seen;
+  for (size_t i = 0; i < 100; ++i) {
+    seen.time_s.push_back(0.2 * static_cast<double>(i));
+    seen.attitude.push_back(turned(0.1, {0, 1, 0}));
+    seen.attitude_rows.push_back(1.0);
+    seen.gyro_rad_s.push_back(Vec3::Zero());
+    seen.gyro_rows.push_back(Vec3::Ones());
+  }
+  seen.has_gyro = true;
+  std::vector<Variable> variables;
+  for (int k = 0; k < 6; ++k) variables.push_back({k, 0, -1});
+  for (size_t d = 0; d < 3; ++d) {
+    for (int k = 0; k < 3; ++k) variables.push_back(Variable::of(d, k));
+  }
+  const auto sums = [&](const AttitudeModel& model) {
+    const Dynamics dynamics(model);
+    return predict(dynamics, state_of(model, turned(0.1, {0, 1, 0}), {0.01, 0.02, 0.3}), seen,
+                   variables, {})
+        .sums;
+  };
+  const inference::NormalSums a = sums(plain), b = sums(turned_gyro);
+  EXPECT_GT(a.matrix.diagonal().minCoeff(), 0.0);
+  EXPECT_NEAR(a.chi2, b.chi2, 1e-10 * b.chi2);
+  const Eigen::VectorXd scale = b.matrix.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd off = (a.matrix - b.matrix).cwiseQuotient(scale * scale.transpose());
+  EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((a.gradient - b.gradient).cwiseQuotient(scale).norm(), 1e-9 * std::sqrt(b.chi2));
+}
+
 }  // namespace
 }  // namespace photorque

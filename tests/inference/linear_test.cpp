@@ -305,6 +305,47 @@ TEST(Fit, EndsWhereItFallsTooSlowlyToBeWorthIt) {
   EXPECT_EQ(worth.chi2, patient.chi2);
 }
 
+// χ² of a part is χ² of the whole at the least: 100 in a twentieth of the run.
+TEST(Fit, EndsInAWindowThatAloneIsMoreThanIsWorthIt) {
+  int of_whole = 0;
+  class Model final : public ForwardModel {
+   public:
+    explicit Model(int& of_whole) : of_whole_(of_whole) {}
+    Parameters parameters(const Eigen::VectorXd& at) const override {
+      Parameters all;
+      all.of_run.resize(1);
+      all.shared = {{"x", "", at[0]}};
+      return all;
+    }
+    NormalSums sums(const Eigen::VectorXd& at, Eigen::Index,
+                    const Request& request) const override {
+      if (request.window == 1.0 && request.give_up_above > 0.0) ++of_whole_;
+      const double x = at[0], rest = 100.0 * request.window / 0.05;
+      return {Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Constant(1, -x), rest + x * x, 2};
+    }
+    Eigen::VectorXd stepped(const Eigen::VectorXd& at, const Eigen::VectorXd& step) const override {
+      return at + step;
+    }
+
+   private:
+    int& of_whole_;
+  };
+  const Model model(of_whole);
+  Options options;
+  options.windows = {0.05, 1.0};
+  options.worth_chi2 = 3000.0;
+  const Eigen::VectorXd start = Eigen::VectorXd::Constant(1, 10.0);
+  const Fit worth = fit(model, start, options);
+  EXPECT_EQ(worth.termination, Termination::converged);
+  EXPECT_GT(of_whole, 0);
+  of_whole = 0;
+  options.worth_chi2 = 99.0;
+  const Fit lost = fit(model, start, options);
+  EXPECT_EQ(lost.termination, Termination::out_of_reach);
+  EXPECT_EQ(of_whole, 0);
+  EXPECT_FALSE(std::isfinite(lost.chi2));
+}
+
 TEST(Fit, AModelThatCannotBeEvaluatedIsInfinitelyBad) {
   const ResidualModel model({{"a", "", 1.0}},
                             [](const Eigen::VectorXd&, Eigen::Index, Eigen::VectorXd& residuals,

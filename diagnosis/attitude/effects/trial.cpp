@@ -398,6 +398,33 @@ Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t c
   return result;
 }
 
+Trial within_physics(const Trial& trial, const Candidates& all,
+                     const std::vector<Observation>& runs) {
+  Hypothesis h = trial.fit.best;
+  bool any_beyond = false;
+  for (Free& f : h.free) {
+    for (size_t i = 0; i < trial.candidates.size(); ++i) {
+      if (f.per_run || f.disturbance != trial.disturbances[i]) continue;
+      const Candidate& c = all[trial.candidates[i]];
+      const auto p = static_cast<size_t>(f.parameter);
+      f.lowest = c.lowest[p];
+      f.highest = c.highest[p];
+      const double found = h.parameter(f).value;
+      h.value(f) = std::clamp(found, f.lowest, f.highest);
+      any_beyond = any_beyond || h.parameter(f).value != found;
+    }
+  }
+  if (!any_beyond) return trial;
+  // What was fitted beside it is far off now.
+  FitSettings settings;
+  settings.windows = all.limits.fitting.diverged_windows;
+  settings.max_iterations = all.limits.fitting.patient_iterations;
+  Trial result = trial;
+  result.fit = fit(h, runs, settings);
+  const bool is_as_good = result.fit.chi2 < trial.fit.chi2 + all.limits.leaders.near_chi2;
+  return is_as_good ? result : trial;
+}
+
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,
             const std::vector<RunStart>& starts, const FitSettings& settings) {
   Trial result = trial;

@@ -72,6 +72,11 @@ struct Trial : inference::Explanation {
 
 Trial nominal_trial(const Fit& nominal, const Candidates& all);
 
+// The trial with every number of its candidates within what physics allows: the rest fitted anew
+// where one was beyond; as it is where that leads away. Its evidence stays as it was weighed.
+Trial within_physics(const Trial& trial, const Candidates& all,
+                     const std::vector<Observation>& runs);
+
 // Adds a candidate, its parameters starting from `start`, and fits.
 Trial extend(const Trial& parent, const Candidates& all, size_t candidate, const Disturbance& start,
              const std::vector<Observation>& runs, const FitSettings& settings = {});
