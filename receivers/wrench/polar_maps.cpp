@@ -8,6 +8,7 @@
 
 #include "core/constants.h"
 #include "core/estimate.h"
+#include "core/parallel.h"
 
 namespace photorque {
 namespace {
@@ -45,20 +46,29 @@ class SmoothComponent {
     for (int i = first; i < first + 4; ++i) {
       if (const auto node = node_at(i, count)) nodes.push_back(*node);
     }
-    std::vector<double> weights(table_.nodes(), 0.0);
+    // By polar angle, which beyond a pole may be there twice.
+    std::vector<Row> rows;
     for (size_t i = 0; i < nodes.size(); ++i) {  // Lagrange
       double weight = 1.0;
       for (size_t k = 0; k < nodes.size(); ++k) {
         if (k == i) continue;
         weight *= (polar_rad - nodes[k].at_rad) / (nodes[i].at_rad - nodes[k].at_rad);
       }
-      add_round(nodes[i].index, around_rad + (nodes[i].opposite ? pi : 0.0), weight, weights);
+      auto row = std::ranges::find(rows, nodes[i].index, &Row::polar);
+      if (row == rows.end()) {
+        rows.push_back({nodes[i].index, std::vector<double>(around_rad_.size(), 0.0)});
+        row = rows.end() - 1;
+      }
+      add_round(around_rad + (nodes[i].opposite ? pi : 0.0), weight, row->weights);
     }
     double sum = 0.0, variance = 0.0;
-    for (size_t node = 0; node < weights.size(); ++node) {
-      sum += weights[node] * table_.torque_body_N_m[node][axis_];
-      const double error = weights[node] * table_.torque_error_N_m[node][axis_];
-      variance += error * error;
+    for (const Row& row : rows) {
+      for (size_t i = 0; i < row.weights.size(); ++i) {
+        const size_t node = table_.node(i, row.polar);
+        sum += row.weights[i] * table_.torque_body_N_m[node][axis_];
+        const double error = row.weights[i] * table_.torque_error_N_m[node][axis_];
+        variance += error * error;
+      }
     }
     return {sum, std::sqrt(variance)};
   }
@@ -68,6 +78,11 @@ class SmoothComponent {
     double at_rad;
     size_t index;
     bool opposite;  // on the other side of a pole
+  };
+  // The nodes of one polar angle.
+  struct Row {
+    size_t polar;
+    std::vector<double> weights;
   };
 
   SmoothComponent(const WrenchTable& table, std::vector<double> around, int axis)
@@ -94,7 +109,7 @@ class SmoothComponent {
 
   // The trigonometric polynomial through the values of one polar angle: `weight` of it.
   // Source: A. Zygmund, Trigonometric Series, chapter X (its Dirichlet kernels).
-  void add_round(size_t polar, double at_rad, double weight, std::vector<double>& weights) const {
+  void add_round(double at_rad, double weight, std::vector<double>& weights) const {
     const auto count = static_cast<double>(around_rad_.size());
     for (size_t i = 0; i < around_rad_.size(); ++i) {
       const double half = 0.5 * std::remainder(at_rad - around_rad_[i], 2.0 * pi);
@@ -103,7 +118,7 @@ class SmoothComponent {
         kernel = std::sin(count * half) /
                  (count * (around_rad_.size() % 2 == 0 ? std::tan(half) : std::sin(half)));
       }
-      weights[table_.node(i, polar)] += weight * kernel;
+      weights[i] += weight * kernel;
     }
   }
 
@@ -122,17 +137,19 @@ Map disc(double reach, const Value& value) {
   map.x_high = map.y_high = edge;
   map.smooth = map.signed_values = true;
   map.unit = "N m";
-  for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column) {
-      const double x = reach * (2.0 * column / (side - 1.0) - 1.0);
-      const double y = reach * (2.0 * row / (side - 1.0) - 1.0);
+  map.value.resize(side * side);
+  map.standard_error.resize(side * side);
+  parallel_for(side, 0, [&](size_t row) {
+    for (size_t column = 0; column < side; ++column) {
+      const double x = reach * (2.0 * static_cast<double>(column) / (side - 1.0) - 1.0);
+      const double y = reach * (2.0 * static_cast<double>(row) / (side - 1.0) - 1.0);
       const double distance = std::hypot(x, y);
       const Estimate at =
           distance > reach * (1.0 + 1e-12) ? Estimate{nan, nan} : value(distance, std::atan2(y, x));
-      map.value.push_back(at.value);
-      map.standard_error.push_back(at.standard_error);
+      map.value[row * side + column] = at.value;
+      map.standard_error[row * side + column] = at.standard_error;
     }
-  }
+  });
   return map;
 }
 

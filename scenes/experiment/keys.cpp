@@ -164,7 +164,7 @@ Key torque_map_table() {
        Key::integer(
            "rays", 1, most_rays,
            "per attitude or direction. Plain surfaces in sunlight go by quadrature (unless "
-           "`trace.direct` is \"rays\" or `trace.max_depth` below its default): there 128 "
+           "`trace.direct` is \"rays\" or `trace.max_depth` below its default): there 64 "
            "times as many in all, at most 2^24, for what they scatter")
            .usually_is("`trace.rays`")},
       "the attitudes, or directions of sunlight, of a table of forces and torques; without this "

@@ -69,7 +69,7 @@ class SunlitDirections final : public LightDirections {
   // How far rays are off in directions that the table does not have, and how far they may be.
   void say(double stated_N_m, const WrenchTable& table, const Console& console, int threads) const {
     constexpr size_t fresh = 16;
-    constexpr uint64_t rays = 1 << 20;
+    constexpr uint64_t rays = 1 << 19;
     const std::vector<RigidTransform> attitudes = fresh_directions(fresh, sun_);
     std::vector<double> square(fresh, 0.0), noise(fresh, 0.0);
     parallel_for(fresh, threads, [&](size_t i) {
@@ -109,7 +109,7 @@ std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const 
   if (file.effort.direct == TraceEffort::Direct::rays) return nullptr;
   if (file.trace.max_depth < TraceOptions{}.max_depth) return nullptr;
   SunlitEffort effort;
-  constexpr uint64_t for_all = 128, most = 1ull << 24;  // scattered light is found once
+  constexpr uint64_t for_all = 64, most = 1ull << 24;  // scattered light is found once
   const uint64_t rays = file.torque_map_rays.value_or(file.trace.rays);
   effort.scattered.rays = std::min(for_all * std::min(rays, most), most);
   effort.scattered.seed = run.provenance().seed;

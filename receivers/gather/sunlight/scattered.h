@@ -26,7 +26,7 @@ using TwofoldSum = Eigen::Array<double, 12, 1>;
 class ScatteredLight {
  public:
   struct Effort {
-    size_t patches = 4096;       // about, of equal areas; at least one for each facet
+    size_t patches = 1000;       // about, of equal areas; at least one for each facet
     uint64_t rays = 1ull << 23;  // about, of either set
     uint64_t seed = 1;
     int threads = 0;

@@ -25,7 +25,7 @@ namespace photorque {
 
 struct SunlitEffort {
   ScatteredLight::Effort scattered = {};
-  size_t mirror_cells = 3000;  // of about equal areas, over all surfaces
+  size_t mirror_cells = 1000;  // of about equal areas, over all surfaces
 };
 
 // A wrench of sunlight: of what first contact leaves, and of all that follows twice, from
