@@ -75,7 +75,11 @@ void Dynamics::try_laws() {
   std::vector<Lanes> others = parameters_;
   for (size_t p = 0; p < others.size(); ++p) others[p] += 1e-3 * static_cast<double>(p + 1);
   const Offsets as_stated = tried(rest, parameters_);
-  if (tried(rest, others) == tried(moving, others)) offsets_ = as_stated;
+  try {
+    if (tried(rest, others) == tried(moving, others)) offsets_ = as_stated;
+  } catch (const NumericalError&) {
+    // A table that does not reach so far: then nothing is known beforehand.
+  }
 }
 
 // With these parameters of the instruments.

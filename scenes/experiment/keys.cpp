@@ -164,8 +164,9 @@ Key torque_map_table() {
        Key::integer(
            "rays", 1, most_rays,
            "per attitude or direction. Plain surfaces in sunlight go by quadrature (unless "
-           "`trace.direct` is \"rays\" or `trace.max_depth` below its default): there 64 "
-           "times as many in all, at most 2^24, for what they scatter")
+           "`trace.direct` is \"rays\" or `trace.max_depth` below its default; `trace.cutoff` "
+           "does not count there): 64 times as many, at most 2^24, for each of the two "
+           "estimates of what they scatter")
            .usually_is("`trace.rays`")},
       "the attitudes, or directions of sunlight, of a table of forces and torques; without this "
       "table tilts of 0, 10, 20 and 30 deg towards eight headings");

@@ -19,9 +19,13 @@ class SunlitDirections final : public LightDirections {
     constexpr size_t few = 32;
     constexpr double small = 3e-5;
     const std::vector<RigidTransform> attitudes = fresh_directions(few, sun);
+    // Where torques cancel by symmetry, against those that cancel.
+    const double lever_m = 1e-3 * run.experiment().scene.radius_m();
     std::vector<double> torques_N_m(few, 0.0);
     parallel_for(few, threads, [&](size_t i) {
-      torques_N_m[i] = body_->wrench(attitudes[i], INFINITY).total().tail<3>().matrix().norm();
+      const WrenchSum all = body_->wrench(attitudes[i], INFINITY).total();
+      torques_N_m[i] =
+          std::max(all.tail<3>().matrix().norm(), lever_m * all.head<3>().matrix().norm());
     });
     tolerance_N_m_ = small * *std::ranges::max_element(torques_N_m);
   }
@@ -32,7 +36,7 @@ class SunlitDirections final : public LightDirections {
     for (size_t k = 0; k < 6; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       found.direct[k] = light.direct[i];
-      found.direct_error[k] = light.mirror_error[i];
+      found.error[k] = light.mirror_error[i];
       found.bounced.first[k] = light.bounced[i];
       found.bounced.second[k] = light.bounced[6 + i];
     }
@@ -41,7 +45,8 @@ class SunlitDirections final : public LightDirections {
   }
 
   void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool,
-            const Console& console, int threads) const override {
+            const Console& console, int threads,
+            std::vector<std::string>& warnings) const override {
     // Scattered light is one field, which every direction sees: so are its errors.
     WrenchComponents scattered{};
     for (const DirectionWrench& one : found) {
@@ -56,18 +61,19 @@ class SunlitDirections final : public LightDirections {
       for (size_t k = 0; k < 6; ++k) {
         const auto axis = static_cast<Eigen::Index>(k % torque);
         const double value = one.direct[k] + 0.5 * (one.bounced.first[k] + one.bounced.second[k]);
-        const double error = std::hypot(one.direct_error[k], std::sqrt(scattered[k]));
+        const double error = std::hypot(one.error[k], std::sqrt(scattered[k]));
         (k < torque ? table.force_body_N : table.torque_body_N_m)[node][axis] = value;
         (k < torque ? table.force_error_N : table.torque_error_N_m)[node][axis] = error;
         if (k >= torque) square += error * error / 3.0 / static_cast<double>(table.nodes());
       }
     }
-    say(std::sqrt(square), table, console, threads);
+    say(std::sqrt(square), table, console, threads, warnings);
   }
 
  private:
   // How far rays are off in directions that the table does not have, and how far they may be.
-  void say(double stated_N_m, const WrenchTable& table, const Console& console, int threads) const {
+  void say(double stated_N_m, const WrenchTable& table, const Console& console, int threads,
+           std::vector<std::string>& warnings) const {
     constexpr size_t fresh = 16;
     constexpr uint64_t rays = 1 << 19;
     const std::vector<RigidTransform> attitudes = fresh_directions(fresh, sun_);
@@ -86,12 +92,19 @@ class SunlitDirections final : public LightDirections {
       squares += square[i] / fresh;
       noises += noise[i] / fresh;
     }
-    const double largest_N_m = largest_torque_N_m(table);
+    const double largest_N_m = std::max(largest_torque_N_m(table), 1e-300);
     console.line("  by quadrature over lit pieces, with all that bounces: torque error " +
                  show(stated_N_m / largest_N_m) + " of the largest (rms); rays in " +
                  std::to_string(fresh) + " fresh directions differ by " +
                  show(std::sqrt(squares) / largest_N_m) + ", of which " +
                  show(std::sqrt(noises) / largest_N_m) + " is their own noise");
+    constexpr double loud = 3.0;  // of a root mean square over 48 numbers
+    const double sigmas = std::sqrt(squares / std::max(noises + stated_N_m * stated_N_m, 1e-300));
+    if (sigmas > loud) {
+      warnings.push_back("torques by quadrature and by rays differ by " + show(sigmas) +
+                         " standard errors (rms) in " + std::to_string(fresh) +
+                         " fresh directions");
+    }
   }
 
   const OpticalRun& run_;

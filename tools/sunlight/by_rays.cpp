@@ -44,12 +44,12 @@ class TracedDirections final : public LightDirections {
 
   // Bounced light smoothed, unless neighbours are too far apart for that.
   void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool whole,
-            const Console& console, int threads) const override {
+            const Console& console, int threads, std::vector<std::string>&) const override {
     std::vector<TwofoldWrench> halves;
     double own_square = 0.0, smooth_square = 0.0;
     for (size_t node = 0; node < table.nodes(); ++node) {
       halves.push_back(found[node].bounced);
-      add(table, node, found[node].direct, found[node].direct_error);
+      add(table, node, found[node].direct, found[node].error);
       for (size_t k = 3; k < 6; ++k) {
         own_square += 0.25 * std::pow(halves[node].first[k] - halves[node].second[k], 2);
       }
@@ -84,7 +84,7 @@ class TracedDirections final : public LightDirections {
     found.direct = components_of(direct.mean);
     for (size_t k = 0; k < 6; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      found.direct_error[k] = std::sqrt(direct.covariance(i, i));
+      found.error[k] = std::sqrt(direct.covariance(i, i));
     }
     found.bounced = bounced_of(run_.wrench(), sums, about_body_m_);
     found.rays = result.rays;
@@ -129,7 +129,7 @@ class TracedDirections final : public LightDirections {
       squares += square[i] / fresh;
       noises += noise[i] / fresh;
     }
-    const double largest_N_m = largest_torque_N_m(table);
+    const double largest_N_m = std::max(largest_torque_N_m(table), 1e-300);
     const double stated = std::sqrt((std::pow(smooth.error[3], 2) + std::pow(smooth.error[4], 2) +
                                      std::pow(smooth.error[5], 2)) /
                                     3.0);

@@ -24,13 +24,14 @@ struct SunLight {
 
 // What was found at one direction, about the point of the table.
 struct DirectionWrench {
-  WrenchComponents direct{}, direct_error{};
-  TwofoldWrench bounced;  // what light does that has met a surface before, twice
+  WrenchComponents direct{};
+  TwofoldWrench bounced;     // what light does that has met a surface before, twice
+  WrenchComponents error{};  // one standard error of all that being there twice does not tell
   uint64_t rays = 0;
   std::vector<std::string> warnings;
 
   void keep(Snapshot& snapshot) {
-    snapshot(direct, direct_error, bounced, rays);
+    snapshot(direct, bounced, error, rays);
     snapshot.each(warnings, [&](std::string& one) { snapshot(one); });
   }
 };
@@ -40,10 +41,11 @@ class LightDirections {
   virtual ~LightDirections() = default;
   // From many threads at once.
   virtual DirectionWrench at(const RigidTransform& lab_from_body) const = 0;
-  // Puts what was found at each node into the table, and says how good it is. `whole`: the nodes go
-  // from pole to pole and all round.
+  // Puts what was found at each node into the table, and says how good it is; warns where a check
+  // fails. `whole`: the nodes go from pole to pole and all round.
   virtual void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool whole,
-                    const Console& console, int threads) const = 0;
+                    const Console& console, int threads,
+                    std::vector<std::string>& warnings) const = 0;
 };
 
 // By rays; direct light is gathered from the surfaces where that is possible. Bounced light is made

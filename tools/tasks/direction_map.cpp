@@ -184,39 +184,22 @@ void find_all(const LightDirections& light, const std::vector<Direction>& distin
 // again.
 void show_nodes(const OpticalRun& run, const std::vector<Direction>& all, size_t nodes,
                 const NodeWatch& watch) {
+  constexpr uint64_t enough = 1 << 16;  // rays, to paint a scene with
   std::map<size_t, OpticalResult> earlier;
   for (const Direction& one : all) {
     if (one.first != one.node) {
       watch({run, nodes, one.lab_from_body, earlier.at(one.first)});
       continue;
     }
-    const OpticalResult result =
-        run.run(one.lab_from_body, {}, run.experiment().file.torque_map_rays);
+    const ExperimentFile& file = run.experiment().file;
+    const OpticalResult result = run.run(
+        one.lab_from_body, {}, std::min(file.torque_map_rays.value_or(file.trace.rays), enough));
     watch({run, nodes, one.lab_from_body, result});
     if (one.around == 0) earlier.emplace(one.node, result);
   }
 }
 
 }  // namespace
-
-RigidTransform SunLight::lab_from_body(const Vec3& towards_body) const {
-  return {Quat::FromTwoVectors(towards_body, towards_lab), Vec3::Zero()};
-}
-
-std::vector<RigidTransform> fresh_directions(size_t count, const SunLight& sun) {
-  constexpr double golden_rad = 2.39996322972865332;
-  std::vector<RigidTransform> attitudes;
-  for (size_t i = 0; i < count; ++i) {
-    const double height = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    const TableAngles angles{std::asin(height), golden_rad * (static_cast<double>(i) + 0.3)};
-    attitudes.push_back(sun.lab_from_body(towards_light(angles)));
-  }
-  return attitudes;
-}
-
-double largest_torque_N_m(const WrenchTable& table) {
-  return longest(table.torque_body_N_m, table.torque_error_N_m).value;
-}
 
 TorqueMapRun map_over_direction(const Console& console,
                                 const std::shared_ptr<const OpticalRun>& shared, int threads,
@@ -251,7 +234,9 @@ TorqueMapRun map_over_direction(const Console& console,
   }
   std::vector<DirectionWrench> found;
   for (size_t node = 0; node < table.nodes(); ++node) found.push_back(done[place[node]]);
-  light->fill(table, found, whole, console, threads);
+  std::vector<std::string> doubts;
+  light->fill(table, found, whole, console, threads, doubts);
+  warnings.add(doubts, "the table");
   if (watch) show_nodes(run, all, table.nodes(), watch);
   const double wall_s = wall.elapsed_s();
   print_summary(console, table, sun);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/constants.h"
+#include "core/errors.h"
 #include "receivers/wrench/table_product.h"
 #include "tools/runs/array_power.h"
 #include "tools/tasks/direction_map.h"
@@ -164,6 +165,10 @@ TorqueMapRun torque_map_of_experiment(const RunOptions& options, const Console& 
   const ExperimentFile file =
       read_experiment_text(options.experiment, options.experiment_text(), options.all_overrides());
   if (file.light_directions) own.threads = 1;
+  if (checkpoint != nullptr && !file.light_directions) {
+    throw InputError({"--checkpoint"}, "", "a map over tilts",
+                     "directions of sunlight ([torque_map] azimuth_step_deg, or azimuth_deg)");
+  }
   const auto run = std::make_shared<OpticalRun>(own, console);
   return file.light_directions
              ? map_over_direction(console, run, options.threads, watch, checkpoint)

@@ -45,11 +45,16 @@ std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double 
         height_m[i] = facet.normal.dot(other.corner_m[i] - facet.corner_m[0]);
       }
       const auto [low, high] = std::minmax_element(height_m.begin(), height_m.end());
-      if (*low > -rounding_m || *high < rounding_m) continue;
+      if (*low > rounding_m || *high < -rounding_m) continue;
       std::vector<Vec3> ends_m;
       for (size_t i = 0; i < 3; ++i) {
+        if (std::abs(height_m[i]) <= rounding_m) ends_m.push_back(other.corner_m[i]);
+      }
+      if (ends_m.size() == 3) continue;
+      for (size_t i = 0; i < 3 && ends_m.size() < 2; ++i) {
         const size_t j = (i + 1) % 3;
-        if ((height_m[i] < 0.0) == (height_m[j] < 0.0)) continue;
+        const bool apart = std::min(std::abs(height_m[i]), std::abs(height_m[j])) > rounding_m;
+        if (!apart || (height_m[i] < 0.0) == (height_m[j] < 0.0)) continue;
         const double part = height_m[i] / (height_m[i] - height_m[j]);
         ends_m.emplace_back(other.corner_m[i] + part * (other.corner_m[j] - other.corner_m[i]));
       }

@@ -71,7 +71,9 @@ class Polygon {
   }
 
  private:
-  void add(const Vec2& p) { corner_[count_++] = p; }
+  void add(const Vec2& p) {
+    if (count_ < corner_.size()) corner_[count_++] = p;  // more only by rounding
+  }
   double twice_area(size_t i) const {
     const Vec2 a = corner_[i] - corner_[0], b = corner_[i + 1] - corner_[0];
     return a.x() * b.y() - a.y() * b.x();
@@ -160,7 +162,7 @@ class Descent {
 
 Screen::Screen(const Facet& facet) : area_m2_(facet.area_m2), corner_m_(facet.corner_m[0]) {
   const Vec3 e1 = facet.corner_m[1] - corner_m_, e2 = facet.corner_m[2] - corner_m_;
-  const double a = e1.dot(e1), b = e1.dot(e2), c = e2.dot(e2), d = a * c - b * b;
+  const double a = e1.dot(e1), b = e1.dot(e2), c = e2.dot(e2), d = e1.cross(e2).squaredNorm();
   u_per_m_ = (c * e1 - b * e2) / d;
   v_per_m_ = (a * e2 - b * e1) / d;
 }

@@ -194,6 +194,7 @@ void ScatteredLight::add_starts(const Task& task, const Work& one, uint64_t numb
   const SobolStream stream{task.effort.seed,
                            hash_words(number, static_cast<uint64_t>(task.half), task.band), 0};
   const uint32_t at_once = std::min(count, sobol_block);
+  std::vector<OnwardRay> others;
   for (uint32_t begin = 0; begin < count; begin += at_once) {
     const Starts starts = starts_of(facet, patch.cell, normal, stream, begin, at_once);
     std::vector<bool> covered(at_once, one.kind == 1);
@@ -201,12 +202,29 @@ void ScatteredLight::add_starts(const Task& task, const Work& one, uint64_t numb
       covered = covered_of(task.scene, starts.at_m, normal, close_m_);
     }
     for (size_t i = 0; i < starts.at_m.size(); ++i) {
-      if (covered[i] != (one.kind == 1)) continue;
       const Vec3 from = starts.at_m[i] + shadow_ray_offset_m(task.scene) * normal;
-      rays.push_back({from, starts.direction[i], {}, owner});
+      (covered[i] == (one.kind == 1) ? rays : others)
+          .push_back({from, starts.direction[i], {}, owner});
     }
   }
+  if (rays.empty()) std::swap(rays, others);  // too few to meet a place of this kind
   for (OnwardRay& ray : rays) ray.power_W[task.band] = 1.0 / static_cast<double>(rays.size());
+}
+
+// What one patch throws onto the same other one is one part.
+void ScatteredLight::merge_places(std::vector<Reached::Part>& parts, size_t from) {
+  const auto begin = parts.begin() + static_cast<std::ptrdiff_t>(from);
+  std::stable_sort(begin, parts.end(),
+                   [](const auto& a, const auto& b) { return a.place < b.place; });
+  size_t kept = from;
+  for (size_t i = from; i < parts.size(); ++i) {
+    if (kept > from && parts[kept - 1].place == parts[i].place) {
+      parts[kept - 1].fraction += parts[i].fraction;
+    } else {
+      parts[kept++] = parts[i];
+    }
+  }
+  parts.resize(kept);
 }
 
 std::vector<ScatteredLight::Reached> ScatteredLight::send_out(const Task& task,
@@ -228,8 +246,10 @@ std::vector<ScatteredLight::Reached> ScatteredLight::send_out(const Task& task,
         }};
     std::vector<OnwardRay> rays;
     for (size_t w = first; w < last; ++w) {
+      const size_t before = own.parts.size();
       add_starts(task, work[w], w, count, static_cast<uint32_t>(w - first), rays);
       onward.follow(rays, cutoff, sink);
+      merge_places(own.parts, before);
     }
   });
   return reached;
@@ -252,16 +272,20 @@ void ScatteredLight::settle(const Task& task, const std::vector<Work>& work,
         next[c * chunk + one.patch] += one.fraction * there.segment<6>(own);
       }
     });
-    double change = 0.0, largest = 0.0;
+    // Of forces and of torques.
+    Eigen::Array2d change = Eigen::Array2d::Zero(), largest = Eigen::Array2d::Zero();
+    const auto sizes = [](const WrenchSum& wrench) {
+      return Eigen::Array2d(wrench.head<3>().abs().maxCoeff(), wrench.tail<3>().abs().maxCoeff());
+    };
     for (size_t w = 0; w < work.size(); ++w) {
       const size_t node = work[w].patch.node;
       auto mine = per_watt[node][work[w].kind].segment<6>(own);
-      change = std::max(change, (next[w] - mine).abs().maxCoeff());
-      largest = std::max(largest, next[w].abs().maxCoeff());
+      change = change.max(sizes(next[w] - mine));
+      largest = largest.max(sizes(next[w]));
       mine = next[w];
       if (!nodes_[node].crowded) per_watt[node][1].segment<6>(own) = next[w];
     }
-    if (change <= settled * largest) break;
+    if ((change <= settled * largest).all()) break;
   }
 }
 

@@ -114,6 +114,7 @@ class ScatteredLight {
   std::vector<Work> work_of(const Task& task) const;
   void add_starts(const Task& task, const Work& one, uint64_t number, uint32_t count,
                   uint32_t owner, std::vector<OnwardRay>& rays) const;
+  static void merge_places(std::vector<Reached::Part>& parts, size_t from);
   std::vector<Reached> send_out(const Task& task, const std::vector<Work>& work) const;
   void settle(const Task& task, const std::vector<Work>& work, const std::vector<Reached>& reached);
   void find_means(size_t band);

@@ -12,8 +12,9 @@ namespace photorque {
 namespace {
 
 constexpr size_t most_facets = 20'000;
-constexpr double rounding = 1e-7;     // of the scene: in the plane of a facet
-constexpr double least_piece = 1e-6;  // of all area: not cut further
+constexpr double widest_rad = 1.0 * degree_rad;  // half-angle of a sun that shades as a point
+constexpr double rounding = 1e-7;                // of the scene: in the plane of a facet
+constexpr double least_piece = 1e-6;             // of all area: not cut further
 
 // Adds up what each owner's light does.
 OnwardSink adding_to(std::vector<TwofoldSum>& sums, const ScatteredLight& scattered) {
@@ -316,12 +317,14 @@ class SunlitBody::Direction {
   void settle(std::span<const LitPiece> family, std::span<const TwofoldSum> sums,
               std::vector<LitPiece>& next) {
     constexpr uint32_t deepest = 14;
+    constexpr size_t most_cells = 200'000;  // of one round
     TwofoldSum sum = TwofoldSum::Zero();
     for (size_t i = 0; i < family.size(); ++i) sum += sums[i];
     // A linear function in the middle is its mean at the corners.
     WrenchSum bent = WrenchSum::Zero();
     if (family.size() == 4) bent = (sum - 4.0 * sums[3]).head<6>().abs() / 3.0;
-    if (!(bent.tail<3>().maxCoeff() > tolerance_N_m_) || family[0].piece.cell.level >= deepest) {
+    const bool fine = !(bent.tail<3>().maxCoeff() > tolerance_N_m_);
+    if (fine || family[0].piece.cell.level >= deepest || next.size() > most_cells) {
       found_.bounced += sum;
       double area_m2 = 0.0;
       for (const LitPiece& one : family) {
@@ -365,6 +368,8 @@ std::unique_ptr<const SunlitBody> SunlitBody::make(const TraceableScene& scene,
   if (beams.size() != 1 || !beams[0].aperture || !std::isinf(beams[0].aperture->radius_m)) {
     return nullptr;
   }
+  const DiscLight light(*beams[0].emitter, *beams[0].aperture);
+  if (light.reach_rad() > widest_rad) return nullptr;
   size_t triangles = 0;
   for (const Instance& one : scene.scene().instances) {
     triangles += scene.scene().meshes[one.mesh].triangles.size();

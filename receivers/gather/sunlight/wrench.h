@@ -43,8 +43,8 @@ struct SunlitWrench {
 // A scene made ready for any direction. Immutable; called from many threads at once.
 class SunlitBody {
  public:
-  // Null unless the only beam is parallel (a sun), all surfaces are plain and the facets no more
-  // than can be tested against each other. `scene` must outlive this.
+  // Null unless the only beam is a sun of at most 1 deg half-angle, all surfaces are plain and the
+  // facets no more than 20,000, which can be tested against each other. `scene` must outlive this.
   static std::unique_ptr<const SunlitBody> make(const TraceableScene& scene,
                                                 std::span<const Beam> beams, const Vec3& about_m,
                                                 const SunlitEffort& effort = {});
