@@ -34,6 +34,7 @@ std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double 
     screen.add(std::span(&line, 1), facet.normal, -facet.normal, rounding_m);
     if (!screen.traces().empty()) lines.push_back(line);
   };
+  std::map<EdgeKey, int> in_plane;  // which sides of it there are: above 1, below 2
   for (uint32_t instance = 0; instance < facets.instances(); ++instance) {
     const Ball& all = facets.ball_of(instance);
     if ((all.centre_m - facet.ball.centre_m).norm() > all.radius_m + facet.ball.radius_m) continue;
@@ -51,6 +52,8 @@ std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double 
         if (std::abs(height_m[i]) <= rounding_m) ends_m.push_back(other.corner_m[i]);
       }
       if (ends_m.size() == 3) continue;
+      // An edge in the plane is a cut if the surface goes on below it.
+      const bool on_edge = ends_m.size() == 2;
       for (size_t i = 0; i < 3 && ends_m.size() < 2; ++i) {
         const size_t j = (i + 1) % 3;
         const bool apart = std::min(std::abs(height_m[i]), std::abs(height_m[j])) > rounding_m;
@@ -58,7 +61,17 @@ std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double 
         const double part = height_m[i] / (height_m[i] - height_m[j]);
         ends_m.emplace_back(other.corner_m[i] + part * (other.corner_m[j] - other.corner_m[i]));
       }
-      if (ends_m.size() == 2) add({ends_m[0], ends_m[1]});
+      if (ends_m.size() != 2) continue;
+      if (on_edge) {
+        const int side = *high > rounding_m ? 1 : 2;
+        int& sides = in_plane[key_of(instance, ends_m[0], ends_m[1])];
+        if ((sides | side) != 3 || sides == 3) {
+          sides |= side;
+          continue;
+        }
+        sides = 3;
+      }
+      add({ends_m[0], ends_m[1]});
     }
   }
   return lines;
