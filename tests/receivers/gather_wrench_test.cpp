@@ -7,13 +7,15 @@
 #include "receivers/gather/bodies/wrench.h"
 #include "tests/receivers/lamp_lottery.h"
 #include "tests/receivers/receiver_scenes.h"
+#include "tests/receivers/sunlight.h"
 
 namespace photorque {
 namespace {
 
 using testing::add;
-using testing::number;
 using testing::rectangle;
+using testing::sun;
+using testing::textbook_N;
 
 WrenchReceiver body_of(const Scene& scene, const Vec3& about_m = Vec3::Zero()) {
   std::vector<uint32_t> all(scene.instances.size());
@@ -31,21 +33,6 @@ WrenchEstimate direct_of(const WrenchReceiver& receiver, const Gathered& gathere
   }
   sums.bound.resize(receiver.bins(), 0.0);
   return receiver.direct(sums);
-}
-
-Beam sun(double angular_radius_deg) {
-  return testing::source("sun", {{"irradiance_W_m2", number(1361)},
-                                 {"angular_radius_deg", number(angular_radius_deg)}});
-}
-
-// F = P A cos θ [(1 − ρs) d − 2 (ρs cos θ + ρd/3) n] on a flat plate whose normal n looks against
-// the light's travel d.
-// Source: J. R. Wertz (ed.), Spacecraft Attitude Determination and Control (1978), eq. 17-37.
-Vec3 textbook_N(double area_m2, double specular, double diffuse, const Vec3& travel,
-                const Vec3& normal) {
-  const double cosine = -travel.dot(normal);
-  return 1361.0 / speed_of_light_m_s * area_m2 * cosine *
-         ((1.0 - specular) * travel - 2.0 * (specular * cosine + diffuse / 3.0) * normal);
 }
 
 // A convex body has no shadows: a box with another surface on each side is exact in every attitude.

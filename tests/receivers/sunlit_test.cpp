@@ -12,21 +12,17 @@
 #include "tests/outside.h"
 #include "tests/receivers/gather_lamps.h"
 #include "tests/receivers/receiver_scenes.h"
+#include "tests/receivers/sunlight.h"
 
 namespace photorque {
 namespace {
 
 using testing::add;
-using testing::number;
+using testing::irradiance_W_m2;
+using testing::pressure_Pa;
 using testing::rectangle;
-
-constexpr double irradiance_W_m2 = 1361.0;
-constexpr double pressure_Pa = irradiance_W_m2 / speed_of_light_m_s;
-
-Beam sun(double angular_radius_deg) {
-  return testing::source("sun", {{"irradiance_W_m2", number(irradiance_W_m2)},
-                                 {"angular_radius_deg", number(angular_radius_deg)}});
-}
+using testing::sun;
+using testing::textbook_N;
 
 SunlitWrench sunlit(const TraceableScene& scene, const RigidTransform& attitude) {
   const Beam beam = sun(0.0);
@@ -34,15 +30,6 @@ SunlitWrench sunlit(const TraceableScene& scene, const RigidTransform& attitude)
   effort.scattered.rays = 1 << 20;
   const auto body = SunlitBody::make(scene, std::span(&beam, 1), Vec3::Zero(), effort);
   return body->wrench(attitude, 1e-6 * pressure_Pa);
-}
-
-// F = P A cos θ [(1 − ρs) d − 2 (ρs cos θ + ρd/3) n].
-// Source: J. R. Wertz (ed.), Spacecraft Attitude Determination and Control (1978), eq. 17-37.
-Vec3 textbook_N(double area_m2, double specular, double diffuse, const Vec3& travel,
-                const Vec3& normal) {
-  const double cosine = -travel.dot(normal);
-  return pressure_Pa * area_m2 * cosine *
-         ((1.0 - specular) * travel - 2.0 * (specular * cosine + diffuse / 3.0) * normal);
 }
 
 void expect_near(const WrenchSum& found, const Vec3& force_N, const Vec3& torque_N_m,
