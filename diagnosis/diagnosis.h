@@ -42,6 +42,8 @@ struct FoundEffect {
   std::vector<std::pair<std::string, std::string>> texts = {};
   // Under which table an experiment has it; empty: Diagnosis::effect_table.
   std::string table = {};
+  // Of what moves beside the body: how it begins in the first recording, by the keys of its kind.
+  std::vector<FittedParameter> begins = {};
 };
 
 // What recordings of one kind say, where motion and light were recorded together.

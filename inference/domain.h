@@ -60,11 +60,13 @@ struct Explanation {
 };
 
 // How patiently is fitted: the fractions of each run that are fitted in turn, and the iterations
-// of each; a fit to whole runs may end where it will not come below `worth_chi2`.
+// of each; a fit to whole runs may end where it will not come below `worth_chi2`, or fits badly and
+// falls by less than the fraction `creep` in a step.
 struct Effort {
   std::vector<double> windows = {1.0};
   int max_iterations = 25;
   double worth_chi2 = std::numeric_limits<double>::infinity();
+  double creep = 0.0;
 };
 
 // A candidate with the start of its fit.

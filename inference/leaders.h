@@ -10,7 +10,7 @@ namespace photorque::inference {
 
 // Until a fit converges: one that is given up early makes whatever goes on from it seem to gain.
 inline Effort patient(const Thresholds& limits) {
-  return {.max_iterations = limits.fitting.patient_iterations};
+  return {.max_iterations = limits.fitting.patient_iterations, .creep = limits.fitting.creep};
 }
 
 // As long as it may still come near the best on the same runs.

@@ -77,23 +77,35 @@ class Weighing {
     std::array<double, 2> learnt = {};
   };
 
+  // The likeliest and the nominal model first: others are fitted as long as they may come near.
   void add_leaders(const std::vector<size_t>& places) {
     leaders_.resize(places.size());
-    const int64_t samples = trials_.front().fit.samples;
-    parallel_for(places.size(), threads_, [&](size_t k) {
-      Trial& t = trials_[places[k]];
-      // Some were fitted to averages or pieces only.
-      if (t.fit.samples != samples) t = domain_.refit(t, train_, domain_.begins_of(t), {});
-      leaders_[k] = {places[k], fit_together(t)};
-    });
+    std::vector<size_t> first, others;
+    for (size_t k = 0; k < places.size(); ++k) {
+      (k == 0 || places[k] == 0 ? first : others).push_back(k);
+    }
+    add_leaders(places, first, patient(limits_));
+    add_leaders(places, others, within_reach(patient(limits_), leaders_.front().joint, limits_));
     learn();
   }
 
-  Trial fit_together(Trial& t) const {
+  void add_leaders(const std::vector<size_t>& places, const std::vector<size_t>& which,
+                   const Effort& effort) {
+    const int64_t samples = trials_.front().fit.samples;
+    parallel_for(which.size(), threads_, [&](size_t i) {
+      const size_t at = places[which[i]];
+      Trial& t = trials_[at];
+      // Some were fitted to averages or pieces only.
+      if (t.fit.samples != samples) t = domain_.refit(t, train_, domain_.begins_of(t), {});
+      leaders_[which[i]] = {at, fit_together(t, effort)};
+    });
+  }
+
+  Trial fit_together(Trial& t, const Effort& effort) const {
     const Trial held = predict_held(t);
     auto begins = domain_.begins_of(t);
     for (auto& begin : domain_.begins_of(held)) begins.push_back(std::move(begin));
-    return domain_.refit(t, all_runs_, begins, patient(limits_));
+    return domain_.refit(t, all_runs_, begins, effort);
   }
 
   // Keeps how well the trial predicts what was held out.
@@ -204,7 +216,8 @@ class Weighing {
     }
     if (leads(candidates)) return;
     // Without it the rest may have to go far: nominal values that it stood in for, to begin with.
-    const Effort growing{limits_.fitting.diverged_windows, limits_.fitting.patient_iterations};
+    Effort growing = patient(limits_);
+    growing.windows = limits_.fitting.diverged_windows;
     Trial joint = domain_.assemble(from.joint, members, all_runs_,
                                    within_reach(growing, from.joint, limits_));
     // What is worse than the nominal model, which it contains, was not fitted: it is missed.

@@ -9,7 +9,7 @@ namespace {
 std::vector<double> read_study_span(const Settings& s, const std::string& key, double low,
                                     double high) {
   if (!s.has(key)) return {low, high};
-  const std::vector<double> span = s.numbers(key, Range::positive());
+  std::vector<double> span = s.numbers(key, Range::positive());
   if (span.size() != 2 || !(span[0] < span[1])) {
     throw s.error(key, std::to_string(span.size()) + " numbers", "[from, to]");
   }

@@ -178,7 +178,7 @@ Plot tilt_plot(const CameraStudy& study, const Table& degradation) {
 // Two maps, in plane and out of plane, of what `errors` gives at column and row.
 std::vector<Map> two_maps(Map frame, int threads, const std::string& name, const std::string& title,
                           const std::function<Pair(int, int)>& errors) {
-  const auto size = static_cast<size_t>(frame.width * frame.height);
+  const auto size = static_cast<size_t>(frame.width) * static_cast<size_t>(frame.height);
   frame.unit = "arcsec";
   frame.value.assign(size, unseen);
   std::vector<Map> maps(2, frame);
@@ -220,8 +220,9 @@ std::vector<Map> lean_maps(const CameraStudy& study) {
     if (middle_rad > study.max_tilt_rad * (1.0 + 1e-9)) return {unseen, unseen};
     Pair sum = {0.0, 0.0};
     for (int i = 0; i < places * places; ++i) {
-      const Pair one = squares_at(x_deg + (i % places + 0.5) / places * step_deg,
-                                  y_deg + (i / places + 0.5) / places * step_deg);
+      const int column_within = i % places, row_within = i / places;
+      const Pair one = squares_at(x_deg + (column_within + 0.5) / places * step_deg,
+                                  y_deg + (row_within + 0.5) / places * step_deg);
       sum = {sum[0] + one[0], sum[1] + one[1]};
     }
     return {std::sqrt(sum[0]) / places, std::sqrt(sum[1]) / places};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "attitude/estimation/prediction.h"
+#include "attitude/model/bound_states.h"
 #include "core/errors.h"
 #include "inference/limits/thresholds.h"
 
@@ -43,7 +44,7 @@ std::vector<Variable> variables_of(const Hypothesis& h, const std::vector<Free>&
 }
 
 // The step of an initial state along its tangent.
-void step_initial(const Eigen::VectorXd& step, const AttitudeModel& model, PlatformState& initial) {
+void step_initial(const Eigen::VectorXd& step, PlatformState& initial) {
   const Vec3 rotation = step.head<3>(), rate = step.segment<3>(3);
   const double angle = rotation.norm();
   if (angle > 0.0) {
@@ -51,11 +52,20 @@ void step_initial(const Eigen::VectorXd& step, const AttitudeModel& model, Platf
         (initial.lab_from_body * Quat(Eigen::AngleAxisd(angle, rotation / angle))).normalized();
   }
   initial.rate_body_rad_s += rate;
-  size_t e = 0;
-  for (const Disturbance& d : model.disturbances) {
-    for (const ExtraState& state : d.states) {
-      initial.extra[e] += state.per_body_rate.dot(rate) + step[static_cast<Eigen::Index>(6 + e)];
-      ++e;
+  for (size_t e = 0; e < initial.extra.size(); ++e) {
+    initial.extra[e] += step[static_cast<Eigen::Index>(6 + e)];
+  }
+}
+
+// What the extra states of each run take of its rate at rest beside the body, times `sign`, is
+// added: they keep what they have beside it where rates and axes are stepped in between.
+void add_bound_rates(Hypothesis& h, double sign) {
+  for (RunStart& run : h.runs) {
+    size_t e = 0;
+    for (const Disturbance& d : h.model.disturbances) {
+      for (const ExtraState& state : d.states) {
+        run.initial.extra[e++] += sign * bound_axis(d, state).dot(run.initial.rate_body_rad_s);
+      }
     }
   }
 }
@@ -230,10 +240,11 @@ inference::NormalSums AttitudeForwardModel::sums(const Eigen::VectorXd& at, Eige
 Eigen::VectorXd AttitudeForwardModel::stepped(const Eigen::VectorXd& at,
                                               const Eigen::VectorXd& step) const {
   Hypothesis h = hypothesis_at(at);
+  add_bound_rates(h, -1.0);
   Eigen::Index next = 0;
   for (RunStart& run : h.runs) {
     const auto initial = static_cast<Eigen::Index>(6 + run.initial.extra.size());
-    step_initial(step.segment(next, initial), h.model, run.initial);
+    step_initial(step.segment(next, initial), run.initial);
     next += initial;
     size_t own = 0;
     for (const Free& f : h.free) {
@@ -245,6 +256,7 @@ Eigen::VectorXd AttitudeForwardModel::stepped(const Eigen::VectorXd& at,
   for (const Free& f : h.free) {
     if (!f.per_run) h.value(f) = std::clamp(h.value(f) + step[next++], f.lowest, f.highest);
   }
+  add_bound_rates(h, 1.0);
   return point_of(h);
 }
 

@@ -2,6 +2,7 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/estimation/starts.h"
+#include "attitude/model/bound_states.h"
 
 namespace photorque {
 namespace {
@@ -50,7 +51,7 @@ size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance) {
   for (RunStart& run : hypothesis.runs) {
     for (const ExtraState& state : disturbance.states) {
       run.initial.extra.push_back(state.initial +
-                                  state.per_body_rate.dot(run.initial.rate_body_rad_s));
+                                  bound_axis(disturbance, state).dot(run.initial.rate_body_rad_s));
     }
   }
   return hypothesis.model.disturbances.size() - 1;

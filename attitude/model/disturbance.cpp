@@ -1,4 +1,8 @@
 #include "attitude/model/disturbance.h"
+
+#include <algorithm>
+
+#include "attitude/model/bound_states.h"
 #include "core/errors.h"
 
 namespace photorque {
@@ -14,7 +18,34 @@ std::string written_key(const Settings& settings, const std::string& key) {
   return key;
 }
 
+// The first of the three numbers of `axis`; −1: it has none.
+int first_of_axis(const Disturbance& disturbance) {
+  const auto at = std::ranges::find(disturbance.parameters, "axis", &Parameter::key);
+  return at == disturbance.parameters.end() ? -1
+                                            : static_cast<int>(at - disturbance.parameters.begin());
+}
+
+Vec3 axis_at(const Disturbance& disturbance, int first) {
+  const Parameters& p = disturbance.parameters;
+  const auto i = static_cast<size_t>(first);
+  return {p.at(i).value, p.at(i + 1).value, p.at(i + 2).value};
+}
+
 }  // namespace
+
+Vec3 bound_axis(const Disturbance& disturbance, const ExtraState& state) {
+  const int first = first_of_axis(disturbance);
+  if (first < 0 || state.per_body_rate.isZero()) return state.per_body_rate;
+  return axis_at(disturbance, first).normalized();
+}
+
+double bound_rate_slope(const Disturbance& disturbance, const ExtraState& state, int parameter,
+                        const Vec3& rate_body_rad_s) {
+  const int first = first_of_axis(disturbance), component = parameter - first;
+  if (first < 0 || component < 0 || component > 2 || state.per_body_rate.isZero()) return 0.0;
+  const Vec3 axis = axis_at(disturbance, first), unit = axis.normalized();
+  return (rate_body_rad_s[component] - unit[component] * unit.dot(rate_body_rad_s)) / axis.norm();
+}
 
 PlacedParameters scalar_parameter(const Settings& settings, ScalarKey key, Range range) {
   const Uncertain x = settings.uncertain(key.name, range);

@@ -169,6 +169,8 @@ struct ExtraState {
   // What it begins with besides when the platform begins by turning as one rigid body: this times
   // the rate, body axes. For states that count from the inertial frame.
   Vec3 per_body_rate = Vec3::Zero();
+  // Key of an experiment file that says `initial`, in the key's unit; empty: none does.
+  std::string key = {};
 };
 
 // Where the numbers of one key stand among a law's parameters. A law names its keys in their order,

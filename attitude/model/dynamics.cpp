@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "attitude/model/bound_states.h"
 #include "core/errors.h"
 
 namespace photorque {
@@ -116,7 +117,7 @@ PlatformState Dynamics::initial_state(const Vec3& rate_body_rad_s) const {
   state.rate_body_rad_s = rate_body_rad_s;
   for (const Disturbance& d : model_.disturbances) {
     for (const ExtraState& extra : d.states) {
-      state.extra.push_back(extra.initial + extra.per_body_rate.dot(rate_body_rad_s));
+      state.extra.push_back(extra.initial + bound_axis(d, extra).dot(rate_body_rad_s));
     }
   }
   return state;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attitude/model/bound_states.h"
 #include "attitude/propagation/settling.h"
 
 namespace photorque {
@@ -60,7 +61,10 @@ Sensitivity::Sensitivity(const Dynamics& dynamics, std::vector<Variable> variabl
   const Quat q(y[0], y[1], y[2], y[3]);
   for (size_t v = 0; v < count; ++v) {
     const int initial = variables_[v].initial;
-    if (initial < 0) continue;
+    if (initial < 0) {
+      seed_states_of_axis(v, {y[component::rate], y[component::rate + 1], y[component::rate + 2]});
+      continue;
+    }
     if (initial < 3) {
       Quat half_turn(0.0, 0.0, 0.0, 0.0);
       half_turn.vec()[initial] = 0.5;
@@ -96,8 +100,19 @@ void Sensitivity::seed_bound_states(size_t v, int axis) {
   for (size_t d = 0; d < disturbances.size(); ++d) {
     size_t component = static_cast<size_t>(dynamics_.first_state(d));
     for (const ExtraState& state : disturbances[d].states) {
-      start_[component++ * variables_.size() + v] = state.per_body_rate[axis];
+      start_[component++ * variables_.size() + v] = bound_axis(disturbances[d], state)[axis];
     }
+  }
+}
+
+// And with the axis along which they count it.
+void Sensitivity::seed_states_of_axis(size_t v, const Vec3& rate_body_rad_s) {
+  const Variable& variable = variables_[v];
+  const Disturbance& disturbance = dynamics_.model().disturbances[variable.disturbance];
+  size_t component = static_cast<size_t>(dynamics_.first_state(variable.disturbance));
+  for (const ExtraState& state : disturbance.states) {
+    start_[component++ * variables_.size() + v] =
+        bound_rate_slope(disturbance, state, variable.parameter, rate_body_rad_s);
   }
 }
 

@@ -62,6 +62,7 @@ class Sensitivity {
     std::array<int, DualLanes::block> variable;
   };
   void seed_bound_states(size_t v, int axis);
+  void seed_states_of_axis(size_t v, const Vec3& rate_body_rad_s);
   void make_blocks();
   void read_offsets();
   void differentiate_rates(const CollocationStep& step, const ZeroOrderHold& held);

@@ -54,6 +54,12 @@ std::string plain_text(const FittedParameter& p) {
   return text + "\n";
 }
 
+std::string begins_text(const FoundEffect& effect) {
+  std::string text;
+  for (const FittedParameter& p : effect.begins) text += p.key + " = " + value_text(p) + "\n";
+  return text;
+}
+
 std::string effect_text(const FoundEffect& effect, const std::string& table) {
   std::string text = "\n";
   if (!effect.explanation.empty()) text += comment(effect.explanation);
@@ -218,14 +224,22 @@ std::string without_schema(const std::string& text) {
 
 std::string improved_experiment(const std::string& text, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder) {
+  // An experiment that propagates has a start of its own.
+  static const std::regex propagates(R"((^|\n)\s*\[\s*propagate\s*[\].])");
+  const std::optional<Replay> replay =
+      std::regex_search(text, propagates) ? std::nullopt : diagnosis.replay;
   std::vector<FittedParameter> others;
   std::string improved = with_refined(without_schema(text), diagnosis.priors_refined, others);
   if (!improved.empty() && improved.back() != '\n') improved += '\n';
   improved += "\n" + comment("---- Added by the diagnosis: " + diagnosis.sentence);
   for (const FoundEffect& effect : diagnosis.effects) {
     improved += effect_text(effect, effect.table.empty() ? diagnosis.effect_table : effect.table);
+    if (replay) improved += begins_text(effect);
   }
-  for (const FoundEffect& effect : diagnosis.unnamed) improved += unnamed_text(effect);
+  for (const FoundEffect& effect : diagnosis.unnamed) {
+    improved += unnamed_text(effect);
+    if (replay) improved += begins_text(effect);
+  }
   for (const EmpiricalTorque& torque : diagnosis.empirical) improved += empirical_text(torque);
   if (!others.empty()) {
     improved +=
@@ -234,10 +248,7 @@ std::string improved_experiment(const std::string& text, const Diagnosis& diagno
   for (const FittedParameter& p : others) {
     improved += comment("  " + p.key + " = " + value_text(p));
   }
-  static const std::regex propagates(R"((^|\n)\s*\[\s*propagate\s*[\].])");
-  if (diagnosis.replay && !std::regex_search(text, propagates)) {
-    improved += replay_text(*diagnosis.replay, folder);
-  }
+  if (replay) improved += replay_text(*replay, folder);
   return improved;
 }
 

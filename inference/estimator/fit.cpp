@@ -67,27 +67,37 @@ Eigen::VectorXd step_within_bounds(const SumsOfRuns& sums, const Parameters& par
   return step;
 }
 
-// Whether χ², as fast as it falls, comes below what is worth the fit.
+// Whether χ², as fast as it falls, comes below what is worth the fit, and whether it falls at all.
 class Outlook {
  public:
-  Outlook(double worth_chi2, int max_iterations)
-      : worth_chi2_(worth_chi2), max_iterations_(max_iterations) {}
+  Outlook(double worth_chi2, double creep, int max_iterations)
+      : worth_chi2_(worth_chi2), creep_(creep), max_iterations_(max_iterations) {}
 
-  // After a step that was taken. What fell by a factor in the last steps may fall by its square in
+  // After a step, taken or not. What fell by a factor in the last steps may fall by its square in
   // as many that are left, but not by more.
-  bool is_lost(double chi2, int iteration) {
-    constexpr size_t memory = 6;
+  bool is_lost(const SumsOfRuns& sums, int iteration) {
     constexpr double acceleration = 2.0;
-    if (!(worth_chi2_ < infinity)) return false;
-    fallen_.push_back(chi2);
-    if (fallen_.size() <= memory || !(chi2 > worth_chi2_)) return false;
-    const double fall = std::log(fallen_[fallen_.size() - 1 - memory] / chi2) / memory;
+    fallen_.push_back(sums.chi2);
+    if (fallen_.size() <= memory || !(sums.chi2 > worth_chi2_)) return false;
     const double left = static_cast<double>(max_iterations_ - iteration);
-    return std::log(chi2 / worth_chi2_) > acceleration * fall * left;
+    return std::log(sums.chi2 / worth_chi2_) > acceleration * fall() * left;
+  }
+  // After is_lost(). What fits well is followed to its end.
+  bool creeps(const SumsOfRuns& sums) const {
+    constexpr double misfit_per_sample = 1.2;
+    if (fallen_.size() <= memory || fall() >= creep_) return false;
+    return sums.chi2 > misfit_per_sample * static_cast<double>(sums.samples);
   }
 
  private:
-  double worth_chi2_;
+  static constexpr size_t memory = 6;
+
+  // The logarithm of χ², in each of the last steps.
+  double fall() const {
+    return std::log(fallen_[fallen_.size() - 1 - memory] / fallen_.back()) / memory;
+  }
+
+  double worth_chi2_, creep_;
   int max_iterations_;
   std::vector<double> fallen_;
 };
@@ -97,6 +107,9 @@ constexpr int iterations_of_first_windows = 20;
 constexpr double gain_in_first_windows = 1.0;
 // By how much χ² of one that was given time no more may be above what is worth the fit.
 constexpr double still_falling = 4.0;
+// χ² over what is worth the fit, where the whole runs begin: predictions off by a thousand standard
+// errors, from which no slope leads back.
+constexpr double off_course = 1e6;
 
 class Fitter {
  public:
@@ -136,11 +149,11 @@ class Fitter {
   // Leaves in `ended_at_` what the model says of the whole runs where it ends, if that is known.
   Termination fit_window(double window) {
     ended_at_.reset();
-    if (options_.max_start_chi2 < infinity) {
-      const Request alone{false, window, options_.max_start_chi2};
-      if (!(evaluate(model_, now_, alone).sums.chi2 <= options_.max_start_chi2)) {
-        return Termination::not_evaluable;
-      }
+    const bool grew = window == 1.0 && options_.windows.size() > 1;
+    const double most =
+        std::min(options_.max_start_chi2, grew ? off_course * options_.worth_chi2 : infinity);
+    if (most < infinity && !(evaluate(model_, now_, {false, window, most}).sums.chi2 <= most)) {
+      return Termination::not_evaluable;
     }
     Evaluation now = evaluate(model_, now_, {true, window});
     const Termination termination = iterate(now, window);
@@ -161,10 +174,11 @@ class Fitter {
     const int most = is_brief ? std::min(options_.max_iterations, iterations_of_first_windows)
                               : options_.max_iterations;
     const double least_gain = is_brief ? gain_in_first_windows : options_.min_gain;
-    Outlook outlook(is_whole ? options_.worth_chi2 : infinity, most);
+    Outlook outlook(is_whole ? options_.worth_chi2 : infinity, is_whole ? options_.creep : 0.0,
+                    most);
     // After a step that went as foretold the next is likely to be taken: its derivatives, which
     // hold χ² as well, are asked for at once.
-    bool is_on_course = false;
+    bool is_on_course = false, was_refused = false;
     for (int iteration = 0; iteration < most; ++iteration) {
       if (!std::isfinite(now.sums.chi2)) return Termination::not_evaluable;
       ++iterations_;
@@ -188,13 +202,20 @@ class Fitter {
         is_on_course = false;
         damping = std::max(damping, 1e-5) * 10.0;
         if (damping > options_.max_damping) return Termination::no_step_lowers;
+        was_refused = true;
+        if (outlook.is_lost(now.sums, iteration)) return Termination::out_of_reach;
+        if (outlook.creeps(now.sums)) return Termination::max_iterations;
         continue;
       }
       now_ = std::move(tried);
       is_on_course = at.sums.chi2 < now.sums.chi2 - 0.25 * predicted_gain;
-      damping = std::max(is_on_course ? damping * 0.1 : damping * 3.0, options_.min_damping);
+      // In a curved valley a damping of a tenth would be refused again, at every second step.
+      const double eased = was_refused ? damping : damping * 0.1;
+      damping = std::max(is_on_course ? eased : damping * 3.0, options_.min_damping);
+      was_refused = false;
       now = at_once ? std::move(at) : evaluate(model_, now_, {true, window});
-      if (outlook.is_lost(now.sums.chi2, iteration)) return Termination::out_of_reach;
+      if (outlook.is_lost(now.sums, iteration)) return Termination::out_of_reach;
+      if (outlook.creeps(now.sums)) return Termination::max_iterations;
     }
     return Termination::max_iterations;
   }
@@ -257,6 +278,7 @@ void Options::check() const {
   if (!(min_gain_fraction >= 0.0 && min_gain_fraction < 1.0)) {
     refuse("min_gain_fraction", min_gain_fraction, "a fraction in [0, 1)");
   }
+  if (!(creep >= 0.0)) refuse("creep", creep, "a number >= 0");
   if (!(initial_damping >= 0.0)) refuse("initial_damping", initial_damping, "a number >= 0");
   if (!(min_damping >= 0.0)) refuse("min_damping", min_damping, "a number >= 0");
   if (!(max_damping > 0.0)) refuse("max_damping", max_damping, "a number > 0");

@@ -12,10 +12,10 @@
 //
 // (K. Levenberg 1944; D. Marquardt, J. SIAM 11 (1963) 431) with the matrix scaled to a unit
 // diagonal, so that no result depends on the units of parameters. A step that lowers χ² is taken,
-// and λ falls by ten when χ² fell by more than a quarter of what the step predicted and grows by
-// three when it fell by less; a step that does not lower χ² is tried again with ten times λ, 1e-4
-// at least. A parameter on a bound that the step would leave is held there and the rest solved
-// again.
+// and λ falls by ten when χ² fell by more than a quarter of what the step predicted, or stays where
+// the step before was not taken, and grows by three when it fell by less; a step that does not
+// lower χ² is tried again with ten times λ, 1e-4 at least. A parameter on a bound that the step
+// would leave is held there and the rest solved again.
 //
 // A window is the first part of every run; windows that grow repair a start that is far off before
 // a long run can diverge from it.
@@ -45,6 +45,9 @@ struct Options {
   // bring their start near, in 20 iterations at most; one whose χ² alone stays above it ends the
   // fit, as if it could not be evaluated. Infinite: none of these.
   double worth_chi2 = infinity;
+  // One of whole runs also ends where χ² fell by less than this fraction in each of six steps, and
+  // there is more than 1.2 per sample: what fits badly and creeps along a valley. 0: goes on.
+  double creep = 0.0;
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;  // ≥ 0: keeps combinations that nothing determines where they are
   double max_damping = 1e9;  // beyond it no step lowers χ²

@@ -75,6 +75,9 @@ struct Thresholds {
     // Iterations of a fit: of a first try; of a second chance, enough to see whether it falls into
     // another local minimum; of a leader, which is to converge.
     int trial_iterations = 12, brief_iterations = 10, patient_iterations = 60;
+    // Fall of χ² in a step, as a fraction, that is too slow for what fits badly: the differences
+    // between such leaders are thousands, and this is some tens.
+    double creep = 5e-4;
     // χ² at a predicted start over that of the trial from which it was predicted.
     double max_start_growth = 10.0;
     // Blocks into which recordings are averaged for what changes slowly: several times faster than

@@ -172,6 +172,37 @@ TEST(EmpiricalTorque, TableInTime) {
               (1.5e-6 + 10.0 * (left - right) / 8.0) * vertical);
 }
 
+// Through one cubic each: I ω is the sum of integrals that Simpson's rule has exactly, and far
+// fewer steps do than across the knots (126 here).
+TEST(EmpiricalTorque, StepsEndAtTheKnotsOfATableInTime) {
+  const std::vector<double> knots_s = {0, 10, 20, 30, 40, 50, 60};
+  const std::vector<double> torques_N_m = {0, 2e-5, -3e-5, 4e-5, 1e-5, -5e-5, 2e-5};
+  const AttitudeModel model = with(bench_model(), "empirical_torque",
+                                   {{"axes", words({"vertical"})},
+                                    {"time_knots_s", numbers(knots_s)},
+                                    {"coefficients_N_m", numbers(torques_N_m)}});
+  const SmoothTable table(knots_s);
+  const auto torque_at = [&](double t_s) {
+    const SmoothTable::Weights w = table.at(t_s);
+    double sum = 0.0;
+    for (size_t k = 0; k < 4; ++k) {
+      sum += w.value[k] * torques_N_m[static_cast<size_t>(w.first) + k];
+    }
+    return sum;
+  };
+  double impulse_N_m_s = 0.0;
+  for (double t_s = 0.0; t_s < 60.0; t_s += 10.0) {
+    impulse_N_m_s +=
+        10.0 / 6.0 * (torque_at(t_s) + 4.0 * torque_at(t_s + 5.0) + torque_at(t_s + 10.0));
+  }
+  const Dynamics dynamics(model);
+  const double end_s[] = {60.0};
+  const Trajectory motion =
+      propagate(dynamics, state_of(model, Quat::Identity()), end_s, {.tolerance = 1e-12});
+  EXPECT_NEAR(motion.states.back().rate_body_rad_s.z() * 0.19, impulse_N_m_s, 1e-15);
+  EXPECT_LE(motion.statistics.steps, 30);
+}
+
 // What is written reads back as the same shape.
 TEST(EmpiricalTorque, ShapesAreWrittenAsTheyAreRead) {
   const std::vector<Entries> all = {

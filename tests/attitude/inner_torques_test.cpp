@@ -81,6 +81,23 @@ TEST(FlexibleMode, FreeBodySwingsAtTheCoupledFrequency) {
   EXPECT_NEAR(2 * std::asin(half.lab_from_body.z()), 2 * 0.01 * appendage / I, 1e-10);
 }
 
+// φ = φ₀ cos ωt + φ'₀/ω sin ωt, ω as above, on a body that turns at the start.
+TEST(FlexibleMode, BeginsAsItsKeysSay) {
+  const double I = 0.19, appendage = 0.05, f = 0.4, rate = 0.02;
+  const AttitudeModel model = with(bench_model(), "flexible_mode",
+                                   {{"axis", numbers({0, 0, 1})},
+                                    {"frequency_Hz", node(f)},
+                                    {"damping", node(0)},
+                                    {"inertia_kg_m2", node(appendage)},
+                                    {"initial_angle_deg", node(0.5)},
+                                    {"initial_rate_rad_s", node(0.3 + rate)}});
+  const double coupled = 2 * pi * f * std::sqrt(I / (I - appendage)), t = 1.7;
+  const PlatformState end = propagated(model, state_of(model, Quat::Identity(), {0, 0, 0.3}), t);
+  EXPECT_NEAR(end.extra[0],
+              0.5 * degree_rad * std::cos(coupled * t) + rate / coupled * std::sin(coupled * t),
+              1e-10);
+}
+
 TEST(FlexibleMode, KeepsAngularMomentumAndLosesEnergyToItsDamper) {
   const AttitudeModel model = with(bench_model(), "flexible_mode",
                                    {{"axis", numbers({1, 1, 0})},
@@ -123,6 +140,37 @@ TEST(FlexibleMode, OfAnAppendageAtRestTheDerivativeIsTheSwing) {
                                           {Variable::initial_extra(0)});
   EXPECT_NEAR(propagated.derivatives[7], -1.0, 1e-6);
   EXPECT_NEAR(propagated.derivatives[2], 2 * appendage / I, 1e-6);
+}
+
+// With the body at rest about its axis, wherever that points: against differences of whole runs.
+TEST(FlexibleMode, BeginsWithTheBodyWhenItsAxisChanges) {
+  const Vec3 rate(0.3, -0.1, 0.2);
+  const double times_s[] = {7.3};
+  const auto end_about = [&](const Vec3& axis, const std::vector<Variable>& variables) {
+    const AttitudeModel model = with(bench_model(), "flexible_mode",
+                                     {{"axis", numbers({axis.x(), axis.y(), axis.z()})},
+                                      {"frequency_Hz", node(0.5)},
+                                      {"damping", node(0.05)},
+                                      {"inertia_kg_m2", node(0.03)}});
+    const PropagationOptions fine{.tolerance = 1e-12};
+    const Dynamics dynamics(model);
+    return propagate(dynamics, state_of(model, Quat::Identity(), rate), times_s, fine, variables);
+  };
+  const Vec3 axis(1.0, 2.0, -0.5);
+  const size_t index = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Trajectory motion = end_about(axis, {Variable::of(index, k)});
+    const double step = 1e-4;
+    const auto moved = [&](double by) {
+      return end_about(axis + by * Vec3::Unit(k), {}).states.back();
+    };
+    const PlatformState above = moved(step), below = moved(-step);
+    for (int c = 0; c < 3; ++c) {
+      const double difference =
+          (above.rate_body_rad_s[c] - below.rate_body_rad_s[c]) / (2.0 * step);
+      EXPECT_NEAR(motion.derivatives[static_cast<size_t>(3 + c)], difference, 1e-8) << k << c;
+    }
+  }
 }
 
 TEST(FlexibleMode, RefusesMoreInertiaThanThePlatformHas) {

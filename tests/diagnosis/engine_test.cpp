@@ -152,6 +152,52 @@ TEST(Trial, AThirdOfTheInertiaIsNoExplanation) {
   EXPECT_NE(trial.objection.find("inertia would change by"), std::string::npos) << trial.objection;
 }
 
+// A cable that pushes by less than its error is one of no stiffness at all, and what was fitted
+// beside it becomes what it is alone; one that pushes beyond doubt is left as it is, for others to
+// object to.
+TEST(Trial, NumbersBeyondPhysicsAreFittedAnew) {
+  const auto trial_of = [](unsigned seed, double push_N_m_per_rad, bool with_cable) {
+    const NamedRecording seen = recorded(seed, [&](const State& s) {
+      const Eigen::AngleAxisd turn(s.lab_from_body);
+      return Vec3(s.lab_from_body.conjugate() * Vec3(3e-6, -2e-6, 0.0) +
+                  push_N_m_per_rad * turn.angle() * turn.axis());
+    });
+    const std::vector<Observation> runs = {observe(seen.recording, seen.name)};
+    const Candidates all = all_candidates(nominal_model(), runs);
+    const auto named = [&](const std::string& label) {
+      const auto at = std::ranges::find(all.list, label, &Candidate::label);
+      return static_cast<size_t>(at - all.list.begin());
+    };
+    const size_t draught = named("room_draft"), cable = named("tether");
+    Trial trial = extend(nominal_trial(fit_nominal(nominal_model(), runs), all), all, draught,
+                         all[draught].start, runs);
+    if (with_cable) trial = extend(trial, all, cable, all[cable].start, runs);
+    return std::pair(trial, within_physics(trial, all, runs));
+  };
+  const auto value = [](const Trial& t, size_t candidate, size_t p) {
+    return t.fit.best.model.disturbances.at(t.disturbances.at(candidate)).parameters.at(p).value;
+  };
+  int beyond = 0;
+  for (unsigned seed = 21; seed < 27; ++seed) {
+    const auto [fitted, within] = trial_of(seed, 0.0, true);
+    if (value(fitted, 1, 0) >= 0.0) {
+      EXPECT_EQ(value(within, 1, 0), value(fitted, 1, 0));
+      continue;
+    }
+    ++beyond;
+    const Trial alone = trial_of(seed, 0.0, false).first;
+    EXPECT_EQ(value(within, 1, 0), 0.0);
+    EXPECT_NEAR(within.fit.chi2, alone.fit.chi2, 0.01);
+    for (size_t p = 0; p < 2; ++p) {
+      EXPECT_NEAR(value(within, 0, p), value(alone, 0, p), 1e-4 * std::abs(value(alone, 0, p)));
+    }
+  }
+  EXPECT_GE(beyond, 1);
+  const auto [fitted, within] = trial_of(27, 1e-5, true);
+  EXPECT_LT(value(fitted, 1, 0), -0.5e-5);
+  EXPECT_EQ(value(within, 1, 0), value(fitted, 1, 0));
+}
+
 TEST(Diagnose, CallsCoggingUnexplainedAndMeasuresItsTorque) {
   constexpr double amplitude_N_m = 1e-5;
   const Diagnosis d = diagnosed([&](const State& s) {

@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "attitude/propagation/run.h"
+#include "core/constants.h"
 #include "scenes/experiment/toml_reader.h"
 #include "tests/diagnosis/sample_diagnosis.h"
 
@@ -153,6 +154,26 @@ TEST(Improved, PropagatesTheFirstRecordingAgain) {
   EXPECT_DOUBLE_EQ(run.duration_s, 200.0);
   EXPECT_DOUBLE_EQ(run.initial.rate_body_rad_s.z(), 0.1);
   EXPECT_EQ(propagate(run).recording.rows(), 2001u);
+}
+
+// An appendage that swings begins as it was fitted, but in a flight of the user's own.
+TEST(Improved, BeginsWithWhatSwingsBesideTheBody) {
+  Diagnosis d = sample_diagnosis();
+  d.effects = {{"flexible_mode",
+                0.9,
+                {{"axis", {0, 0, 1}, {}},
+                 {"frequency_Hz", {0.7}, {}},
+                 {"damping", {0.01}, {}},
+                 {"inertia_kg_m2", {0.01}, {}}},
+                {},
+                ""}};
+  d.effects[0].begins = {{"initial_angle_deg", {0.5}, {}}, {"initial_rate_rad_s", {-0.02}, {}}};
+  const PropagationRun run = read_propagation(read(improved_experiment(written, d, ".")));
+  ASSERT_EQ(run.initial.extra.size(), 2u);
+  EXPECT_NEAR(run.initial.extra[0], 0.5 * pi / 180.0, 1e-12);
+  EXPECT_NEAR(run.initial.extra[1], -0.02, 1e-12);
+  const std::string own = written + "\n[propagate]\nduration_s = 5\n";
+  EXPECT_EQ(read_propagation(read(improved_experiment(own, d, "."))).initial.extra[0], 0.0);
 }
 
 TEST(Improved, LeavesAFlightOfTheUsersAlone) {

@@ -271,7 +271,7 @@ TEST(Options, ValuesOutsideTheirRangesAreRefused) {
   for (const auto& spoil : std::vector<void (*)(Options&)>{
            [](Options& o) { o.windows = {}; }, [](Options& o) { o.windows = {1.5}; },
            [](Options& o) { o.max_iterations = 0; }, [](Options& o) { o.min_gain = -1.0; },
-           [](Options& o) { o.min_gain_fraction = NAN; },
+           [](Options& o) { o.min_gain_fraction = NAN; }, [](Options& o) { o.creep = -1e-3; },
            [](Options& o) { o.initial_damping = -1e-3; }, [](Options& o) { o.min_damping = -1e-3; },
            [](Options& o) { o.max_damping = 0.0; }}) {
     Options options;
@@ -303,6 +303,75 @@ TEST(Fit, EndsWhereItFallsTooSlowlyToBeWorthIt) {
   const Fit worth = fit(model, model.start(), options);
   EXPECT_EQ(worth.iterations, patient.iterations);
   EXPECT_EQ(worth.chi2, patient.chi2);
+}
+
+// χ² = 1e6 + x²: every step is too short, as above, and what it gains is less than a thousandth.
+// Where as much is left of a million samples, it fits, and goes on.
+TEST(Fit, EndsWhereItFitsBadlyAndCreeps) {
+  const auto model = [](Eigen::Index samples) {
+    return ResidualModel({{"x", "", 100.0}},
+                         [samples](const Eigen::VectorXd& at, Eigen::Index,
+                                   Eigen::VectorXd& residuals, Eigen::MatrixXd* slopes) {
+                           residuals = Eigen::VectorXd::Zero(samples);
+                           residuals.head<2>() = Eigen::Vector2d(1e3, at[0]);
+                           if (slopes == nullptr) return;
+                           *slopes = Eigen::MatrixXd::Zero(samples, 1);
+                           (*slopes)(1, 0) = -20.0;
+                         });
+  };
+  Options options;
+  options.max_iterations = 60;
+  options.min_gain_fraction = 0.0;
+  const ResidualModel bad = model(100), good = model(1'000'000);
+  const Fit all_the_way = fit(bad, bad.start(), options);
+  options.creep = 5e-4;
+  const Fit creeping = fit(bad, bad.start(), options);
+  EXPECT_EQ(creeping.termination, Termination::max_iterations);
+  EXPECT_LT(creeping.iterations, all_the_way.iterations);
+  EXPECT_GT(creeping.iterations, 6);
+  EXPECT_EQ(fit(good, good.start(), options).iterations, all_the_way.iterations);
+}
+
+// χ² a million times what is worth it where the whole begins, though its part fits: no slope is
+// asked for there.
+TEST(Fit, EndsWhereThePartsLeadFarFromTheWhole) {
+  int with_slopes = 0;
+  class Model final : public ForwardModel {
+   public:
+    explicit Model(int& with_slopes) : with_slopes_(with_slopes) {}
+    Parameters parameters(const Eigen::VectorXd& at) const override {
+      Parameters all;
+      all.of_run.resize(1);
+      all.shared = {{"x", "", at[0]}};
+      return all;
+    }
+    NormalSums sums(const Eigen::VectorXd& at, Eigen::Index,
+                    const Request& request) const override {
+      const bool is_whole = request.window == 1.0;
+      if (is_whole && request.derivatives && request.give_up_above > 0.0) ++with_slopes_;
+      const double x = at[0], off = is_whole ? 3e8 : 0.0;
+      return {Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Constant(1, -x), off + x * x, 2};
+    }
+    Eigen::VectorXd stepped(const Eigen::VectorXd& at, const Eigen::VectorXd& step) const override {
+      return at + step;
+    }
+
+   private:
+    int& with_slopes_;
+  };
+  const Model model(with_slopes);
+  Options options;
+  options.windows = {0.05, 1.0};
+  options.worth_chi2 = 301.0;  // a million times this is 3.01e8
+  const Eigen::VectorXd start = Eigen::VectorXd::Constant(1, 10.0);
+  EXPECT_EQ(fit(model, start, options).termination, Termination::converged);
+  EXPECT_GT(with_slopes, 0);
+  with_slopes = 0;
+  options.worth_chi2 = 299.0;
+  const Fit lost = fit(model, start, options);
+  EXPECT_EQ(lost.termination, Termination::not_evaluable);
+  EXPECT_EQ(with_slopes, 0);
+  EXPECT_FALSE(std::isfinite(lost.chi2));
 }
 
 // χ² of a part is χ² of the whole at the least: 100 in a twentieth of the run.

@@ -125,6 +125,7 @@ TEST_F(Sweep, WrongInputIsOneLine) {
   refuses("[sweep]\nverb = \"tracee\"\n" + axis + "values = [1]\n", "tracee");
   refuses("[sweep]\nverb = \"trace\"\nfigurs = [\"a\"]\n" + axis + "values = [1]\n", "figures");
   refuses("[sweep]\nverb = \"trace\"\n" + axis + "values = []\n", "values");
+  refuses("[sweep]\nverb = \"trace\"\n" + axis + "values = [1, [2, nan]]\n", "finite");
   refuses("[sweep]\nverb = \"trace\"\n" + axis +
               "from = 0\nto = 2\ncount = 3\nspacing = \"logarithmic\"\n",
           "above zero");

@@ -13,6 +13,13 @@
 namespace photorque {
 namespace {
 
+bool is_finite(const SettingsNode& node) {
+  const auto* real = std::get_if<double>(&node.value);
+  const auto* items = std::get_if<SettingsNode::Array>(&node.value);
+  return (real == nullptr || std::isfinite(*real)) &&
+         (items == nullptr || std::ranges::all_of(*items, is_finite));
+}
+
 std::vector<std::string> listed_values(const Settings& axis) {
   const auto* items = std::get_if<SettingsNode::Array>(&axis.raw("values").value);
   if (items == nullptr || items->empty()) {
@@ -21,6 +28,7 @@ std::vector<std::string> listed_values(const Settings& axis) {
   std::vector<std::string> values;
   for (const SettingsNode& item : *items) {
     if (item.is_table()) throw axis.error("values", describe(item), "a number, a text, an array");
+    if (!is_finite(item)) throw axis.error("values", toml_text(item), "finite numbers");
     values.push_back(toml_text(item));
   }
   return values;

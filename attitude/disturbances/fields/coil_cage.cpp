@@ -47,7 +47,8 @@ double CoilCage::nonuniformity(double edge_m) const {
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 centre_T = pair_field_T(pairs[axis], axis, Vec3::Zero());
     for (int i = 0; i < 27; ++i) {
-      const Vec3 at_m = 0.5 * edge_m * Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      const Eigen::Vector3i corner(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      const Vec3 at_m = 0.5 * edge_m * corner.cast<double>();
       const Vec3 field_T = pair_field_T(pairs[axis], axis, at_m);
       worst = std::max(worst, (field_T - centre_T).norm() / centre_T.norm());
     }
@@ -90,7 +91,7 @@ TimeSeries orbit_field_T(const CircularOrbit& orbit, double decimal_year, double
     times_s.push_back(t_s);
     fields_T.push_back(ned_T.x() * up.cross(east) + ned_T.y() * east - ned_T.z() * up);
   }
-  return TimeSeries(std::move(times_s), std::move(fields_T));
+  return TimeSeries(std::move(times_s), fields_T);
 }
 
 }  // namespace photorque

@@ -5,6 +5,8 @@
 // angle beside the body and σ its absolute rate about the axis a:
 //   φ' = σ − a·ω,  σ' = −ω_n² φ − 2 ζ ω_n φ',  T = a J (ω_n² φ + 2 ζ ω_n φ') − ω × (J a σ)
 // while J a aᵀ no longer follows the body's acceleration. Small φ: the inertia stays as it is.
+// initial_angle_deg (default 0), initial_rate_rad_s (default a·ω: at rest beside the body): φ and σ
+// at the start of a run.
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 
@@ -15,6 +17,8 @@ constexpr VectorKey direction{"axis"};
 constexpr ScalarKey frequency{"frequency_Hz", direction.end()};
 constexpr ScalarKey damping{"damping", frequency.end()};
 constexpr ScalarKey inertia{"inertia_kg_m2", damping.end()};
+constexpr const char* initial_angle = "initial_angle_deg";
+constexpr const char* initial_rate = "initial_rate_rad_s";
 constexpr StateKey angle{"angle_rad", 0};
 constexpr StateKey rate{"rate_rad_s", 1};
 
@@ -47,12 +51,20 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   if (!(along.norm() > 0.0)) throw settings.error(direction.name, "a zero vector", "a direction");
   const Vec3 unit = along.normalized();
   const double whole_kg_m2 = unit.dot(context.platform.inertia_kg_m2 * unit);
+  const bool has_own_rate = settings.has(initial_rate);
   const Range part_of_whole{0.0, whole_kg_m2, true, true};
   return make_disturbance<FlexibleMode>(
       {axis, scalar_parameter(settings, frequency, Range::positive()),
        scalar_parameter(settings, damping, Range::not_negative()),
        scalar_parameter(settings, inertia, part_of_whole)},
-      Stage::torque, {{.name = angle.name}, {.name = rate.name, .per_body_rate = unit}});
+      Stage::torque,
+      {{.name = angle.name,
+        .initial = settings.number_or(initial_angle, 0.0),
+        .key = initial_angle},
+       {.name = rate.name,
+        .initial = has_own_rate ? settings.number(initial_rate) : 0.0,
+        .per_body_rate = has_own_rate ? Vec3(Vec3::Zero()) : unit,
+        .key = initial_rate}});
 }
 
 // The law again, for `prove`.
@@ -108,7 +120,10 @@ DisturbanceKind flexible_mode_kind() {
                Key::uncertain(
                    "inertia_kg_m2", Range::positive(),
                    "of the appendage about the axis, below the platform's, of which it is part")
-                   .range_that_varies()}};
+                   .range_that_varies(),
+               Key::number_or(initial_angle, 0.0, {}, "beside the body at the start of a run"),
+               Key::number(initial_rate, {}, "its own about the axis, at the start of a run")
+                   .usually_is("the body's: it rests beside it")}};
 }
 
 }  // namespace photorque

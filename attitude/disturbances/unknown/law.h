@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "attitude/disturbances/unknown/shape.h"
 #include "core/constants.h"
@@ -36,6 +38,20 @@ class EmpiricalTorqueLaw final : public TorqueLaw<EmpiricalTorqueLaw> {
       });
     }
     return along_axes(size, now);
+  }
+
+  // The cubics of a table over time meet at its knots, where their curvature jumps: a step that
+  // ends there is a step through polynomials alone, several times as long.
+  std::vector<Switch> switches(std::span<const Parameter>, double from_s,
+                               double to_s) const override {
+    std::vector<Switch> at;
+    for (const MotionFunction& f : shape_.functions) {
+      if (f.of != MotionVariable::time || f.form != FunctionForm::table) continue;
+      for (const double knot_s : f.table.knots()) {
+        if (knot_s > from_s && knot_s < to_s) at.push_back({knot_s});
+      }
+    }
+    return at;
   }
 
  private:

@@ -129,6 +129,21 @@ void keep_within_bounds(const Candidate& c, std::vector<FittedParameter>& fitted
   }
 }
 
+// How the states of a disturbance begin in the first run.
+std::vector<FittedParameter> begins(const Trial& t, size_t disturbance) {
+  const std::vector<Disturbance>& all = t.fit.best.model.disturbances;
+  const PlatformState& initial = t.fit.best.runs.front().initial;
+  auto own = initial.extra.begin();
+  for (size_t d = 0; d < disturbance; ++d) own += static_cast<ptrdiff_t>(all[d].states.size());
+  std::vector<FittedParameter> result;
+  for (const ExtraState& state : all[disturbance].states) {
+    const double value_SI = *own++;
+    if (state.key.empty()) continue;
+    result.push_back({state.key, {value_SI / unit_of_key(state.key).to_SI}, {}});
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,
@@ -143,6 +158,7 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     effect.explanation = c.effect.explanation;
     effect.parameters = fitted_parameters(chosen, chosen.disturbances[i]);
     keep_within_bounds(c, effect.parameters);
+    effect.begins = begins(chosen, chosen.disturbances[i]);
     for (const EffectKey& key : c.effect.keys) {
       if (key.is_fixed) effect.parameters.insert(effect.parameters.begin(), {key.key, key.start});
     }
