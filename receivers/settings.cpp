@@ -43,6 +43,11 @@ std::string file_stem(std::string name) {
 std::string read_name(const Settings& settings, const std::string& otherwise) {
   const std::string name = settings.text_or("name", otherwise);
   if (name.empty()) throw settings.error("name", "an empty text", "a name");
+  // Files are called by it, with a few words before and after.
+  constexpr size_t longest = 150;
+  if (name.size() > longest) {
+    throw settings.error("name", std::to_string(name.size()) + " letters", "at most 150");
+  }
   return file_stem(name);
 }
 

@@ -62,6 +62,28 @@ EventFunction eclipse_event(const Dynamics& dynamics) {
           .falling_name = "eclipse_begins"};
 }
 
+namespace {
+
+// " (…)" with the kinds whose torque is no number here.
+std::string infinite_torques(const Dynamics& dynamics, double time_s, std::span<const double> y) {
+  PlatformState state;
+  state.time_s = time_s;
+  state.lab_from_body = Quat(y[0], y[1], y[2], y[3]);
+  state.rate_body_rad_s = {y[component::rate], y[component::rate + 1], y[component::rate + 2]};
+  state.charge_drawn_C = y[component::charge];
+  state.extra.assign(y.begin() + component::extra, y.end());
+  const AttitudeModel& model = dynamics.model();
+  const std::vector<Vec3> torques = disturbance_torques_body_N_m(model, state);
+  std::string names;
+  for (size_t d = 0; d < torques.size(); ++d) {
+    if (torques[d].allFinite()) continue;
+    names += (names.empty() ? "" : ", ") + model.disturbances[d].kind;
+  }
+  return names.empty() ? "" : " (no finite torque of " + names + ")";
+}
+
+}  // namespace
+
 Propagator::Propagator(const Dynamics& dynamics, const PlatformState& initial, double end_s,
                        const PropagationOptions& options, std::vector<Variable> variables,
                        std::vector<EventFunction> events)
@@ -173,7 +195,8 @@ void Propagator::take_step() {
     h_s = cut ? left_s : with_few_bits(h_s > 0.5 * left_s ? 0.5 * left_s : h_s);
     if (++statistics_.steps > options_.max_steps || start_s + h_s <= start_s) {
       throw NumericalError("the step length of the propagator fell to " + shown(h_s) +
-                           " s at t = " + shown(start_s) + " s");
+                           " s at t = " + shown(start_s) + " s" +
+                           infinite_torques(dynamics_, start_s, step_.start()));
     }
     const CollocationStep::Outcome outcome =
         is_stiff_ ? step_.attempt_stiff(h_s, held_, settled) : step_.attempt(h_s, held_, settled);

@@ -210,6 +210,10 @@ PropagationRun read_propagation(const Settings& root) {
   if (!parse_epoch(run.epoch)) {
     throw settings.error("epoch", "\"" + run.epoch + "\"", "a time as 2000-01-01T12:00:00");
   }
+  // Times of a run count without leap seconds.
+  if (run.epoch.find(":60") != std::string::npos) {
+    throw settings.error("epoch", "\"" + run.epoch + "\"", "no leap second");
+  }
   run.initial =
       Dynamics(run.model).initial_state(settings.vector3_or("initial_rate_rad_s", Vec3::Zero()));
   run.initial.lab_from_body = read_initial_attitude(settings);

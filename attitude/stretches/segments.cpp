@@ -1,6 +1,7 @@
 #include "attitude/stretches/segments.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
 #include "attitude/readings/columns.h"
@@ -141,6 +142,27 @@ Recording read_as(const AngleConvention& angles, Recording recording) {
 }
 
 }  // namespace
+
+void refuse_jump_of_clock(const Recording& recording, const std::string& name) {
+  constexpr double longest_gap = 10.0;
+  double gaps_s = 0.0, longest_s = 0.0;
+  RecordingReport::Gap longest;
+  for (const RecordingReport::Gap& gap : recording.report.gaps) {
+    const double gap_s = gap.to_s - gap.from_s;
+    gaps_s += gap_s;
+    if (gap_s > longest_s) longest = gap;
+    longest_s = std::max(longest_s, gap_s);
+  }
+  if (recording.rows() < 2) return;
+  const double recorded_s = recording.time_s.back() - recording.time_s.front() - gaps_s;
+  if (!(longest_s > longest_gap * recorded_s)) return;
+  char found[160];
+  std::snprintf(found, sizeof found,
+                "nothing from t_s = %.10g to %.10g, of a recording of %.4g s in all",
+                longest.from_s, longest.to_s, recorded_s);
+  throw InputError({name, 0}, "t_s", found,
+                   "a clock that does not jump; of several stretches a file each");
+}
 
 Segments observe_segments(const Recording& recording, const std::string& name,
                           const Platform& platform, size_t max_blocks) {

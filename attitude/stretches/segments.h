@@ -26,4 +26,9 @@ struct Segments {
 Segments observe_segments(const Recording& recording, const std::string& name,
                           const Platform& platform, size_t max_blocks = 6000);
 
+// Refuses a gap more than ten times as long as all that was recorded (InputError with its
+// instants): a clock that was set while it recorded, or two recordings in one. No search for what
+// acts over such a span ends.
+void refuse_jump_of_clock(const Recording& recording, const std::string& name);
+
 }  // namespace photorque

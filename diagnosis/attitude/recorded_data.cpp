@@ -81,6 +81,7 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
   const Platform& platform = nominal.model.platform;
   std::vector<std::vector<Observation>> all;
   for (const NamedRecording& r : recordings) {
+    refuse_jump_of_clock(r.recording, r.name);
     Segments segments = observe_segments(r.recording, r.name, platform, options.max_blocks);
     say_cuts(r.name, segments, warnings);
     say_unused(r, nominal, options.read_elsewhere, warnings);

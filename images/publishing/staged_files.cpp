@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -67,6 +68,24 @@ void write_lists(const fs::path& path, Json lists, const std::string& command,
   write_file_whole(path, all.dump(2) + "\n");
 }
 
+// What no command lists is somebody's own: it goes out of the way of results of that name.
+void keep_own_files(const fs::path& folder, const Json& lists, const std::set<std::string>& now) {
+  std::set<std::string> results = {list_name};
+  for (const auto& [command, list] : lists.items()) results.merge(listed(lists, command));
+  std::error_code failure;
+  for (const std::string& name : now) {
+    const fs::path place = folder / name;
+    if (results.contains(name) || !fs::exists(fs::symlink_status(place, failure))) continue;
+    fs::path kept = folder / (name + "~");
+    for (int copy = 2; fs::exists(fs::symlink_status(kept, failure)); ++copy) {
+      kept = folder / (name + "~" + std::to_string(copy));
+    }
+    fs::rename(place, kept, failure);
+    if (failure) throw InputError({place.string()}, "", failure.message(), "a name for a result");
+    std::fprintf(stderr, "%s was no result of a run: kept as %s\n", place.c_str(), kept.c_str());
+  }
+}
+
 // New names reach the disk with their folder.
 void sync_folder(const fs::path& folder) {
   const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -76,6 +95,10 @@ void sync_folder(const fs::path& folder) {
 }
 
 }  // namespace
+
+bool is_result_of(const fs::path& folder, const std::string& command, const std::string& name) {
+  return listed(read_lists(folder / list_name), command).contains(name);
+}
 
 StagedFiles::StagedFiles(const fs::path& folder)
     : folder_(folder), path_(temporary_beside(folder / "results")) {
@@ -133,6 +156,7 @@ std::vector<fs::path> StagedFiles::publish_as(const std::string& command,
   const Json lists = read_lists(list_path);
   const std::vector<std::string> all = names();
   const std::set<std::string> now(all.begin(), all.end());
+  keep_own_files(folder_, lists, now);
   std::set<std::string> ever = listed(lists, command);
   ever.insert(now.begin(), now.end());
   // Whoever is killed from here on leaves a list of everything that may stand here.

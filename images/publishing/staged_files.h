@@ -9,6 +9,10 @@
 
 namespace photorque {
 
+// Whether files.json lists it among what that command wrote into the folder.
+bool is_result_of(const std::filesystem::path& folder, const std::string& command,
+                  const std::string& name);
+
 // A hidden folder within the one where files belong. What it made goes away with it unless the
 // files were published.
 class StagedFiles {
@@ -27,8 +31,9 @@ class StagedFiles {
 
   // The same for the results of one command, which replace those of its last run in this folder:
   // files.json lists what a command wrote, and files of the list that were not written again go
-  // away. summary.json (of `diagnose`, diagnosis.json) goes first and comes last: where it
-  // stands, all that it tells of is of one run.
+  // away. What no command lists and has the name of a result is kept beside it as NAME~, and named
+  // on standard error. summary.json (of `diagnose`, diagnosis.json) goes first and comes last:
+  // where it stands, all that it tells of is of one run.
   std::vector<std::filesystem::path> publish_as(const std::string& command,
                                                 const Provenance& provenance);
 

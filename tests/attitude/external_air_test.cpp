@@ -29,6 +29,22 @@ TEST(ExternalAir, DiscHasTheTabulatedMomentCoefficient) {
   EXPECT_NEAR(torque_N_m(disc(R), rate) / tabulated_N_m, 1.0, 1e-3);
 }
 
+TEST(ExternalAir, WithoutAirThereIsNoDrag) {
+  const Air none{.density_kg_m3 = 0.0};
+  AirPart part{.radius_m = 0.1,
+               .length_m = 0.2,
+               .area_m2 = 0.1,
+               .distance_m = 0.3,
+               .inner_m = 0.1,
+               .outer_m = 0.4};
+  for (const AirShape shape :
+       {AirShape::disc, AirShape::plate, AirShape::swept_plate, AirShape::sphere,
+        AirShape::radial_cylinder, AirShape::upright_cylinder, AirShape::blunt_face}) {
+    part.shape = shape;
+    EXPECT_EQ(air_coefficients(part, none).torque_N_m(2.0), 0.0) << static_cast<int>(shape);
+  }
+}
+
 TEST(ExternalAir, OneFaceOfADiscFeelsHalf) {
   AirPart one_face = disc(0.25);
   one_face.faces = 1;

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "attitude/estimation/observation.h"
+#include "attitude/stretches/segments.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
 
@@ -50,6 +51,25 @@ TEST(BadRecording, WithHardlyAnyAttitudeIsRefused) {
 TEST(BadRecording, QuaternionsWithoutLengthAreNoAttitude) {
   EXPECT_NE(refusal_of(recording_of("t_s,q_w,q_x,q_y,q_z", "0,0,0,0", 200)).find("0 complete"),
             std::string::npos);
+}
+
+// A clock that was set to another epoch while it recorded; a pause as long as what was recorded is
+// none.
+TEST(BadRecording, WhoseClockJumpsNamesTheInstants) {
+  const auto with_pause = [](double pause_s) {
+    Recording r = recording_of("t_s,q_w,q_x,q_y,q_z", "1,0,0,0", 200);
+    for (size_t row = 100; row < 200; ++row) r.time_s[row] += pause_s;
+    r.report.gaps = {{r.time_s[99], r.time_s[100]}};
+    return r;
+  };
+  EXPECT_NO_THROW(refuse_jump_of_clock(with_pause(20.0), "run.csv"));
+  try {
+    refuse_jump_of_clock(with_pause(1e9), "run.csv");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("t_s: found nothing from t_s = 9.9 to 1000000010"),
+              std::string::npos);
+  }
 }
 
 TEST(BadRecording, NoneAtAllIsRefused) {

@@ -54,6 +54,20 @@ TEST_F(Staged, FilesOfOtherCommandsStay) {
   EXPECT_EQ(read_file(folder_ / "shared.csv"), "power");
 }
 
+TEST_F(Staged, FilesOfTheUserWithTheNamesOfResultsAreKept) {
+  fs::create_directories(folder_);
+  write_file_whole(folder_ / "recording.csv", "mine");
+  run("propagate", {"recording.csv"});
+  run("propagate", {"recording.csv"});
+  EXPECT_THAT(there(),
+              testing::UnorderedElementsAre("files.json", "recording.csv", "recording.csv~"));
+  EXPECT_EQ(read_file(folder_ / "recording.csv~"), "mine");
+  EXPECT_EQ(read_file(folder_ / "recording.csv"), "propagate");
+  EXPECT_TRUE(is_result_of(folder_, "propagate", "recording.csv"));
+  EXPECT_FALSE(is_result_of(folder_, "trace", "recording.csv"));
+  EXPECT_FALSE(is_result_of(folder_, "propagate", "recording.csv~"));
+}
+
 TEST_F(Staged, ListsThatWereTamperedWithReachNoOtherFolder) {
   const fs::path outside = folder_.string() + "_outside.csv";
   write_file_whole(outside, "precious");

@@ -36,6 +36,27 @@ TEST_F(Limits, MemoryIsHeldWhereItIsAllowed) {
             0);
 }
 
+TEST_F(Limits, MemoryThatHoldsNoRunOrIsNoNumberIsRefused) {
+  for (const std::string much : {"0.1", "nan", "inf"}) {
+    const Outcome got =
+        run("trace " + stasis_nominal + quick_run + " --max-memory " + much + " --out " + at("o"));
+    EXPECT_EQ(got.status, 2) << much << got.err;
+    EXPECT_THAT(got.err, HasSubstr("--max-memory")) << much;
+  }
+}
+
+TEST_F(Limits, NamesThatNoFileCanHaveAreRefusedBeforeTheTrace) {
+  expect_refused(
+      "trace " + stasis_nominal + endless_run + " --set receiver[0].name=" + std::string(400, 'x'),
+      "400 letters");
+}
+
+TEST_F(Limits, EpochsWithinALeapSecondAreRefused) {
+  expect_refused("propagate " + (shipped_scenes / "stasis" / "attitude.toml").string() +
+                     " --set propagate.epoch=2016-12-31T23:59:60",
+                 "expected no leap second");
+}
+
 TEST_F(Limits, TimesOfZeroAreRefused) {
   expect_refused("trace " + stasis_nominal + " --max-time 0",
                  "--max-time: found 0, expected a number of seconds > 0");

@@ -212,6 +212,8 @@ TEST_F(SweepDesigns, PlansThatMakeNoSenseAreOneLine) {
     EXPECT_EQ(std::count(got.err.begin(), got.err.end(), '\n'), 1) << got.err;
     EXPECT_THAT(got.err, HasSubstr(words));
   };
+  refuses(begin + axis + "[[sweep.axis]]\nkey = \"attitude.tilt_rad\"\nvalues = [0.1]\n",
+          "every quantity once");
   refuses(begin + axis + "[[sweep.worst_over]]\nkey = \"trace.seed\"\nvalues = [1, 2]\n", "worse");
   refuses(begin + axis + "[[sweep.mean_over]]\nkey = \"attitude.tilt_deg\"\nvalues = [1, 2]\n",
           "twice");

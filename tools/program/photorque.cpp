@@ -1,16 +1,21 @@
 // The program: reads the command line, runs one verb, turns exceptions into exit statuses.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <limits>
+#include <new>
 #include <set>
+#include <system_error>
 
 #include "core/errors.h"
 #include "core/provenance.h"
 #include "core/settings/settings.h"
 #include "core/text/numbers.h"
 #include "images/loading/functions.h"
+#include "images/publishing/staged_files.h"
 #include "tools/commands/verb.h"
 #include "tools/guards/interruption.h"
 #include "tools/guards/memory.h"
@@ -62,7 +67,10 @@ void add_options(CLI::App& command, const Verb& verb, CommandLine& line) {
   command
       .add_option("--max-memory", line.max_memory_GB,
                   "Most memory to take, in GB (default: nine tenths of what the machine has free)")
-      ->check(CLI::Range(0.1, 1e6));
+      ->check(CLI::Range(0.5, 1e6))
+      ->check([](const std::string& text) {
+        return std::isfinite(std::atof(text.c_str())) ? "" : text + " is no finite number";
+      });
   command.add_flag("--quiet", line.quiet, "Print nothing but errors");
   command.add_flag("--json", line.json, "Print the summary as JSON instead of text");
 }
@@ -86,6 +94,14 @@ void run_in_folder(const Verb& verb, const CommandLine& line) {
   std::optional<Interruption::Watch> watch;
   if (line.interruption != nullptr) watch.emplace(*line.interruption, line.out_folder());
   const OutputFolder folder(line.out_folder(), others);
+  const std::string input = line.experiment.filename().string();
+  std::error_code none;
+  if (std::filesystem::equivalent(line.experiment, line.out_folder() / input, none) &&
+      is_result_of(line.out_folder(), verb.name, input)) {
+    throw InputError({}, "--out",
+                     line.out_folder().string() + ", whose " + input + " the run would replace",
+                     "another folder than that of its own input");
+  }
   verb.run(line);
 }
 
@@ -257,10 +273,27 @@ int run(int argc, char** argv, Interruption& interruption) {
   return 2;
 }
 
+// Where memory ends in a thread or a destructor no exception reaches main().
+[[noreturn]] void end_without_memory() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    std::fputs("numerical failure: not enough memory\n", stderr);
+    std::_Exit(3);
+  } catch (const std::system_error&) {
+    std::fputs("numerical failure: not enough memory for another thread\n", stderr);
+    std::_Exit(3);
+  } catch (...) {
+    std::abort();
+  }
+  std::abort();
+}
+
 }  // namespace
 }  // namespace photorque
 
 int main(int argc, char** argv) {
+  std::set_terminate(photorque::end_without_memory);
   try {
     photorque::Interruption interruption;
     const int status = photorque::run(argc, argv, interruption);

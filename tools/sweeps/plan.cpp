@@ -82,14 +82,25 @@ SweepAxis read_axis(const Settings& table, const SweepPlan& plan, uint64_t seed,
   return axis;
 }
 
+// A quantity is the same in another unit.
+std::string quantity_of(const std::string& key) {
+  const size_t dot = key.rfind('.');
+  const size_t name = dot == std::string::npos ? 0 : dot + 1;
+  return key.substr(0, name) + unit_of_key(key.substr(name)).stem;
+}
+
 void require_distinct_keys(const Settings& sweep, const SweepPlan& plan) {
   std::vector<std::string> keys;
   for (const SweepAxis& axis : plan.axes) keys.push_back(axis.key);
   for (const MeanOver& mean : plan.mean_over) keys.push_back(mean.key);
   for (const WorstOver& worst : plan.worst_over) keys.push_back(worst.key);
-  std::ranges::sort(keys);
-  const auto twice = std::ranges::adjacent_find(keys);
-  if (twice != keys.end()) throw sweep.error("axis", '"' + *twice + "\" twice", "every key once");
+  std::ranges::sort(keys, {}, quantity_of);
+  const auto twice = std::ranges::adjacent_find(keys, {}, quantity_of);
+  if (twice == keys.end()) return;
+  const std::string& other = *(twice + 1);
+  throw sweep.error("axis",
+                    '"' + *twice + (*twice == other ? "\" twice" : "\" and \"" + other + '"'),
+                    "every quantity once");
 }
 
 void read_within(const Settings& sweep, SweepPlan& plan) {

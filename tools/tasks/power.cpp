@@ -13,6 +13,11 @@ PowerRun power_of_experiment(const RunOptions& options, const Console& console) 
   OpticalResult light = run->run(experiment.lab_from_body, console.progress("tracing"));
   console.done();
   ArrayResult power = evaluate(array, *run, light);
+  if (power.efficiency.value > 1.0) {
+    run->warn(
+        "the array delivers more than the light on its cells: the numbers of its diodes are "
+        "those of no solar cell");
+  }
   print_trace(console, *run, light);
   print_array(console, power, light);
   Product product = run->product(light);

@@ -1,5 +1,6 @@
 #include "tools/tracking/estimate.h"
 
+#include "attitude/stretches/segments.h"
 #include "core/errors.h"
 #include "tools/runs/camera_sight.h"
 
@@ -48,6 +49,7 @@ std::vector<Source> read_sources(AttitudeExperiment& experiment,
   for (const std::filesystem::path& path : recordings) {
     experiment.add_input(path);
     sources.push_back({path.filename().string(), read_recording(path, options), {}});
+    refuse_jump_of_clock(sources.back().recording, path.string());
   }
   if (truth) {
     if (sources.size() != 1) {

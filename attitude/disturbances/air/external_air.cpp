@@ -40,21 +40,22 @@ double AirCoefficients::torque_N_m(double rate_rad_s) const {
 }
 
 AirCoefficients air_coefficients(const AirPart& part, const Air& air) {
-  const double rho = air.density_kg_m3, nu = air.kinematic_viscosity_m2_s();
+  // ρ √ν, which without air is nought.
+  const double rho = air.density_kg_m3, rho_root_nu = std::sqrt(rho * air.viscosity_Pa_s);
   const auto friction = [&](double x) { return AirCoefficients{part.count * x, 0.0}; };
   const auto form = [&](double x) { return AirCoefficients{0.0, part.count * x}; };
   switch (part.shape) {
     case AirShape::disc:
-      return friction(0.5 * part.faces * disc_wall_slope * pi * rho * power4(part.radius_m) *
-                      std::sqrt(nu));
+      return friction(0.5 * part.faces * disc_wall_slope * pi * rho_root_nu *
+                      power4(part.radius_m));
     case AirShape::plate:  // ½ ρ v² A c_f d with v = ω d
-      return friction(0.5 * part.faces * blasius_mean * rho * std::sqrt(nu / part.length_m) *
+      return friction(0.5 * part.faces * blasius_mean * rho_root_nu / std::sqrt(part.length_m) *
                       part.area_m2 * std::pow(part.distance_m, 2.5));
     case AirShape::swept_plate:
-      return friction(0.5 * part.faces * blasius_mean * rho * std::sqrt(nu * part.length_m) *
+      return friction(0.5 * part.faces * blasius_mean * rho_root_nu * std::sqrt(part.length_m) *
                       (std::pow(part.outer_m, 3.5) - std::pow(part.inner_m, 3.5)) / 3.5);
     case AirShape::sphere:
-      return friction(part.moment_coefficient * rho * std::sqrt(nu) * power4(part.radius_m));
+      return friction(part.moment_coefficient * rho_root_nu * power4(part.radius_m));
     case AirShape::radial_cylinder:
       return form(0.25 * part.drag_coefficient * rho * part.radius_m *
                   (power4(part.inner_m + part.length_m) - power4(part.inner_m)));

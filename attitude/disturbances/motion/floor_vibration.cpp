@@ -21,6 +21,8 @@ namespace {
 constexpr VectorKey shaking{"acceleration_m_s2"};
 constexpr ScalarKey frequency{"frequency_Hz", shaking.end()};
 constexpr ScalarKey phase{"phase", frequency.end()};
+// Faster, and the phase loses its digits within a day: steps would see something slow.
+constexpr Range tone_Hz{0.0, 1e6};
 constexpr ScalarKey factor{"scale"};  // of a spectrum and of a record
 
 template <class T>
@@ -115,10 +117,9 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
                          {"acceleration_x_m_s2", "acceleration_y_m_s2", "acceleration_z_m_s2"},
                          TimeSeries::Outside::zero));
   }
-  return make_disturbance<ToneVibration>(
-      {vector_parameter(settings, shaking),
-       scalar_parameter(settings, frequency, Range::not_negative()),
-       phase_parameter(settings, phase)});
+  return make_disturbance<ToneVibration>({vector_parameter(settings, shaking),
+                                          scalar_parameter(settings, frequency, tone_Hz),
+                                          phase_parameter(settings, phase)});
 }
 
 // The law again, for `prove`.
@@ -163,7 +164,7 @@ DisturbanceKind floor_vibration_kind() {
                                 "a of a sine in T = −m r × a, nothing without an offset of mass; "
                                 "lab axes; with the next two; *or*")
               .optional(),
-          Key::uncertain("frequency_Hz", Range::not_negative(), "of a sine").optional(),
+          Key::uncertain("frequency_Hz", tone_Hz, "of a sine").optional(),
           Key::uncertain_or("phase", 0.0, {}, "of it at t = 0, rad; or `phase_deg`"),
           Key::uncertain("phase_deg", {}, "instead of `phase`").optional(),
           Key::table("spectrum",
