@@ -69,6 +69,19 @@ TEST_F(OutputFolders, ThatAreFilesAreFoundBeforeTheWork) {
   EXPECT_EQ(file_text(at("taken")), "mine");
 }
 
+// An improved.toml that is diagnosed again into its own folder, say.
+TEST_F(OutputFolders, WhoseResultIsTheInputAreFoundBeforeTheWork) {
+  const std::string text = file_text(stasis);
+  fs::create_directories(at("o"));
+  write("o/again.toml", text);
+  write("o/files.json", R"({"schema": "photorque.files/1",
+                            "commands": {"trace": {"files": ["again.toml"]}}})");
+  const Outcome got = run("trace " + at("o/again.toml") + endless + " --out " + at("o"));
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, HasSubstr("whose again.toml the run would replace"));
+  EXPECT_EQ(file_text(at("o/again.toml")), text);
+}
+
 TEST_F(OutputFolders, ThatCannotBeWrittenAreFoundBeforeTheWork) {
   const Outcome kernel = run("trace " + stasis + endless + " --out /sys/kernel/photorque");
   EXPECT_EQ(kernel.status, 2);
