@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -82,7 +81,6 @@ void keep_own_files(const fs::path& folder, const Json& lists, const std::set<st
     }
     fs::rename(place, kept, failure);
     if (failure) throw InputError({place.string()}, "", failure.message(), "a name for a result");
-    std::fprintf(stderr, "%s was no result of a run: kept as %s\n", place.c_str(), kept.c_str());
   }
 }
 

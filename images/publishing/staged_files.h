@@ -31,9 +31,9 @@ class StagedFiles {
 
   // The same for the results of one command, which replace those of its last run in this folder:
   // files.json lists what a command wrote, and files of the list that were not written again go
-  // away. What no command lists and has the name of a result is kept beside it as NAME~, and named
-  // on standard error. summary.json (of `diagnose`, diagnosis.json) goes first and comes last:
-  // where it stands, all that it tells of is of one run.
+  // away. What no command lists and has the name of a result is kept beside it as NAME~.
+  // summary.json (of `diagnose`, diagnosis.json) goes first and comes last: where it stands, all
+  // that it tells of is of one run.
   std::vector<std::filesystem::path> publish_as(const std::string& command,
                                                 const Provenance& provenance);
 

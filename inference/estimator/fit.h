@@ -46,7 +46,7 @@ struct Options {
   // fit, as if it could not be evaluated. Infinite: none of these.
   double worth_chi2 = infinity;
   // One of whole runs also ends where χ² fell by less than this fraction in each of six steps, and
-  // there is more than 1.2 per sample: what fits badly and creeps along a valley. 0: goes on.
+  // there is more than 1.2 per sample: what fits badly and hardly moves. 0: goes on.
   double creep = 0.0;
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;  // ≥ 0: keeps combinations that nothing determines where they are
