@@ -77,9 +77,12 @@ struct EmpiricalTorque {
 struct Where {
   struct ChannelMisfit {
     std::string name;              // "gyro_z_rad_s", "attitude_x_arcsec"
-    double chi2_per_sample = 0.0;  // under the nominal model; 1 for noise alone
+    double chi2_per_sample = 0.0;  // 1 for noise alone
+    // The median of the squared residuals over that of a normal distribution, which outliers and
+    // heavy tails do not move.
+    double chi2_of_median = 0.0;  // 0: unknown
   };
-  std::vector<ChannelMisfit> channels;  // worst first
+  std::vector<ChannelMisfit> channels;  // under the nominal model; worst first
   struct Interval {
     double from = 0.0, to = 0.0;
   };
@@ -237,7 +240,8 @@ struct Diagnosis {
   std::vector<FoundEffect> unnamed = {};
   double chi2_per_sample_before = 0.0;
   double chi2_per_sample_after = 0.0;
-  int64_t samples = 0;  // numbers that were fitted
+  int64_t samples = 0;                               // numbers that were fitted
+  std::vector<Where::ChannelMisfit> channels_after;  // worst first; empty where light was diagnosed
   std::optional<Holdout> holdout;
   std::vector<Alternative> alternatives;  // best first
   std::vector<Manoeuvre> manoeuvres;

@@ -1,6 +1,7 @@
 #include "attitude/estimation/fit.h"
 
 #include "attitude/estimation/forward_model.h"
+#include "inference/estimator/bounds.h"
 
 namespace photorque {
 
@@ -10,6 +11,15 @@ Fit fit(const Hypothesis& start, const std::vector<Observation>& runs,
   Fit result{inference::fit(model, model.point_of(start), settings), {}};
   result.best = model.hypothesis_at(result.at);
   return result;
+}
+
+Hypothesis within_bounds(const Fit& fit, std::vector<Free> free,
+                         const std::vector<Observation>& runs) {
+  Hypothesis bounded = fit.best;
+  bounded.free = std::move(free);
+  const AttitudeForwardModel model(bounded, runs, {}, FitSettings().tolerance);
+  const inference::Parameters at = model.parameters(fit.at);
+  return model.hypothesis_at(model.stepped(fit.at, inference::step_to_bounds(fit.hessian, at)));
 }
 
 inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observation>& runs,

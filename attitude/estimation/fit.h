@@ -21,6 +21,12 @@ struct FitSettings : inference::Options {
 Fit fit(const Hypothesis& start, const std::vector<Observation>& runs,
         const FitSettings& settings = {});
 
+// Where a fit ended, brought to within the bounds that `free` has by the step that costs least χ²;
+// `free` are the free parameters of the fit, in its order, with bounds that it may have left. What
+// is correlated with them moves along.
+Hypothesis within_bounds(const Fit& fit, std::vector<Free> free,
+                         const std::vector<Observation>& runs);
+
 // The sums of all runs at the present values, without fitting: parameters as in Fit::hessian, and
 // then `extra`, parameters of the model that are not free. With the priors of what is free.
 inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observation>& runs,

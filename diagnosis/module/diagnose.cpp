@@ -154,6 +154,7 @@ ModuleAnswer explain_module(const ModuleDesign& design, const ModuleNominal& nom
     inference::Predictive p;
     p.chi2_per_sample = (joint.fit.chi2 - train.fit.chi2) / held;
     p.log_score = joint.log_evidence - train.log_evidence;
+    p.expected_chi2_per_sample = inference::expected_chi2_per_sample(train.fit, joint.fit);
     p.sigma = (p.chi2_per_sample - 1.0) /
               std::sqrt(2.0 / held + 2.0 / static_cast<double>(train.fit.samples));
     if (i > 0) {

@@ -41,18 +41,27 @@ Json parameters_json(const std::vector<FittedParameter>& parameters) {
   return table;
 }
 
+template <class Item, class Convert>
+Json list(const std::vector<Item>& items, const Convert& convert) {
+  Json array = Json::array();
+  for (const Item& item : items) array.push_back(convert(item));
+  return array;
+}
+
+Json misfit_json(const Where::ChannelMisfit& channel) {
+  Json json = {{"name", channel.name}, {"chi2_per_sample", number(channel.chi2_per_sample)}};
+  if (channel.chi2_of_median > 0.0) json["chi2_of_median"] = number(channel.chi2_of_median);
+  return json;
+}
+
 Json where_json(const Where& where) {
-  Json channels = Json::array();
-  for (const auto& c : where.channels) {
-    channels.push_back({{"name", c.name}, {"chi2_per_sample", number(c.chi2_per_sample)}});
-  }
   Json intervals = Json::array();
   for (const auto& i : where.intervals_s) intervals.push_back(numbers({i.from, i.to}));
   Json depends = Json::array();
   for (const auto& d : where.depends_on) {
     depends.push_back({{"variable", d.variable}, {"strength", number(d.strength)}});
   }
-  Json json = {{"channels", channels}, {"intervals_s", intervals}};
+  Json json = {{"channels", list(where.channels, misfit_json)}, {"intervals_s", intervals}};
   json["band_Hz"] = where.band_Hz ? numbers({where.band_Hz->from, where.band_Hz->to}) : Json();
   json["depends_on"] = depends;
   return json;
@@ -90,6 +99,8 @@ Json empirical_json(const EmpiricalTorque& torque) {
 Json holdout_json(const Holdout& holdout) {
   const auto& predictive = holdout.predictive;
   return {{"predictive_chi2_per_sample", predictive ? number(predictive->chi2_per_sample) : Json()},
+          {"expected_chi2_per_sample",
+           predictive ? number(predictive->expected_chi2_per_sample) : Json()},
           {"predictive_sigma", predictive ? number(predictive->sigma) : Json()},
           {"explained_fraction", number(holdout.explained_fraction)},
           {"rms_before", object(holdout.rms_before)},
@@ -123,13 +134,6 @@ Json provenance_json(const Provenance& provenance) {
           {"git_hash", provenance.git_hash},
           {"seed", provenance.seed},
           {"inputs", inputs}};
-}
-
-template <class Item, class Convert>
-Json list(const std::vector<Item>& items, const Convert& convert) {
-  Json array = Json::array();
-  for (const Item& item : items) array.push_back(convert(item));
-  return array;
 }
 
 Json manoeuvre_json(const Manoeuvre& manoeuvre) {
@@ -167,7 +171,8 @@ std::string diagnosis_json(const Diagnosis& d, const Provenance& provenance) {
   json["effects"] = list(d.effects, effect_json);
   json["fit"] = {{"chi2_per_sample_before", number(d.chi2_per_sample_before)},
                  {"chi2_per_sample_after", number(d.chi2_per_sample_after)},
-                 {"samples", d.samples}};
+                 {"samples", d.samples},
+                 {"channels", list(d.channels_after, misfit_json)}};
   json["holdout"] = d.holdout ? holdout_json(*d.holdout) : Json();
   json["alternatives"] = list(d.alternatives, alternative_json);
   json["empirical_torque"] = list(d.empirical, empirical_json);

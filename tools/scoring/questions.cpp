@@ -118,7 +118,8 @@ bool names_missing_physics(const CaseScore& s) {
   return s.answered && s.verdict == "missing_physics";
 }
 bool replays_as_stated(const CaseScore& s) {
-  return s.replay_status == 0.0 && s.replay_chi2 <= 0.2 + 1.33 * std::max(1.0, s.fit_chi2);
+  const double stated = std::isfinite(s.attitude_chi2) ? s.attitude_chi2 : s.fit_chi2;
+  return s.replay_status == 0.0 && s.replay_chi2 <= 0.2 + 1.33 * std::max(1.0, stated);
 }
 
 double Fraction::low() const {

@@ -135,6 +135,18 @@ bool verdict_fits(const std::string& verdict, const std::vector<std::string>& na
   return verdict == (names.empty() ? "consistent" : "missing_physics");
 }
 
+// The mean over the attitude's channels; NaN where the diagnosis states none.
+double attitude_chi2(const Json& channels) {
+  double sum = 0.0;
+  int count = 0;
+  for (const Json& channel : channels) {
+    if (!channel.value("name", "").starts_with("attitude_")) continue;
+    sum += number_or_nan(channel, "chi2_of_median");
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
 void read_truth(const Json& truth, CaseScore& score) {
   score.true_verdict = truth.at("verdict").get<std::string>();
   for (const Json& effect : truth.at("effects")) score.true_kinds.push_back(effect.at("kind"));
@@ -190,9 +202,12 @@ void judge(const Json& truth, const Json& diagnosis, const std::string& nominal,
   if (holdout.is_object()) {
     score.holdout_chi2 = number_or_nan(holdout, "chi2_per_sample_after");
     score.predictive_chi2 = number_or_nan(holdout, "predictive_chi2_per_sample");
+    score.expected_chi2 = number_or_nan(holdout, "expected_chi2_per_sample");
     score.predictive_sigma = number_or_nan(holdout, "predictive_sigma");
   }
-  score.fit_chi2 = number_or_nan(diagnosis.value("fit", Json::object()), "chi2_per_sample_after");
+  const Json fit = diagnosis.value("fit", Json::object());
+  score.fit_chi2 = number_or_nan(fit, "chi2_per_sample_after");
+  score.attitude_chi2 = attitude_chi2(fit.value("channels", Json::array()));
 }
 
 // What prove noted of the runs themselves.
@@ -216,7 +231,8 @@ CaseScore score_case(const std::filesystem::path& truth_folder,
   CaseScore score;
   score.name = truth_folder.filename().string();
   score.holdout_chi2 = score.oracle_chi2 = score.predictive_chi2 = score.predictive_sigma = nan;
-  score.fit_chi2 = score.replay_status = score.replay_chi2 = score.confidence = nan;
+  score.expected_chi2 = score.fit_chi2 = score.attitude_chi2 = score.replay_status =
+      score.replay_chi2 = score.confidence = nan;
   const Json truth = parsed(truth_folder / "truth.json");
   try {
     read_truth(truth, score);

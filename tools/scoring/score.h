@@ -40,7 +40,10 @@ struct CaseScore {
   double holdout_chi2 = 0.0, oracle_chi2 = 0.0;  // per number, after; NaN: unknown
   // What diagnose itself expects of holdout_chi2, and how many standard errors it lies above.
   double predictive_chi2 = 0.0, predictive_sigma = 0.0;  // NaN: not stated
-  double fit_chi2 = 0.0;                                 // per number of the recording, after
+  // What it expects the errors of its parameters to leave of holdout_chi2. NaN: not stated.
+  double expected_chi2 = 0.0;
+  // Per number of the recording, after; the same of its attitudes alone, by the medians.
+  double fit_chi2 = 0.0, attitude_chi2 = 0.0;  // NaN: not stated
   // improved.toml run by `propagate`: exit status, and deviation from the recorded attitudes per
   // number (replayed_chi2). NaN: not run.
   double replay_status = 0.0, replay_chi2 = 0.0;

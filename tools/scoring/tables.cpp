@@ -95,10 +95,11 @@ Table proof_by_kind(const std::vector<CaseScore>& scores) {
 Table proof_cases(const std::vector<CaseScore>& scores) {
   Table table = Table::of(
       "proof_cases", "Every case",
-      {"case",        "true_verdict",       "concealed",        "verdict",     "named",
-       "right",       "right_within_group", "chi2_gain",        "confidence",  "holdout_chi2",
-       "oracle_chi2", "predictive_chi2",    "predictive_sigma", "replay_chi2", "pulls_rms",
-       "impossible",  "exit_status",        "processor_s",      "family",      "maker"});
+      {"case",        "true_verdict",       "concealed",        "verdict",       "named",
+       "right",       "right_within_group", "chi2_gain",        "confidence",    "holdout_chi2",
+       "oracle_chi2", "predictive_chi2",    "predictive_sigma", "expected_chi2", "replay_chi2",
+       "pulls_rms",   "impossible",         "exit_status",      "processor_s",   "family",
+       "maker"});
   for (const CaseScore& s : scores) {
     double squares = 0.0;
     for (const double pull : s.pulls) squares += pull * pull;
@@ -117,6 +118,7 @@ Table proof_cases(const std::vector<CaseScore>& scores) {
         .set("oracle_chi2", s.oracle_chi2)
         .set("predictive_chi2", s.predictive_chi2)
         .set("predictive_sigma", s.predictive_sigma)
+        .set("expected_chi2", s.expected_chi2)
         .set("replay_chi2", s.replay_chi2)
         .set("pulls_rms", rms)
         .set("impossible", joined(s.impossible))

@@ -400,29 +400,31 @@ Trial exchange(const Trial& trial, const Candidates& all, size_t which, size_t c
 
 Trial within_physics(const Trial& trial, const Candidates& all,
                      const std::vector<Observation>& runs) {
-  Hypothesis h = trial.fit.best;
+  std::vector<Free> bounded = trial.fit.best.free;
   bool any_beyond = false;
-  for (Free& f : h.free) {
+  for (Free& f : bounded) {
     for (size_t i = 0; i < trial.candidates.size(); ++i) {
       if (f.per_run || f.disturbance != trial.disturbances[i]) continue;
       const Candidate& c = all[trial.candidates[i]];
       const auto p = static_cast<size_t>(f.parameter);
       f.lowest = c.lowest[p];
       f.highest = c.highest[p];
-      const double found = h.parameter(f).value;
-      h.value(f) = std::clamp(found, f.lowest, f.highest);
-      any_beyond = any_beyond || h.parameter(f).value != found;
+      const double found = trial.fit.best.parameter(f).value;
+      any_beyond = any_beyond || found < f.lowest || found > f.highest;
     }
   }
   if (!any_beyond) return trial;
-  // What was fitted beside it is far off now.
-  FitSettings settings;
-  settings.windows = all.limits.fitting.diverged_windows;
-  settings.max_iterations = all.limits.fitting.patient_iterations;
+  const Hypothesis start = within_bounds(trial.fit, bounded, runs);
   Trial result = trial;
-  result.fit = fit(h, runs, settings);
-  const bool is_as_good = result.fit.chi2 < trial.fit.chi2 + all.limits.leaders.near_chi2;
-  return is_as_good ? result : trial;
+  const auto leads_back = [&](const std::vector<double>& windows) {
+    FitSettings settings;
+    settings.windows = windows;
+    settings.max_iterations = all.limits.fitting.patient_iterations;
+    result.fit = fit(start, runs, settings);
+    return result.fit.chi2 < trial.fit.chi2 + all.limits.leaders.near_chi2;
+  };
+  // Where the way back was a long one, what was fitted beside it may be off.
+  return leads_back({1.0}) || leads_back(all.limits.fitting.diverged_windows) ? result : trial;
 }
 
 Trial refit(const Trial& trial, const Candidates& all, const std::vector<Observation>& runs,

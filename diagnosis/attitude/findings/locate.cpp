@@ -4,33 +4,14 @@
 #include <cmath>
 #include <complex>
 #include <map>
+#include <numeric>
 
 #include "core/constants.h"
 
 namespace photorque {
 namespace {
 
-std::vector<Where::ChannelMisfit> channels(const std::vector<Prediction>& residuals) {
-  std::vector<Where::ChannelMisfit> result;
-  for (Eigen::Index k = 0; k < channel_count; ++k) {
-    double sum = 0.0;
-    int64_t count = 0;
-    for (const Prediction& p : residuals) {
-      for (const WhiteRow& row : p.residual) {
-        if (!std::isfinite(row[k])) continue;
-        sum += row[k] * row[k];
-        ++count;
-      }
-    }
-    if (count > 0)
-      result.push_back(
-          {channel_traits(static_cast<int>(k)).name, sum / static_cast<double>(count)});
-  }
-  std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
-    return a.chi2_per_sample > b.chi2_per_sample;
-  });
-  return result;
-}
+constexpr double median_of_chi2_of_one = 0.454936;  // the square of a standard normal number
 
 // Fortieths of the run whose mean square exceeds that of noise beyond doubt, joined where they
 // touch.
@@ -101,10 +82,32 @@ std::optional<Where::Interval> band(const Prediction& p, const Observation& seen
 
 }  // namespace
 
+std::vector<Where::ChannelMisfit> misfits(const std::vector<Prediction>& residuals) {
+  std::vector<Where::ChannelMisfit> result;
+  for (Eigen::Index k = 0; k < channel_count; ++k) {
+    std::vector<double> squares;
+    for (const Prediction& p : residuals) {
+      for (const WhiteRow& row : p.residual) {
+        if (std::isfinite(row[k])) squares.push_back(row[k] * row[k]);
+      }
+    }
+    if (squares.empty()) continue;
+    const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+    const auto middle = squares.begin() + static_cast<ptrdiff_t>(squares.size() / 2);
+    std::ranges::nth_element(squares, middle);
+    result.push_back({channel_traits(static_cast<int>(k)).name,
+                      sum / static_cast<double>(squares.size()), *middle / median_of_chi2_of_one});
+  }
+  std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
+    return a.chi2_per_sample > b.chi2_per_sample;
+  });
+  return result;
+}
+
 Where locate(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs,
              const Thresholds::Location& limits) {
   Where where;
-  where.channels = channels(residuals);
+  where.channels = misfits(residuals);
   where.intervals_s = intervals(residuals.front(), runs.front(), limits);
   where.band_Hz = band(residuals.front(), runs.front(), limits);
   return where;

@@ -7,6 +7,9 @@
 
 namespace photorque {
 
+// How far residuals are from noise, channel by channel; those without a number are left out.
+std::vector<Where::ChannelMisfit> misfits(const std::vector<Prediction>& residuals);
+
 // `residuals` are those of the nominal model. `depends_on` is left empty.
 Where locate(const std::vector<Prediction>& residuals, const std::vector<Observation>& runs,
              const Thresholds::Location& limits);
