@@ -171,16 +171,27 @@ std::vector<fs::path> cases_in(const fs::path& folder) {
   return folders;
 }
 
-// As the experiment file of a case states it; of cases made elsewhere, what most of them have.
-std::array<double, 3> camera_noise_arcsec(const fs::path& case_folder) {
+// What prove notes of a case beside its truth; of cases made elsewhere, what most of them have.
+struct RecordedCase {
+  std::array<double, 3> camera_noise_arcsec = {37.0, 37.0, 12.0};  // as the experiment states it
+  double rate_Hz = 20.0;
+};
+RecordedCase recorded_case(const fs::path& case_folder) {
   const fs::path file = case_folder / "truth.json";
   const auto truth = nlohmann::json::parse(read_file(file), nullptr, false);
-  const std::array<double, 3> common = {37.0, 37.0, 12.0};
+  RecordedCase made;
+  if (!truth.is_object()) return made;
   try {
-    return truth.is_object() ? truth.value("camera_noise_arcsec", common) : common;
+    made.camera_noise_arcsec = truth.value("camera_noise_arcsec", made.camera_noise_arcsec);
   } catch (const nlohmann::json::exception&) {
     throw InputError({file.string()}, "camera_noise_arcsec", "something else", "three numbers");
   }
+  try {
+    made.rate_Hz = truth.value("rate_Hz", made.rate_Hz);
+  } catch (const nlohmann::json::exception&) {
+    throw InputError({file.string()}, "rate_Hz", "something else", "a number");
+  }
+  return made;
 }
 
 // The noise that the diagnosis found and used where it is not as stated.
@@ -199,21 +210,23 @@ std::array<double, 3> found_noise_arcsec(const fs::path& diagnosis_file,
 }
 
 // Propagates the answer and compares with the recording; what a user would do first.
-nlohmann::json replayed(const fs::path& blind, const std::array<double, 3>& stated_noise_arcsec,
+nlohmann::json replayed(const fs::path& blind, const RecordedCase& made,
                         const ProveSettings& settings) {
   nlohmann::json replay = nlohmann::json::object();
   if (!fs::exists(blind / "diagnosis" / "improved.toml")) return replay;
-  // Without the camera's own noise, which would be added to that of the recording, and closely
-  // enough that the rate between two rows is as good as constant.
-  const ChildResult result = run_child(
-      own_program(),
-      {"propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads", "1",
-       "--set", "sensors.camera.noise_arcsec=[0, 0, 0]", "--set", "propagate.output_rate_Hz=200"},
-      blind, settings.max_processor_s);
+  // Without the camera's own noise, which would be added to that of the recording, and so closely
+  // that the rate is as good as constant between two rows.
+  constexpr double closer = 10.0;
+  const ChildResult result =
+      run_child(own_program(),
+                {"propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads",
+                 "1", "--set", "sensors.camera.noise_arcsec=[0, 0, 0]", "--set",
+                 "propagate.output_rate_Hz=" + std::to_string(closer * made.rate_Hz)},
+                blind, settings.max_processor_s);
   replay["replay_status"] = result.status;
   if (result.status == 0) {
     const std::array<double, 3> noise_arcsec =
-        found_noise_arcsec(blind / "diagnosis" / "diagnosis.json", stated_noise_arcsec);
+        found_noise_arcsec(blind / "diagnosis" / "diagnosis.json", made.camera_noise_arcsec);
     replay["replay_chi2"] =
         replayed_chi2(blind / "run1.csv.gz", blind / "replay" / "recording.csv", noise_arcsec);
   } else {
@@ -251,7 +264,7 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
   fs::create_directories(out);
   nlohmann::json runs = {{"processor_s", result.processor_s}, {"exit_status", result.status}};
   if (settings.replay && result.status == 0 && !files.of_light) {
-    runs.update(replayed(blind, camera_noise_arcsec(case_folder), settings));
+    runs.update(replayed(blind, recorded_case(case_folder), settings));
   }
   write_file_whole(out / "runs.json", runs.dump(1) + "\n");
   if (result.status != 0 || !result.errors.empty()) {
