@@ -264,7 +264,7 @@ Sight sight_of(const Dynamics& dynamics, const Samples& samples, bool needs_acce
   if (offsets && offsets->camera_delay_s == 0.0 && !needs_acceleration) {
     for (int k = 0; k < 3; ++k) {
       sight.gyro_rad_s[k] =
-          samples.y[static_cast<size_t>(component::rate + k)] + offsets->gyro_rad_s[k];
+          samples.y[component::rate + static_cast<size_t>(k)] + offsets->gyro_rad_s[k];
       sight.camera_error_rad[k] = offsets->camera_rad[k];
       sight.acceleration_rad_s2[k] = 0.0;
     }
@@ -275,7 +275,7 @@ Sight sight_of(const Dynamics& dynamics, const Samples& samples, bool needs_acce
   sight.camera_error_rad = now.camera_error_rad;
   sight.delay_s = now.camera_delay_s;
   for (int k = 0; k < 3; ++k) {
-    sight.acceleration_rad_s2[k] = now.rates[static_cast<size_t>(component::rate + k)];
+    sight.acceleration_rad_s2[k] = now.rates[component::rate + static_cast<size_t>(k)];
   }
   return sight;
 }

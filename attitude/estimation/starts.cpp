@@ -88,7 +88,7 @@ std::vector<Quat> attitudes_by_fields(const AttitudeModel& model, const Observat
 
 std::vector<Quat> attitudes_of(const AttitudeModel& model, const Observation& seen,
                                const Quat& otherwise) {
-  if (const auto by_fields = attitudes_by_fields(model, seen); !by_fields.empty()) {
+  if (auto by_fields = attitudes_by_fields(model, seen); !by_fields.empty()) {
     return by_fields;
   }
   const auto roll = first_of(seen, Scalar::roll), pitch = first_of(seen, Scalar::pitch);

@@ -65,7 +65,8 @@ MotionModel::Derivatives MotionModel::derivatives_of(const FilterState& state,
     }
     for (int r = 0; r < rows; ++r) {
       for (int k = 0; k < count; ++k) {
-        by_variable(r, first + k) = out[static_cast<size_t>(r * DualLanes::block + k)][0];
+        by_variable(r, first + k) =
+            out[static_cast<size_t>(r) * DualLanes::block + static_cast<size_t>(k)][0];
       }
     }
   }

@@ -59,7 +59,7 @@ class NoiseSearch {
   }
 
   void find_gyro_level(int k) {
-    FoundNoise& found = result_.channel[static_cast<size_t>(3 + k)];
+    FoundNoise& found = result_.channel[3 + static_cast<size_t>(k)];
     const std::optional<NoiseLevel> level = gyro_level(runs_, left_, k, limits_);
     if (!level) return;
     found.level_sigma = level->log_sigma;
@@ -172,7 +172,7 @@ class NoiseSearch {
     gyro_.gyro_coloured = coloured_fraction(likeliest.at);
     gyro_.gyro_time_s = std::exp(likeliest.at[1]);
     for (int k = 0; k < 3; ++k) {
-      FoundNoise& found = result_.channel[static_cast<size_t>(3 + k)];
+      FoundNoise& found = result_.channel[3 + static_cast<size_t>(k)];
       found.level_found = off;
       found.level_sigma = log_sigma;
       found.colour_found = true;

@@ -21,45 +21,54 @@ namespace photorque {
 
 class Snapshot;  // core/snapshots/snapshot.h
 
+// Star-tracker-like camera that reports attitudes. Defaults: the source paper's, 12 arcsec in the
+// image plane (about lab z, for a camera above) and 37 arcsec out of it.
+struct CameraInstrument {
+  Vec3 noise_rad = Vec3(37, 37, 12) * arcsecond_rad;  // about lab x, y, z; one standard deviation
+  double rate_Hz = 0.0;                               // 0: in every row
+  // Where it is given, the noise follows from it at every attitude and rate; noise_rad is then
+  // that at zero tilt.
+  std::optional<TrackingCamera> geometry = {};
+};
+struct GyroInstrument {
+  double noise_rad_s = 0.0;           // per reading and axis
+  double bias_drift_rad_s_1_s = 0.0;  // random walk of the bias: grows with the root of time [s]
+  double rate_Hz = 0.0;
+};
+// What `diagnose` compares and `propagate` does not write.
+struct AccelerometerInstrument {
+  double noise_m_s2 = 0.0;  // per reading and axis; 0: not stated
+  Vec3 position_m =
+      Vec3::Zero();  // from the centre of rotation, or of mass where nothing carries it
+  Vec3 bias_m_s2 = Vec3::Zero();
+};
+struct MagnetometerInstrument {
+  double noise_T = 0.0;
+  Vec3 bias_T = Vec3::Zero();
+};
+// Sees where a platform that slides is.
+struct PositionInstrument {
+  double noise_m = 0.0;    // per reading and axis; 0: not stated
+  double noise_m_s = 0.0;  // of a velocity
+};
+// Reads the heading in whole steps.
+struct EncoderInstrument {
+  double resolution_rad = 0.0;
+};
+struct PowerInstrument {
+  double current_noise_A = 0.0;
+  double power_noise_W = 0.0;
+};
+
 struct Sensors {
-  // Star-tracker-like camera that reports attitudes. Defaults: the source paper's, 12 arcsec in the
-  // image plane (about lab z, for a camera above) and 37 arcsec out of it.
-  struct Camera {
-    Vec3 noise_rad = Vec3(37, 37, 12) * arcsecond_rad;  // about lab x, y, z; one standard deviation
-    double rate_Hz = 0.0;                               // 0: in every row
-    // Where it is given, the noise follows from it at every attitude and rate; noise_rad is then
-    // that at zero tilt.
-    std::optional<TrackingCamera> geometry = {};
-  };
-  struct Gyro {
-    double noise_rad_s = 0.0;           // per reading and axis
-    double bias_drift_rad_s_1_s = 0.0;  // random walk of the bias: grows with the root of time [s]
-    double rate_Hz = 0.0;
-  };
-  // What `diagnose` compares and `propagate` does not write.
-  struct Accelerometer {
-    double noise_m_s2 = 0.0;  // per reading and axis; 0: not stated
-    Vec3 position_m =
-        Vec3::Zero();  // from the centre of rotation, or of mass where nothing carries it
-    Vec3 bias_m_s2 = Vec3::Zero();
-  };
-  struct Magnetometer {
-    double noise_T = 0.0;
-    Vec3 bias_T = Vec3::Zero();
-  };
-  // Sees where a platform that slides is.
-  struct Position {
-    double noise_m = 0.0;    // per reading and axis; 0: not stated
-    double noise_m_s = 0.0;  // of a velocity
-  };
-  // Reads the heading in whole steps.
-  struct Encoder {
-    double resolution_rad = 0.0;
-  };
-  struct Power {
-    double current_noise_A = 0.0;
-    double power_noise_W = 0.0;
-  };
+  using Camera = CameraInstrument;
+  using Gyro = GyroInstrument;
+  using Accelerometer = AccelerometerInstrument;
+  using Magnetometer = MagnetometerInstrument;
+  using Position = PositionInstrument;
+  using Encoder = EncoderInstrument;
+  using Power = PowerInstrument;
+
   std::optional<Camera> camera;
   std::optional<Gyro> gyro;
   std::optional<Accelerometer> accelerometer;

@@ -55,7 +55,7 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
     Vec3 by = Vec3::Zero();
     for (int k = 0; k < 2; ++k) {
       const std::vector<double>& x =
-          rows.scalar[static_cast<size_t>(static_cast<int>(Scalar::position_x) + k)].value;
+          rows.scalar[static_cast<size_t>(Scalar::position_x) + static_cast<size_t>(k)].value;
       by[k] = x[to] - x[from];
     }
     return by;

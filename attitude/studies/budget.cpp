@@ -99,7 +99,7 @@ Snapshot snapshot(const Dynamics& dynamics, const PlatformState& state) {
     result.torques_body_N_m.emplace_back(torque[0][0], torque[1][0], torque[2][0]);
   }
   for (int k = 0; k < 3; ++k) {
-    result.angular_acceleration_rad_s2[k] = now.rates[size_t(component::rate + k)][0];
+    result.angular_acceleration_rad_s2[k] = now.rates[component::rate + static_cast<size_t>(k)][0];
   }
   return result;
 }

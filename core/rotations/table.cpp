@@ -112,8 +112,8 @@ RotationTable::Place RotationTable::place(const Quat& lab_from_body, RotationSlo
   const Box* box = &boxes_[static_cast<size_t>(root)];
   while (box->children >= 0) {
     const double middle_x = box->x + 0.5 * box->width, middle_y = box->y + 0.5 * box->width;
-    const int quarter = (point.x >= middle_x ? 1 : 0) + (point.y >= middle_y ? 2 : 0);
-    box = &boxes_[static_cast<size_t>(box->children + quarter)];
+    const size_t quarter = (point.x >= middle_x ? 1u : 0u) + (point.y >= middle_y ? 2u : 0u);
+    box = &boxes_[static_cast<size_t>(box->children) + quarter];
   }
   const double scale = degree / box->node_width;
   return {box, (point.x - box->node_x) * scale, (point.y - box->node_y) * scale, point.twist_rad};

@@ -116,7 +116,7 @@ Settings::Settings(const SettingsNode* node, std::shared_ptr<const SettingsNode>
 
 std::string Settings::full_name(std::string_view key) const {
   // Messages name the key as the user wrote it.
-  const std::string written = as_written(*node_, key);
+  std::string written = as_written(*node_, key);
   if (name_.empty()) return written;
   return key.empty() ? name_ : name_ + "." + written;
 }

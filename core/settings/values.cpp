@@ -126,8 +126,8 @@ UncertainVec3 Settings::uncertain_vector(std::string_view key) const {
   double unused = 1.0;
   const SettingsNode& value = inner.require("value", &unused, "an array of 3 numbers");
   const SettingsNode& sigma = inner.require("sigma", &unused, "an array of 3 numbers >= 0");
-  const UncertainVec3 both{inner.to_vector3(value, "value", factor),
-                           inner.to_vector3(sigma, "sigma", factor)};
+  UncertainVec3 both{inner.to_vector3(value, "value", factor),
+                     inner.to_vector3(sigma, "sigma", factor)};
   if ((both.sigma.array() < 0.0).any()) {
     throw InputError(sigma.where, inner.full_name("sigma"), "a negative number", "numbers >= 0");
   }

@@ -35,7 +35,6 @@ void drop_what_held_out_does_not_miss(const Thresholds& limits, Answer& a) {
   size_t& best = a.decision.best_named;
   const bool is_chosen = a.decision.chosen == best;
   for (bool drops = best != 0; drops;) {
-    drops = false;
     const Trial& whole = a.trials[best];
     size_t fewer = best;
     for (size_t i = 1; i < a.trials.size(); ++i) {
@@ -112,7 +111,7 @@ void refit_beside_the_rest(const NoiseLevels& own, RecordedData data, const Thre
 Fit fit_in_the_rough(const NominalModel& nominal, const NoiseLevels& own, const Thresholds& limits,
                      RecordedData& data) {
   use_noise(patient_noise(data.train, own), data);
-  const Fit fitted = fit_nominal(nominal, data.train, limits);
+  Fit fitted = fit_nominal(nominal, data.train, limits);
   if (!std::isfinite(fitted.chi2)) return fitted;
   use_noise(with_discrepancy(residuals_of(fitted, data.train), data.train, own, Remainder::white),
             data);

@@ -28,8 +28,8 @@ std::map<std::string, double> rms(const std::vector<Prediction>& residuals,
     double sum = 0.0;
     int64_t count = 0;
     for (size_t run = 0; run < runs.size(); ++run) {
-      for (size_t i = 0; i < residuals[run].off.size(); ++i) {
-        const double x = in_unit(residuals[run].off[i], k);
+      for (const auto& off : residuals[run].off) {
+        const double x = in_unit(off, k);
         if (!std::isfinite(x)) continue;
         sum += x * x;
         ++count;

@@ -85,10 +85,9 @@ bool tame_noise(const Fit& near, const Thresholds& limits, RecordedData& data) {
     held_in_bursts = drop_bursts(residuals_of(held, data.held), limits.noise, data.held);
     tame(tails, residuals_of(held, data.held), data.held);
   }
-  if (in_bursts + held_in_bursts > 0) {
-    data.outliers += in_bursts + held_in_bursts;
-    data.warnings.push_back(written("%lld readings in bursts of large errors are left out",
-                                    static_cast<long long>(in_bursts + held_in_bursts)));
+  if (const long long all = in_bursts + held_in_bursts; all > 0) {
+    data.outliers += all;
+    data.warnings.push_back(written("%lld readings in bursts of large errors are left out", all));
   }
   return changed;
 }

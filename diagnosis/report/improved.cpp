@@ -34,7 +34,7 @@ bool has_sigma(const FittedParameter& p) {
 }
 
 std::string value_text(const FittedParameter& p) {
-  const std::string value = array_text(p.value, "%.9g");
+  std::string value = array_text(p.value, "%.9g");
   if (!has_sigma(p)) return value;
   return "{ value = " + value + ", sigma = " + array_text(p.sigma, "%.3g") + " }";
 }

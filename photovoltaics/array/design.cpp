@@ -48,7 +48,7 @@ Diode read_diode(const Settings& array, const std::string& name, Diode::Kind usu
   diode.drop_V = numbers.number_or("drop_V", drop_V, Range::not_negative());
   diode.saturation_A = numbers.number_or("saturation_A", diode.saturation_A, Range::positive());
   diode.ideality = numbers.number_or("ideality", diode.ideality, Range::positive());
-  diode.series_ohm = numbers.number_or("series_ohm", diode.series_ohm, Range::not_negative());
+  diode.series_ohm = numbers.number_or("series_ohm", diode.series_ohm, series_ohm_range);
   return diode;
 }
 
@@ -148,7 +148,7 @@ CellModel replaced(CellModel model, const Settings& s, bool area_is_stated) {
   p.ideality_1 = s.number_or("ideality_1", p.ideality_1, Range::positive());
   p.saturation_2_A = s.number_or("saturation_2_A", p.saturation_2_A, Range::not_negative());
   p.ideality_2 = s.number_or("ideality_2", p.ideality_2, Range::positive());
-  p.series_ohm = s.number_or("series_ohm", p.series_ohm, Range::not_negative());
+  p.series_ohm = s.number_or("series_ohm", p.series_ohm, series_ohm_range);
   p.shunt_ohm = s.number_or("shunt_ohm", p.shunt_ohm, Range::positive());
   p.breakdown_fraction = s.number_or("breakdown_fraction", p.breakdown_fraction, {0.0, 7.0});
   p.breakdown_V = s.number_or("breakdown_V", p.breakdown_V, {-1e308, 0.0, false, true});

@@ -12,6 +12,10 @@
 
 namespace photorque {
 
+// Of one cell or diode: far beyond what any current gets through, and so near that power keeps its
+// digits.
+inline constexpr Range series_ohm_range{0.0, 1e6, false, false};
+
 // A cell that is not like the others.
 struct CellOverride {
   int index = 0;

@@ -17,7 +17,7 @@ std::vector<Key> diode_keys(double drop_V) {
                          "of an ideal diode, which as a bypass has one > 0"),
           Key::number_or("saturation_A", usual.saturation_A, Range::positive(), "of a junction"),
           Key::number_or("ideality", usual.ideality, Range::positive(), "of a junction"),
-          Key::number_or("series_ohm", usual.series_ohm, Range::not_negative(), "of a junction")};
+          Key::number_or("series_ohm", usual.series_ohm, series_ohm_range, "of a junction")};
 }
 
 Key diode_key(const std::string& name, size_t usual, const std::string& what) {
@@ -36,7 +36,7 @@ std::vector<Key> cell_keys(const char* usual) {
           replaced("saturation_2_A", Range::not_negative(), "I₂"),
           replaced("ideality_1", Range::positive(), "n₁"),
           replaced("ideality_2", Range::positive(), "n₂"),
-          replaced("series_ohm", Range::not_negative(), "R_s"),
+          replaced("series_ohm", series_ohm_range, "R_s"),
           replaced("shunt_ohm", Range::positive(), "R_sh"),
           replaced("breakdown_fraction", {0.0, 7.0}, "a; 0: no breakdown"),
           replaced("breakdown_V", {-1e308, 0.0, false, true}, "V_br"),

@@ -172,6 +172,7 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
   }
   file.table = unfold(stored, range.symmetry, lines.where());
   require_light(file, lines.where());
+  note_gaps(file);
   return file;
 }
 

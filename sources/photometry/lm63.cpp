@@ -201,6 +201,7 @@ PhotometricFile read_ies(const std::string& bytes, const std::string& name) {
     file.table = sideways_table(pole, stored, angles_at);
   }
   require_light(file, stream.where());
+  note_gaps(file);
   return file;
 }
 

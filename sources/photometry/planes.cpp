@@ -151,6 +151,28 @@ void require_opening(const Opening& opening, const InputLocation& where) {
   }
 }
 
+void note_gaps(PhotometricFile& file) {
+  const std::vector<double>& at_rad = file.table.azimuth_rad;
+  if (file.table.pole != Pole::beam || at_rad.size() < 3) return;
+  std::vector<double> gaps_rad;
+  for (size_t j = 0; j < at_rad.size(); ++j) {
+    const double next = j + 1 < at_rad.size() ? at_rad[j + 1] : at_rad.front() + 2.0 * pi;
+    gaps_rad.push_back(next - at_rad[j]);
+  }
+  std::vector<double> sorted = gaps_rad;
+  std::ranges::sort(sorted);
+  constexpr double usual_gaps = 2.5, wide_rad = 0.25 * pi;
+  const double usual_rad = sorted[(sorted.size() - 1) / 2];
+  for (size_t j = 0; j < at_rad.size(); ++j) {
+    if (gaps_rad[j] < wide_rad + 1e-9 || gaps_rad[j] < usual_gaps * usual_rad) continue;
+    std::ostringstream line;
+    line << "no plane between " << at_rad[j] / degree_rad << " and "
+         << (at_rad[j] + gaps_rad[j]) / degree_rad
+         << " degrees: intensities there lie on straight lines between these two";
+    file.notices.push_back(line.str());
+  }
+}
+
 void require_light(PhotometricFile& file, const InputLocation& where) {
   size_t negative = 0;
   double least = 0.0, largest = 0.0;

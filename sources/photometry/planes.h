@@ -48,6 +48,10 @@ void require_ascending(const std::vector<double>& angles_deg, const std::string&
 // Throws InputError for an opening larger than largest_extent_m.
 void require_opening(const Opening& opening, const InputLocation& where);
 
+// A notice where planes stand far apart round the beam, which in between are joined by straight
+// lines: more than an eighth of a turn, and far more than elsewhere.
+void note_gaps(PhotometricFile& file);
+
 // Negative intensities, the noise of goniometers, become zero with a notice. Throws InputError when
 // nothing shines, or nothing that can be computed with.
 void require_light(PhotometricFile& file, const InputLocation& where);

@@ -276,6 +276,7 @@ PhotometricFile read_tm33(const std::string& bytes, const std::string& name) {
     file.table = sideways_table(pole, stored, where);
   }
   require_light(file, where);
+  note_gaps(file);
   return file;
 }
 

@@ -53,6 +53,18 @@ TEST(LightRecordings, SweepsAndRunsByTheirHeaders) {
   EXPECT_EQ(run.rejected.at("unreadable attitude"), 1);
 }
 
+// One reading written fifty times is one reading: its noise is not that of a mean of fifty.
+TEST(LightRecordings, CopiesOfARowAreLeftOut) {
+  std::string rows = "u_m,v_m,irradiance_W_m2\n0.01,0.02,300\n0.01,0.02,301\n";
+  for (int i = 0; i < 50; ++i) rows += "0.02,0.02,310.5\n";
+  const auto scan = read_light_recording(light_file("copies.csv", rows), {});
+  EXPECT_EQ(scan.irradiance_W_m2, (std::vector<double>{300.0, 301.0, 310.5}));
+  EXPECT_EQ(scan.rejected.at("repeated row"), 49);
+  const auto sweeps = read_light_recording(
+      light_file("copied_sweep.csv", "sweep,voltage_V,current_A\n0,1,0.2\n1,1,0.2\n1,1,0.2\n"), {});
+  EXPECT_EQ(sweeps.rows(), 2u);
+}
+
 // Currents read to a hundredth where the lamps are darkest: the light of a steady stretch is that
 // of their mean, 0.7 A and 0.07 A but for ± 1 mA in turn.
 TEST(LightRecordings, NoiseOfTheLampsCurrentIsNoneOfTheirLight) {

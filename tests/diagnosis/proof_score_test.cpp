@@ -5,7 +5,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <numbers>
+
+#include "tools/scoring/replay.h"
 
 namespace photorque {
 namespace {
@@ -149,6 +152,32 @@ TEST_F(ProofScore, ANameThatContradictsItsOwnPredictionIsCounted) {
   EXPECT_EQ(row_of(scores, "without a stated prediction").fraction.hits, 1);
 }
 
+// Of three answers that leave 1.0, 1.2 and 3.0 times what the oracle does, the last expected it.
+TEST_F(ProofScore, AnswersThatExpectMuchAreToldApart) {
+  std::vector<CaseScore> scores(3);
+  const double held[] = {1.0, 1.2, 3.0}, expected[] = {1.01, 1.02, 2.5};
+  for (size_t i = 0; i < 3; ++i) {
+    scores[i].answered = true;
+    scores[i].verdict = "missing_physics";
+    scores[i].oracle_chi2 = 1.0;
+    scores[i].holdout_chi2 = held[i];
+    scores[i].expected_chi2 = expected[i];
+  }
+  EXPECT_EQ(row_of(scores, "within 10 %").fraction.hits, 1);
+  EXPECT_EQ(row_of(scores, "within 10 %").fraction.of, 3);
+  EXPECT_EQ(row_of(scores, "the same, of those").fraction.hits, 1);
+  EXPECT_EQ(row_of(scores, "the same, of those").fraction.of, 2);
+}
+
+TEST_F(ProofScore, TheNoiseOfAReplayIsTheOneThatWasFound) {
+  const auto diagnosis = nlohmann::json::parse(R"({"instruments": [
+      {"channel": "attitude_y_arcsec", "what": "noise_level", "value": 67.0},
+      {"channel": "attitude_z_arcsec", "what": "correlation_time", "value": 3.0},
+      {"channel": "gyro_x_rad_s", "what": "noise_level", "value": 2e-4}]})");
+  const std::array<double, 3> used = found_noise_arcsec(diagnosis, {37.0, 37.0, 12.0});
+  EXPECT_EQ(used, (std::array<double, 3>{37.0, 67.0, 12.0}));
+}
+
 TEST_F(ProofScore, AnImprovedExperimentHasToFlyAsStated) {
   const std::string truth = R"({"verdict": "consistent", "accept": [[]], "effects": []})";
   const auto flight = [&](const std::string& runs) {
@@ -161,6 +190,19 @@ TEST_F(ProofScore, AnImprovedExperimentHasToFlyAsStated) {
       flight(R"({"processor_s": 3.0, "exit_status": 0, "replay_status": 0, "replay_chi2": 1.2})")));
   EXPECT_FALSE(replays_as_stated(
       flight(R"({"processor_s": 3.0, "exit_status": 0, "replay_status": 0, "replay_chi2": 4.0})")));
+  // Where the attitudes' own misfit is stated, that is what they have to repeat.
+  const std::string misfits = R"("channels": [{"name": "gyro_x_rad_s", "chi2_of_median": 9.0},
+      {"name": "attitude_x_arcsec", "chi2_of_median": 2.0},
+      {"name": "attitude_y_arcsec", "chi2_of_median": 4.0}])";
+  const auto replayed = [&](double chi2) {
+    std::ofstream(folder_ / "diagnosis" / "runs.json")
+        << R"({"exit_status": 0, "replay_status": 0, "replay_chi2": )" << chi2 << "}";
+    return replays_as_stated(scored(truth, R"({"verdict": "consistent", "confidence": 0.9,
+        "effects": [], "fit": {"chi2_per_sample_after": 1.1, )" +
+                                               misfits + "}}"));
+  };
+  EXPECT_TRUE(replayed(4.1));  // 0.2 + 1.33 · 3 = 4.19
+  EXPECT_FALSE(replayed(4.3));
   const CaseScore failed = flight(R"({"processor_s": 61.0, "exit_status": 3, "replay_status": 2})");
   EXPECT_FALSE(replays_as_stated(failed));
   EXPECT_EQ(row_of({failed}, "exits other than 0").fraction.hits, 1);

@@ -104,6 +104,30 @@ TEST(IesFile, TakesNumbersInAnyLayoutAndOlderHeaders) {
   EXPECT_EQ(cr.table.intensity, file.table.intensity);
 }
 
+// Planes to 190 degrees and none beyond: nothing in the file says what the other half does.
+TEST(IesFile, PlanesThatAreMissingAreTold) {
+  const auto make = [](int last_deg, int skip_deg) {
+    std::string horizontal, rows;
+    int count = 0;
+    for (int c = 0; c <= last_deg; c += 10) {
+      if (c == skip_deg) continue;
+      horizontal += std::to_string(c) + " ";
+      rows += "100 50 0\n";
+      ++count;
+    }
+    return read_ies(with(with(small_ies, "2 3 1 1 2", "2 3 " + std::to_string(count) + " 1 2"),
+                         "0 45 90\n0\n100 50 0\n", "0 45 90\n" + horizontal + "\n" + rows),
+                    "lamp.ies");
+  };
+  EXPECT_TRUE(make(350, -1).notices.empty());
+  EXPECT_TRUE(make(350, 120).notices.empty());  // one of 36
+  EXPECT_TRUE(make(180, -1).notices.empty());   // two halves alike
+  const PhotometricFile half = make(190, -1);
+  ASSERT_EQ(half.notices.size(), 1u);
+  EXPECT_NE(half.notices[0].find("no plane between 190 and 360 degrees"), std::string::npos)
+      << half.notices[0];
+}
+
 // A factor that the edition of 2019 replaced by a kind of test.
 TEST(IesFile, SecondFactorCountsBefore2019Only) {
   const std::string half = with(small_ies, "\n1 1 10", "\n0.5 0.5 10");

@@ -194,21 +194,6 @@ RecordedCase recorded_case(const fs::path& case_folder) {
   return made;
 }
 
-// The noise that the diagnosis found and used where it is not as stated.
-std::array<double, 3> found_noise_arcsec(const fs::path& diagnosis_file,
-                                         std::array<double, 3> stated) {
-  const auto diagnosis = nlohmann::json::parse(read_file(diagnosis_file));
-  const std::array<std::string, 3> names = {"attitude_x_arcsec", "attitude_y_arcsec",
-                                            "attitude_z_arcsec"};
-  for (const auto& finding : diagnosis.value("instruments", nlohmann::json::array())) {
-    if (finding.value("what", "") != "noise_level") continue;
-    const auto name = std::ranges::find(names, finding.value("channel", ""));
-    if (name == names.end() || !finding["value"].is_number()) continue;
-    stated[static_cast<size_t>(name - names.begin())] = finding["value"];
-  }
-  return stated;
-}
-
 // Propagates the answer and compares with the recording; what a user would do first.
 nlohmann::json replayed(const fs::path& blind, const RecordedCase& made,
                         const ProveSettings& settings) {
@@ -226,7 +211,8 @@ nlohmann::json replayed(const fs::path& blind, const RecordedCase& made,
   replay["replay_status"] = result.status;
   if (result.status == 0) {
     const std::array<double, 3> noise_arcsec =
-        found_noise_arcsec(blind / "diagnosis" / "diagnosis.json", made.camera_noise_arcsec);
+        found_noise_arcsec(nlohmann::json::parse(read_file(blind / "diagnosis" / "diagnosis.json")),
+                           made.camera_noise_arcsec);
     replay["replay_chi2"] =
         replayed_chi2(blind / "run1.csv.gz", blind / "replay" / "recording.csv", noise_arcsec);
   } else {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "attitude/injection/vectors.h"
@@ -49,6 +51,18 @@ Quaternion at(const Attitudes& replay, double time_s) {
 }
 
 }  // namespace
+
+std::array<double, 3> found_noise_arcsec(const nlohmann::json& diagnosis,
+                                         std::array<double, 3> stated) {
+  const std::array<std::string, 3> names = {"attitude_x_arcsec", "attitude_y_arcsec",
+                                            "attitude_z_arcsec"};
+  for (const auto& finding : diagnosis.value("instruments", nlohmann::json::array())) {
+    if (finding.value("what", "") != "noise_level" || !finding.at("value").is_number()) continue;
+    const auto name = std::ranges::find(names, finding.value("channel", ""));
+    if (name != names.end()) stated[static_cast<size_t>(name - names.begin())] = finding["value"];
+  }
+  return stated;
+}
 
 double replayed_chi2(const std::filesystem::path& recorded, const std::filesystem::path& propagated,
                      const std::array<double, 3>& noise_arcsec) {

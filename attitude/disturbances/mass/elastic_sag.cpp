@@ -53,7 +53,7 @@ Mat3 read_compliance_s2(const Settings& settings, double platform_mass_kg) {
                             static_cast<int>(s.integer("count", 1, 1000))},
         platform_mass_kg);
   }
-  const Mat3 compliance_s2 = settings.matrix3(compliance.name);
+  Mat3 compliance_s2 = settings.matrix3(compliance.name);
   if ((compliance_s2 - compliance_s2.transpose()).norm() > 1e-9 * compliance_s2.norm()) {
     throw settings.error(compliance.name, "a matrix that is not symmetric", "a symmetric matrix");
   }

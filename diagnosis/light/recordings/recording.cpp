@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
+#include <unordered_set>
 
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/numerics/random.h"
 #include "core/numerics/steady_stretches.h"
 #include "core/settings/settings.h"
 #include "core/text/lines.h"
@@ -139,6 +142,7 @@ class RowReader {
 
   std::string add(const std::vector<std::string_view>& cells) {
     cells_ = &cells;
+    if (into_.kind != LightRecording::Kind::run && !is_new()) return "repeated row";
     const auto attitude = attitude_of_row();
     if (!attitude) return "unreadable attitude";
     const double temperature_K =
@@ -180,6 +184,15 @@ class RowReader {
   }
 
  private:
+  // Of readings that have noise, a second with all digits of the first is a copy of it.
+  bool is_new() {
+    uint64_t hash = 0;
+    for (const std::string_view cell : *cells_) {
+      hash = hash_words(hash, std::hash<std::string_view>()(cell), 0, 0);
+    }
+    return seen_.insert(hash).second;
+  }
+
   double value(const std::optional<LightColumn>& column) const {
     if (!column || column->place >= cells_->size()) return absent;
     const auto number = number_in((*cells_)[column->place]);
@@ -204,6 +217,7 @@ class RowReader {
   const UsualCircumstances& usual_;
   LightRecording& into_;
   const std::vector<std::string_view>* cells_ = nullptr;
+  std::unordered_set<uint64_t> seen_;
 };
 
 // Steady stretches of the lamps' current by their means: its noise is none of the light's.

@@ -1,0 +1,71 @@
+// What a fit expects to leave of runs that it never saw, against draws of straight lines.
+#include "inference/estimator/predictive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/inference/linear_bench.h"
+
+namespace photorque::inference {
+namespace {
+
+// y = slope · t, t from `from` in steps of 1; each run begins with an offset of its own.
+LinearRun line(std::mt19937_64& random, double from, Eigen::Index rows, double slope) {
+  std::normal_distribution<double> normal;
+  LinearRun run{Eigen::MatrixXd::Ones(rows, 2), Eigen::VectorXd(rows)};
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    run.design(i, 1) = from + static_cast<double>(i);
+    run.data[i] = slope * run.design(i, 1) + 3.0 + normal(random);
+  }
+  return run;
+}
+
+Fit fitted(const std::vector<LinearRun>& runs) {
+  Parameters parameters;
+  parameters.of_run.assign(runs.size(), {{"offset", "", 0.0}});
+  parameters.shared = {{"slope", "", 0.0}};
+  return fit(linear_model(parameters, runs), Eigen::VectorXd::Zero(parameters.size()),
+             Options::to_rounding());
+}
+
+// The least χ² of a held-out run by its offset alone, the slope as it was fitted.
+double chi2_of_held(const LinearRun& held, double slope) {
+  const Eigen::VectorXd left = held.data - slope * held.design.col(1);
+  return (left.array() - left.mean()).square().sum();
+}
+
+// Ten readings fitted, thirty held out: Σ (t − t̄)² = n (n² − 1)/12, so that the slope's error of
+// 1/√82.5 leaves 2247.5/82.5 of χ² beside the noise.
+TEST(Expected, IsWhatLinesLeaveOnAverage) {
+  constexpr int draws = 4000;
+  constexpr double held_rows = 30.0;
+  const double carried = (30.0 * 899.0 / 12.0) / (10.0 * 99.0 / 12.0) / held_rows;
+  std::mt19937_64 random(5);
+  double sum = 0.0, squares = 0.0;
+  for (int draw = 0; draw < draws; ++draw) {
+    const std::vector<LinearRun> both = {line(random, 0.0, 10, 0.7), line(random, 50.0, 30, 0.7)};
+    const Fit train = fitted({both[0]}), joint = fitted(both);
+    ASSERT_NEAR(expected_chi2_per_sample(train, joint), 1.0 + carried, 1e-9);
+    const double left = chi2_of_held(both[1], train.at[1]) / held_rows;
+    sum += left;
+    squares += left * left;
+  }
+  const double mean = sum / draws;
+  const double error = std::sqrt((squares / draws - mean * mean) / draws);
+  // The run's own offset takes one degree of freedom.
+  EXPECT_NEAR(mean, 1.0 + carried - 1.0 / held_rows, 4.0 * error);
+  EXPECT_GT(carried, 20.0 * error);  // it would be missed
+}
+
+TEST(Expected, IsUnknownWhereTheFitsDoNotShareTheirParameters) {
+  std::mt19937_64 random(6);
+  const std::vector<LinearRun> runs = {line(random, 0.0, 10, 0.7)};
+  Fit other = fitted(runs);
+  other.hessian = ArrowMatrix(1, 1, 2);
+  EXPECT_TRUE(std::isnan(expected_chi2_per_sample(fitted(runs), other)));
+}
+
+}  // namespace
+}  // namespace photorque::inference
