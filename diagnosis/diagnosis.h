@@ -38,6 +38,9 @@ struct FoundEffect {
   std::vector<FittedParameter> parameters;
   std::vector<std::string> indistinguishable_from;  // kinds that explain these data as well
   std::string explanation;                          // one sentence of physics
+  // Where numbers are known together and none of them by itself: "compliance_s2: x − 0.99 z =
+  // (4.4 ± 0.1)×10⁻¹⁰".
+  std::vector<std::string> known_together = {};
   // What is no number: the node of a wall, the axes of a box.
   std::vector<std::pair<std::string, std::string>> texts = {};
   // Under which table an experiment has it; empty: Diagnosis::effect_table.

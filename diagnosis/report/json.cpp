@@ -74,7 +74,8 @@ Json effect_json(const FoundEffect& effect) {
           {"probability", number(effect.probability)},
           {"parameters", parameters},
           {"indistinguishable_from", effect.indistinguishable_from},
-          {"explanation", effect.explanation}};
+          {"explanation", effect.explanation},
+          {"known_together", effect.known_together}};
 }
 
 Json domain_json(const DomainAnswer& answer) {

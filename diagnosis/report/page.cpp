@@ -116,6 +116,9 @@ std::string effect_card(const FoundEffect& effect) {
                                    percent(effect.probability) + "</small>");
   card += tag("p", xml_text(effect.explanation));
   card += parameter_table(effect.parameters, "From no effect");
+  for (const std::string& text : effect.known_together) {
+    card += tag("p", "<b>Known together, none by itself:</b> " + xml_text(text));
+  }
   if (!effect.indistinguishable_from.empty()) {
     card += tag("p",
                 "<b>These recordings cannot tell it from:</b> " +

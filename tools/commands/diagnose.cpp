@@ -25,6 +25,9 @@ void print_diagnosis(const Console& console, const Diagnosis& d) {
       }
       console.line(text);
     }
+    for (const std::string& text : effect.known_together) {
+      console.line("    known together, none by itself: " + text);
+    }
     for (const auto& [key, words] : effect.texts) console.line("    " + key + " = " + words);
     for (const std::string& rival : effect.indistinguishable_from) {
       console.line("    these data do not tell it from " + rival);

@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include "diagnosis/attitude/findings/known_together.h"
+
 namespace photorque {
 namespace {
 
@@ -129,6 +131,41 @@ void keep_within_bounds(const Candidate& c, std::vector<FittedParameter>& fitted
   }
 }
 
+// Of every key with three free numbers that are no direction.
+std::vector<std::string> combinations(const Trial& t, size_t disturbance) {
+  const auto& parameters = t.fit.best.model.disturbances[disturbance].parameters;
+  std::map<std::string, std::vector<std::pair<Eigen::Index, double>>> of_key;
+  Eigen::Index shared = 0;
+  for (const Free& f : t.fit.best.free) {
+    if (f.per_run) continue;
+    if (f.disturbance == disturbance) {
+      const Parameter& p = parameters[static_cast<size_t>(f.parameter)];
+      of_key[p.key].emplace_back(shared, p.value);
+    }
+    ++shared;
+  }
+  std::vector<std::string> texts;
+  if (of_key.empty()) return texts;
+  const Eigen::MatrixXd covariance = t.fit.shared_posterior();
+  for (const auto& [key, numbers] : of_key) {
+    if (numbers.size() != 3 || key == "axis") continue;
+    const double per_SI = 1.0 / unit_of_key(key).to_SI;
+    Vec3 value;
+    Mat3 of_three;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      value[i] = numbers[static_cast<size_t>(i)].second * per_SI;
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        of_three(i, j) = covariance(numbers[static_cast<size_t>(i)].first,
+                                    numbers[static_cast<size_t>(j)].first) *
+                         per_SI * per_SI;
+      }
+    }
+    const std::string text = known_together(value, of_three);
+    if (!text.empty()) texts.push_back(key + ": " + text);
+  }
+  return texts;
+}
+
 // How the states of a disturbance begin in the first run.
 std::vector<FittedParameter> begins(const Trial& t, size_t disturbance) {
   const std::vector<Disturbance>& all = t.fit.best.model.disturbances;
@@ -158,6 +195,7 @@ std::vector<FoundEffect> found_effects(const inference::Decision& decision,
     effect.explanation = c.effect.explanation;
     effect.parameters = fitted_parameters(chosen, chosen.disturbances[i]);
     keep_within_bounds(c, effect.parameters);
+    effect.known_together = combinations(chosen, chosen.disturbances[i]);
     effect.begins = begins(chosen, chosen.disturbances[i]);
     for (const EffectKey& key : c.effect.keys) {
       if (key.is_fixed) effect.parameters.insert(effect.parameters.begin(), {key.key, key.start});

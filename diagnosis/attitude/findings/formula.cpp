@@ -16,7 +16,8 @@ std::string fixed_digits(double value, int decimals) {
   return text;
 }
 
-// "(4.41 ± 0.02)×10⁻⁶", the value to the two digits that the error has.
+}  // namespace
+
 std::string with_error(double value, double sigma) {
   if (!(sigma > 0.0) || !std::isfinite(sigma)) return readable_number(value, 4);
   const auto magnitude = [](double x) { return static_cast<int>(std::floor(std::log10(x))); };
@@ -28,6 +29,8 @@ std::string with_error(double value, double sigma) {
       fixed_digits(value / unit, decimals) + " ± " + fixed_digits(sigma / unit, decimals);
   return "(" + pair + ")" + (plain ? "" : "×" + power_of_ten(exponent));
 }
+
+namespace {
 
 // Of a parameter by its place in the law.
 class Numbers {

@@ -10,6 +10,10 @@
 
 namespace photorque {
 
+// "(4.41 ± 0.02)×10⁻⁶", the value to the two digits that the error has; without an error that is
+// above 0 and finite, the value alone.
+std::string with_error(double value, double sigma);
+
 struct EmpiricalFormula {
   std::string text;  // with its constants and one standard error of each; empty: none is short
   std::string looks_like;  // physics that commonly looks like this, without a claim
