@@ -94,7 +94,11 @@ void say_how_well(const Fit& before, const Trial& chosen, const RecordedData& da
   d.chi2_per_sample_before = before.chi2_per_sample();
   d.chi2_per_sample_after = after.chi2_per_sample();
   d.samples = before.samples;
-  d.channels_after = misfits(residuals_of(after, data.train));
+  try {
+    d.channels_after = misfits(residuals_of(after, data.train));
+  } catch (const NumericalError&) {
+    // What cannot be propagated along these recordings has no residuals to show.
+  }
   const Fit held_before = propagate_model(before, data.held, limits),
             held_after = propagate_model(after, data.held, limits);
   d.holdout = compare_holdout(held_before, held_after, data.held);
