@@ -350,7 +350,7 @@ std::optional<AngleConvention> convention_of_angles(const Recording& recording,
     }
     return pairs_of(observe(read, name, platform, std::numeric_limits<size_t>::max()));
   };
-  const AngleConvention usual{std::string(angle_sequences[0])};
+  AngleConvention usual{std::string(angle_sequences[0])};
   const std::vector<Pair> as_usual = pairs_as(usual.sequence, 1.0);
   constexpr size_t fewest = 20;
   if (as_usual.size() < fewest) return usual;

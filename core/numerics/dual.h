@@ -130,6 +130,7 @@ DualLanes from_values(const DualLanes& x, const Function& f) {
 inline const Lanes& values(const Lanes& x) {
   return x;
 }
+const Lanes& values(const Lanes&& x) = delete;
 inline const Lanes& values(const DualLanes& x) {
   return x.value;
 }

@@ -165,7 +165,7 @@ std::string axis_of(const std::vector<std::string>& words) {
     if (is_one_of(word, {"x", "y", "z"})) return word;
   }
   for (const std::string& word : words) {
-    const std::string last = word.substr(word.size() - 1);
+    std::string last = word.substr(word.size() - 1);
     if (is_one_of(last, {"x", "y", "z"}) &&
         begins(word, {"w", "gyr", "omega", "acc", "mag", "rate"})) {
       return last;

@@ -205,7 +205,7 @@ std::vector<ModulePoint> module_curve(const ModuleWiring& wiring, const ModuleCe
                                       const std::vector<double>& voltage_V) {
   const Module module(wiring, cell, state);
   if (voltage_V.empty()) return {};
-  const auto [low_V, high_V] = std::ranges::minmax(voltage_V);
+  const double low_V = std::ranges::min(voltage_V), high_V = std::ranges::max(voltage_V);
   const double span_V = std::max(high_V - low_V, 1e-3);
   struct Place {
     double current_A;

@@ -261,9 +261,11 @@ Map reduced(const Map& map, int factor) {
   std::vector<double> sum(size, 0.0), count(size, 0.0);
   for (int y = 0; y < map.height; ++y) {
     for (int x = 0; x < map.width; ++x) {
-      const double value = map.value[static_cast<size_t>(y * map.width + x)];
+      const double value = map.value[static_cast<size_t>(y) * static_cast<size_t>(map.width) +
+                                     static_cast<size_t>(x)];
       if (!std::isfinite(value)) continue;
-      const auto block = static_cast<size_t>(y / factor * small.width + x / factor);
+      const auto block = static_cast<size_t>(y / factor) * static_cast<size_t>(small.width) +
+                         static_cast<size_t>(x / factor);
       sum[block] += value;
       count[block] += 1.0;
     }

@@ -30,7 +30,7 @@ class ImageFile {
   void next_page(const OIIO::ImageSpec& spec) {
     check(output_->open(temporary_, spec, OIIO::ImageOutput::AppendSubimage));
   }
-  void write(OIIO::TypeDesc type, const void* samples) {
+  void write(const OIIO::TypeDesc& type, const void* samples) {
     check(output_->write_image(type, samples));
   }
   void close() { check(output_->close()); }
@@ -49,7 +49,7 @@ class ImageFile {
 };
 
 OIIO::ImageSpec spec_of(int width, int height, const std::vector<std::string>& channels,
-                        OIIO::TypeDesc type, const ImageMetadata& metadata) {
+                        const OIIO::TypeDesc& type, const ImageMetadata& metadata) {
   OIIO::ImageSpec spec(width, height, static_cast<int>(channels.size()), type);
   spec.channelnames = channels;
   spec.attribute("compression", "zip");

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<WriterKind> kinds_named(const std::vector<std::string>& formats) {
-  const std::vector<WriterKind> all = all_writer_kinds();
+  std::vector<WriterKind> all = all_writer_kinds();
   if (formats.empty()) return all;
   std::vector<WriterKind> chosen;
   for (const std::string& format : formats) {

@@ -208,7 +208,7 @@ std::vector<CellOverride> read_overrides(const Settings& array, const ArrayDesig
         own_area ? stated_for(s.number("reference_area_m2", Range::positive()), design.cell)
                  : design.cell;
     one.model = replaced(others, s, own_area || area_of_others);
-    overrides.push_back(std::move(one));
+    overrides.push_back(one);
   }
   std::ranges::sort(overrides, {}, &CellOverride::index);
   return overrides;

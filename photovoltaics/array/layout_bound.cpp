@@ -51,7 +51,8 @@ PieceShape pieces_of(const ArrayWiring& shape) {
   double drop_V = std::numeric_limits<double>::infinity();
   for (const auto& string : shape.strings) {
     for (const auto& substring : string.substrings) {
-      const auto count = static_cast<double>(substring.rows.size() / piece.size);
+      const size_t whole = substring.rows.size() / piece.size;
+      const auto count = static_cast<double>(whole);
       if (substring.bypass.kind == Diode::Kind::clamp) {
         drop_V = std::min(drop_V, substring.bypass.drop_V / count);
       } else if (substring.bypass.kind == Diode::Kind::junction) {
@@ -90,8 +91,8 @@ std::vector<ArrayCurve> brightest_in_series(const ArrayWiring& shape, const Cell
     if (i % piece.size == 0) pieces.push_back({{}, piece.bypass});
     pieces.back().rows.push_back({order[i]});
     if ((i + 1) % length != 0) continue;
-    wiring.strings[0].blocking =
-        times(shape.strings[0].blocking, static_cast<double>((i + 1) / length));
+    const size_t strings = (i + 1) / length;
+    wiring.strings[0].blocking = times(shape.strings[0].blocking, static_cast<double>(strings));
     curves.emplace_back(wiring, tables, light_A);
   }
   return curves;
@@ -152,7 +153,8 @@ double sorted_bound_W(const ArrayWiring& shape, const CellTables& tables,
   const PieceShape piece = pieces_of(shape);
   std::vector<ArrayCurve> curves = brightest_in_series(shape, tables, light_A);
   // What the drop that stands for none takes from the voltage.
-  const auto pieces = static_cast<double>(all_cells(shape).size() / piece.size);
+  const size_t count = all_cells(shape).size() / piece.size;
+  const auto pieces = static_cast<double>(count);
   const double missing_V = piece.bypass.drop_V == min_drop_V ? pieces * min_drop_V : 0.0;
   if (curves.size() == 1) {
     const ArrayPoint best = curves[0].maximum_power();

@@ -145,7 +145,8 @@ std::pair<int, int> sort_lattice(std::vector<FoundCell>& cells) {
   std::vector<FoundCell> sorted(cells.size());
   std::vector<char> taken(cells.size(), 0);
   for (size_t i = 0; i < cells.size(); ++i) {
-    const auto place = static_cast<size_t>(row[i] * columns + column[i]);
+    const auto place =
+        static_cast<size_t>(row[i]) * static_cast<size_t>(columns) + static_cast<size_t>(column[i]);
     if (taken[place] != 0) return none;
     taken[place] = 1;
     sorted[place] = cells[i];

@@ -246,7 +246,7 @@ double ArrayCurve::voltage_V(double current_A) const {
   return by_current() ? y_at(current_A) : x_at(current_A);
 }
 
-std::vector<ArrayCurve::Piece> ArrayCurve::pieces() const {
+std::vector<double> ArrayCurve::edges() const {
   std::vector<double> edges = {0.0, end_x_};
   for (const Switches& switches : switches_) {
     edges.insert(edges.end(), switches.clamp_x.begin(), switches.clamp_x.end());
@@ -254,13 +254,12 @@ std::vector<ArrayCurve::Piece> ArrayCurve::pieces() const {
   }
   std::erase_if(edges, [&](double x) { return !(x >= 0.0 && x <= end_x_); });
   std::ranges::sort(edges);
-  std::vector<Piece> pieces;
-  for (size_t i = 0; i + 1 < edges.size(); ++i) {
-    if (edges[i + 1] > edges[i]) {
-      pieces.push_back({edges[i], edges[i + 1], regimes_at(std::midpoint(edges[i], edges[i + 1]))});
-    }
-  }
-  return pieces;
+  edges.erase(std::ranges::unique(edges).begin(), edges.end());
+  return edges;
+}
+
+ArrayCurve::Piece ArrayCurve::piece(double low_x, double high_x) const {
+  return {low_x, high_x, regimes_at(std::midpoint(low_x, high_x))};
 }
 
 CellStates ArrayCurve::cells_at(double voltage_V) const {

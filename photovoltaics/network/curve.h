@@ -48,7 +48,8 @@ class ArrayCurve {
   // All local maxima of the power between short and open circuit, by rising voltage. Empty in the
   // dark. Powers are exact to 1e-12 relative.
   std::vector<ArrayPoint> maxima() const { return scan(1).maxima; }
-  // The largest of maxima(); zero in the dark.
+  // The largest of maxima(); zero in the dark. Searches only pieces that can hold it: y falls, so
+  // that between a and b the power is at most y(a) b.
   ArrayPoint maximum_power() const;
   // Points of the curve by rising voltage, both ends and all breakpoints among them, x in at least
   // `intervals` (≥ 1) steps; with all local maxima, found between them.
@@ -101,7 +102,10 @@ class ArrayCurve {
   double find_end_x() const;
   double y_at(double x) const;
   double x_at(double y) const;
-  std::vector<Piece> pieces() const;
+  // The ends of the curve and its breakpoints between them, rising; pieces lie between neighbours,
+  // and are made when they are needed: each has a word for every bypass diode.
+  std::vector<double> edges() const;
+  Piece piece(double low_x, double high_x) const;
   ArrayPoint point(double x, double y) const;
 
   CellTables tables_;  // keeps alive what the strings point to

@@ -16,15 +16,16 @@ class ArrayCurve::Search {
   Scan run() {
     if (curve_.end_x_ == 0.0) return {{ArrayPoint{}}, {}};
     Node low = curve_.make_node(), high;
-    const std::vector<Piece> pieces = curve_.pieces();
-    for (size_t k = 0; k < pieces.size(); ++k) {
-      const Piece& piece = pieces[k];
+    const std::vector<double> edges = curve_.edges();
+    Piece last;
+    for (size_t k = 0; k + 1 < edges.size(); ++k) {
+      Piece piece = curve_.piece(edges[k], edges[k + 1]);
       if (k == 0) {
         curve_.evaluate(piece.low_x, piece.regimes, low, near);
         add_point(low);
       } else {
         std::swap(low, high);
-        curve_.enter(piece, pieces[k - 1], near, low);
+        curve_.enter(piece, last, near, low);
       }
       // Every point is the start of the next one's solution.
       high = low;
@@ -32,10 +33,25 @@ class ArrayCurve::Search {
       curve_.evaluate(piece.high_x, piece.regimes, high, near);
       add_point(high);
       search(low, high, piece, 0);
+      last = std::move(piece);
     }
     std::ranges::sort(scan_.points, {}, &ArrayPoint::voltage_V);
     std::ranges::sort(scan_.maxima, {}, &ArrayPoint::voltage_V);
     return std::move(scan_);
+  }
+
+  // The largest maximum.
+  ArrayPoint run_for_largest() {
+    if (curve_.end_x_ == 0.0) return {};
+    edges_ = curve_.edges();
+    Node first = curve_.make_node();
+    curve_.evaluate(0.0, curve_.piece(edges_[0], edges_[1]).regimes, first, near);
+    search_for_largest(0, edges_.size() - 1, first);
+    ArrayPoint best;
+    for (const ArrayPoint& point : scan_.maxima) {
+      if (point.power_W() > best.power_W()) best = point;
+    }
+    return best;
   }
 
  private:
@@ -66,6 +82,35 @@ class ArrayCurve::Search {
     curve_.evaluate(std::midpoint(low.x, high.x), piece.regimes, middle, near, &low, &high);
     search(low, middle, piece, depth + 1);
     search(node(depth), high, piece, depth + 1);
+  }
+
+  // Rounding must not leave out the piece of the largest maximum itself.
+  static constexpr double enough = 1.0 - 1e-9;
+
+  // Pieces from one edge to another, `low` being solved at the first: halves that may hold more
+  // than the most power seen so far, the one that may hold more of it first.
+  void search_for_largest(size_t from, size_t to, const Node& low) {
+    most_W_ = std::max(most_W_, low.x * low.y);
+    if (to - from == 1) {
+      const Piece piece = curve_.piece(edges_[from], edges_[to]);
+      Node high = low;
+      curve_.evaluate(piece.high_x, piece.regimes, high, near);
+      search(low, high, piece, 0);
+      for (const ArrayPoint& point : scan_.maxima) most_W_ = std::max(most_W_, point.power_W());
+      return;
+    }
+    const size_t half = std::midpoint(from, to);
+    Node middle = low;
+    curve_.evaluate(edges_[half], curve_.piece(edges_[half], edges_[half + 1]).regimes, middle,
+                    near);
+    const double lower_W = low.y * edges_[half], upper_W = middle.y * edges_[to];
+    const auto search_lower = [&] {
+      if (lower_W >= enough * most_W_) search_for_largest(from, half, low);
+    };
+    most_W_ = std::max(most_W_, middle.x * middle.y);
+    if (lower_W > upper_W) search_lower();
+    if (upper_W >= enough * most_W_) search_for_largest(half, to, middle);
+    if (lower_W <= upper_W) search_lower();
   }
 
   SlopeRange range_between(const Node& low, const Node& high, const Piece& piece) const {
@@ -168,6 +213,8 @@ class ArrayCurve::Search {
   std::vector<std::unique_ptr<Node>> nodes_;  // one per depth: references stay valid
   int intervals_;
   Scan scan_;
+  std::vector<double> edges_;
+  double most_W_ = 0.0;  // at any point so far
 };
 
 ArrayCurve::Scan ArrayCurve::scan(int intervals) const {
@@ -175,11 +222,7 @@ ArrayCurve::Scan ArrayCurve::scan(int intervals) const {
 }
 
 ArrayPoint ArrayCurve::maximum_power() const {
-  ArrayPoint best;
-  for (const ArrayPoint& point : maxima()) {
-    if (point.power_W() > best.power_W()) best = point;
-  }
-  return best;
+  return Search(*this, 1).run_for_largest();
 }
 
 }  // namespace photorque

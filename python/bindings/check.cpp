@@ -54,7 +54,7 @@ void bind_check(py::module_& module) {
   module.def("check", &check_of, py::arg("experiment"),
              "Reads the experiment as every command would, and runs nothing.");
   // For the benchmark of calls.
-  py::class_<RunOptions, std::shared_ptr<RunOptions>>(module, "_Nothing");
+  const py::class_<RunOptions, std::shared_ptr<RunOptions>> options(module, "_Nothing");
   module.def("_nothing", &nothing, py::arg("experiment"), py::kw_only(), py::arg("threads") = 0,
              py::arg("seed") = py::none(), py::arg("progress") = py::none(),
              py::arg("log") = py::none());

@@ -71,8 +71,9 @@ bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin,
   });
   if (!same || std::abs(grid.area_m2[bin] - full_m2) > 1e-9 * full_m2) return false;
   const auto width = static_cast<size_t>(grid.width);
-  const double u = grid.u_low + du * static_cast<double>(bin % width);
-  const double v = grid.v_low + dv * static_cast<double>(bin / width);
+  const size_t column = bin % width, row = bin / width;
+  const double u = grid.u_low + du * static_cast<double>(column);
+  const double v = grid.v_low + dv * static_cast<double>(row);
   const Vec3 flat = u * grid.u_axis_body + v * grid.v_axis_body;
   const double ray_offset = plane.normal.dot(plane.point_m - flat) / lean;
   whole = {flat + ray_offset * grid.normal_body,

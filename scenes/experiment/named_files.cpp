@@ -1,6 +1,6 @@
 #include "scenes/experiment/named_files.h"
 
-#include <cstdio>
+#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
@@ -18,8 +18,9 @@ std::string percent_decoded(const std::string& text) {
   std::string decoded;
   for (size_t i = 0; i < text.size(); ++i) {
     unsigned byte = 0;
+    const char* two = text.data() + i + 1;
     if (text[i] == '%' && i + 2 < text.size() &&
-        std::sscanf(text.substr(i + 1, 2).c_str(), "%2x", &byte) == 1) {
+        std::from_chars(two, two + 2, byte, 16).ptr == two + 2) {
       decoded += static_cast<char>(byte);
       i += 2;
     } else {

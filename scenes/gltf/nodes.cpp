@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "scenes/gltf/instancing.h"
 
@@ -59,8 +60,9 @@ class Walk {
   Walk(const Document& document, MemoryBudget* budget) : document_(document), budget_(budget) {}
 
   std::vector<Placement> from(const std::vector<int>& roots) {
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-      waiting_.push_back({*root, 1, "", Affine::Identity()});
+    for (const int root : std::views::reverse(roots)) {
+      waiting_.push_back({root, 1, "", Affine::Identity()});
+    }
     while (!waiting_.empty()) {
       const Visit visit = std::move(waiting_.back());
       waiting_.pop_back();
@@ -85,8 +87,8 @@ class Walk {
                             "an invertible one");
     }
     budget_->charge(node.children.size(), sizeof(Visit) + path.size(), where);
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      waiting_.push_back({*child, visit.depth + 1, path, world_from_node});
+    for (const int child : std::views::reverse(node.children)) {
+      waiting_.push_back({child, visit.depth + 1, path, world_from_node});
     }
     if (node.mesh < 0) return;
     refuse_deformation(document_, visit.node);
@@ -137,8 +139,8 @@ void visit_nodes(const Document& document,
                                           const Affine& world_from_node)>& visit) {
   std::vector<Visit> waiting;
   const std::vector<int> roots = roots_of(document);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
-    waiting.push_back({*root, 1, "", Affine::Identity()});
+  for (const int root : std::views::reverse(roots)) {
+    waiting.push_back({root, 1, "", Affine::Identity()});
   }
   while (!waiting.empty()) {
     const Visit next = std::move(waiting.back());
@@ -151,8 +153,8 @@ void visit_nodes(const Document& document,
     }
     const Affine world_from_node = next.world_from_parent * parent_from_node(node);
     visit(next.node, node.name, world_from_node);
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      waiting.push_back({*child, next.depth + 1, "", world_from_node});
+    for (const int child : std::views::reverse(node.children)) {
+      waiting.push_back({child, next.depth + 1, "", world_from_node});
     }
   }
 }

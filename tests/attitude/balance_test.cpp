@@ -195,7 +195,7 @@ TEST(Balance, StandardErrorsAreTheScatterOfTheEstimates) {
   constexpr int runs = 24;
   double squares = 0.0;
   for (int i = 0; i < runs; ++i) {
-    const BalanceResult result = balance(unbalanced(true, static_cast<uint64_t>(100 + i)));
+    const BalanceResult result = balance(unbalanced(true, 100 + static_cast<uint64_t>(i)));
     for (int k = 0; k < 3; ++k) {
       const double pull = (result.offset_body_m[k] - true_offset_m[k]) / result.sigma_m[k];
       squares += pull * pull;

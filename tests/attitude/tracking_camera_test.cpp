@@ -364,7 +364,7 @@ TEST(CameraWithGeometry, MakesTheNoiseOfARecording) {
 }
 
 TEST(CameraSettings, RefuseWhatCannotBe) {
-  const auto camera = [](std::vector<std::pair<std::string, SettingsNode>> changed) {
+  const auto camera = [](const std::vector<std::pair<std::string, SettingsNode>>& changed) {
     std::vector<std::pair<std::string, SettingsNode>> entries = {
         {"markers_m", list({numbers({0, 0, 0.03}), numbers({0.1, 0, 0.03}), numbers({0, 0.1, 0.03}),
                             numbers({-0.1, 0, 0.03})})},

@@ -181,7 +181,8 @@ TEST_F(MapFiles, AMapInAPageIsAPixelForEachBin) {
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   for (size_t i = begin + mark.size(); svg[i] != '"' && svg[i] != '='; ++i) {
     bits = bits << 6 | static_cast<uint32_t>(digits.find(svg[i]));
-    if ((count += 6) < 8) continue;
+    count += 6;
+    if (count < 8) continue;
     count -= 8;
     png += static_cast<char>(bits >> count & 0xFFu);
   }

@@ -48,7 +48,8 @@ float strongest(const std::vector<float>& edges) {
 
 TEST(Shaded, ReceiversHaveTheExactColourOfTheScale) {
   const SceneView view = view_of(16, 16, 2, [](int column, int) {
-    return Sample{2.0F, 0, Eigen::Vector3f(0.6F, 0.0F, 0.8F), 0.5F, 10.0F * float(column / 2)};
+    const int receiver = column / 2;
+    return Sample{2.0F, 0, Eigen::Vector3f(0.6F, 0.0F, 0.8F), 0.5F, 10.0F * float(receiver)};
   });
   const ColourScale scale = colour_scale(0.0, 150.0, false);
   const Picture picture = shaded(view, scale);

@@ -122,6 +122,32 @@ TEST(PhotovoltaicNetwork, MaximaAreThoseOfADenseGrid) {
   EXPECT_GT(several, 20u);  // or the test says little
 }
 
+// Pieces that cannot hold the largest maximum are passed over: it is still the largest of all,
+// which scan() finds piece by piece, and no point of a dense grid exceeds it.
+TEST(PhotovoltaicNetwork, LargestMaximumOfHundredsOfPieces) {
+  for (uint64_t seed = 0; seed < 12; ++seed) {
+    for (const auto& [strings, blocking] :
+         {std::pair(1, Diode{}), std::pair(6, Diode{}), std::pair(6, reference::clamp())}) {
+      const ArrayWiring wiring =
+          regular_wiring(20, 30, options(strings, 2, reference::clamp(), blocking));
+      // Brightest towards one end, as under a beam beside the array, with drawn differences.
+      std::vector<double> suns = random_suns(400 + seed, 600);
+      for (size_t i = 0; i < suns.size(); ++i) {
+        suns[i] *= std::exp(-0.5 * static_cast<double>(seed * i) / 600.0);
+      }
+      const ArrayCurve curve = reference::curve(wiring, suns, reference::cell());
+      const ArrayCurve::Scan scan = curve.scan(500);
+      EXPECT_GT(scan.maxima.size(), 5u) << "or the test says little";
+      const double largest_W = std::ranges::max(scan.maxima, {}, &ArrayPoint::power_W).power_W();
+      const ArrayPoint found = curve.maximum_power();
+      EXPECT_NEAR(found.power_W(), largest_W, 1e-11 * largest_W) << strings << " seed " << seed;
+      for (const ArrayPoint& point : scan.points) {
+        ASSERT_LE(point.power_W(), found.power_W() * (1.0 + 1e-11)) << strings << " seed " << seed;
+      }
+    }
+  }
+}
+
 TEST(PhotovoltaicNetwork, CurrentFallsWithVoltage) {
   for (uint64_t seed = 0; seed < 5; ++seed) {
     for (const auto& [name, wiring] : small_networks()) {

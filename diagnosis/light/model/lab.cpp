@@ -271,8 +271,9 @@ void LightLab::place_cells() {
       LightCell cell;
       cell.rectangle = {1e300, -1e300, 1e300, -1e300};
       for (const BinPart& part : parts) {
-        const double u = grid.u_low + du * (part.bin % static_cast<uint32_t>(grid.width) + 0.5),
-                     v = grid.v_low + dv * (part.bin / static_cast<uint32_t>(grid.width) + 0.5);
+        const uint32_t width = static_cast<uint32_t>(grid.width), column = part.bin % width,
+                       row = part.bin / width;
+        const double u = grid.u_low + du * (column + 0.5), v = grid.v_low + dv * (row + 0.5);
         const double area = part.fraction * grid_->area_m2[part.bin];
         cell.points_body_m.push_back(point_body_m(u, v));
         cell.weights.push_back(area);

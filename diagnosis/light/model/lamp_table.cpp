@@ -69,7 +69,7 @@ std::vector<LampTable::Node> LampTable::nodes_at(double step) const {
         node[p] += inverse(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(k)) * value;
       }
     }
-    nodes[static_cast<size_t>(i + mirrored)] = node;
+    nodes[static_cast<size_t>(i) + mirrored] = node;
     // The light along the axis is even in the slope, that away from it odd.
     if (i > 0 && i <= mirrored) {
       for (Eigen::Array2d& c : node) c[1] = -c[1];

@@ -45,7 +45,7 @@ CarvingData carving_data(const LightTrial& parent, const LightCandidates& all,
                              on_body ? place : Vec3(q * place)});
       }
     }
-    for (Eigen::Index i = 0; i < residuals.size(); ++i) data.missing.push_back(-residuals[i]);
+    for (const double r : residuals) data.missing.push_back(-r);
   }
   return data;
 }
@@ -156,7 +156,10 @@ class CarvedPlane {
   struct Rectangle {
     int x0, x1, y0, y1;  // elements, both ends included
   };
-  static size_t element(const Hit& h) { return static_cast<size_t>(h.y * cells + h.x); }
+  static size_t place_of(int x, int y) {
+    return static_cast<size_t>(y) * cells + static_cast<size_t>(x);
+  }
+  static size_t element(const Hit& h) { return place_of(h.x, h.y); }
 
   // The rectangle about all that hangs together with an element; it becomes open.
   static Rectangle patch_about(size_t seed, std::vector<bool>& is_open) {
@@ -171,7 +174,7 @@ class CarvedPlane {
       const int near[4][2] = {{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}};
       for (const auto& [nx, ny] : near) {
         if (nx < 0 || ny < 0 || nx >= cells || ny >= cells) continue;
-        const auto k = static_cast<size_t>(ny * cells + nx);
+        const auto k = place_of(nx, ny);
         if (is_open[k]) continue;
         is_open[k] = true;
         edge.push_back(k);

@@ -19,7 +19,7 @@ struct WaveSums {
   double square = 0.0;
   WaveSums() {
     for (auto* sum : {&re, &im, &twice_re, &twice_im}) {
-      sum->assign(static_cast<size_t>((most_steps + 1) * along_v), 0.0);
+      sum->assign(static_cast<size_t>(most_steps + 1) * along_v, 0.0);
     }
   }
 };
@@ -36,7 +36,7 @@ void add_place(double u, double v, double change, double off, WaveSums& sums) {
   sums.square += second;
   for (int m = 0; m <= most_steps; ++m) {
     const double cos_u = std::cos(pi * step * m * u), sin_u = std::sin(pi * step * m * u);
-    const auto row = static_cast<size_t>(m * along_v);
+    const auto row = static_cast<size_t>(m) * along_v;
     for (size_t n = 0; n < along_v; ++n) {
       const double c = cos_u * cos_v[n] - sin_u * sin_v[n], s = sin_u * cos_v[n] + cos_u * sin_v[n];
       sums.re[row + n] += first * c;
@@ -76,7 +76,7 @@ std::vector<LightStart> wave_starts(const LightCandidate& wave, const std::vecto
   std::vector<Found> found;
   for (int m = 0; m <= most_steps; ++m) {
     for (int n = m == 0 ? most_steps + 1 : 0; n < along_v; ++n) {
-      const double gain = gain_of(sums, static_cast<size_t>(m * along_v + n));
+      const double gain = gain_of(sums, static_cast<size_t>(m) * along_v + static_cast<size_t>(n));
       if (gain >= limits.min_scan_gain) found.push_back({gain, step * m, step * (n - most_steps)});
     }
   }

@@ -192,7 +192,7 @@ Vec3 vector_of(const std::string& key, const py::object& given) {
   if (numbers.ndim() != 1 || numbers.shape(0) != 3) {
     throw InputError({}, "lamp." + key, std::string(py::str(given)), "three numbers");
   }
-  const Vec3 vector(numbers.at(0), numbers.at(1), numbers.at(2));
+  Vec3 vector(numbers.at(0), numbers.at(1), numbers.at(2));
   if (!vector.allFinite()) {
     throw InputError({}, "lamp." + key, std::string(py::str(given)), "three finite numbers");
   }

@@ -158,7 +158,7 @@ void LineGrid::add(uint32_t index) {
     const double hair = 1e-9 / per_m_;
     const int bottom = column(std::min(one, other) - hair);
     const int top = column(std::max(one, other) + hair);
-    for (int r = bottom; r <= top; ++r) cells_[static_cast<size_t>(c * width + r)].push_back(index);
+    for (int r = bottom; r <= top; ++r) cells_[cell(c, r)].push_back(index);
   }
 }
 
@@ -170,7 +170,7 @@ void LineGrid::over(const TriangleCorners& corners_m, std::vector<Line>& found) 
   const double hair = 1e-9 / per_m_;
   for (int c = column(box.min().x() - hair); c <= column(box.max().x() + hair); ++c) {
     for (int r = column(box.min().y() - hair); r <= column(box.max().y() + hair); ++r) {
-      for (const uint32_t index : cells_[static_cast<size_t>(c * width + r)]) {
+      for (const uint32_t index : cells_[cell(c, r)]) {
         if (seen_[index] == question_) continue;
         seen_[index] = question_;
         found.push_back(lines_[index]);

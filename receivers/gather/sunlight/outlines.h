@@ -42,6 +42,9 @@ class LineGrid {
 
  private:
   static constexpr int width = 48;
+  static size_t cell(int column, int row) {
+    return static_cast<size_t>(column) * width + static_cast<size_t>(row);
+  }
   int column(double x_m) const;
   void add(uint32_t index);
 
