@@ -1,10 +1,10 @@
 #include "scenes/experiment/named_files.h"
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
 #include "core/text/json_extent.h"
+#include "core/text/percent.h"
 
 namespace photorque {
 namespace {
@@ -12,23 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t longest_path = 4096;
-
-// "a%20b" is "a b" in a URI.
-std::string percent_decoded(const std::string& text) {
-  std::string decoded;
-  for (size_t i = 0; i < text.size(); ++i) {
-    unsigned byte = 0;
-    const char* two = text.data() + i + 1;
-    if (text[i] == '%' && i + 2 < text.size() &&
-        std::from_chars(two, two + 2, byte, 16).ptr == two + 2) {
-      decoded += static_cast<char>(byte);
-      i += 2;
-    } else {
-      decoded += text[i];
-    }
-  }
-  return decoded;
-}
 
 // All texts of a JSON document.
 void collect_texts(const nlohmann::json& node, std::vector<std::string>& texts) {
@@ -84,7 +67,7 @@ std::vector<fs::path> files_named_in(const fs::path& path, const std::string& by
   std::vector<fs::path> files;
   for (const std::string& text : texts) {
     fs::path file = named_file(path.parent_path(), text);
-    if (file.empty()) file = named_file(path.parent_path(), percent_decoded(text));
+    if (file.empty()) file = named_file(path.parent_path(), percent_decoded(text).value_or(text));
     if (!file.empty() && file != path) files.push_back(std::move(file));
   }
   return files;

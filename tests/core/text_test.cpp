@@ -10,6 +10,7 @@
 #include "core/text/json_extent.h"
 #include "core/text/lines.h"
 #include "core/text/numbers.h"
+#include "core/text/percent.h"
 
 namespace photorque {
 namespace {
@@ -130,6 +131,15 @@ TEST(Text, BracketsOfJsonAreCountedOutsideOfItsStrings) {
   EXPECT_EQ(extent_of_json("").depth, 0);
   EXPECT_EQ(extent_of_json("[][][]").depth, 1);
   EXPECT_GE(extent_of_json(R"([1, 2, {"a": 3}])").values, 4u);
+}
+
+// RFC 3986 section 2.1: a percent sign and two hexadecimal digits, of either case.
+TEST(PercentEncoding, EscapesAreTwoHexadecimalDigits) {
+  EXPECT_EQ(percent_decoded("a%20b+c%2B%c3%A4"), "a b+c+\xc3\xa4");
+  EXPECT_EQ(percent_decoded(""), "");
+  for (const char* malformed : {"%", "a%2", "%zz", "%+f", "% f", "%-1", "%0x1", "%%20"}) {
+    EXPECT_EQ(percent_decoded(malformed), std::nullopt) << malformed;
+  }
 }
 
 }  // namespace

@@ -53,8 +53,8 @@ std::function<double(double)> noise_of(unsigned seed, Distribution distribution)
   };
 }
 
-std::function<double(double)> sum_of(std::function<double(double)> a,
-                                     std::function<double(double)> b) {
+std::function<double(double)> sum_of(const std::function<double(double)>& a,
+                                     const std::function<double(double)>& b) {
   return [a, b](double t) mutable { return a(t) + b(t); };
 }
 

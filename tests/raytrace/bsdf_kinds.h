@@ -112,7 +112,8 @@ inline Vec3 send_ray(const OpticalSurface& surface, double cosine, const Draw& d
   const PowerFractions fractions = fractions_of(surface, cosine, 0);
   double at = draw.extra(1u << 30);
   for (const Component component : components) {
-    if ((at -= fractions.of(component)) >= 0) continue;
+    at -= fractions.of(component);
+    if (at >= 0) continue;
     const Vec3 out = scattered_direction(surface, component, incidence_at(cosine), draw);
     return component == Component::transmitted ? Vec3(-out) : out;
   }

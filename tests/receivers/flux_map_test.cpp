@@ -143,7 +143,8 @@ TEST(FluxMap, ManyHitsInOneBatchAllCount) {
     std::vector<HitMaker> hits;
     double expected_W = 0.0;
     for (int i = 0; i < Hits::capacity; ++i) {
-      hits.push_back(power_at((i % 32 + 0.5) / 32, (i / 32 + 0.5) / 32, i + 1.0));
+      const int column = i % 32, row = i / 32;
+      hits.push_back(power_at((column + 0.5) / 32, (row + 0.5) / 32, i + 1.0));
       hits.back().instance = i % (2 * period) < period ? 0 : 1;
       if (hits.back().instance == 0) expected_W += i + 1.0;
     }

@@ -189,7 +189,7 @@ TEST_F(ArrayCommand, LightAtASlantIsAStageOfTheLosses) {
   // diverge by a few degrees.
   EXPECT_THAT(glass.out, HasSubstr("% lost to angle of incidence"));
   const std::string lost = glass.out.substr(0, glass.out.find("% lost to angle of incidence"));
-  EXPECT_NEAR(std::stod(lost.substr(lost.rfind("W") + 1)), 5.2, 0.4);
+  EXPECT_NEAR(std::stod(lost.substr(lost.rfind('W') + 1)), 5.2, 0.4);
   EXPECT_THAT(file_text(at("out/summary.json")), HasSubstr("power_entering_cells_W"));
   const Outcome bare = run(common);
   EXPECT_EQ(bare.out.find("angle of incidence"), std::string::npos);

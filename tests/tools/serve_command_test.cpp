@@ -233,7 +233,8 @@ TEST_F(Lockstep, LinksFollowAMeasuredTrace) {
   ASSERT_EQ(outcome_.status, 0) << outcome_.err;
   const auto rows = rows_of(files("s").at("recording.csv"));
   for (size_t i = 1; i + 1 < rows.size(); ++i) {
-    EXPECT_DOUBLE_EQ(rows[i][8], 1e-6 * static_cast<double>((i - 1) / 2 * 2 + 1)) << i;
+    const size_t even = (i - 1) / 2 * 2;
+    EXPECT_DOUBLE_EQ(rows[i][8], 1e-6 * static_cast<double>(even + 1)) << i;
   }
 }
 

@@ -69,7 +69,7 @@ void add_options(CLI::App& command, const Verb& verb, CommandLine& line) {
                   "Most memory to take, in GB (default: nine tenths of what the machine has free)")
       ->check(CLI::Range(0.5, 1e6))
       ->check([](const std::string& text) {
-        return std::isfinite(std::atof(text.c_str())) ? "" : text + " is no finite number";
+        return number_in(text) ? "" : text + " is no finite number";
       });
   command.add_flag("--quiet", line.quiet, "Print nothing but errors");
   command.add_flag("--json", line.json, "Print the summary as JSON instead of text");
