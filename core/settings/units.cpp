@@ -30,6 +30,7 @@ constexpr Unit units[] = {
     {"mW_cm2", "irradiance", 10.0},
     {"W_sr", "radiant intensity", 1.0},
     {"m_s2", "acceleration", 1.0},
+    {"s2", "displacement per acceleration", 1.0},
     {"m_s", "speed", 1.0},
     {"rad_s", "angular rate", 1.0},
     {"deg_s", "angular rate", degree_rad},

@@ -24,7 +24,7 @@ std::string preamble(const std::string& title, const Provenance& provenance) {
 }
 
 std::string quoted_where_needed(const std::string& cell) {
-  const std::string clean = clean_text(cell);
+  std::string clean = clean_text(cell);
   // A leading '#' would read as a comment.
   if (clean.find_first_of(",\"") == std::string::npos && !clean.starts_with('#')) return clean;
   std::string quoted = "\"";

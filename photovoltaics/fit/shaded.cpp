@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
 
 #include "core/errors.h"
@@ -170,19 +169,23 @@ StringFit fitted_from(const VectorXd& start, const IvSweep& sweep, const SweepNo
 
 // The best from several starts with the slopes as measured, and from there with those of the fit.
 StringFit best_fit(const IvSweep& sweep, int substrings, const SweepNoise& noise) {
-  std::optional<StringFit> best;
   const VectorXd measured_S = measured_slopes_S(sweep);
+  const auto from_knee = [&](double knee) {
+    return fitted_from(first_guess(sweep, substrings, knee), sweep, noise, measured_S);
+  };
   // The open-circuit voltage over n V_t of silicon is 18 to 27.
-  for (const double knee : {20.0, 27.0, 14.0}) {
-    StringFit one = fitted_from(first_guess(sweep, substrings, knee), sweep, noise, measured_S);
-    if (!best || one.fit.chi2 < best->fit.chi2) best = std::move(one);
+  StringFit best = from_knee(20.0);
+  for (const double knee : {27.0, 14.0}) {
+    StringFit one = from_knee(knee);
+    const bool better = one.fit.chi2 < best.fit.chi2 || !std::isfinite(best.fit.chi2);
+    if (better) best = std::move(one);
   }
   constexpr int rounds = 3;
-  for (int round = 0; round < rounds && std::isfinite(best->fit.chi2); ++round) {
-    const VectorXd slopes_S = fitted_slopes_S(sweep, best->fit.at);
-    best = fitted_from(best->fit.at, sweep, noise, slopes_S);
+  for (int round = 0; round < rounds && std::isfinite(best.fit.chi2); ++round) {
+    const VectorXd slopes_S = fitted_slopes_S(sweep, best.fit.at);
+    best = fitted_from(best.fit.at, sweep, noise, slopes_S);
   }
-  return *best;
+  return best;
 }
 
 }  // namespace

@@ -10,8 +10,6 @@
 namespace photorque {
 namespace {
 
-using testing::ElementsAre;
-
 constexpr double full_A = 0.7, shift_s = 15.0;
 const Vec3 torque_lab_N_m(2.5e-5, -1.5e-5, 1e-5);
 

@@ -16,7 +16,7 @@ Mat3 half_axes_m(const Platform& platform) {
     return 0.5 * (Mat3::Identity() - 0.9 * platform.axis * platform.axis.transpose());
   }
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(platform.inertia_kg_m2);
-  const Vec3 moments = solver.eigenvalues();
+  const Vec3& moments = solver.eigenvalues();
   // Of an even ellipsoid of mass m: I1 = m (b² + c²) / 5 and so on, so a² ∝ I2 + I3 − I1.
   Vec3 lengths;
   for (int k = 0; k < 3; ++k) {

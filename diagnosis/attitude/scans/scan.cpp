@@ -39,7 +39,8 @@ void add_power(const std::vector<double>& white, const Observation& seen, Spectr
   size_t count = 0;
   for (size_t i = 0; i < white.size(); ++i) {
     if (!std::isfinite(white[i])) continue;
-    const auto bin = static_cast<size_t>((seen.time_s[i] - seen.time_s.front()) / bin_s + 0.5);
+    const double bins_since = (seen.time_s[i] - seen.time_s.front()) / bin_s;
+    const auto bin = static_cast<size_t>(std::lround(bins_since));
     binned[std::min(bin, bins - 1)] += white[i];
     ++count;
   }
