@@ -30,7 +30,8 @@ std::string model_text() {
   model.nodes.push_back({"cells", -1, {}, -1, -1, {}});
   for (int i = cell_columns * cell_rows - 1; i >= 0; --i) {
     RigidTransform place;
-    place.translation_m = Vec3(pitch_x_m * (i % cell_columns), pitch_y_m * (i / cell_columns), 0.0);
+    const int column = i % cell_columns, row = i / cell_columns;
+    place.translation_m = Vec3(pitch_x_m * column, pitch_y_m * row, 0.0);
     model.nodes.push_back({"cell" + std::to_string(i), 1, place, 0, 0, {}});
   }
   return gltf_text(model);
@@ -79,8 +80,9 @@ cells = "mesh"
   EXPECT_LT(result.power_on_cells_W.standard_error, 0.02 * result.power_on_cells_W.value);
   for (int i = 0; i < cell_columns * cell_rows; ++i) {
     const Vec2 centre = result.cell_centre_m[static_cast<size_t>(i)];
-    EXPECT_NEAR(centre.x(), pitch_x_m * (i % cell_columns) + 0.5 * cell_x_m, 1e-7);
-    EXPECT_NEAR(centre.y(), pitch_y_m * (i / cell_columns) + 0.5 * cell_y_m, 1e-7);
+    const int column = i % cell_columns, row = i / cell_columns;
+    EXPECT_NEAR(centre.x(), pitch_x_m * column + 0.5 * cell_x_m, 1e-7);
+    EXPECT_NEAR(centre.y(), pitch_y_m * row + 0.5 * cell_y_m, 1e-7);
   }
 }
 

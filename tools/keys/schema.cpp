@@ -81,7 +81,7 @@ Json several_forms(unsigned forms) {
 Json plain_schema(const Key& key, double to_SI, Definitions& definitions) {
   switch (key.type) {
     case Key::Type::number: {
-      const Json one = number_schema(key.range, to_SI);
+      Json one = number_schema(key.range, to_SI);
       if (!key.or_array) return one;
       return {{"anyOf", {one, array_of(one, key.size)}}};
     }

@@ -111,8 +111,8 @@ std::vector<double> light_on_cells(const LightWorld& world, const Quaternion& at
   const auto add_points = [&](size_t cell, const CellRule& rule,
                               std::vector<std::array<double, 2>>& points) {
     const auto columns = static_cast<size_t>(world.circuit.columns);
-    const auto row = static_cast<double>(cell / columns),
-               column = static_cast<double>(cell % columns);
+    const size_t rows_before = cell / columns, columns_before = cell % columns;
+    const auto row = static_cast<double>(rows_before), column = static_cast<double>(columns_before);
     for (const auto& at : rule) {
       points.push_back({p.u_low_m + (column + at[0]) * width, p.v_low_m + (row + at[1]) * height});
     }

@@ -76,8 +76,9 @@ Panel draw_panel(RandomDraw& draw) {
   } else {
     const int columns = 2 + draw.below(2), rows = 2 + draw.below(2);
     for (int k = 0; k < columns * rows; ++k) {
-      const double x = (k % columns - 0.5 * (columns - 1)) * 0.065 + draw.uniform(-0.01, 0.01),
-                   y = (k / columns - 0.5 * (rows - 1)) * 0.06 + draw.uniform(-0.01, 0.01);
+      const int column = k % columns, row = k / columns;
+      const double x = (column - 0.5 * (columns - 1)) * 0.065 + draw.uniform(-0.01, 0.01),
+                   y = (row - 0.5 * (rows - 1)) * 0.06 + draw.uniform(-0.01, 0.01);
       panel.at_m.push_back(
           {rounded(x, 1e-4), rounded(y, 1e-4), rounded(draw.uniform(-0.04, 0.04), 1e-4)});
     }
