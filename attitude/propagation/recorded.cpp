@@ -112,7 +112,6 @@ class RecordedRun {
     if (companion_ != nullptr) companion_->follow(propagator_);
   }
 
-  const PropagationRun& run_;
   const Companion* companion_;
   std::function<void(double)> progress_;
   Dynamics dynamics_;
@@ -132,8 +131,7 @@ class RecordedRun {
 
 RecordedRun::RecordedRun(const PropagationRun& run, const Companion* companion,
                          std::function<void(double)> progress)
-    : run_(run),
-      companion_(companion),
+    : companion_(companion),
       progress_(std::move(progress)),
       dynamics_(run.model),
       delay_s_(camera_delay_s(dynamics_, run.initial)),

@@ -121,8 +121,11 @@ LinearPicture read_picture(const std::string& bytes) {
   }
   if (const auto size = stated_size(bytes)) require_affordable(*size, bytes.size());
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  // Colour as it is stored: its library would multiply it by alpha, which glTF does not ask for.
+  OIIO::ImageSpec wanted;
+  wanted.attribute("oiio:UnassociatedAlpha", 1);
   const auto input =
-      OIIO::ImageInput::open(is_png ? "picture.png" : "picture.jpg", nullptr, &memory);
+      OIIO::ImageInput::open(is_png ? "picture.png" : "picture.jpg", &wanted, &memory);
   if (!input) {
     OIIO::geterror();  // not to be found by whoever asks next
     throw wrong;

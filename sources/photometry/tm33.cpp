@@ -17,15 +17,23 @@ namespace {
 
 constexpr const char* standard_roots = "<IESTM33-22>, <IESTM33-18> or <ATLA_S001_A>";
 
-struct XmlText {
-  const std::string& bytes;
-  const std::string& name;
+class XmlText {
+ public:
+  XmlText(const std::string& bytes, const std::string& name) : name_(name) {
+    for (size_t i = 0; i < bytes.size(); ++i) {
+      if (bytes[i] == '\n') line_ends_.push_back(static_cast<std::ptrdiff_t>(i));
+    }
+  }
 
   InputLocation at(std::ptrdiff_t offset) const {
-    const auto end = bytes.begin() + std::clamp<std::ptrdiff_t>(offset, 0, std::ssize(bytes));
-    return {name, 1 + static_cast<int>(std::count(bytes.begin(), end, '\n'))};
+    const auto before = std::ranges::lower_bound(line_ends_, offset) - line_ends_.begin();
+    return {name_, 1 + static_cast<int>(before)};
   }
   InputLocation at(const pugi::xml_node& node) const { return at(node.offset_debug()); }
+
+ private:
+  const std::string& name_;
+  std::vector<std::ptrdiff_t> line_ends_;  // rising
 };
 
 // Some makers' schemas have blanks where the standard's text was broken: "Symm _ Bi _ 0".
@@ -235,7 +243,7 @@ void read_header(const pugi::xml_node& root, PhotometricFile& file) {
 }  // namespace
 
 PhotometricFile read_tm33(const std::string& bytes, const std::string& name) {
-  const XmlText text{bytes, name};
+  const XmlText text(bytes, name);
   pugi::xml_document document;
   const pugi::xml_parse_result parsed = document.load_buffer(bytes.data(), bytes.size());
   if (!parsed) {

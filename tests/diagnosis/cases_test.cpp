@@ -32,7 +32,7 @@ Diagnosis diagnose_case(const fs::path& folder) {
 void expect_named_rightly(const fs::path& folder) {
   const nlohmann::json truth = nlohmann::json::parse(read_file(folder / "truth.json"));
   const Diagnosis found = diagnose_case(folder);
-  EXPECT_EQ(name_of(found.verdict), truth["verdict"]) << found.sentence;
+  EXPECT_EQ(name_of(found.verdict), truth["verdict"].get<std::string>()) << found.sentence;
   std::set<std::string> names;
   for (const FoundEffect& effect : found.effects) names.insert(effect.kind);
   bool accepted = false;

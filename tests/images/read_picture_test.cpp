@@ -18,12 +18,21 @@ const std::string two_texels_hex =
     "89504e470d0a1a0a0000000d49484452000000020000000108020000007b40e8dd0000000f49444154789c63"
     "60d8f39feb3f030009cb02c5c760f4870000000049454e44ae426082";
 
-std::string two_texels() {
+// Three texels of one grey, 188, whose alpha is 255, 128 and 0.
+const std::string three_alphas_hex =
+    "89504e470d0a1a0a0000000d49484452000000030000000108060000001be014b40000001249444154789c63d8b3"
+    "67cf7f206e0062060039c8081c832ecbba0000000049454e44ae426082";
+
+std::string bytes_of(const std::string& hex) {
   std::string bytes;
-  for (size_t i = 0; i < two_texels_hex.size(); i += 2) {
-    bytes += static_cast<char>(std::stoi(two_texels_hex.substr(i, 2), nullptr, 16));
+  for (size_t i = 0; i < hex.size(); i += 2) {
+    bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
   }
   return bytes;
+}
+
+std::string two_texels() {
+  return bytes_of(two_texels_hex);
 }
 
 // IEC 61966-2-1: 188 is ((188/255 + 0.055)/1.055)^2.4 = 0.502886; 10 is 10/255/12.92 = 0.003035.
@@ -33,6 +42,13 @@ TEST(ReadPicture, GivesLinearLight) {
   ASSERT_EQ(picture.height, 1);
   const float expected[] = {0.0F, 0.502886F, 1.0F, 0.003035F, 1.0F, 0.0F};
   for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(picture.rgb[i], expected[i], 1e-5F) << i;
+}
+
+// glTF 2.0, section 3.9.2: of an opaque material alpha is ignored.
+TEST(ReadPicture, ColourIsNotMultipliedByAlpha) {
+  const LinearPicture picture = read_picture(bytes_of(three_alphas_hex));
+  ASSERT_EQ(picture.rgb.size(), 9u);
+  for (const float value : picture.rgb) EXPECT_NEAR(value, 0.502886F, 1e-5F);
 }
 
 TEST(ReadPicture, RefusesWhatIsNone) {

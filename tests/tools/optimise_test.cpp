@@ -97,6 +97,33 @@ at_most = 120
   EXPECT_NEAR(axis("attitude.tilt_deg"), std::acos(0.75) / degree_rad, 0.05);
 }
 
+// The libraries count points that are none of their business (infeasible, failed) otherwise than
+// the limit says: 409 runs of "at most 12". One run more is the experiment's own.
+TEST_F(Optimise, MakesNoMoreDesignsThanItSays) {
+  experiment(R"([sweep]
+verb = "trace"
+maximise = "power_on_plate_W"
+global = 6
+local = 6
+[[sweep.axis]]
+key = "attitude.tilt_deg"
+from = 0
+to = 80
+[[sweep.axis]]
+key = "attitude.heading_deg"
+from = -180
+to = 180
+[[sweep.constraint]]
+figure = "power_on_plate_W"
+at_least = 1e6
+)");
+  EXPECT_THAT(optimise().out, HasSubstr("At most 12 designs"));
+  EXPECT_LE(std::stoi(query(at("out/designs.sqlite"), "SELECT count(*) FROM run")[0][0]), 13);
+  const Outcome unknown = optimise("other", "--set sweep.axis[0].key='\"source[0].foo\"'");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("foo"));
+}
+
 TEST_F(Optimise, GoesOnWhereItWasKilledToTheSameEnd) {
   experiment(aim_at_the_sun);
   ASSERT_EQ(optimise("reference", sun_from(25, 40)).status, 0);

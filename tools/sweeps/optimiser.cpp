@@ -21,8 +21,9 @@ bool is_feasible(const PointValue& value) {
 // asked for.
 class Problem {
  public:
-  Problem(const SearchBox& box, const std::function<PointValue(std::span<const double>)>& value)
-      : box_(box), value_(value) {
+  Problem(const SearchBox& box, size_t most_evaluations,
+          const std::function<PointValue(std::span<const double>)>& value)
+      : box_(box), value_(value), left_(most_evaluations) {
     best_ = unit(box.start);
     at(best_);
   }
@@ -30,10 +31,18 @@ class Problem {
   size_t dimensions() const { return box_.low.size(); }
   const Point& best() const { return best_; }
 
+  // Of a point that did not fail; of none before the first.
+  size_t constraints() const { return constraints_; }
+
+  // Throws nlopt::forced_stop where no evaluation is left: the libraries count points that failed
+  // or were refused otherwise than a user would.
   const PointValue& at(const Point& x) {
     if (x == last_) return last_value_;
+    if (left_ == 0) throw nlopt::forced_stop();
+    --left_;
     last_ = x;
     last_value_ = value_(inside(x));
+    constraints_ = std::max(constraints_, last_value_.margins.size());
     const bool feasible = is_feasible(last_value_);
     if (feasible && (!best_merit_ || last_value_.merit > *best_merit_)) {
       best_merit_ = last_value_.merit;
@@ -72,6 +81,7 @@ class Problem {
 
   const SearchBox& box_;
   const std::function<PointValue(std::span<const double>)>& value_;
+  size_t left_, constraints_ = 0;
   Point last_, best_;
   PointValue last_value_;
   std::optional<double> best_merit_;
@@ -88,6 +98,8 @@ void run(nlopt::opt& optimiser, Problem& problem, size_t evaluations) {
     optimiser.optimize(x, value);
   } catch (const nlopt::roundoff_limited&) {
     // As near as the figures allow; what was found is remembered.
+  } catch (const nlopt::forced_stop&) {
+    // As many as were allowed.
   }
 }
 
@@ -109,14 +121,16 @@ struct LocalConstraint {
 double constraint_value(const Point& x, Point&, void* data) {
   const auto& constraint = *static_cast<LocalConstraint*>(data);
   const PointValue& value = constraint.problem->at(x);
-  return value.failed ? 1.0 : -value.margins[constraint.index];
+  return value.failed || constraint.index >= value.margins.size()
+             ? 1.0
+             : -value.margins[constraint.index];
 }
 
 }  // namespace
 
 void search_box(const SearchBox& box, size_t global, size_t local, double precision,
                 const std::function<PointValue(std::span<const double>)>& value) {
-  Problem problem(box, value);
+  Problem problem(box, std::max<size_t>(1, global + local), value);
   const auto dimensions = static_cast<unsigned>(problem.dimensions());
   if (global > 0) {
     nlopt::opt wide(nlopt::GN_ORIG_DIRECT_L, dimensions);
@@ -124,7 +138,7 @@ void search_box(const SearchBox& box, size_t global, size_t local, double precis
     run(wide, problem, global);
   }
   if (local == 0) return;
-  const size_t constraints = problem.at(problem.best()).margins.size();
+  const size_t constraints = problem.constraints();
   // Quadratic models need two dimensions.
   nlopt::opt near(constraints > 0 || dimensions < 2 ? nlopt::LN_COBYLA : nlopt::LN_BOBYQA,
                   dimensions);
