@@ -196,6 +196,13 @@ TEST_F(CheckCommand, NewWritesWhatRuns) {
   EXPECT_EQ(file_text(free), before);
 }
 
+TEST_F(CheckCommand, NewOfAPlatformTakesNoKeys) {
+  const Outcome got = run("new " + at("lab.toml") + " --set platform.mass_kg=20");
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, HasSubstr("platform.mass_kg=20"));
+  EXPECT_FALSE(std::filesystem::exists(at("lab.toml")));
+}
+
 // A narrow lamp over the origin would miss a part that stands aside.
 TEST_F(CheckCommand, NewLightsThePartThatItMeasures) {
   write("aside.obj",

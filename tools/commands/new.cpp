@@ -234,6 +234,9 @@ void run_new(const CommandLine& line) {
     const fs::path file =
         fs::absolute(*line.scene).lexically_proximate(fs::absolute(line.experiment).parent_path());
     text += light_text(model, file.generic_string(), words);
+  } else if (!line.overrides.empty()) {
+    throw InputError({line.experiment.string()}, "", "--set " + line.overrides.front(),
+                     "nothing without --scene: the new file is there to be changed");
   } else {
     text += std::string(platform_text).substr(1);
   }
