@@ -82,8 +82,8 @@ struct Observation {
   // Of a channel as in NoiseLevels.
   double rows_of(size_t block, int channel) const {
     if (channel >= vector_channels) {
-      const std::vector<double>& rows = scalar[static_cast<size_t>(channel - vector_channels)].rows;
-      return rows.empty() ? 0.0 : rows[block];
+      const auto& one = scalar[static_cast<size_t>(channel - vector_channels)];
+      return one.rows.empty() ? 0.0 : one.rows[block];
     }
     if (channel >= 3) return gyro_rows[block][channel - 3];
     return sees_axis[static_cast<size_t>(channel)] ? attitude_rows[block] : 0.0;

@@ -124,6 +124,8 @@ LinearPicture read_picture(const std::string& bytes) {
   // Colour as it is stored: its library would multiply it by alpha, which glTF does not ask for.
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);
+  void* const from = &memory;
+  wanted.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &from);
   const auto input =
       OIIO::ImageInput::open(is_png ? "picture.png" : "picture.jpg", &wanted, &memory);
   if (!input) {

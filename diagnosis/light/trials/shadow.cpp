@@ -45,7 +45,7 @@ CarvingData carving_data(const LightTrial& parent, const LightCandidates& all,
                              on_body ? place : Vec3(q * place)});
       }
     }
-    for (const double r : residuals) data.missing.push_back(-r);
+    for (const double residual : residuals) data.missing.push_back(-residual);
   }
   return data;
 }
