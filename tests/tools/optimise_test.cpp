@@ -35,14 +35,7 @@ class Optimise : public SweepTest {
   }
 };
 
-// The Sun stands 25 deg from the zenith towards 40 deg from x: that is where the plate should lean.
-constexpr const char* aim_at_the_sun = R"([sweep]
-verb = "trace"
-maximise = "power_on_plate_W"
-global = 60
-local = 60
-precision = 1e-4
-[[sweep.axis]]
+constexpr const char* tilt_and_heading = R"([[sweep.axis]]
 key = "attitude.tilt_deg"
 from = 0
 to = 80
@@ -51,6 +44,15 @@ key = "attitude.heading_deg"
 from = -180
 to = 180
 )";
+
+// The Sun stands 25 deg from the zenith towards 40 deg from x: that is where the plate should lean.
+const std::string aim_at_the_sun = std::string(R"([sweep]
+verb = "trace"
+maximise = "power_on_plate_W"
+global = 60
+local = 60
+precision = 1e-4
+)") + tilt_and_heading;
 std::string sun_from(double zenith_deg, double azimuth_deg) {
   const double z = zenith_deg * degree_rad, a = azimuth_deg * degree_rad;
   return " --set source[0].direction=[" + std::to_string(-std::sin(z) * std::cos(a)) + "," +
@@ -100,23 +102,15 @@ at_most = 120
 // The libraries count points that are none of their business (infeasible, failed) otherwise than
 // the limit says: 409 runs of "at most 12". One run more is the experiment's own.
 TEST_F(Optimise, MakesNoMoreDesignsThanItSays) {
-  experiment(R"([sweep]
+  experiment(std::string(R"([sweep]
 verb = "trace"
 maximise = "power_on_plate_W"
 global = 6
 local = 6
-[[sweep.axis]]
-key = "attitude.tilt_deg"
-from = 0
-to = 80
-[[sweep.axis]]
-key = "attitude.heading_deg"
-from = -180
-to = 180
 [[sweep.constraint]]
 figure = "power_on_plate_W"
 at_least = 1e6
-)");
+)") + tilt_and_heading);
   EXPECT_THAT(optimise().out, HasSubstr("At most 12 designs"));
   EXPECT_LE(std::stoi(query(at("out/designs.sqlite"), "SELECT count(*) FROM run")[0][0]), 13);
   const Outcome unknown = optimise("other", "--set sweep.axis[0].key='\"source[0].foo\"'");

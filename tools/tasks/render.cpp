@@ -64,8 +64,7 @@ std::vector<DrawnLamp> drawn_lamps(const Experiment& experiment) {
 // and lamps.
 Pinhole camera_of(const Experiment& experiment, const std::vector<DrawnLamp>& lamps) {
   const Camera& given = experiment.camera;
-  Pinhole camera =
-      Pinhole::looking(given.position_m, given.target_m, given.field_of_view_rad);
+  Pinhole camera = Pinhole::looking(given.position_m, given.target_m, given.field_of_view_rad);
   if (given.placed || lamps.empty()) return camera;
   std::vector<Vec3> points_m;
   for (const Instance& instance : experiment.scene.instances) {
