@@ -294,8 +294,8 @@ class Rounds {
       ++refits;
     }
     parallel_for(refits, threads_, [&](size_t i) {
-      const Effort effort = set_.pieces == 1 ? within_reach(Effort{}, at, limits_) : Effort{};
-      found[i] = domain_.refit(found[i], set_.runs, domain_.begins_of(found[i]), effort);
+      const Effort whole = set_.pieces == 1 ? within_reach(Effort{}, at, limits_) : Effort{};
+      found[i] = domain_.refit(found[i], set_.runs, domain_.begins_of(found[i]), whole);
     });
     keep_below(found, refits);
     return found;

@@ -80,8 +80,19 @@ void require_text(std::string_view begin, const InputLocation& where) {
   if (zeros > 0) throw InputError(where, "", "bytes that are no text", "a text file");
 }
 
+namespace {
+
+// Some programs begin UTF-8 with a byte-order mark.
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view mark = "\xef\xbb\xbf";
+  if (text.starts_with(mark)) text.remove_prefix(mark.size());
+  return text;
+}
+
+}  // namespace
+
 DataLines::DataLines(std::string_view text, const std::string& file)
-    : lines_(lines_of(text)), where_{file, 0} {
+    : lines_(lines_of(without_mark(text))), where_{file, 0} {
   require_text(text, {file, 1});
 }
 

@@ -6,6 +6,15 @@
 #include "inference/estimator/covariance.h"
 
 namespace photorque::inference {
+namespace {
+
+// A⁻¹ Bᵀ. Eigen would step along a null pointer where B has no rows.
+Eigen::MatrixXd eliminated(const Eigen::LDLT<Eigen::MatrixXd>& own, const Eigen::MatrixXd& cross) {
+  if (cross.size() == 0) return Eigen::MatrixXd(cross.cols(), cross.rows());
+  return own.solve(cross.transpose());
+}
+
+}  // namespace
 
 ArrowMatrix::ArrowMatrix(Index runs, Index per_run, Index shared)
     : per_run_(per_run),
@@ -100,17 +109,17 @@ Eigen::VectorXd ArrowMatrix::solve(const Eigen::VectorXd& x) const {
   Eigen::VectorXd y(size());
   Eigen::MatrixXd left = shared_;
   Eigen::VectorXd right = x.tail(shared_.rows());
-  std::vector<Eigen::MatrixXd> eliminated;  // A⁻¹ Bᵀ
+  std::vector<Eigen::MatrixXd> columns;
   for (size_t run = 0; run < own_.size(); ++run) {
     const auto factors = factors_of(run);
-    eliminated.push_back(factors.solve(cross_[run].transpose()));
+    columns.push_back(eliminated(factors, cross_[run]));
     part(y, run) = factors.solve(Eigen::VectorXd(part(x, run)));
-    left -= cross_[run] * eliminated.back();
+    left -= cross_[run] * columns.back();
     right -= cross_[run] * part(y, run);
   }
   if (shared_.rows() == 0) return y;
   const Eigen::VectorXd tail = left.ldlt().solve(right);
-  for (size_t run = 0; run < own_.size(); ++run) part(y, run) -= eliminated[run] * tail;
+  for (size_t run = 0; run < own_.size(); ++run) part(y, run) -= columns[run] * tail;
   y.tail(shared_.rows()) = tail;
   return y;
 }
@@ -126,7 +135,7 @@ double ArrowMatrix::log_determinant() const {
 Eigen::MatrixXd ArrowMatrix::shared_information() const {
   Eigen::MatrixXd left = shared_;
   for (size_t run = 0; run < own_.size(); ++run) {
-    left -= cross_[run] * factors_of(run).solve(cross_[run].transpose());
+    left -= cross_[run] * eliminated(factors_of(run), cross_[run]);
   }
   return left;
 }
@@ -136,7 +145,7 @@ NormalSums ArrowMatrix::shared_sums(const Eigen::VectorXd& gradient, double chi2
   NormalSums sums{shared_, gradient.tail(shared_.rows()), chi2, samples};
   for (size_t run = 0; run < own_.size(); ++run) {
     const auto factors = factors_of(run);
-    sums.matrix -= cross_[run] * factors.solve(cross_[run].transpose());
+    sums.matrix -= cross_[run] * eliminated(factors, cross_[run]);
     sums.gradient -= cross_[run] * factors.solve(Eigen::VectorXd(part(gradient, run)));
   }
   return sums;

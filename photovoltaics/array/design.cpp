@@ -237,8 +237,8 @@ QuantumEfficiency read_efficiency(const Settings& array) {
 
 }  // namespace
 
-const CellOverride* ArrayDesign::override_of(size_t cell) const {
-  const auto index = static_cast<int>(cell);
+const CellOverride* ArrayDesign::override_of(size_t cell_index) const {
+  const auto index = static_cast<int>(cell_index);
   const auto found = std::ranges::lower_bound(overrides, index, {}, &CellOverride::index);
   return found != overrides.end() && found->index == index ? &*found : nullptr;
 }

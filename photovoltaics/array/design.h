@@ -39,7 +39,7 @@ struct ArrayDesign {
 
   int cells() const { return columns * rows; }
   // What differs of a cell; null where nothing does.
-  const CellOverride* override_of(size_t cell) const;
+  const CellOverride* override_of(size_t cell_index) const;
 };
 
 // Regular wiring: the cells, taken serpentine-wise along columns (v) or rows (u) of the grid, are

@@ -145,11 +145,15 @@ class Assembly {
     std::vector<Instance> all;
     std::map<std::pair<uint32_t, int>, std::vector<Instance>> known;  // by mesh and material
     std::map<int, std::optional<BaseColours>> pictures;
+    std::set<std::string> uncoloured;
     for (size_t i = 0; i < model_.scene.instances.size(); ++i) {
       const Instance& whole = model_.scene.instances[i];
       const int material = material_indices_[i];
-      if (model_.materials[materials_.at(material)].origin != OpticsOrigin::derived ||
-          model_.scene.meshes[whole.mesh].uv.empty()) {
+      const bool is_derived =
+          model_.materials[materials_.at(material)].origin == OpticsOrigin::derived;
+      const bool has_coordinates = !model_.scene.meshes[whole.mesh].uv.empty();
+      if (!is_derived || !has_coordinates) {
+        if (is_derived && has_picture(material)) uncoloured.insert(whole.material);
         all.push_back(whole);
         continue;
       }
@@ -168,7 +172,18 @@ class Assembly {
         all.push_back(std::move(part));
       }
     }
+    for (const std::string& name : uncoloured) {
+      model_.notices.push_back(
+          "material '" + name +
+          "': its picture is left out where a mesh has no texture coordinates");
+    }
     model_.scene.instances = std::move(all);
+  }
+
+  bool has_picture(int material) const {
+    if (material < 0) return false;
+    const tinygltf::Material& one = document_.model.materials[static_cast<size_t>(material)];
+    return one.pbrMetallicRoughness.baseColorTexture.index >= 0;
   }
 
   std::vector<Instance> parts_of(const Instance& whole, int material, const BaseColours& picture) {

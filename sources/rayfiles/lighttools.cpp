@@ -1,6 +1,8 @@
 // LightTools ray data file in text: keywords up to lt_startofdata, then one ray a line,
 // x y z  l m n  flux [wavelength].
 #include <algorithm>
+#include <optional>
+#include <set>
 
 #include "core/text/lines.h"
 #include "core/text/numbers.h"
@@ -11,12 +13,24 @@ namespace photorque {
 namespace {
 
 constexpr double nanometre_m = 1e-9;
-constexpr std::string_view separators = " \t\r\v\f\x1a,";
+constexpr std::string_view blanks = " \t\r\v\f\x1a";
+
+// Numbers stand apart by blanks, or by commas alone: among blanks a comma is a decimal one, which
+// no number has.
+std::vector<std::string_view> numbers_of(std::string_view line) {
+  std::vector<std::string_view> words = words_of(line, blanks);
+  if (words.size() == 1) return words_of(line, ",");
+  for (std::string_view& word : words) {
+    if (word.ends_with(',')) word.remove_suffix(1);
+  }
+  return words;
+}
 
 struct LightToolsHeader {
   double metres_per_unit = 1e-3;
   Vec3 origin = Vec3::Zero();  // in the file's unit
   size_t columns = 7;
+  std::set<std::string, std::less<>> keys;
 };
 
 double number_at(const std::vector<std::string_view>& words, size_t index,
@@ -35,29 +49,41 @@ double unit_of(std::string_view name, const InputLocation& where) {
                    "millimeters, centimeters, meters, inches or feet");
 }
 
+double flux_of(std::string_view key, std::string_view value, const InputLocation& where) {
+  const std::optional<double> flux = number_in(value.substr(0, value.find_first_of(blanks)));
+  if (!flux || !(*flux > 0.0)) {
+    throw InputError(where, std::string(key), in_quotes(value), "a number above 0");
+  }
+  return *flux;
+}
+
 void read_keyword(std::string_view line, const InputLocation& where, LightToolsHeader& header,
                   RaySet& set) {
   const size_t colon = line.find(':');
   if (colon == std::string_view::npos) return;
   const std::string_view key = trimmed(line.substr(0, colon));
   const std::string_view value = trimmed(line.substr(colon + 1));
-  const std::vector<std::string_view> words = words_of(value, separators);
   if (key == "dataname") set.name = std::string(value);
+  if (!key.starts_with("lt_")) return;
+  if (!header.keys.emplace(key).second) {
+    throw InputError(where, std::string(key), "for the second time", "each keyword once");
+  }
   if (key == "lt_length_units") header.metres_per_unit = unit_of(value, where);
   if (key == "lt_datatype" && value.find("luminous") != std::string_view::npos) {
     set.flux_unit = RaySet::FluxUnit::lumen;
   }
   if (key == "lt_data_origin") {
+    const std::vector<std::string_view> words = numbers_of(value);
     for (int k = 0; k < 3; ++k) header.origin[k] = number_at(words, static_cast<size_t>(k), where);
   }
   if (key == "lt_color_info" && value == "wavelength") header.columns = 8;
-  if (key == "lt_radiant_flux") set.stated_radiant_flux_W = number_at(words, 0, where);
-  if (key == "lt_luminous_flux") set.stated_luminous_flux_lm = number_at(words, 0, where);
+  if (key == "lt_radiant_flux") set.stated_radiant_flux_W = flux_of(key, value, where);
+  if (key == "lt_luminous_flux") set.stated_luminous_flux_lm = flux_of(key, value, where);
 }
 
 RaySet::Ray read_ray(std::string_view line, const LightToolsHeader& header,
                      const InputLocation& where) {
-  const std::vector<std::string_view> words = words_of(line, separators);
+  const std::vector<std::string_view> words = numbers_of(line);
   RaySet::Ray ray;
   for (int k = 0; k < 3; ++k) {
     ray.origin_m[k] = header.metres_per_unit *
@@ -85,6 +111,10 @@ RaySet read_lighttools_rays(const std::string& bytes, const std::string& name) {
       set.rays.push_back(read_ray(text, header, where));
       require_sound(set.rays.back(), set.rays.size() - 1, where);
     } else if (text == "lt_startofdata") {
+      if (!header.keys.contains("lt_length_units")) {
+        throw InputError(where, "lt_length_units", "no such line before the rays",
+                         "millimeters, centimeters, meters, inches or feet");
+      }
       in_data = true;
     } else {
       read_keyword(text, where, header, set);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text/numbers.h"
 #include "sources/rayfiles/checks.h"
 #include "sources/rayfiles/little_endian.h"
 #include "sources/rayfiles/set.h"
@@ -67,13 +68,24 @@ Tm25Header read_tm25_header(LittleEndianReader& in, RaySet& set) {
   const int32_t spectrum_kind = in.int32("kind of spectrum");
   const float wavelength_nm = in.float32("wavelength");
   in.skip(8, "range of wavelengths");
-  if (spectrum_kind == 1 && stated(wavelength_nm)) set.wavelength_m = nm * wavelength_nm;
+  if (spectrum_kind == 1 && stated(wavelength_nm)) {
+    // Micrometres in a field of nanometres, say.
+    if (!(wavelength_nm >= 10.0F && wavelength_nm <= 1e6F)) {
+      throw InputError(in.where(), "wavelength", shortest(wavelength_nm) + " nm",
+                       "10 nm to 1000000 nm");
+    }
+    set.wavelength_m = nm * wavelength_nm;
+  }
   header.spectra = size_claim(in, "number of spectra");
   header.more_columns = size_claim(in, "number of further columns");
   header.text_bytes = size_claim(in, "length of the text");
   in.skip(168, "reserved bytes");
   for (size_t c = 0; c < column_kinds; ++c) {
-    header.has[c] = in.int32("column flags") != 0;
+    const int32_t flag = in.int32("column flags");
+    if (flag != 0 && flag != 1) {
+      throw InputError(in.where(), "column flags", std::to_string(flag), "0 or 1");
+    }
+    header.has[c] = flag == 1;
     if (header.has[c]) header.floats_per_ray += column_floats[c];
   }
   header.floats_per_ray += static_cast<size_t>(header.more_columns);
@@ -149,6 +161,10 @@ RaySet read_tm25(const std::string& bytes, const std::string& name) {
   for (uint64_t i = 0; i < header.rays; ++i) {
     set.rays.push_back(read_ray(in, header, set.flux_unit));
     require_sound(set.rays.back(), i, {name});
+  }
+  if (in.left() >= 4 * header.floats_per_ray) {
+    throw InputError({name}, "number of rays", std::to_string(header.rays),
+                     std::to_string(there) + ", for which there are bytes");
   }
   require_flux(set, {name});
   return set;

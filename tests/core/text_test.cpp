@@ -55,6 +55,13 @@ TEST(Text, DataLinesSkipCommentsAndKnowWhereTheyAre) {
   EXPECT_FALSE(lines.next(line));
 }
 
+TEST(Text, DataLinesPassOverAByteOrderMark) {
+  DataLines lines("\xef\xbb\xbfincidence_deg,brdf_1_sr\n", "f.csv");
+  std::string_view line;
+  ASSERT_TRUE(lines.next(line));
+  EXPECT_EQ(line, "incidence_deg,brdf_1_sr");
+}
+
 TEST(Text, NumbersAreWholeAndFinite) {
   EXPECT_EQ(number_in("-2.5e3"), -2500.0);
   EXPECT_EQ(number_in("+1"), 1.0);

@@ -1,6 +1,9 @@
 // Packed geometry: what is damaged is refused with its place, what is quantized means the same.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <meshoptimizer.h>
+
+#include <array>
 
 #include "gltf_test_model.h"
 
@@ -86,6 +89,31 @@ TEST(GltfMeshopt, DamageIsToldByPlaceAndReason) {
   for (const auto& [changes, words] : mistakes) {
     EXPECT_THAT(message_of(with_view_packed(changes)), HasSubstr(place + words)) << changes;
   }
+}
+
+TEST(GltfMeshopt, WhatIsPackedIsAsLongAsItsViewSays) {
+  const std::array<float, 9> corners = {0, 0, 0, 3, 0, 0, 0, 4, 0};
+  std::string bytes(meshopt_encodeVertexBufferBound(3, 12), '\0');
+  bytes.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()),
+                                          bytes.size(), corners.data(), 3, 12));
+  const auto packed = [&](const nlohmann::json& view) {
+    TestModel model = triangle_model();
+    const int stream = model.add_view(bytes);
+    model.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {
+        {"buffer", 0},
+        {"byteOffset", model.json["bufferViews"][stream]["byteOffset"]},
+        {"byteLength", bytes.size()},
+        {"byteStride", 12},
+        {"count", 3},
+        {"mode", "ATTRIBUTES"}};
+    model.json["bufferViews"][0].update(view);
+    return model;
+  };
+  EXPECT_EQ(packed({{"byteLength", 36}}).read().scene.meshes.at(0).vertices_m.size(), 3u);
+  EXPECT_THAT(message_of(packed({{"byteLength", 48}})),
+              HasSubstr("/bufferViews/0/byteLength: found 48, expected 36"));
+  EXPECT_THAT(message_of(packed({{"byteLength", 36}, {"byteStride", 16}})),
+              HasSubstr("/bufferViews/0/byteStride: found 16, expected 12"));
 }
 
 TEST(GltfDraco, DamageIsToldByPlaceAndReason) {

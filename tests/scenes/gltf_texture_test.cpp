@@ -141,6 +141,16 @@ TEST(GltfTexture, OtherCoordinatesThanTheFirstLeaveTheColourAsItIs) {
   }
 }
 
+TEST(GltfTexture, AMeshWithoutCoordinatesIsTold) {
+  const std::string told = "'paint': its picture is left out";
+  TestModel model = pictured_model();
+  EXPECT_THAT(model.read(with_pictures()).notices, testing::Not(Contains(HasSubstr(told))));
+  model.json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
+  const GltfModel bare = model.read(with_pictures());
+  EXPECT_EQ(bare.scene.instances.size(), 1u);
+  EXPECT_THAT(bare.notices, Contains(HasSubstr(told)));
+}
+
 TEST(GltfTexture, WrongReferencesAreRefusedWhenPicturesAreAsked) {
   const auto message = [](const auto& edit) -> std::string {
     TestModel model = pictured_model();

@@ -174,6 +174,10 @@ TEST(Tm25, RefusesDamage) {
   expect_refused(patched(20, std::string("\xff\xff\xff\xff\xff\xff\xff\x7f", 8)), "at most the 3");
   expect_refused(patched(80, std::string("\xff\xff\xff\x7f", 4)), "names of columns");
   expect_refused(patched(256, std::string("\0\0\0\0", 4)), "without position");
+  expect_refused(patched(256, std::string("\x02\0\0\0", 4)), "column flags: found 2");
+  expect_refused(patched(20, std::string("\x02\0\0\0\0\0\0\0", 8)), "found 2, expected 3");
+  // One wavelength for all, 0.73 where nanometres stand.
+  expect_refused(patched(60, std::string("\x01\0\0\0\x48\xe1\x3a\x3f", 8)), "found 0.73");
   expect_refused(patched(good.size() - 4, std::string("\0\0\x80\xbf", 4)), "ray 2: found a flux");
   expect_refused(patched(good.size() - 8, std::string("\0\0\xc0\x7f", 4)), "not finite");
   expect_refused(patched(good.size() - 8, std::string("\0\0\0\0", 4)), "a unit vector");
@@ -215,6 +219,28 @@ TEST(LightToolsRays, NameTheLineOfWhatIsWrong) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "lamp.ray:7: column 7: found \"off\", expected a number");
   }
+}
+
+TEST(LightToolsRays, TakeNoDecimalCommaNoFluxOfZeroAndEachKeywordOnce) {
+  const auto refusal = [](const std::string& header, const std::string& ray) {
+    try {
+      read_rays("# x\n" + header + "lt_startofdata\n" + ray + "\n", "lamp.ray");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string units = "lt_length_units: meters\n", ray = "1 2 3 0 0 1 0.5";
+  EXPECT_EQ(refusal(units + "lt_radiant_flux: 2.5\n", ray), "");
+  EXPECT_EQ(refusal(units, "1,2,3,0,0,1,0.5"), "");
+  EXPECT_EQ(refusal(units, "1, 2, 3, 0, 0, 1, 0.5"), "");
+  EXPECT_EQ(refusal(units + "lt_radiant_flux: 2,5\n", ray),
+            "lamp.ray:3: lt_radiant_flux: found \"2,5\", expected a number above 0");
+  EXPECT_EQ(refusal(units + "lt_luminous_flux: -1\n", ray),
+            "lamp.ray:3: lt_luminous_flux: found \"-1\", expected a number above 0");
+  EXPECT_THAT(refusal(units, "1,5 2 3 0 0 1 0.5"), testing::StartsWith("lamp.ray:4: column 1"));
+  EXPECT_THAT(refusal(units + units, ray), testing::StartsWith("lamp.ray:3: lt_length_units"));
+  EXPECT_THAT(refusal("", ray), testing::HasSubstr("lt_length_units: found no such line"));
 }
 
 // What the experiment says of a file goes to the beam; what the file says for itself is said.

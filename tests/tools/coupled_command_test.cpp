@@ -180,6 +180,21 @@ TEST_F(CoupledCommand, TorqueOfAPlateInSlantingSunlight) {
 
 // The same plate on a joint about body y through its middle: r × F with the cosine of the turned
 // plate, which follows the Sun, or a schedule that the light was traced for at some angles only.
+// Turned edge-on to the light the plate's torque has a corner, which 100 attitudes do not resolve.
+TEST_F(CoupledCommand, ATableThatMissesItsToleranceIsAWarning) {
+  const auto warned = [&](const std::string& further) {
+    const Outcome got = run("propagate " + experiment(sun) + " --set platform.tilt_limit_deg=120 " +
+                            further + " --out " + at("o"));
+    EXPECT_EQ(got.status, 0) << got.err;
+    const std::string told = summary("o").at("warnings").dump();
+    EXPECT_EQ(got.out.find("warning: ") != std::string::npos, told != "[]") << got.out;
+    return told;
+  };
+  EXPECT_THAT(warned("--set light.tolerance=1e-6 --set light.max_traces=100"),
+              HasSubstr("misses light.tolerance = 1e-06 of the largest: torque by up to "));
+  EXPECT_EQ(warned("--set light.tolerance=0.05"), "[]");
+}
+
 TEST_F(CoupledCommand, APlateOnAJointTakesTheLightOfItsAngle) {
   const std::string joint =
       "[[joint]]\nnode = \"plate\"\naxis = [0, 1, 0]\npoint_m = [0, 0, 0.1]\n";

@@ -21,6 +21,7 @@ struct CoupledResult {
   std::unique_ptr<CoupledRun> beside;          // null where light is a torque alone
   // How far the table's error can have turned the body at the end, of runs up to an hour.
   std::optional<double> attitude_error_rad;
+  std::vector<std::string> warnings;  // where the table is further off than light.tolerance
 };
 
 // Overrides that an experiment in light needs before its platform is read: an orbit learns where

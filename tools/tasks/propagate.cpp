@@ -122,6 +122,8 @@ MotionRun propagate_experiment(const RunOptions& options, const Console& console
   add_inputs(result.provenance, seen);
   add_inputs(result.provenance, further.inputs);
   print_run(console, *run, *coupled);
+  for (const std::string& warning : coupled->warnings) console.line("warning: " + warning);
+  result.provenance.warnings = coupled->warnings;
   result.product = std::move(motion.product);
   add_light(console, *coupled, *run, result.product);
   const Product pointing = pointing_product(motion.states);

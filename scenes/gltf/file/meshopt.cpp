@@ -63,6 +63,19 @@ Packed read_packed(const Document& document, const json& extension, const std::s
   return packed;
 }
 
+// A view says its own length and stride a second time, for readers without the extension.
+void require_equal_extents(const Document& document, const json& view, const Packed& packed,
+                           size_t index) {
+  const auto compare = [&](const char* key, uint64_t decoded) {
+    const auto stated = view.find(key);
+    if (stated == view.end() || *stated == decoded) return;
+    throw document.wrong(pointer("bufferViews", index, key), describe_json(*stated),
+                         std::to_string(decoded) + ", by what is packed in it");
+  };
+  compare("byteLength", packed.count * packed.stride);
+  compare("byteStride", packed.stride);
+}
+
 std::string unpacked(const Document& document, const Packed& packed, MemoryBudget* budget,
                      const std::string& where) {
   if (packed.count == 0) throw document.wrong(where + "/count", "0", "at least 1");
@@ -105,6 +118,7 @@ void decode_meshopt_views(Document* document, MemoryBudget* budget) {
     const std::string where = pointer("bufferViews", i, "extensions", meshopt_extension);
     const Packed packed = read_packed(*document, extension, where);
     std::string bytes = unpacked(*document, packed, budget, where);
+    require_equal_extents(*document, view, packed, i);
     view["byteLength"] = bytes.size();
     view["byteOffset"] = 0;
     view["buffer"] = add_buffer(document, std::move(bytes));
