@@ -142,7 +142,8 @@ TEST(RayLamp, LightOfTheLastDirectionCounts) {
 
 TEST(RaySetFiles, FluxesBeyondEverythingAreRefused) {
   const auto read = [](const std::string& flux) {
-    return read_lighttools_rays("lt_startofdata\n0 0 0 0 0 1 " + flux + "\n", "rays");
+    const std::string header = "lt_length_units: meters\nlt_startofdata\n0 0 0 0 0 1 ";
+    return read_lighttools_rays(header + flux + "\n", "rays");
   };
   EXPECT_EQ(read("3").rays.size(), 1u);
   for (const char* flux : {"1e300", "1e-300", "0"}) EXPECT_THROW(read(flux), InputError) << flux;
