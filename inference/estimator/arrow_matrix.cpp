@@ -91,7 +91,9 @@ ArrowMatrix ArrowMatrix::scaled(const Eigen::VectorXd& s) const {
 void ArrowMatrix::hold(Index i) {
   if (i >= first_shared()) {
     const Index k = i - first_shared();
-    for (Eigen::MatrixXd& cross : cross_) cross.row(k).setZero();
+    for (Eigen::MatrixXd& cross : cross_) {
+      if (per_run_ > 0) cross.row(k).setZero();  // else there is nothing behind its pointer
+    }
     shared_.row(k).setZero();
     shared_.col(k).setZero();
     shared_(k, k) = 1.0;
