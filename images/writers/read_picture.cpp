@@ -125,7 +125,7 @@ LinearPicture read_picture(const std::string& bytes) {
   OIIO::ImageSpec wanted;
   wanted.attribute("oiio:UnassociatedAlpha", 1);
   void* const from = &memory;
-  wanted.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &from);
+  wanted.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<const void*>(&from));
   const auto input =
       OIIO::ImageInput::open(is_png ? "picture.png" : "picture.jpg", &wanted, &memory);
   if (!input) {
