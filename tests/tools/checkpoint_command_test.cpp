@@ -56,8 +56,10 @@ class CheckpointCommand : public CommandTest {
       const bool has_state = fs::exists(state);
       const std::chrono::milliseconds length(
           std::uniform_int_distribution<int>(100, longest_ms)(random));
-      ASSERT_LE(killed_after(arguments + every + " --out " + at("o"), length), 0)
-          << file_text(at("stderr"));
+      const int status = killed_after(arguments + every + " --out " + at("o"), length);
+      ASSERT_LE(status, 0) << file_text(at("stderr"));
+      // A slow machine takes longer until there is something to go on from.
+      if (status < 0 && !fs::exists(state)) longest_ms += longest_ms / 4;
       gone_on += has_state ? 1 : 0;
     }
     EXPECT_GE(gone_on, least);
