@@ -1,8 +1,10 @@
 #include "attitude/disturbances/kind.h"
 
 #include <algorithm>
+#include <map>
 
 #include "core/errors.h"
+#include "core/text/lines.h"
 
 namespace photorque {
 
@@ -56,8 +58,15 @@ Key disturbance_table() {
 std::vector<Disturbance> read_disturbances(const Settings& root,
                                            const DisturbanceContext& context) {
   std::vector<Disturbance> all;
+  std::map<std::string, std::string> set_by;
   for (const Settings& settings : root.tables("disturbance")) {
     all.push_back(read_disturbance(settings, context));
+    const DisturbanceKind* kind = find_kind(all.back().kind);
+    if (kind == nullptr || kind->sets.empty()) continue;
+    const auto [before, is_first] = set_by.emplace(kind->sets, kind->name);
+    if (is_first) continue;
+    throw settings.error("kind", in_quotes(kind->name) + " behind " + in_quotes(before->second),
+                         "one disturbance that sets " + kind->sets);
   }
   return all;
 }

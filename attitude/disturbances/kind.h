@@ -41,6 +41,8 @@ struct DisturbanceKind {
   // The table of [sensors] that may hold the kind's key as well; empty: no error of an instrument.
   std::string instrument = {};
   bool has_eclipses = false;  // the light may fail, which a run reports
+  // What it sets for all others, in words: of the kinds that set the same only one acts, and once.
+  std::string sets = {};
   // What `read` reads, as documents, editors and `check` are told; beside `kind`.
   std::vector<Key> keys = {};
 };

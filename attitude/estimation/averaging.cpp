@@ -54,6 +54,11 @@ struct Neighbours {
   void append_to(Observation& to, const Observation& from, const Prediction& propagated) const {
     const size_t m = middle(from);
     to.time_s.push_back(from.time_s[m]);
+    // Residuals hold no curvature: what there is, is that of the middle one.
+    if (!from.spread.empty()) {
+      to.spread.push_back(from.spread[m]);
+      to.spread.back().gyro_moved_rad_s.setZero();
+    }
     Quat attitude(NAN, NAN, NAN, NAN);
     if (attitude_rows > 0.0) {
       const Vec3 turn = propagated.camera_offset_lab_rad[m] + attitude_sum / attitude_rows;
@@ -82,6 +87,7 @@ struct Neighbours {
 Observation averaged_run(const Prediction& propagated, const Observation& seen, size_t blocks) {
   Observation result = seen;
   result.time_s.clear();
+  result.spread.clear();
   result.attitude.clear();
   result.attitude_rows.clear();
   result.gyro_rad_s.clear();

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 
 namespace photorque {
 

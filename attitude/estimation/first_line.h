@@ -1,7 +1,7 @@
 // How one coordinate of a recording begins.
 #pragma once
 
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 
 namespace photorque {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "attitude/estimation/hypothesis.h"
-#include "attitude/estimation/prediction.h"
+#include "attitude/observation/prediction.h"
 #include "inference/estimator/fit.h"
 
 namespace photorque {

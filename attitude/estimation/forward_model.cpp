@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/prediction.h"
+#include "attitude/observation/prediction.h"
 #include "attitude/model/bound_states.h"
 #include "core/errors.h"
 #include "inference/limits/thresholds.h"

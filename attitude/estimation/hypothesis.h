@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 #include "attitude/model/dynamics.h"
 #include "inference/estimator/parameter.h"
 

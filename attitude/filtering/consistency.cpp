@@ -72,9 +72,10 @@ RunErrors run_errors(const std::vector<AttitudeEstimate>& estimates, const Truth
     nees += normalised.chi2 / std::max(1, normalised.numbers);
     inside += chi2_band_95(normalised.numbers).holds(normalised.chi2) ? 1.0 : 0.0;
   }
-  const auto count = static_cast<double>(std::max<size_t>(1, errors.rows));
+  // Of nothing there is no mean: NaN.
+  const auto count = static_cast<double>(errors.rows);
   errors.rms_attitude_rad = std::sqrt(square_rad2 / count);
-  errors.rms_rate_rad_s = std::sqrt(rate_rad2_s2 / static_cast<double>(std::max<size_t>(1, rates)));
+  errors.rms_rate_rad_s = std::sqrt(rate_rad2_s2 / static_cast<double>(rates));
   errors.mean_nees = nees / count;
   errors.part_in_band = inside / count;
   return errors;

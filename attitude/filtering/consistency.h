@@ -35,7 +35,7 @@ struct Band {
 };
 Band chi2_band_95(double freedom);
 
-// One run against its truth.
+// One run against its truth; NaN where nothing is known to be true.
 struct RunErrors {
   double rms_attitude_rad = 0.0, rms_rate_rad_s = 0.0;
   double mean_nees = 0.0;     // per number

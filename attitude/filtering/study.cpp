@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "attitude/estimation/observation.h"
 #include "attitude/filtering/report.h"
 #include "attitude/noise/reading_level.h"
+#include "attitude/observation/observation.h"
 #include "core/constants.h"
 #include "core/errors.h"
 

@@ -104,9 +104,12 @@ double usual_rate_rad_s(const Observation& seen) {
   return *middle;
 }
 
-// Between two rows a body that turns farther than this is not followed well enough.
+// Between two blocks a body that turns farther than this is not followed well enough.
 bool turns_slowly(const Observation& seen) {
-  return usual_rate_rad_s(seen) * seen.row_interval_s < most_turn_rad;
+  const double apart_s =
+      std::max(seen.row_interval_s,
+               seen.duration_s() / static_cast<double>(std::max<size_t>(1, seen.blocks() - 1)));
+  return usual_rate_rad_s(seen) * apart_s < most_turn_rad;
 }
 
 size_t blocks_of(const Observation& seen) {

@@ -61,10 +61,14 @@ class Search {
   double of(const Point& p) const {
     // Far beyond what instruments do; the search is to stay inside.
     if (std::abs(p.level) > 7.0 || p.roughness < -60.0 || p.roughness > 20.0) return INFINITY;
-    if (p.coloured > 0.0 && (p.time < std::log(shortest_s) || p.time > std::log(longest_s))) {
+    const bool is_coloured = p.coloured > 0.0;
+    if (is_coloured && (p.time < std::log(shortest_s) || p.time > std::log(longest_s))) {
       return INFINITY;
     }
     double sum = 0.0;
+    for (const KinematicSeries* run : runs_) {
+      if (is_coloured && p.time < std::log(run->shortest_correlation_s)) return INFINITY;
+    }
     for (const KinematicSeries* run : runs_) sum += minus_two_log_likelihood(*run, noise_of(p));
     return std::isfinite(sum) ? sum : INFINITY;
   }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "attitude/estimation/prediction.h"
+#include "attitude/observation/prediction.h"
 
 namespace photorque {
 

@@ -3,7 +3,7 @@
 // where it stands out of that.
 #pragma once
 
-#include "attitude/estimation/prediction.h"
+#include "attitude/observation/prediction.h"
 
 namespace photorque {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "attitude/estimation/whitening.h"
+#include "attitude/observation/whitening.h"
 #include "core/constants.h"
 
 namespace photorque {

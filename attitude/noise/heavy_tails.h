@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "attitude/estimation/prediction.h"
+#include "attitude/observation/prediction.h"
 #include "inference/limits/thresholds.h"
 
 namespace photorque {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "attitude/estimation/whitening.h"
+#include "attitude/observation/whitening.h"
 
 namespace photorque {
 namespace {
@@ -173,6 +173,9 @@ KinematicRun kinematic_run(const Observation& seen, const Prediction* about) {
     s.about_readings = result.about_readings;
     s.interval_s = interval_s;
     s.gyro_interval_s = gyro_interval_s;
+    if (!seen.spread.empty()) {
+      s.shortest_correlation_s = 0.25 * seen.duration_s() / static_cast<double>(blocks - 1);
+    }
     const auto columns = seen.has_gyro ? instrument_columns : 0;
     s.angle_by.setZero(static_cast<Eigen::Index>(blocks), columns);
     s.rate_by.setZero(static_cast<Eigen::Index>(blocks), columns);

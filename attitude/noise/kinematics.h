@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "attitude/estimation/prediction.h"
+#include "attitude/observation/prediction.h"
 
 namespace photorque {
 
@@ -21,6 +21,8 @@ struct KinematicSeries {
   bool about_readings = false;                     // as in KinematicRun
   std::vector<char> jumps;                         // a command changed since the block before
   double interval_s = 0.0, gyro_interval_s = 0.0;  // between the readings of each
+  // Means over more than four correlation times no longer show what the time was.
+  double shortest_correlation_s = 0.0;
   // What instruments that are wrong would add: of the gyro biases (3), a linear drift of them (3),
   // scale and misalignment (9, by rows), of the camera its delay and how that grows with time; then
   // the turning of the laboratory itself (3), which the gyro reads and the camera does not. No

@@ -107,8 +107,28 @@ class NoiseSearch {
     try_beside(as_found);
     if (any_colour()) try_beside(camera_alone);
     if (!found) return;
-    use_gyro(with_white_part(best, *beside));
+    const Minimum likeliest = at_stated_level(with_white_part(best, *beside), *beside);
+    // What a lower level with a correlated part explains, the stated one with it may not.
+    if (!(likeliest.value < now - limits_.min_colour_gain)) return;
+    use_gyro(likeliest);
     find_cameras();
+  }
+
+  // A level as stated is taken as known: the rest beside it.
+  Minimum at_stated_level(const Minimum& free, const std::array<AngleNoise, 3>& cameras) const {
+    if (is_off(free.at[0], gyro_log_sigma, limits_)) return free;
+    const auto whole = [](const Eigen::VectorXd& rest) {
+      Eigen::VectorXd x(rest.size() + 1);
+      x << 0.0, rest;
+      return x;
+    };
+    const auto of = [&](const Eigen::VectorXd& rest) { return of_gyro(cameras, whole(rest)); };
+    const Eigen::VectorXd start = free.at.tail(free.at.size() - 1);
+    Eigen::VectorXd steps(start.size());
+    steps.head(2) << 0.3, 0.7;
+    if (steps.size() > 2) steps[2] = 1.5;
+    const Minimum held = simplex_minimum(of, start, steps, 0.3, 200);
+    return {whole(held.at), held.value};
   }
 
   // Minus twice the logarithm of the likelihood of all axes. `x`: ln(level over the stated),
@@ -119,7 +139,8 @@ class NoiseSearch {
     double shortest_s = 0.05;
     constexpr double longest_s = 12.0;
     for (const KinematicRun& run : left_) {
-      shortest_s = std::max(shortest_s, run.axis[0].gyro_interval_s);
+      shortest_s =
+          std::max({shortest_s, run.axis[0].gyro_interval_s, run.axis[0].shortest_correlation_s});
     }
     if (x[1] < std::log(shortest_s) || x[1] > std::log(longest_s)) return INFINITY;
     if (std::abs(x[0]) > 5.0 || std::abs(x[2]) > 40.0) return INFINITY;
@@ -140,6 +161,9 @@ class NoiseSearch {
   static double coloured_fraction(const Eigen::VectorXd& x) {
     return x.size() > 3 ? 1.0 / (1.0 + std::exp(-x[3])) : 1.0;
   }
+
+  // The steps of the search, and how many readings there are, make the errors no better.
+  static constexpr double gyro_log_sigma = 0.05;
 
   // A gyro that reads in coarse steps has a white part beside a correlated one.
   Minimum with_white_part(const Minimum& pure, const std::array<AngleNoise, 3>& cameras) const {
@@ -164,8 +188,7 @@ class NoiseSearch {
   }
 
   void use_gyro(const Minimum& likeliest) {
-    // The steps of the search, and how many readings there are, make the errors no better.
-    constexpr double log_sigma = 0.05;
+    const double log_sigma = gyro_log_sigma;
     const double factor = std::exp(likeliest.at[0]);
     const bool off = is_off(likeliest.at[0], log_sigma, limits_);
     gyro_.gyro_rad_s = (off ? factor : 1.0) * stated_.gyro_rad_s;

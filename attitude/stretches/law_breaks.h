@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 
 namespace photorque {
 

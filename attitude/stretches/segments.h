@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "attitude/estimation/conventions.h"
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 
 namespace photorque {
 

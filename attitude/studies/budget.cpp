@@ -7,6 +7,8 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
+#include "core/errors.h"
+#include "core/text/numbers.h"
 #include "core/transform.h"
 
 namespace photorque {
@@ -37,7 +39,15 @@ Quat lab_from_body(double tilt_rad, double heading_rad) {
 
 double read_charge_drawn_C(const Settings& settings, const Platform& platform) {
   if (!settings.has("state_of_charge")) {
-    return settings.number_or("charge_drawn_Ah", 0.0, Range::not_negative());
+    const double drawn_C = settings.number_or("charge_drawn_Ah", 0.0, Range::not_negative());
+    if (platform.battery_capacity_C && drawn_C > *platform.battery_capacity_C) {
+      throw settings.error("charge_drawn_Ah", shortest(drawn_C / 3600.0),
+                           "no more than platform.battery_capacity_Ah");
+    }
+    return drawn_C;
+  }
+  if (settings.has("charge_drawn_Ah")) {
+    throw settings.error("charge_drawn_Ah", "state_of_charge too", "one of the two");
   }
   const double state_of_charge = settings.number("state_of_charge", Range::fraction());
   if (state_of_charge < 1.0 && !platform.battery_capacity_C) {
@@ -137,7 +147,9 @@ std::vector<Acting> acting_within_a_second(const AttitudeModel& model, const Pla
         continue;
       }
       all[d].mean_body_N_m += torque_N_m / instants;
-      if (torque_N_m.norm() > all[d].largest_body_N_m.norm()) all[d].largest_body_N_m = torque_N_m;
+      if (!(torque_N_m.norm() <= all[d].largest_body_N_m.norm())) {
+        all[d].largest_body_N_m = torque_N_m;
+      }
     }
   }
   double largest_N_m = 0.0;
@@ -239,7 +251,8 @@ Plot tilt_plot(const Budget& budget) {
     const std::vector<Acting> acting = acting_within_a_second(budget.model, state);
     for (size_t d = 0; d < acting.size(); ++d) {
       const double torque_N_m = acting[d].largest_body_N_m.norm();
-      if (!(torque_N_m > 0.0)) continue;  // nothing to draw on a logarithmic axis
+      // Nothing to draw on a logarithmic axis.
+      if (!(torque_N_m > 0.0) || !std::isfinite(torque_N_m)) continue;
       plot.curves[d].x.push_back(tilt_rad / degree_rad);
       plot.curves[d].y.push_back(torque_N_m);
     }
@@ -258,6 +271,10 @@ Budget make_budget(AttitudeModel model, const PlatformState& state) {
   for (size_t d = 0; d < acting.size(); ++d) {
     const Disturbance& disturbance = budget.model.disturbances[d];
     if (!traits_of(disturbance.kind).reason_against.empty()) continue;
+    if (!acting[d].largest_body_N_m.allFinite() || !acting[d].mean_body_N_m.allFinite()) {
+      throw NumericalError("budget: the torque of " + names[d] +
+                           " is no finite number at this state");
+    }
     const double acceleration_rad_s2 = (inverse_inertia * acting[d].mean_body_N_m).norm();
     const auto angle_after = [&](double t_s) { return 0.5 * acceleration_rad_s2 * t_s * t_s; };
     budget.entries.push_back({budget.model.disturbances[d].kind, names[d],
@@ -280,7 +297,7 @@ Budget read_budget(const Settings& root) {
     budget.beside_paper = false;
     return budget;
   }
-  const Settings settings = root.table("budget");
+  const Settings settings = own_table(root, "budget", true);
   const PlatformState state = read_state(settings, model);
   Budget budget = make_budget(std::move(model), state);
   budget.catalogue = read_catalogue(settings);

@@ -1,7 +1,7 @@
 // The recordings of a diagnosis, made ready: what is fitted, what is held out, what was wrong.
 #pragma once
 
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 #include "diagnosis/attitude/diagnose.h"
 
 namespace photorque {

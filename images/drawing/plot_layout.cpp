@@ -25,8 +25,10 @@ struct Extent {
 AxisRange padded(const Extent& extent, bool log, double margin) {
   if (extent.low > extent.high) return log ? AxisRange{1.0, 10.0} : AxisRange{0.0, 1.0};
   if (log) {
+    // As of drawable(): what differs by rounding alone is one value.
+    const bool is_constant = extent.high <= (1.0 + 1e-9) * extent.low;
     const double factor =
-        extent.low == extent.high ? std::sqrt(10.0) : std::pow(extent.high / extent.low, margin);
+        is_constant ? std::sqrt(10.0) : std::pow(extent.high / extent.low, margin);
     return {extent.low / factor, extent.high * factor};
   }
   const AxisRange range = drawable({extent.low, extent.high});

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "core/constants.h"
 #include "core/errors.h"
@@ -130,6 +131,26 @@ BrdfTable read_brdf(const std::string& text, const std::string& name) {
                      "every incidence with every scatter and azimuth");
   }
   return table;
+}
+
+std::optional<std::string> coverage_notice(const BrdfTable& table) {
+  constexpr double wide_rad = 45.0 * degree_rad;
+  const double incidence_rad = table.incidence_rad.back(), scatter_rad = table.scatter_rad.back();
+  const bool is_constant = table.brdf_1_sr.size() == 1;
+  if (is_constant || std::min(incidence_rad, scatter_rad) >= wide_rad) return std::nullopt;
+  std::ostringstream words;
+  words.precision(3);
+  words << "measured up to an incidence of " << incidence_rad / degree_rad
+        << " deg and a scatter of " << scatter_rad / degree_rad
+        << " deg; to 90 deg the last values go on";
+  // Of a table in radians no angle is larger than pi.
+  constexpr double right_angle = pi / 2.0 + 1e-2;
+  const double widest = std::max(incidence_rad, scatter_rad) / degree_rad;
+  const double azimuth = table.azimuth_rad.back() / degree_rad;
+  if (widest > 0.0 && widest <= right_angle && azimuth <= pi + 1e-2) {
+    words << " (are its angles in radians?)";
+  }
+  return words.str();
 }
 
 }  // namespace photorque

@@ -10,6 +10,7 @@
 // azimuth alone means that scattering does not depend on it.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "raytrace/surfaces/brdf_table.h"
@@ -20,5 +21,9 @@ namespace photorque {
 // column, numbers that are none or out of range, and rows that are missing or there twice; for more
 // than a million rows too.
 BrdfTable read_brdf(const std::string& text, const std::string& name);
+
+// What a reader of results should know of a table that leaves much of the hemisphere to what it has
+// last: up to which angles it was measured, where that is below 45 deg. Nothing for a constant.
+std::optional<std::string> coverage_notice(const BrdfTable& table);
 
 }  // namespace photorque

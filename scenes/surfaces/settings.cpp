@@ -161,7 +161,9 @@ OpticalSurface read_measured(const Settings& table, int bands, const std::string
   if (table.has("brdf_scale")) {
     scale = read_band_values(table, "brdf_scale", bands, Range::positive());
   }
-  MeasuredSurface measured = measured_surface(name, read_brdf(*text, file), scale);
+  const BrdfTable scattering = read_brdf(*text, file);
+  if (const auto notice = coverage_notice(scattering)) notices.push_back(file + ": " + *notice);
+  MeasuredSurface measured = measured_surface(name, scattering, scale);
   std::ostringstream words;
   words.precision(4);
   if (measured.largest_reflectance > 1.0 + sum_tolerance) {

@@ -304,6 +304,27 @@ TEST(Budget, RefusesAStateOfChargeWithoutABattery) {
   EXPECT_THROW(read_budget(settings_of(experiment({{"tilt", node(3)}}))), InputError);
 }
 
+TEST(Budget, RefusesChargesThatCannotBeMeant) {
+  for (const auto& charge : std::vector<std::vector<std::pair<std::string, SettingsNode>>>{
+           {{"state_of_charge", node(0.5)}, {"charge_drawn_Ah", node(1)}},
+           {{"charge_drawn_Ah", node(2.5)}}}) {
+    EXPECT_THROW(read_budget(settings_of(experiment(charge))), InputError);
+  }
+  EXPECT_NO_THROW(read_budget(settings_of(experiment({{"charge_drawn_Ah", node(2.4)}}))));
+}
+
+// A power of the lean that overflows beyond a degree, times the axis of a body that stands upright.
+TEST(Budget, RefusesATorqueThatIsNoNumber) {
+  const SettingsNode law = table({{"kind", node("empirical_torque")},
+                                  {"axes", list({node("lean")})},
+                                  {"tilt_powers", numbers({200})},
+                                  {"tilt_reference_deg", node(1)},
+                                  {"coefficients_N_m", numbers({1})}});
+  EXPECT_THROW(
+      read_budget(settings_of(with_disturbances(experiment({{"tilt_deg", node(40)}}), {law}))),
+      NumericalError);
+}
+
 TEST(Budget, ComparesACatalogue) {
   const SettingsNode bearing = table({{"name", node("x")},
                                       {"radius_mm", node(30)},

@@ -16,5 +16,26 @@ TEST(Disturbances, UnknownKindIsOneClearLine) {
   }
 }
 
+// What sets the field, the turning of the laboratory or the battery's current for all others acts
+// once.
+TEST(Disturbances, ThatSetTheSameForAllAreRefusedTwice) {
+  const SettingsNode cage = table({{"kind", node("helmholtz_cage")},
+                                   {"field_lab_T", numbers({1e-5, 0, 0})}}),
+                     orbit = table({{"kind", node("orbit")},
+                                    {"altitude_m", node(5e5)},
+                                    {"inclination_deg", node(50)}}),
+                     rotation = table({{"kind", node("earth_rotation")}}),
+                     load = table({{"kind", node("power_balance")}, {"load_W", node(10)}});
+  const AttitudeModel model = bench_model();
+  const auto read = [&](const std::vector<SettingsNode>& all) {
+    return read_disturbances(settings_of(table({{"disturbance", list(all)}})), context_of(model));
+  };
+  for (const auto& pair : std::vector<std::vector<SettingsNode>>{
+           {cage, cage}, {cage, orbit}, {orbit, cage}, {rotation, rotation}, {load, load}}) {
+    EXPECT_THROW(read(pair), InputError);
+  }
+  EXPECT_EQ(read({cage, rotation, load}).size(), 3u);
+}
+
 }  // namespace
 }  // namespace photorque

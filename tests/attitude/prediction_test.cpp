@@ -1,5 +1,5 @@
 // What instruments should have read, from the model, against what `propagate` records.
-#include "attitude/estimation/prediction.h"
+#include "attitude/observation/prediction.h"
 
 #include <gtest/gtest.h>
 

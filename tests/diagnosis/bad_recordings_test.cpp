@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 #include "attitude/stretches/segments.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"

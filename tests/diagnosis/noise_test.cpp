@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "attitude/estimation/nominal_model.h"
-#include "attitude/estimation/whitening.h"
+#include "attitude/observation/whitening.h"
 #include "attitude/noise/search.h"
 #include "core/errors.h"
 #include "tests/diagnosis/noisy_recording.h"

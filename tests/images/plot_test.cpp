@@ -230,8 +230,12 @@ TEST(PlotPicture, SurvivesEveryDegeneratePlot) {
   huge.curves[0].y = {-1e300, 1e300};
   Plot infinite = constant_plot();
   infinite.curves[0].y = {HUGE_VAL, 1.0};
+  // A constant but for rounding, whose ticks would have been counted up to 10¹⁶.
+  Plot rounded_on_log = constant_plot();
+  rounded_on_log.y_log = true;
+  rounded_on_log.curves[0].y = {1e-6, std::nextafter(1e-6, 1.0)};
   for (const Plot& plot :
-       {nothing, empty_curve, negative_on_log, one_point_on_log, huge, infinite}) {
+       {nothing, empty_curve, negative_on_log, one_point_on_log, huge, infinite, rounded_on_log}) {
     EXPECT_GT(plot_picture(plot, {}).height, 100);
     EXPECT_THAT(plot_svg(plot, {}), ::testing::HasSubstr("</svg>"));
   }

@@ -174,7 +174,9 @@ TEST(PhotovoltaicArray, ShadedCellIsTheOneInReverse) {
 
 TEST(PhotovoltaicArray, CellPowersAddUpToThePowerDeliveredAndLostInDiodes) {
   std::vector<double> irradiance;
-  for (int i = 0; i < 100; ++i) irradiance.push_back(200.0 + 8.0 * (i % 10) * (i / 10));
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 10; ++column) irradiance.push_back(200.0 + 8.0 * column * row);
+  }
   for (const char* kind : {"none", "ideal", "junction"}) {
     auto table = ten_by_ten();
     table["bypass"] = text(kind);

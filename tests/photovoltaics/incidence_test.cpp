@@ -217,7 +217,7 @@ TEST(PhotovoltaicArray, PhotocurrentFollowsWhatEntersAndTheWaterfallSaysSo) {
 
 using Numbers = std::vector<double>;
 
-Settings cover_settings(std::vector<std::pair<std::string, SettingsNode>> keys) {
+Settings cover_settings(const std::vector<std::pair<std::string, SettingsNode>>& keys) {
   return testing::settings_of(keys);
 }
 

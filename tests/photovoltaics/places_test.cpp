@@ -77,8 +77,9 @@ TEST(CellPlaces, SeparatePiecesOfAMeshAreCellsNumberedRowByRow) {
     EXPECT_EQ(places.rows, 2);
     for (size_t cell = 0; cell < 6; ++cell) {
       EXPECT_NEAR(area_of(places, grid, cell), side_m * side_m, 1e-12);
-      EXPECT_NEAR(places.centres[cell].x(), pitch_m * static_cast<double>(cell % 3) + 0.045, 1e-9);
-      EXPECT_NEAR(places.centres[cell].y(), pitch_m * static_cast<double>(cell / 3) + 0.045, 1e-9);
+      const size_t column = cell % 3, row = cell / 3;
+      EXPECT_NEAR(places.centres[cell].x(), pitch_m * static_cast<double>(column) + 0.045, 1e-9);
+      EXPECT_NEAR(places.centres[cell].y(), pitch_m * static_cast<double>(row) + 0.045, 1e-9);
     }
   }
 }
@@ -88,7 +89,10 @@ TEST(CellPlaces, MeshAndRegularRectanglesGiveTheSameArray) {
   const Scene squares = testing::scene_of(six_squares());
   const SurfaceGrid grid = grid_over(squares);
   std::vector<double> irradiance;
-  for (int i = 0; i < 29 * 19; ++i) irradiance.push_back(300.0 + 2.0 * (i % 29) + 5.0 * (i / 29));
+  for (int row = 0; row < 19; ++row) {
+    for (int column = 0; column < 29; ++column)
+      irradiance.push_back(300.0 + 2.0 * column + 5.0 * row);
+  }
   const ArrayLight sheet = array_light(29, 19, 0.29, 0.19, irradiance);
   ArrayLight lit = sheet;
   lit.area_m2 = grid.area_m2;
@@ -116,7 +120,8 @@ TEST(CellPlaces, MeshAndRegularRectanglesGiveTheSameArray) {
   // And as six rectangles in the experiment.
   std::vector<CellRectangle> rectangles;
   for (int cell = 0; cell < 6; ++cell) {
-    const double u = pitch_m * (cell % 3), v = pitch_m * (cell / 3);
+    const int column = cell % 3, row = cell / 3;
+    const double u = pitch_m * column, v = pitch_m * row;
     rectangles.push_back({u, u + side_m, v, v + side_m});
   }
   const Scene whole = testing::scene_of(plate(0, 0.29, 0, 0.19));
@@ -155,7 +160,7 @@ TEST(CellPlaces, CellsOutOfLineStandInOneRow) {
   EXPECT_NEAR(places.centres[1].y(), 1.0, 1e-9);
 }
 
-SettingsNode rectangle(std::vector<double> low, std::vector<double> high) {
+SettingsNode rectangle(const std::vector<double>& low, const std::vector<double>& high) {
   SettingsNode node;
   node.where = {"test.toml", 9};
   node.value =

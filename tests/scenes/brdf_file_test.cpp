@@ -12,6 +12,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 const std::string small_table =
     "# a goniometer\n\n"
@@ -105,6 +106,22 @@ TEST(MeasuredMaterial, ThatIsNotReciprocalIsSaid) {
   const GltfModel model = painted_with(material_with({{"brdf_file", {"scan.csv"}}}),
                                        with_text(small_table, "60,0,0,0.3", "60,0,0,0.1"));
   EXPECT_THAT(model.notices, Contains(HasSubstr("scan.csv: f(i, o) and f(o, i) differ by 66.6")));
+}
+
+TEST(MeasuredMaterial, MeasuredOverFewAnglesIsSaid) {
+  const auto notices = [](const std::string& rows) {
+    return painted_with(material_with({{"brdf_file", {"scan.csv"}}}),
+                        "incidence_deg,scatter_deg,azimuth_deg,brdf_1_sr\n" + rows)
+        .notices;
+  };
+  EXPECT_THAT(
+      notices("10,0,0,0.2\n10,80,0,0.2\n"),
+      ElementsAre("scan.csv: measured up to an incidence of 10 deg and a scatter of 80 deg; "
+                  "to 90 deg the last values go on"));
+  // 0, 60 and 90 deg as radians.
+  EXPECT_THAT(notices("0,0,0,0.2\n0,1.5708,0,0.2\n1.0472,0,0,0.2\n1.0472,1.5708,0,0.2\n"),
+              ElementsAre(HasSubstr("(are its angles in radians?)")));
+  EXPECT_THAT(notices("0,0,0,0.2\n0,60,0,0.2\n60,0,0,0.2\n60,60,0,0.2\n"), IsEmpty());
 }
 
 TEST(MeasuredMaterial, ThatShinesOrIsMissingIsRefused) {

@@ -196,5 +196,19 @@ TEST_F(AttitudeCommands, RecordingsOfAnotherSimulatorFitToTheirNoise) {
   EXPECT_GE(compared, 11);
 }
 
+// Neither a key that nobody reads nor a torque that is the same at every tilt but for rounding.
+TEST_F(AttitudeCommands, ABudgetEndsAndReadsItsKeys) {
+  const std::string platform =
+      "[platform]\ntopology = \"tabletop\"\nmass_kg = 7\ninertia_kg_m2 = [[0.09, 0, 0], [0, "
+      "0.09, 0], [0, 0, 0.17]]\n[[disturbance]]\nkind = \"turbine_torque\"\ntorque_N_m = 1e-6\n";
+  const Outcome constant = run("budget " + write("b.toml", platform) + " --out " + at("o"));
+  EXPECT_EQ(constant.status, 0) << constant.err;
+  for (const char* key : {"budget.tlit_deg=10", "budget.light.foo=1"}) {
+    const Outcome misspelt = run("budget " + stasis + " --set " + key + " --out " + at("m"));
+    EXPECT_EQ(misspelt.status, 2) << key;
+    EXPECT_THAT(misspelt.err, HasSubstr("an unknown key")) << key;
+  }
+}
+
 }  // namespace
 }  // namespace photorque

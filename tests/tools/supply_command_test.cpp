@@ -129,6 +129,7 @@ TEST_F(SupplyCommand, WrongInputIsOneLineAndExitTwo) {
            {"supply_trade.load_W=0", "supply_trade.load_W"},
            {"supply_trade.tilt_max_deg=90", "supply_trade.tilt_max_deg"},
            {"supply_trade.batery.usable_fraction=1", "perhaps \"battery\""},
+           {"supply_trade.cable.voltage_V=0.1", "V for this load through this cable"},
            {"supply_trade.induction.receiver.outer_radius_m=0.01", "more than inner_radius_m"},
            {"supply_trade.induction.transmitter_height_m=-0.05", "room for the receiver to tilt"},
            {"supply_trade.battery.usable_fraction=1.5", "usable_fraction"}}) {

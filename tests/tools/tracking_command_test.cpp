@@ -67,6 +67,18 @@ TEST_F(TrackingCommands, EstimatesAreRecordingsThatOthersRead) {
   const json summary = json::parse(got.out);
   EXPECT_LT(figure(summary, "smoother_error_arcsec"), figure(summary, "filter_error_arcsec"));
   EXPECT_LT(figure(summary, "filter_error_arcsec"), 40.0);
+  // A truth of another time has nothing to say of these rows.
+  const std::string later = write("later.csv",
+                                  "t_s,q_w,q_x,q_y,q_z\n1e9,1,0,0,0\n1000000001,1,0,0,0\n"
+                                  "1000000002,1,0,0,0\n");
+  const Outcome elsewhere = run("estimate " + tracked + " --recording " + at("p/recording.csv") +
+                                " --truth " + later + " --out " + at("l"));
+  EXPECT_EQ(elsewhere.status, 2);
+  EXPECT_THAT(elsewhere.err, HasSubstr("later.csv: t_s: found no time of the recording"));
+  const Outcome misspelt = run("estimate " + tracked + " --recording " + at("p/recording.csv") +
+                               " --set recording.foo=1 --out " + at("m"));
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_THAT(misspelt.err, HasSubstr("recording.foo"));
   const Outcome balanced =
       run("balance " + tracked + " --set balance.moving_mass_kg=0.25 --set " +
           "balance.lead_mm=2 --recording " + at("e/smoothed.csv") + " --out " + at("b"));

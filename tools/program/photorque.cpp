@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -294,6 +295,8 @@ int run(int argc, char** argv, Interruption& interruption) {
 
 int main(int argc, char** argv) {
   std::set_terminate(photorque::end_without_memory);
+  // A file beyond the limit of its size is a write that fails, not an end.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     photorque::Interruption interruption;
     const int status = photorque::run(argc, argv, interruption);

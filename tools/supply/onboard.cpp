@@ -3,6 +3,8 @@
 
 #include "attitude/disturbances/mass/battery.h"
 #include "attitude/supply/cable.h"
+#include "core/text/display.h"
+#include "core/text/numbers.h"
 #include "tools/supply/options.h"
 
 namespace photorque {
@@ -95,8 +97,16 @@ SupplyOption cable_option(const Settings& s, const SupplyTask& task) {
         cable.insulation_modulus_Pa = at[modulus];
         PlainOption plain;
         plain.mass_kg = 0.5 * cable_mass_kg(cable);
-        const double current_A = task.load_W / at[volts];
-        plain.source_W = task.load_W + current_A * current_A * loop_resistance_ohm(cable);
+        // V I = P + R I², of the two currents the smaller.
+        const double ohm = loop_resistance_ohm(cable);
+        const double square_V2 = at[volts] * at[volts] - 4.0 * ohm * task.load_W;
+        if (square_V2 < 0.0) {
+          throw s.error("voltage_V", shortest(at[volts]) + " V",
+                        "at least " + readable_number(2.0 * std::sqrt(ohm * task.load_W)) +
+                            " V for this load through this cable");
+        }
+        const double current_A = 2.0 * task.load_W / (at[volts] + std::sqrt(square_V2));
+        plain.source_W = task.load_W + current_A * current_A * ohm;
         const double bending = bending_stiffness_N_m_rad(cable);
         // Half of it hangs on the platform, half on its other end.
         const double hanging_N =

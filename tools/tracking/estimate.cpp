@@ -1,5 +1,8 @@
 #include "tools/tracking/estimate.h"
 
+#include <algorithm>
+
+#include "attitude/propagation/run.h"
 #include "attitude/stretches/segments.h"
 #include "core/errors.h"
 #include "tools/runs/camera_sight.h"
@@ -44,7 +47,9 @@ std::vector<Source> read_sources(AttitudeExperiment& experiment,
                                  const std::optional<std::filesystem::path>& truth) {
   RecordingOptions options;
   const Settings& root = experiment.settings();
-  if (root.has("recording")) options = read_recording_options(root.table("recording"));
+  const Settings columns = own_table(root, "recording", false);
+  options = read_recording_options(columns);
+  columns.finish();
   std::vector<Source> sources;
   for (const std::filesystem::path& path : recordings) {
     experiment.add_input(path);
@@ -58,6 +63,12 @@ std::vector<Source> read_sources(AttitudeExperiment& experiment,
     }
     experiment.add_input(*truth);
     sources[0].truth = truth_from(read_recording(*truth), sources[0].recording);
+    const auto known = std::ranges::count_if(sources[0].truth,
+                                             [](const auto& at_row) { return at_row.has_value(); });
+    if (known == 0) {
+      throw InputError({truth->string(), 0}, "t_s", "no time of the recording",
+                       "the truth at the recording's times");
+    }
   }
   return sources;
 }

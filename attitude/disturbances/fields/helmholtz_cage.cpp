@@ -12,6 +12,7 @@
 // is.
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
+#include "core/text/numbers.h"
 
 namespace photorque {
 namespace {
@@ -51,9 +52,15 @@ TimeSeries read_wanted_field_T(const Settings& settings) {
                               s.number("inclination_deg"), s.number_or("ascending_node_deg", 0.0),
                               s.number_or("phase_deg", 0.0),
                               s.number_or("greenwich_angle_deg", 0.0)};
-    return orbit_field_T(orbit, s.number("date_year", {1900.0, 2035.0, false, false}),
-                         s.number("duration_s", Range::positive()),
-                         s.number_or("interval_s", 20.0, Range::positive()));
+    const double date_year = s.number("date_year", {1900.0, 2035.0, false, false});
+    const double duration_s = s.number("duration_s", Range::positive());
+    const double interval_s = s.number_or("interval_s", 20.0, {0.0, duration_s, true, false});
+    constexpr double most_instants = 1e6;
+    if (duration_s > most_instants * interval_s) {
+      throw s.error("duration_s", shortest(duration_s / interval_s) + " intervals",
+                    "at most a million");
+    }
+    return orbit_field_T(orbit, date_year, duration_s, interval_s);
   }
   const Vec3 field_lab_T = settings.vector3_or("field_lab_T", Vec3::Zero());
   return TimeSeries({0.0, 1.0}, {field_lab_T, field_lab_T});
@@ -75,6 +82,7 @@ DisturbanceKind helmholtz_cage_kind() {
           {.reason_against =
                "the coils are a part of the laboratory that is set, not one that is forgotten"},
       .injection = {.reason_against = "diagnose does not screen it"},
+      .sets = "the magnetic field",
       .keys = {
           Key::vector3_or("field_lab_T", Vec3::Zero(), "what the coils set, lab axes; *or*"),
           Key::text("field_file",

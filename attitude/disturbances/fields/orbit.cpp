@@ -57,10 +57,10 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
       settings.number_or("phase_deg", 0.0), settings.number_or("greenwich_angle_deg", 0.0)};
   std::optional<TimeSeries> field_T;
   if (settings.has("date_year")) {
-    constexpr double interval_s = 20.0;
-    field_T =
-        orbit_field_T(orbit, settings.number("date_year", {1900.0, 2035.0, false, false}),
-                      settings.number_or("duration_s", 86400.0, Range::positive()), interval_s);
+    constexpr double interval_s = 20.0, longest_s = 1e6 * interval_s;
+    field_T = orbit_field_T(
+        orbit, settings.number("date_year", {1900.0, 2035.0, false, false}),
+        settings.number_or("duration_s", 86400.0, {0.0, longest_s, true, false}), interval_s);
   }
   std::optional<Vec3> sun_direction;
   if (settings.has("sun_direction")) {
@@ -84,6 +84,7 @@ DisturbanceKind orbit_kind() {
       .injection = {.reason_against = "diagnose does not screen it"},
       .budget = {.reason_against = "an orbit is where the others act"},
       .has_eclipses = true,
+      .sets = "the magnetic field",
       .keys = {
           Key::number("altitude_m", Range::positive(), "above 6371.2 km"),
           Key::number("inclination_deg", {}, "of the orbit"),
@@ -92,7 +93,7 @@ DisturbanceKind orbit_kind() {
           Key::number_or("greenwich_angle_deg", 0.0, {}, "at t = 0"),
           Key::number("date_year", {1900.0, 2035.0, false, false}, "field by IGRF along the orbit")
               .usually_is("the field of `[environment]`"),
-          Key::number_or("duration_s", 86400.0, Range::positive(),
+          Key::number_or("duration_s", 86400.0, {0.0, 2e7, true, false},
                          "with `date_year`: how long the field is known; its end is held"),
           Key::vector3("sun_direction", "towards the Sun, any length: shadow with penumbra")
               .usually_is("always light")}};

@@ -136,6 +136,7 @@ DisturbanceKind power_balance_kind() {
           {.reason_against =
                "acts on the battery alone; of the motion nothing shows it but battery_discharge"},
       .injection = {.reason_against = "diagnose does not screen it"},
+      .sets = "the battery's current",
       .keys = {
           Key::uncertain(
               "load_W", Range::not_negative(),

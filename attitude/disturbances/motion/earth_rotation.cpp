@@ -45,7 +45,8 @@ DisturbanceKind earth_rotation_kind() {
                         {{"the laboratory turns with the Earth: the platform and the gyro feel it",
                           {}}},
                     .needs = Requirement::turning_laboratory},
-      .injection = {.draw = injected::nothing_to_draw(), .alter = plain_change}};
+      .injection = {.draw = injected::nothing_to_draw(), .alter = plain_change},
+      .sets = "the turning of the laboratory"};
 }
 
 }  // namespace photorque

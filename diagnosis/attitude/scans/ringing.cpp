@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/whitening.h"
+#include "attitude/observation/whitening.h"
 
 #include "core/constants.h"
 

@@ -2,7 +2,7 @@
 // frequency.
 #pragma once
 
-#include "attitude/estimation/prediction.h"
+#include "attitude/observation/prediction.h"
 #include "diagnosis/attitude/effects/screen.h"
 
 namespace photorque {

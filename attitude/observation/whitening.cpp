@@ -1,4 +1,4 @@
-#include "attitude/estimation/whitening.h"
+#include "attitude/observation/whitening.h"
 
 #include <algorithm>
 #include <cmath>

@@ -69,6 +69,15 @@ struct Observation {
 
   // Blocks of rows, by the mean of their times. A block without a reading has count 0.
   std::vector<double> time_s;
+  // Over what times a block's means are taken. They hold the motion's curvature.
+  struct Spread {
+    double readings_s = 0.0, attitude_s = 0.0;  // root mean square about time_s
+    double readings_fourth_s = 0.0;             // fourth root of the mean fourth power
+    // Of the gyro's times about time_s, the mean, and by how much its mean was moved for that.
+    double gyro_offset_s = 0.0;
+    Vec3 gyro_moved_rad_s = Vec3::Zero();
+  };
+  std::vector<Spread> spread;         // empty: blocks of one row each
   std::vector<Quat> attitude;         // lab from body, mean of the block
   std::vector<double> attitude_rows;  // how many rows went into it
   std::vector<Vec3> gyro_rad_s;
@@ -79,6 +88,7 @@ struct Observation {
   int64_t rows = 0;             // of the file
 
   size_t blocks() const { return time_s.size(); }
+  Spread spread_of(size_t block) const { return spread.empty() ? Spread() : spread[block]; }
   // Of a channel as in NoiseLevels.
   double rows_of(size_t block, int channel) const {
     if (channel >= vector_channels) {
@@ -97,9 +107,11 @@ struct Observation {
   // Readings in the blocks [first, last): attitudes, or rates and scalars where there are none.
   size_t readings(size_t first, size_t last) const;
   double duration_s() const { return time_s.back() - time_s.front(); }
-  // The blocks [first, last) alone, the charge drawn before them counted.
+  // The blocks [first, last) alone, the charge drawn before them counted. Of the first, a mean over
+  // times before the part began, a reading at its middle is made as far as its neighbours allow.
   Observation part(size_t first, size_t last) const;
-  // Neighbours averaged until about `max_blocks` are left: as good for what is slow against them.
+  // Neighbours averaged until about `max_blocks` are left, but for the first row, with which a
+  // motion starts: as good for what is slow against them.
   Observation averaged(size_t max_blocks) const;
 };
 

@@ -1,9 +1,11 @@
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "attitude/observation/block_instants.h"
+#include "attitude/observation/block_means.h"
 #include "attitude/readings/columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
@@ -12,139 +14,6 @@ namespace photorque {
 namespace {
 
 constexpr size_t fewest_readings = 20;
-
-Quat turned_by(const Vec3& rotation_rad) {
-  const double angle = rotation_rad.norm();
-  if (angle == 0.0) return Quat::Identity();
-  return Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
-}
-
-// Rows [first, last) of an observation, which become one block.
-struct BlockRows {
-  const Observation& from;
-  size_t first, last;
-
-  // The mean time of the attitudes, because they move; of all rows where there is none.
-  double time_s() const {
-    double rows = 0.0, sum_s = 0.0;
-    for (size_t i = first; i < last; ++i) {
-      rows += from.attitude_rows[i];
-      sum_s += from.attitude_rows[i] * from.time_s[i];
-    }
-    if (rows > 0.0) return sum_s / rows;
-    for (size_t i = first; i < last; ++i) sum_s += from.time_s[i];
-    return sum_s / static_cast<double>(last - first);
-  }
-
-  // A rate in body axes at a time, and how it changes.
-  struct Rate {
-    double rad_s = NAN, slope_rad_s2 = 0.0;
-  };
-
-  Rate gyro_rate(int axis, double at_s) const {
-    return mean_of(
-        at_s, [&](size_t i) { return from.gyro_rows[i][axis]; },
-        [&](size_t i) { return from.gyro_rad_s[i][axis]; });
-  }
-
-  // The mean of one number's readings, moved to `at_s` with the slope over three blocks: a camera
-  // that sees every second row has another mean time.
-  template <typename Weight, typename Value>
-  Rate mean_of(double at_s, const Weight& weight_of, const Value& value_of) const {
-    const size_t length = last - first;
-    const double reach_s = 1.5 * (from.time_s[last - 1] - from.time_s[first]) + 1e-9;
-    double rows = 0.0, rate_sum = 0.0, time_sum_s = 0.0;
-    double all = 0.0, all_rate = 0.0, all_s = 0.0, all_s2 = 0.0, all_product = 0.0;
-    const size_t end = std::min(from.blocks(), last + length);
-    for (size_t i = first - std::min(first, length); i < end; ++i) {
-      const double weight = weight_of(i), since_s = from.time_s[i] - at_s;
-      if (!(weight > 0.0) || std::abs(since_s) > reach_s) continue;
-      const double rate_rad_s = value_of(i);
-      all += weight;
-      all_rate += weight * rate_rad_s;
-      all_s += weight * since_s;
-      all_s2 += weight * since_s * since_s;
-      all_product += weight * since_s * rate_rad_s;
-      if (i < first || i >= last) continue;
-      rows += weight;
-      rate_sum += weight * rate_rad_s;
-      time_sum_s += weight * since_s;
-    }
-    if (rows == 0.0) return {};
-    const double spread_s2 = all * all_s2 - all_s * all_s;
-    if (!(spread_s2 > 0.0)) return {rate_sum / rows};
-    const double slope_rad_s2 = (all * all_product - all_s * all_rate) / spread_s2;
-    return {(rate_sum - slope_rad_s2 * time_sum_s) / rows, slope_rad_s2};
-  }
-
-  // From the first attitude to the last.
-  Vec3 rate_between_attitudes_rad_s() const {
-    size_t begin = last, end = last;
-    for (size_t i = first; i < last; ++i) {
-      if (!(from.attitude_rows[i] > 0.0)) continue;
-      if (begin == last) begin = i;
-      end = i;
-    }
-    if (begin == end) return Vec3::Zero();
-    return rotation_vector(from.attitude[begin].conjugate() * from.attitude[end]) /
-           (from.time_s[end] - from.time_s[begin]);
-  }
-
-  // Each attitude moved to the mean time of all, then their mean as rotations from the first of
-  // them. A wrong rate does no harm: times before and after the mean count alike.
-  Quat mean_attitude(double at_s, const std::array<Rate, 3>& gyro) const {
-    Vec3 rate_rad_s = rate_between_attitudes_rad_s(), slope_rad_s2 = Vec3::Zero();
-    const Vec3 by_gyro_rad_s(gyro[0].rad_s, gyro[1].rad_s, gyro[2].rad_s);
-    // What the gyro's numbers mean is only found out later; here they count where they agree, as
-    // far as two attitudes can tell.
-    constexpr double cameras_rad_s = 0.01;
-    if ((by_gyro_rad_s - rate_rad_s).norm() < cameras_rad_s + 0.1 * rate_rad_s.norm()) {
-      rate_rad_s = by_gyro_rad_s;
-      slope_rad_s2 = {gyro[0].slope_rad_s2, gyro[1].slope_rad_s2, gyro[2].slope_rad_s2};
-    }
-    const auto moved = [&](size_t i) {
-      const double by_s = at_s - from.time_s[i];
-      return from.attitude[i] * turned_by(by_s * (rate_rad_s - 0.5 * by_s * slope_rad_s2));
-    };
-    Quat reference(NAN, NAN, NAN, NAN);
-    Vec3 sum = Vec3::Zero();
-    double rows = 0.0;
-    for (size_t i = first; i < last; ++i) {
-      const double weight = from.attitude_rows[i];
-      if (!(weight > 0.0)) continue;
-      if (rows == 0.0) reference = moved(i);
-      sum += weight * rotation_vector(moved(i) * reference.conjugate());
-      rows += weight;
-    }
-    return rows > 0.0 ? (turned_by(sum / rows) * reference).normalized() : reference;
-  }
-
-  void append_to(Observation& seen) const {
-    const double at_s = time_s();
-    seen.time_s.push_back(at_s);
-    const std::array<Rate, 3> gyro = {gyro_rate(0, at_s), gyro_rate(1, at_s), gyro_rate(2, at_s)};
-    seen.attitude.push_back(mean_attitude(at_s, gyro));
-    double attitude_rows = 0.0;
-    Vec3 gyro_rows = Vec3::Zero();
-    for (size_t i = first; i < last; ++i) {
-      attitude_rows += from.attitude_rows[i];
-      gyro_rows += from.gyro_rows[i];
-    }
-    seen.attitude_rows.push_back(attitude_rows);
-    seen.gyro_rad_s.emplace_back(gyro[0].rad_s, gyro[1].rad_s, gyro[2].rad_s);
-    seen.gyro_rows.push_back(gyro_rows);
-    for (size_t s = 0; s < from.scalar.size(); ++s) {
-      const ScalarReadings& all = from.scalar[s];
-      if (all.rows.empty()) continue;
-      const auto weight = [&](size_t i) { return all.rows[i]; };
-      seen.scalar[s].value.push_back(
-          mean_of(at_s, weight, [&](size_t i) { return all.value[i]; }).rad_s);
-      double rows = 0.0;
-      for (size_t i = first; i < last; ++i) rows += all.rows[i];
-      seen.scalar[s].rows.push_back(rows);
-    }
-  }
-};
 
 // Angles that come again after a whole turn, made continuous so that means of them mean something.
 void unwind(std::vector<double>& angle_rad) {
@@ -344,17 +213,33 @@ Observation Observation::averaged(size_t max_blocks) const {
   if (blocks() <= max_blocks) return *this;
   Observation result = *this;
   result.time_s.clear();
+  result.spread.clear();
   result.attitude.clear();
   result.attitude_rows.clear();
   result.gyro_rad_s.clear();
   result.gyro_rows.clear();
   result.scalar = {};
   const double block_s = duration_s() / static_cast<double>(max_blocks);
+  // Attitudes that are fewer than the blocks are somewhere in them: where the body turns far within
+  // one, they and the gyro's readings beside them stand apart.
+  constexpr double far_rad = 0.1;
+  const auto attitudes = static_cast<size_t>(
+      std::ranges::count_if(attitude_rows, [](double rows) { return rows > 0.0; }));
+  const bool apart = attitudes <= max_blocks && fastest_rad_s(*this) * block_s > far_rad;
   for (size_t first = 0, last = 0; first < blocks(); first = last) {
     // Half a row of slack, so that rounding of the times does not make uneven blocks.
     const double end_s = time_s[first] + block_s - 0.5 * row_interval_s;
-    for (last = first + 1; last < blocks() && time_s[last] <= end_s;) ++last;
-    BlockRows{*this, first, last}.append_to(result);
+    last = first + 1;
+    const auto is_within = [&](size_t row) {
+      return time_s[row] <= end_s && !(apart && attitude_rows[row] > 0.0);
+    };
+    // A motion starts at a reading: no mean over times before its start could be predicted.
+    const bool stands_alone = first == 0 || (apart && attitude_rows[first] > 0.0);
+    while (!stands_alone && last < blocks() && is_within(last)) ++last;
+    // No short one at the end.
+    const double left_s = last < blocks() ? time_s.back() - time_s[last] + row_interval_s : block_s;
+    if (!stands_alone && !apart && left_s < 0.5 * block_s) last = blocks();
+    append_mean(*this, first, last, result);
   }
   return result;
 }
@@ -366,6 +251,7 @@ Observation Observation::part(size_t first, size_t last) const {
   };
   Observation result = *this;
   cut(result.time_s, time_s);
+  if (!spread.empty()) cut(result.spread, spread);
   cut(result.attitude, attitude);
   cut(result.attitude_rows, attitude_rows);
   cut(result.gyro_rad_s, gyro_rad_s);
@@ -375,6 +261,7 @@ Observation Observation::part(size_t first, size_t last) const {
     cut(result.scalar[s].value, scalar[s].value);
     cut(result.scalar[s].rows, scalar[s].rows);
   }
+  if (result.spread_of(0).readings_s > 0.0) straighten_first(*this, first, result);
   const double start_s = result.time_s.front();
   double from_s = time_s.front();
   for (size_t i = 0; i < schedule.time_s.size() && from_s < start_s; ++i) {

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 
 namespace photorque {
 

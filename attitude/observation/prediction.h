@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "attitude/estimation/observation.h"
+#include "attitude/observation/observation.h"
 #include "attitude/propagation/propagator.h"
 #include "inference/estimator/normal_sums.h"
 #include "inference/estimator/parameter.h"

@@ -1,0 +1,304 @@
+#include "attitude/observation/expected_readings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace photorque {
+namespace {
+
+Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
+  return {v[0][lane], v[1][lane], v[2][lane]};
+}
+
+// By how much the attitude that a camera reports is the past's. Body axes; the rate changes evenly
+// meanwhile: for delays far below the periods of the motion, as the square of their ratio.
+struct Delay {
+  double time_s = 0.0;
+  Vec3 rate_rad_s = Vec3::Zero(), acceleration_rad_s2 = Vec3::Zero();  // now
+
+  // From the attitude then to that now.
+  Vec3 turn_rad() const { return time_s * (rate_rad_s - 0.5 * time_s * acceleration_rad_s2); }
+};
+
+struct StateChange {
+  Vec3 rotation_body_rad, rate_rad_s;
+};
+
+// What they read: f = ω' × r + ω × (ω × r) − g, without g in free fall, and the field of the lab.
+class FieldReadings {
+ public:
+  FieldReadings(const Dynamics& dynamics, const Observation& seen)
+      : place_m_(seen.fields.accelerometer_place_m),
+        bias_m_s2_(seen.fields.accelerometer_bias_m_s2),
+        bias_T_(seen.fields.magnetometer_bias_T),
+        field_lab_T_(dynamics.model().environment.magnetic_field_lab_T) {
+    if (dynamics.model().platform.has_bearing()) {
+      gravity_lab_m_s2_ = dynamics.model().environment.gravity_lab_m_s2;
+    }
+  }
+
+  bool feels_turning() const { return place_m_.norm() > 0.0; }
+
+  FieldRow at(const PlatformState& state, const Vec3& acceleration_rad_s2) const {
+    const Vec3& w = state.rate_body_rad_s;
+    FieldRow row;
+    row << acceleration_rad_s2.cross(place_m_) + w.cross(w.cross(place_m_)) -
+               state.lab_from_body.conjugate() * gravity_lab_m_s2_ + bias_m_s2_,
+        state.lab_from_body.conjugate() * field_lab_T_ + bias_T_;
+    return row;
+  }
+
+  // `turning`: the change of ω'.
+  FieldRow slope(const PlatformState& state, const StateChange& by, const Vec3& turning) const {
+    const Vec3 &w = state.rate_body_rad_s, &dw = by.rate_rad_s;
+    const Vec3 gravity = state.lab_from_body.conjugate() * gravity_lab_m_s2_,
+               field = state.lab_from_body.conjugate() * field_lab_T_;
+    FieldRow row;
+    row << turning.cross(place_m_) + dw.cross(w.cross(place_m_)) + w.cross(dw.cross(place_m_)) -
+               gravity.cross(by.rotation_body_rad),
+        field.cross(by.rotation_body_rad);
+    return row;
+  }
+
+ private:
+  Vec3 place_m_, bias_m_s2_, bias_T_, field_lab_T_, gravity_lab_m_s2_ = Vec3::Zero();
+};
+
+// How the angular acceleration changes by each variable: through the state, and by a parameter
+// itself.
+class AccelerationSlopes {
+ public:
+  AccelerationSlopes(const Sensitivity& sensitivity, const Samples& samples)
+      : count_(sensitivity.variables().size()), all_(3 * count_, Lanes(0.0)) {
+    const Dynamics& dynamics = sensitivity.dynamics();
+    const auto size = static_cast<size_t>(dynamics.size());
+    std::vector<Lanes> partials(size * DualLanes::block);
+    constexpr auto width = static_cast<size_t>(DualLanes::block);
+    const auto partial = [&](size_t component, size_t k) {
+      return partials[component * width + k];
+    };
+    const auto evaluate = [&](const Dynamics::Block& block) {
+      dynamics.derivatives(samples.time_s, samples.held[0], samples.y.data(), block,
+                           partials.data());
+    };
+    for (size_t first = 0; first < size; first += width) {
+      Dynamics::Block block = nothing();
+      for (size_t k = 0; k < width && first + k < size; ++k) {
+        block.state[k] = static_cast<int>(first + k);
+      }
+      evaluate(block);
+      for (size_t k = 0; k < width && first + k < size; ++k) {
+        for (size_t v = 0; v < count_; ++v) {
+          for (size_t a = 0; a < 3; ++a) {
+            all_[a * count_ + v] +=
+                partial(component::rate + a, k) * samples.derivatives[(first + k) * count_ + v];
+          }
+        }
+      }
+    }
+    for (size_t v = 0; v < count_; ++v) {
+      const Variable& variable = sensitivity.variables()[v];
+      if (variable.parameter < 0) continue;
+      Dynamics::Block block = nothing();
+      block.parameter[0] = dynamics.first_parameter(variable.disturbance) + variable.parameter;
+      evaluate(block);
+      for (size_t a = 0; a < 3; ++a) all_[a * count_ + v] += partial(component::rate + a, 0);
+    }
+  }
+
+  Vec3 of(size_t v, int lane) const {
+    return {all_[v][lane], all_[count_ + v][lane], all_[2 * count_ + v][lane]};
+  }
+
+ private:
+  static Dynamics::Block nothing() {
+    Dynamics::Block block;
+    block.state.fill(-1);
+    block.parameter.fill(-1);
+    return block;
+  }
+
+  size_t count_;
+  std::vector<Lanes> all_;
+};
+
+// The slopes of the six readings in one lane, a row each.
+class Slopes {
+ public:
+  Slopes(const Sensitivity& sensitivity, const Samples& samples)
+      : count_(sensitivity.variables().size()),
+        samples_(samples),
+        readings_(Dynamics::reading_count * count_) {
+    sensitivity.readings(samples.time_s, samples.held, samples.y.data(), samples.derivatives.data(),
+                         readings_.data());
+  }
+
+  // Those of one lane, once see() was called.
+  template <class Matrix>
+  void fill(int lane, Matrix& slope) const {
+    for (Eigen::Index r = 0; r < 6; ++r) {
+      const Lanes* from = seen_.data() + static_cast<size_t>(r) * count_;
+      for (size_t v = 0; v < count_; ++v) slope(r, static_cast<Eigen::Index>(v)) = from[v][lane];
+    }
+  }
+
+  // The camera sees the attitude, its own misalignment, and all of it late, by `delay_s`.
+  void see(const Lanes& delay_s, const Vec3Of<Lanes>& rate_then_rad_s) {
+    const Lanes* y = samples_.y.data();
+    const Lanes norm = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2] + y[3] * y[3]);
+    const QuatOf<Lanes> q(y[0] / norm, y[1] / norm, y[2] / norm, y[3] / norm);
+    const Mat3Of<Lanes> lab_from_body = q.toRotationMatrix();
+    seen_.resize(6 * count_);
+    for (size_t v = 0; v < count_; ++v) {
+      const auto by = [&](size_t c) -> const Lanes& {
+        return samples_.derivatives[c * count_ + v];
+      };
+      const auto reading = [&](size_t r) -> const Lanes& { return readings_[r * count_ + v]; };
+      const QuatOf<Lanes> change(by(0), by(1), by(2), by(3));
+      const Vec3Of<Lanes> turned = (q.conjugate() * change).vec();
+      Vec3Of<Lanes> rotation_body;
+      for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<size_t>(k);
+        rotation_body[k] = 2.0 * turned[k] + reading(3 + axis) - reading(6) * rate_then_rad_s[k] -
+                           delay_s * by(component::rate + axis);
+      }
+      const Vec3Of<Lanes> rotation_lab = lab_from_body * rotation_body;
+      for (size_t k = 0; k < 3; ++k) {
+        seen_[k * count_ + v] = rotation_lab[static_cast<Eigen::Index>(k)];
+        seen_[(3 + k) * count_ + v] = reading(k);
+      }
+    }
+  }
+
+  // Of one component of the state.
+  double of_component(int c, size_t v, int lane) const {
+    return samples_.derivatives[static_cast<size_t>(c) * count_ + v][lane];
+  }
+
+  // Of the state itself: the rotation of the body, in body axes, and the rate.
+  StateChange change(size_t v, int lane, const PlatformState& state) const {
+    const auto by = [&](size_t c) { return samples_.derivatives[c * count_ + v][lane]; };
+    const Quat turned(by(0), by(1), by(2), by(3));
+    return {2.0 * (state.lab_from_body.conjugate() * turned).vec(),
+            {by(component::rate), by(component::rate + 1), by(component::rate + 2)}};
+  }
+
+ private:
+  size_t count_;
+  const Samples& samples_;
+  std::vector<Lanes> readings_;
+  std::vector<Lanes> seen_;  // slopes of the attitude (lab axes) and of the gyro, a row each
+};
+
+// What noiseless instruments read at eight instants.
+struct Sight {
+  Vec3Of<Lanes> gyro_rad_s, camera_error_rad, acceleration_rad_s2;
+  Lanes delay_s = 0.0;
+
+  // When the attitude was as the camera reports it.
+  Vec3Of<Lanes> rate_then_rad_s(const Lanes* y) const {
+    Vec3Of<Lanes> rate;
+    for (int k = 0; k < 3; ++k) rate[k] = y[component::rate + k] - delay_s * acceleration_rad_s2[k];
+    return rate;
+  }
+};
+
+// The acceleration is zero where nothing that is read depends on it.
+Sight sight_of(const Dynamics& dynamics, const Samples& samples, bool needs_acceleration) {
+  Sight sight;
+  const std::optional<Dynamics::Offsets>& offsets = dynamics.offsets();
+  if (offsets && offsets->camera_delay_s == 0.0 && !needs_acceleration) {
+    for (int k = 0; k < 3; ++k) {
+      sight.gyro_rad_s[k] =
+          samples.y[component::rate + static_cast<size_t>(k)] + offsets->gyro_rad_s[k];
+      sight.camera_error_rad[k] = offsets->camera_rad[k];
+      sight.acceleration_rad_s2[k] = 0.0;
+    }
+    return sight;
+  }
+  const Dynamics::Instants now = dynamics.at(samples.time_s, samples.held, samples.y.data());
+  sight.gyro_rad_s = now.gyro_rad_s;
+  sight.camera_error_rad = now.camera_error_rad;
+  sight.delay_s = now.camera_delay_s;
+  for (int k = 0; k < 3; ++k) {
+    sight.acceleration_rad_s2[k] = now.rates[component::rate + static_cast<size_t>(k)];
+  }
+  return sight;
+}
+
+bool any_field(const std::vector<int>& scalars) {
+  return std::any_of(scalars.begin(), scalars.end(),
+                     [](int s) { return s >= first_field && s < first_place; });
+}
+
+class ReadingsOfSamples : public ExpectedReadings {
+ public:
+  ReadingsOfSamples(const Dynamics& dynamics, const Sensitivity* sensitivity,
+                    const Samples& samples, const Observation& seen,
+                    const std::vector<int>& scalars)
+      : samples_(samples),
+        fields_(dynamics, seen),
+        has_fields_(any_field(scalars)),
+        sight_(sight_of(dynamics, samples, has_fields_)),
+        place_(dynamics.first_of_translation()),
+        y_(samples.y.size()) {
+    if (sensitivity == nullptr) return;
+    slopes_.emplace(*sensitivity, samples);
+    slopes_->see(sight_.delay_s, sight_.rate_then_rad_s(samples.y.data()));
+    if (has_fields_ && fields_.feels_turning()) turning_.emplace(*sensitivity, samples);
+  }
+
+  ExpectedInstant at(int lane) override {
+    for (size_t c = 0; c < y_.size(); ++c) y_[c] = samples_.y[c][lane];
+    ExpectedInstant instant;
+    instant.state = to_state(samples_.time_s[lane], y_);
+    const Delay delay{sight_.delay_s[lane], instant.state.rate_body_rad_s,
+                      in_lane(sight_.acceleration_rad_s2, lane)};
+    instant.camera_offset_body = in_lane(sight_.camera_error_rad, lane) - delay.turn_rad();
+    instant.gyro_rad_s = in_lane(sight_.gyro_rad_s, lane);
+    if (has_fields_) instant.fields = fields_.at(instant.state, delay.acceleration_rad_s2);
+    for (int k = 0; place_ >= 0 && k < 4; ++k) {
+      instant.place[k] = y_[static_cast<size_t>(place_ + k)];
+    }
+    return instant;
+  }
+
+  void fill_slopes(int lane, const ExpectedInstant& instant, SlopeRows& slope) const override {
+    if (!slopes_) return;
+    slopes_->fill(lane, slope);
+    for (Eigen::Index v = 0; v < slope.cols(); ++v) {
+      const auto column = static_cast<size_t>(v);
+      if (has_fields_) {
+        slope.col(v).segment<first_place - first_field>(vector_channels + first_field) =
+            fields_.slope(instant.state, slopes_->change(column, lane, instant.state),
+                          turning_ ? turning_->of(column, lane) : Vec3::Zero());
+      }
+      for (int k = 0; place_ >= 0 && k < scalar_count - first_place; ++k) {
+        slope(vector_channels + first_place + k, v) =
+            slopes_->of_component(place_ + k, column, lane);
+      }
+    }
+  }
+
+ private:
+  const Samples& samples_;
+  FieldReadings fields_;
+  bool has_fields_;
+  Sight sight_;
+  int place_;
+  std::vector<double> y_;  // of one lane
+  std::optional<Slopes> slopes_;
+  std::optional<AccelerationSlopes> turning_;
+};
+
+}  // namespace
+
+std::unique_ptr<ExpectedReadings> expected_readings(const Dynamics& dynamics,
+                                                    const Sensitivity* sensitivity,
+                                                    const Samples& samples, const Observation& seen,
+                                                    const std::vector<int>& scalars) {
+  return std::make_unique<ReadingsOfSamples>(dynamics, sensitivity, samples, seen, scalars);
+}
+
+}  // namespace photorque

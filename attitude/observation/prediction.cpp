@@ -1,0 +1,215 @@
+#include "attitude/observation/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "attitude/observation/block_instants.h"
+#include "attitude/observation/expected_readings.h"
+#include "attitude/observation/whitening.h"
+#include "attitude/propagation/sampling.h"
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+Quat turned(const Quat& from, const Vec3& by_rad) {
+  const double angle_rad = by_rad.norm();
+  if (angle_rad == 0.0) return from;
+  return (from * Quat(Eigen::AngleAxisd(angle_rad, by_rad / angle_rad))).normalized();
+}
+
+// The mean of a block's instants. Of attitudes it is what observation.cpp makes of readings: moved
+// to the block's time as by the constant rate that leaves no trend, which puts the outer two into
+// the middle between them.
+ExpectedInstant mean_of(const std::vector<ExpectedInstant>& all, const BlockInstants& instants,
+                        size_t block, double time_s) {
+  if (all.size() == 1) {
+    ExpectedInstant only = all.front();
+    only.gyro_mean_rad_s = only.gyro_rad_s;
+    return only;
+  }
+  const ExpectedInstant &first = all.front(), &last = all.back();
+  ExpectedInstant mean;
+  mean.state = first.state;
+  mean.state.time_s = time_s;
+  mean.state.rate_body_rad_s.setZero();
+  for (size_t i = 0; i < all.size(); ++i) {
+    const double weight = instants.weight(block, i);
+    mean.state.rate_body_rad_s += weight * all[i].state.rate_body_rad_s;
+    mean.camera_offset_body += weight * all[i].camera_offset_body;
+    mean.gyro_rad_s += weight * all[i].gyro_rad_s;
+    mean.gyro_mean_rad_s += instants.gyro_weight(block, i) * all[i].gyro_rad_s;
+    mean.fields += weight * all[i].fields;
+    mean.place += weight * all[i].place;
+  }
+  const Quat &before = first.state.lab_from_body, &after = last.state.lab_from_body;
+  const Quat middle = turned(before, 0.5 * rotation_vector(before.conjugate() * after));
+  Vec3 turn_rad = Vec3::Zero();
+  if (all.size() == 3) {
+    turn_rad = instants.weight(block, 1) *
+               rotation_vector(middle.conjugate() * all[1].state.lab_from_body);
+  }
+  // Attitudes may stand closer together than the other readings.
+  const double between_s = instants.since_s(block, all.size() - 1) - instants.since_s(block, 0);
+  if (between_s > 0.0) {
+    const Vec3 acceleration_rad_s2 =
+        (last.state.rate_body_rad_s - first.state.rate_body_rad_s) / between_s;
+    turn_rad += 0.5 * instants.attitudes_excess_s2(block) * acceleration_rad_s2;
+  }
+  mean.state.lab_from_body = turned(middle, turn_rad);
+  return mean;
+}
+
+class Comparison {
+ public:
+  Comparison(const Observation& seen, const BlockInstants& instants, double fastest_rad_s,
+             size_t variables, bool keep, double max_chi2)
+      : seen_(seen),
+        instants_(instants),
+        max_chi2_(max_chi2),
+        max_rate_rad_s_(runaway * fastest_rad_s),
+        sums_(static_cast<Eigen::Index>(variables)),
+        slope_(Eigen::Index{channel_count}, static_cast<Eigen::Index>(variables)),
+        keep_(keep) {
+    slope_.setZero();
+    instant_slope_ = slope_;
+    for (int channel = 0; channel < channel_count; ++channel) {
+      whitening_.emplace_back(seen, channel, slope_.cols() + 1);
+      const bool is_scalar = channel >= vector_channels;
+      if (is_scalar && seen.has(static_cast<Scalar>(channel - vector_channels))) {
+        scalars_.push_back(channel - vector_channels);
+      }
+    }
+  }
+
+  void add(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples) {
+    const std::unique_ptr<ExpectedReadings> expected =
+        expected_readings(dynamics, sensitivity, samples, seen_, scalars_);
+    // Nothing of what follows would be worth its steps.
+    if (chi2_ > max_chi2_) throw NumericalError("the prediction has left the readings");
+    for (int lane = 0; lane < samples.count; ++lane) {
+      const size_t instant = samples.first + static_cast<size_t>(lane),
+                   block = instant / instants_.per_block();
+      moments_.push_back(expected->at(lane));
+      if (!(moments_.back().state.rate_body_rad_s.norm() < max_rate_rad_s_)) {
+        throw NumericalError("the motion runs away");
+      }
+      if (instants_.per_block() == 1) {
+        expected->fill_slopes(lane, moments_.back(), slope_);
+      } else {
+        expected->fill_slopes(lane, moments_.back(), instant_slope_);
+        if (moments_.size() == 1) slope_.setZero();
+        slope_ += instants_.weight(block, moments_.size() - 1) * instant_slope_;
+      }
+      if (moments_.size() < instants_.per_block()) continue;
+      add_block(block, mean_of(moments_, instants_, block, seen_.time_s[block]));
+      moments_.clear();
+    }
+  }
+
+  Prediction finish() {
+    result_.sums = sums_.finish();
+    return std::move(result_);
+  }
+
+ private:
+  void add_block(size_t block, const ExpectedInstant& moment) {
+    const PlatformState& state = moment.state;
+    const Vec3 &camera_offset_body = moment.camera_offset_body, &gyro_rad_s = moment.gyro_rad_s;
+    WhiteRow white = WhiteRow::Constant(NAN), off = white;
+    if (seen_.attitude_rows[block] > 0.0 && seen_.sees_some_attitude()) {
+      off.head<3>() = rotation_vector(seen_.attitude[block] * state.lab_from_body.conjugate()) -
+                      state.lab_from_body * camera_offset_body;
+    }
+    off.segment<3>(3) = seen_.gyro_rad_s[block] - moment.gyro_mean_rad_s;
+    if (instants_.per_block() > 1) off.segment<3>(3) -= seen_.spread[block].gyro_moved_rad_s;
+    Eigen::Matrix<double, scalar_count, 1> scalars = Eigen::Matrix<double, scalar_count, 1>::Zero();
+    for (const int s : scalars_) {
+      const ScalarReadings& read = seen_.scalar[static_cast<size_t>(s)];
+      if (s >= first_field) {
+        scalars[s] =
+            s < first_place ? moment.fields[s - first_field] : moment.place[s - first_place];
+        off[vector_channels + s] = read.value[block] - scalars[s];
+        continue;  // its slopes are filled
+      }
+      const auto which = static_cast<Scalar>(s);
+      const Vec3 camera_offset_lab = state.lab_from_body * camera_offset_body;
+      const double angle = camera_offset_lab.norm();
+      const Quat as_seen = angle > 0.0 ? Quat(Eigen::AngleAxisd(angle, camera_offset_lab / angle)) *
+                                             state.lab_from_body
+                                       : state.lab_from_body;
+      const ScalarReading reading = scalar_reading(which, as_seen, gyro_rad_s);
+      scalars[s] = reading.value;
+      off[vector_channels + s] = scalar_difference(which, read.value[block], reading.value);
+      slope_.row(vector_channels + s) = reading.by_rotation_lab.transpose() * slope_.topRows<3>() +
+                                        reading.by_rate.transpose() * slope_.middleRows<3>(3);
+    }
+    for (int channel = 0; channel < channel_count; ++channel) {
+      const double rows = seen_.rows_of(block, channel);
+      if (rows > 0.0) white[channel] = put(channel, block, rows, off[channel]);
+      if (!(rows > 0.0)) off[channel] = NAN;
+    }
+    if (!keep_) return;
+    result_.residual.push_back(white);
+    result_.off.push_back(off);
+    result_.states.push_back(state);
+    result_.camera_offset_lab_rad.emplace_back(state.lab_from_body * camera_offset_body);
+    result_.gyro_rad_s.push_back(moment.gyro_mean_rad_s);
+    result_.scalars.push_back(scalars);
+  }
+
+  // Slopes and residual, whitened alike. Returns the whitened residual.
+  double put(int channel, size_t block, double rows, double off) {
+    auto row = sums_.next();
+    const Eigen::Index n = slope_.cols();
+    row.head(n) = slope_.row(channel);
+    row[n] = off;
+    whitening_[static_cast<size_t>(channel)].apply(seen_.time_s[block], rows, row);
+    chi2_ += row[n] * row[n];
+    return row[n];
+  }
+
+  // Times the fastest motion seen: no trial of parameters is worth more.
+  static constexpr double runaway = 20.0;
+
+  const Observation& seen_;
+  const BlockInstants& instants_;
+  double max_chi2_, max_rate_rad_s_, chi2_ = 0.0;
+  inference::SumsOfRows sums_;
+  SlopeRows slope_, instant_slope_;
+  std::vector<ExpectedInstant> moments_;  // of a block that is not whole yet
+  std::vector<int> scalars_;              // that were read
+  std::vector<Whitening> whitening_;      // of each channel
+  bool keep_;
+  Prediction result_;
+};
+
+}  // namespace
+
+Prediction predict(const Dynamics& dynamics, const PlatformState& initial, const Observation& seen,
+                   const std::vector<Variable>& variables, const PredictionOptions& options) {
+  const size_t blocks = std::min(options.blocks, seen.blocks());
+  const double fastest = fastest_rad_s(seen);
+  const BlockInstants instants(seen, fastest);
+  Comparison comparison(seen, instants, fastest, variables.size(), options.keep_residuals,
+                        options.max_chi2);
+  PropagationOptions propagation = options.propagation;
+  // A trial of parameters that make the motion run away is not worth its steps.
+  // What rubs and stops needs thousands in a short time.
+  constexpr int64_t steps_at_least = 20000;
+  constexpr double steps_per_second = 40.0;
+  const size_t count = blocks * instants.per_block();
+  const double end_s = instants.time_s(count - 1);
+  propagation.max_steps =
+      steps_at_least + static_cast<int64_t>(steps_per_second * (end_s - initial.time_s));
+  Propagator propagator(dynamics, initial, end_s, propagation, variables);
+  sample(
+      propagator, count, [&](size_t i) { return instants.time_s(i); },
+      [&](const Samples& samples) {
+        comparison.add(dynamics, variables.empty() ? nullptr : &*propagator.sensitivity(), samples);
+      });
+  return comparison.finish();
+}
+
+}  // namespace photorque

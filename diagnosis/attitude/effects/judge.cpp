@@ -1,0 +1,186 @@
+#include "diagnosis/attitude/effects/judge.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "inference/estimator/evidence.h"
+
+namespace photorque {
+
+bool changes_inertia(const Disturbance& d) {
+  const DisturbanceKind* kind = find_kind(d.kind);
+  return kind != nullptr && kind->screening.inertia_change_kg_m2 != nullptr;
+}
+
+namespace {
+
+// What is stated as uncertain by more may change by more: three of its standard deviations, over
+// the moment.
+double stated_inertia_change(const Trial& trial) {
+  constexpr double sigmas = 3.0;
+  const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
+  double largest = 0.0;
+  for (const Free& f : trial.fit.best.free) {
+    const auto& found = trial.disturbances;
+    const bool is_found = std::find(found.begin(), found.end(), f.disturbance) != found.end();
+    const Disturbance& stated = trial.fit.best.model.disturbances[f.disturbance];
+    if (is_found || !changes_inertia(stated) || f.parameter > 2) continue;
+    largest = std::max(largest, sigmas * f.sigma / nominal_kg_m2(f.parameter, f.parameter));
+  }
+  return largest;
+}
+
+// The largest change of a principal moment by a fitted error of the inertia, as a fraction of the
+// nominal one. The torque equation is homogeneous: hardly any inertia at all explains nearly
+// everything, but nobody weighs a platform that badly.
+double inertia_change(const Trial& trial) {
+  const Mat3& nominal_kg_m2 = trial.fit.best.model.platform.inertia_kg_m2;
+  const Vec3 nominal = nominal_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
+  double largest = 0.0;
+  // What is believed of it moves within the same limits.
+  for (const Disturbance& d : trial.fit.best.model.disturbances) {
+    const DisturbanceKind* kind = find_kind(d.kind);
+    if (kind == nullptr || kind->screening.inertia_change_kg_m2 == nullptr) continue;
+    const Mat3 found = nominal_kg_m2 + kind->screening.inertia_change_kg_m2(d);
+    const Vec3 moments = found.selfadjointView<Eigen::Lower>().eigenvalues();
+    largest = std::max(largest, (moments - nominal).cwiseQuotient(nominal).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+// A kind that the nominal model has as well may be corrected downwards, but not below what physics
+// allows of the sum.
+std::string sum_objection(const AttitudeModel& model) {
+  for (const DisturbanceKind& kind : disturbance_kinds()) {
+    const std::optional<LeastSum>& least = kind.screening.least_sum;
+    if (!least) continue;
+    double sum = 0.0;
+    for (const Disturbance& d : model.disturbances) {
+      if (d.kind != kind.name) continue;
+      for (const Parameter& p : d.parameters) sum += p.value;
+    }
+    if (sum < least->lowest) return least->objection;
+  }
+  return "";
+}
+
+std::string objection_to(const Trial& trial, const Candidates& all) {
+  const Thresholds::Objection& limits = all.limits.objection;
+  if (!std::isfinite(trial.fit.chi2)) return "cannot be propagated";
+  const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const Candidate& c = all[trial.candidates[i]];
+    const std::vector<Eigen::Index> where = shared_indices(trial, i);
+    size_t k = 0;
+    for (size_t p = 0; p < c.scale.size(); ++p) {
+      if (!c.is_fitted(p)) continue;
+      const Eigen::Index at = where[k++];
+      const double value =
+          trial.fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value;
+      const double sigma = std::sqrt(std::max(0.0, covariance(at, at)));
+      const double beyond = limits.bound_sigma * sigma;
+      if (value < c.lowest[p] - beyond || value > c.highest[p] + beyond) {
+        return c.label + " would have the wrong sign";
+      }
+    }
+  }
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const Candidate& c = all[trial.candidates[i]];
+    if (c.effect.how.scan != Scan::frequency) continue;
+    const Disturbance& tone = trial.fit.best.model.disturbances[trial.disturbances[i]];
+    if (parameter_of(tone, "frequency_Hz").value * all.longest_run_s < limits.min_periods) {
+      return "its period is as long as the recording: any slow torque looks like that";
+    }
+  }
+  const double allowed = std::max(limits.max_inertia_change, stated_inertia_change(trial));
+  if (const double change = inertia_change(trial); change > allowed) {
+    return "a principal moment of inertia would change by " +
+           std::to_string(static_cast<int>(std::lround(100.0 * change))) + " %";
+  }
+  return sum_objection(trial.fit.best.model);
+}
+
+double significance(const Trial& trial, const Candidates& all, size_t which) {
+  const Candidate& c = all[trial.candidates[which]];
+  const std::vector<Eigen::Index> where = shared_indices(trial, which);
+  const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
+  std::vector<std::pair<Eigen::Index, double>> linear;
+  size_t k = 0;
+  for (size_t p = 0; p < c.scale.size(); ++p) {
+    if (!c.is_fitted(p)) continue;
+    const Eigen::Index at = where[k++];
+    if (c.searched[p]) continue;
+    linear.emplace_back(
+        at, trial.fit.best.model.disturbances[trial.disturbances[which]].parameters[p].value);
+  }
+  const auto n = static_cast<Eigen::Index>(linear.size());
+  if (n == 0) return 0.0;
+  Eigen::MatrixXd C(n, n);
+  Eigen::VectorXd theta(n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    theta[a] = linear[static_cast<size_t>(a)].second;
+    for (Eigen::Index b = 0; b < n; ++b) {
+      C(a, b) =
+          covariance(linear[static_cast<size_t>(a)].first, linear[static_cast<size_t>(b)].first);
+    }
+  }
+  const Eigen::VectorXd scale = C.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * C * scale.asDiagonal();
+  const Eigen::VectorXd scaled = scale.cwiseProduct(theta);
+  return std::sqrt(std::max(0.0, scaled.dot(correlation.ldlt().solve(scaled))));
+}
+
+}  // namespace
+
+double log_evidence(const Trial& trial, const Candidates& all) {
+  const Fit& fit = trial.fit;
+  const Thresholds::Evidence& limits = all.limits.evidence;
+  if (!std::isfinite(fit.chi2)) return -1e300;
+  inference::ArrowMatrix hessian = fit.hessian;
+  double result = -0.5 * fit.chi2;
+  // The parameters that are not searched, in units of what is expected of them.
+  inference::Strengths strengths;
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    const Candidate& c = all[trial.candidates[i]];
+    result += c.empirical() ? limits.log_prior_empirical : limits.log_prior_effect;
+    const std::vector<Eigen::Index> where = shared_indices(trial, i);
+    size_t k = 0;
+    for (size_t p = 0; p < c.scale.size(); ++p) {
+      if (!c.is_fitted(p)) continue;
+      const Eigen::Index at = where[k++];
+      if (!c.searched[p]) {
+        strengths.at.push_back(at);
+        strengths.owner.push_back(i);
+        strengths.value.push_back(
+            fit.best.model.disturbances[trial.disturbances[i]].parameters[p].value);
+        strengths.scale.push_back(c.scale[p]);
+        if (c.lowest[p] == 0.0) result += std::log(2.0);  // half of a Gaussian
+        continue;
+      }
+      const double sigma = c.scale[p], wide = sigma * limits.fit_prior_widths;
+      hessian.add_to_diagonal(fit.first_shared + at, 1.0 / (sigma * sigma) - 1.0 / (wide * wide));
+      result -= std::log(sigma);
+    }
+    for (size_t s = 0; s < c.start.states.size(); ++s) {
+      result -= static_cast<double>(fit.best.runs.size()) *
+                std::log(limits.own_state_sigma);  // prior of its start
+    }
+  }
+  result -= 0.5 * hessian.log_determinant();
+  return result + inference::log_strength_evidence(strengths, fit.shared_posterior(),
+                                                   trial.candidates.size(), limits);
+}
+
+void judge(Trial& trial, const Candidates& all) {
+  trial.significance.clear();
+  for (size_t i = 0; i < trial.candidates.size(); ++i) {
+    trial.significance.push_back(significance(trial, all, i));
+  }
+  trial.log_evidence = log_evidence(trial, all);
+  if (!std::isfinite(trial.log_evidence)) trial.log_evidence = -1e300;
+  trial.objection = objection_to(trial, all);
+}
+
+}  // namespace photorque
