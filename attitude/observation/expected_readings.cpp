@@ -5,7 +5,9 @@
 #include <optional>
 
 namespace photorque {
-namespace {
+
+// What the one class of this file is made of.
+namespace expected {
 
 Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
   return {v[0][lane], v[1][lane], v[2][lane]};
@@ -232,73 +234,73 @@ bool any_field(const std::vector<int>& scalars) {
                      [](int s) { return s >= first_field && s < first_place; });
 }
 
-class ReadingsOfSamples : public ExpectedReadings {
- public:
-  ReadingsOfSamples(const Dynamics& dynamics, const Sensitivity* sensitivity,
-                    const Samples& samples, const Observation& seen,
-                    const std::vector<int>& scalars)
-      : samples_(samples),
-        fields_(dynamics, seen),
-        has_fields_(any_field(scalars)),
-        sight_(sight_of(dynamics, samples, has_fields_)),
-        place_(dynamics.first_of_translation()),
-        y_(samples.y.size()) {
+}  // namespace expected
+
+struct ExpectedReadings::Parts {
+  Parts(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& of,
+        const Observation& seen, const std::vector<int>& scalars)
+      : samples(of),
+        fields(dynamics, seen),
+        has_fields(expected::any_field(scalars)),
+        sight(expected::sight_of(dynamics, of, has_fields)),
+        place(dynamics.first_of_translation()),
+        y(of.y.size()) {
     if (sensitivity == nullptr) return;
-    slopes_.emplace(*sensitivity, samples);
-    slopes_->see(sight_.delay_s, sight_.rate_then_rad_s(samples.y.data()));
-    if (has_fields_ && fields_.feels_turning()) turning_.emplace(*sensitivity, samples);
+    slopes.emplace(*sensitivity, of);
+    slopes->see(sight.delay_s, sight.rate_then_rad_s(of.y.data()));
+    if (has_fields && fields.feels_turning()) turning.emplace(*sensitivity, of);
   }
 
-  ExpectedInstant at(int lane) override {
-    for (size_t c = 0; c < y_.size(); ++c) y_[c] = samples_.y[c][lane];
-    ExpectedInstant instant;
-    instant.state = to_state(samples_.time_s[lane], y_);
-    const Delay delay{sight_.delay_s[lane], instant.state.rate_body_rad_s,
-                      in_lane(sight_.acceleration_rad_s2, lane)};
-    instant.camera_offset_body = in_lane(sight_.camera_error_rad, lane) - delay.turn_rad();
-    instant.gyro_rad_s = in_lane(sight_.gyro_rad_s, lane);
-    if (has_fields_) instant.fields = fields_.at(instant.state, delay.acceleration_rad_s2);
-    for (int k = 0; place_ >= 0 && k < 4; ++k) {
-      instant.place[k] = y_[static_cast<size_t>(place_ + k)];
-    }
-    return instant;
-  }
-
-  void fill_slopes(int lane, const ExpectedInstant& instant, SlopeRows& slope) const override {
-    if (!slopes_) return;
-    slopes_->fill(lane, slope);
-    for (Eigen::Index v = 0; v < slope.cols(); ++v) {
-      const auto column = static_cast<size_t>(v);
-      if (has_fields_) {
-        slope.col(v).segment<first_place - first_field>(vector_channels + first_field) =
-            fields_.slope(instant.state, slopes_->change(column, lane, instant.state),
-                          turning_ ? turning_->of(column, lane) : Vec3::Zero());
-      }
-      for (int k = 0; place_ >= 0 && k < scalar_count - first_place; ++k) {
-        slope(vector_channels + first_place + k, v) =
-            slopes_->of_component(place_ + k, column, lane);
-      }
-    }
-  }
-
- private:
-  const Samples& samples_;
-  FieldReadings fields_;
-  bool has_fields_;
-  Sight sight_;
-  int place_;
-  std::vector<double> y_;  // of one lane
-  std::optional<Slopes> slopes_;
-  std::optional<AccelerationSlopes> turning_;
+  const Samples& samples;
+  expected::FieldReadings fields;
+  bool has_fields;
+  expected::Sight sight;
+  int place;
+  std::vector<double> y;  // of one lane
+  std::optional<expected::Slopes> slopes;
+  std::optional<expected::AccelerationSlopes> turning;
 };
 
-}  // namespace
+ExpectedReadings::ExpectedReadings(const Dynamics& dynamics, const Sensitivity* sensitivity,
+                                   const Samples& samples, const Observation& seen,
+                                   const std::vector<int>& scalars)
+    : parts_(std::make_unique<Parts>(dynamics, sensitivity, samples, seen, scalars)) {}
 
-std::unique_ptr<ExpectedReadings> expected_readings(const Dynamics& dynamics,
-                                                    const Sensitivity* sensitivity,
-                                                    const Samples& samples, const Observation& seen,
-                                                    const std::vector<int>& scalars) {
-  return std::make_unique<ReadingsOfSamples>(dynamics, sensitivity, samples, seen, scalars);
+ExpectedReadings::~ExpectedReadings() = default;
+
+ExpectedInstant ExpectedReadings::at(int lane) const {
+  Parts& p = *parts_;
+  for (size_t c = 0; c < p.y.size(); ++c) p.y[c] = p.samples.y[c][lane];
+  ExpectedInstant instant;
+  instant.state = to_state(p.samples.time_s[lane], p.y);
+  const expected::Delay delay{p.sight.delay_s[lane], instant.state.rate_body_rad_s,
+                              expected::in_lane(p.sight.acceleration_rad_s2, lane)};
+  instant.camera_offset_body = expected::in_lane(p.sight.camera_error_rad, lane) - delay.turn_rad();
+  instant.gyro_rad_s = expected::in_lane(p.sight.gyro_rad_s, lane);
+  if (p.has_fields) instant.fields = p.fields.at(instant.state, delay.acceleration_rad_s2);
+  for (int k = 0; p.place >= 0 && k < 4; ++k) {
+    instant.place[k] = p.y[static_cast<size_t>(p.place + k)];
+  }
+  return instant;
+}
+
+void ExpectedReadings::fill_slopes(int lane, const ExpectedInstant& instant,
+                                   SlopeRows& slope) const {
+  const Parts& p = *parts_;
+  if (!p.slopes) return;
+  p.slopes->fill(lane, slope);
+  for (Eigen::Index v = 0; v < slope.cols(); ++v) {
+    const auto column = static_cast<size_t>(v);
+    if (p.has_fields) {
+      slope.col(v).segment<first_place - first_field>(vector_channels + first_field) =
+          p.fields.slope(instant.state, p.slopes->change(column, lane, instant.state),
+                         p.turning ? p.turning->of(column, lane) : Vec3::Zero());
+    }
+    for (int k = 0; p.place >= 0 && k < scalar_count - first_place; ++k) {
+      slope(vector_channels + first_place + k, v) =
+          p.slopes->of_component(p.place + k, column, lane);
+    }
+  }
 }
 
 }  // namespace photorque

@@ -24,22 +24,23 @@ struct ExpectedInstant {
   Eigen::Vector4d place = Eigen::Vector4d::Zero();  // and velocity
 };
 
-// At up to eight instants.
+// At up to eight instants, of samples that are kept by reference.
 class ExpectedReadings {
  public:
-  virtual ~ExpectedReadings() = default;
+  // `sensitivity`: null where no slopes are asked for. `scalars`: those that were read.
+  ExpectedReadings(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples,
+                   const Observation& seen, const std::vector<int>& scalars);
+  ~ExpectedReadings();
 
-  virtual ExpectedInstant at(int lane) = 0;
+  ExpectedInstant at(int lane) const;
   // What changes with each variable, but for scalars that follow from attitude and gyro. Nothing
   // without a sensitivity.
-  virtual void fill_slopes(int lane, const ExpectedInstant& instant, SlopeRows& slope) const = 0;
-};
+  void fill_slopes(int lane, const ExpectedInstant& instant, SlopeRows& slope) const;
 
-// `sensitivity`: null where no slopes are asked for. `scalars`: those that were read. Keeps a
-// reference to the samples.
-std::unique_ptr<ExpectedReadings> expected_readings(const Dynamics& dynamics,
-                                                    const Sensitivity* sensitivity,
-                                                    const Samples& samples, const Observation& seen,
-                                                    const std::vector<int>& scalars);
+ private:
+  struct Parts;
+
+  std::unique_ptr<Parts> parts_;
+};
 
 }  // namespace photorque

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "attitude/observation/block_instants.h"
 #include "attitude/observation/expected_readings.h"
@@ -84,21 +83,20 @@ class Comparison {
   }
 
   void add(const Dynamics& dynamics, const Sensitivity* sensitivity, const Samples& samples) {
-    const std::unique_ptr<ExpectedReadings> expected =
-        expected_readings(dynamics, sensitivity, samples, seen_, scalars_);
+    const ExpectedReadings expected(dynamics, sensitivity, samples, seen_, scalars_);
     // Nothing of what follows would be worth its steps.
     if (chi2_ > max_chi2_) throw NumericalError("the prediction has left the readings");
     for (int lane = 0; lane < samples.count; ++lane) {
       const size_t instant = samples.first + static_cast<size_t>(lane),
                    block = instant / instants_.per_block();
-      moments_.push_back(expected->at(lane));
+      moments_.push_back(expected.at(lane));
       if (!(moments_.back().state.rate_body_rad_s.norm() < max_rate_rad_s_)) {
         throw NumericalError("the motion runs away");
       }
       if (instants_.per_block() == 1) {
-        expected->fill_slopes(lane, moments_.back(), slope_);
+        expected.fill_slopes(lane, moments_.back(), slope_);
       } else {
-        expected->fill_slopes(lane, moments_.back(), instant_slope_);
+        expected.fill_slopes(lane, moments_.back(), instant_slope_);
         if (moments_.size() == 1) slope_.setZero();
         slope_ += instants_.weight(block, moments_.size() - 1) * instant_slope_;
       }

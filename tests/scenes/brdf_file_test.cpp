@@ -114,10 +114,10 @@ TEST(MeasuredMaterial, MeasuredOverFewAnglesIsSaid) {
                         "incidence_deg,scatter_deg,azimuth_deg,brdf_1_sr\n" + rows)
         .notices;
   };
-  EXPECT_THAT(
-      notices("10,0,0,0.2\n10,80,0,0.2\n"),
-      ElementsAre("scan.csv: measured up to an incidence of 10 deg and a scatter of 80 deg; "
-                  "to 90 deg the last values go on"));
+  EXPECT_THAT(notices("10,0,0,0.2\n10,80,0,0.2\n"),
+              ElementsAre("material 'paint': scan.csv: measured up to an incidence of 10 deg and a "
+                          "scatter of 80 deg; "
+                          "to 90 deg the last values go on"));
   // 0, 60 and 90 deg as radians.
   EXPECT_THAT(notices("0,0,0,0.2\n0,1.5708,0,0.2\n1.0472,0,0,0.2\n1.0472,1.5708,0,0.2\n"),
               ElementsAre(HasSubstr("(are its angles in radians?)")));

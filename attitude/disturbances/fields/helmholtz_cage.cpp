@@ -54,7 +54,7 @@ TimeSeries read_wanted_field_T(const Settings& settings) {
                               s.number_or("greenwich_angle_deg", 0.0)};
     const double date_year = s.number("date_year", {1900.0, 2035.0, false, false});
     const double duration_s = s.number("duration_s", Range::positive());
-    const double interval_s = s.number_or("interval_s", 20.0, {0.0, duration_s, true, false});
+    const double interval_s = s.number_or("interval_s", 20.0, Range::positive());
     constexpr double most_instants = 1e6;
     if (duration_s > most_instants * interval_s) {
       throw s.error("duration_s", shortest(duration_s / interval_s) + " intervals",
