@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/observation/prediction.h"
 #include "attitude/model/bound_states.h"
+#include "attitude/observation/prediction.h"
 #include "core/errors.h"
 #include "inference/limits/thresholds.h"
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "attitude/observation/observation.h"
 #include "attitude/model/dynamics.h"
+#include "attitude/observation/observation.h"
 #include "inference/estimator/parameter.h"
 
 namespace photorque {
