@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "attitude/estimation/fit.h"
+#include "attitude/observation/block_means.h"
 
 namespace photorque {
 namespace {
@@ -85,14 +86,7 @@ struct Neighbours {
 };
 
 Observation averaged_run(const Prediction& propagated, const Observation& seen, size_t blocks) {
-  Observation result = seen;
-  result.time_s.clear();
-  result.spread.clear();
-  result.attitude.clear();
-  result.attitude_rows.clear();
-  result.gyro_rad_s.clear();
-  result.gyro_rows.clear();
-  result.scalar = {};
+  Observation result = without_blocks(seen);
   const double block_s = seen.duration_s() / static_cast<double>(blocks);
   // Half a reading of slack, so that rounding of the times does not make uneven blocks.
   const double slack_s = 0.5 * seen.duration_s() / static_cast<double>(seen.blocks());

@@ -258,6 +258,18 @@ class Straightened {
 
 }  // namespace
 
+Observation without_blocks(const Observation& seen) {
+  Observation result = seen;
+  result.time_s.clear();
+  result.spread.clear();
+  result.attitude.clear();
+  result.attitude_rows.clear();
+  result.gyro_rad_s.clear();
+  result.gyro_rows.clear();
+  result.scalar = {};
+  return result;
+}
+
 void append_mean(const Observation& from, size_t first, size_t last, Observation& to) {
   BlockRows{from, first, last}.append_to(to);
 }

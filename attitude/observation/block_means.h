@@ -7,6 +7,9 @@
 
 namespace photorque {
 
+// All of an observation but its blocks.
+Observation without_blocks(const Observation& seen);
+
 // Appends the mean of the rows [first, last) of `from` as a block.
 void append_mean(const Observation& from, size_t first, size_t last, Observation& to);
 

@@ -211,14 +211,7 @@ Observation observe(const Recording& recording, const std::string& name, const P
 
 Observation Observation::averaged(size_t max_blocks) const {
   if (blocks() <= max_blocks) return *this;
-  Observation result = *this;
-  result.time_s.clear();
-  result.spread.clear();
-  result.attitude.clear();
-  result.attitude_rows.clear();
-  result.gyro_rad_s.clear();
-  result.gyro_rows.clear();
-  result.scalar = {};
+  Observation result = without_blocks(*this);
   const double block_s = duration_s() / static_cast<double>(max_blocks);
   // Attitudes that are fewer than the blocks are somewhere in them: where the body turns far within
   // one, they and the gyro's readings beside them stand apart.
