@@ -40,7 +40,7 @@ std::vector<Key> tracking_camera_keys() {
           "at which it has fallen to half, by a power of the cosine: 60 is Lambert's law"),
       Key::number_or("wavelength_nm", usual.wavelength_m, {1e-7, 2e-6}, "of the markers"),
       of_camera(Key::number("focal_length_mm", Range::positive(), "of the lens")),
-      Key::number_or("f_number", usual.f_number, {0.5, 1000.0}, "of the lens"),
+      Key::number_or("f_number", usual.f_number, {0.5, 128.0}, "of the lens"),
       Key::number_or("transmittance", usual.transmittance, fraction, "of lens and filter"),
       Key::number_or("spot_px", usual.spot_px, {0.3, 50.0},
                      "standard deviation of a spot besides diffraction and motion"),

@@ -136,7 +136,7 @@ std::optional<TrackingCamera> read_tracking_camera(const Settings& settings) {
   TrackingCamera camera;
   read_markers(settings, camera);
   camera.focal_length_m = settings.number("focal_length_mm", Range::positive());
-  camera.f_number = settings.number_or("f_number", camera.f_number, {0.5, 1000.0});
+  camera.f_number = settings.number_or("f_number", camera.f_number, {0.5, 128.0});
   camera.transmittance =
       settings.number_or("transmittance", camera.transmittance, {0.0, 1.0, true, false});
   camera.spot_px = settings.number_or("spot_px", camera.spot_px, {0.3, 50.0});

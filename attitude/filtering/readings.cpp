@@ -31,6 +31,7 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
   const Channel* heading =
       platform.turns_about_one_axis() ? nullptr : recording.find("heading_rad");
   double before_s = readings.first_s;
+  bool any_attitude = false;
   for (size_t row = 0; row < recording.rows(); ++row) {
     Reading reading;
     reading.time_s = recording.time_s[row];
@@ -45,6 +46,7 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
     const Quat attitude =
         columns.has_attitude() ? columns.attitude(row) : Quat(empty_cell, 0, 0, 0);
     if (std::isfinite(attitude.coeffs().sum())) {
+      any_attitude = true;
       readings.longest_gap_s = std::max(readings.longest_gap_s, reading.time_s - before_s);
       before_s = reading.time_s;
       if (camera_delay_s == 0.0) {
@@ -57,6 +59,11 @@ Readings readings_of(const Recording& recording, const std::string& name, const 
       }
     }
     readings.all.push_back(reading);
+  }
+  if (!any_attitude) readings.sees_axis = {};
+  if (!any_attitude && !readings.has_gyro && !readings.has_heading) {
+    throw InputError({name, 0}, columns.first_name(), "no number in any row",
+                     "attitudes of unit norm, or rates");
   }
   std::ranges::stable_sort(readings.all, {}, &Reading::time_s);
   // What the camera saw before the first row was read belongs to the start.

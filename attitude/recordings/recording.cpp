@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 #include "attitude/recordings/cleaning.h"
 #include "attitude/recordings/lamp_current.h"
@@ -160,6 +159,11 @@ class RecordingReader {
       }
       recording_.channels.push_back({name, {}});
     }
+    for (const auto& [channel, written] : options_.columns) {
+      const std::string name = column_named(written, options_).name;
+      const bool has = std::ranges::find(columns_, name, &FileColumn::name) != columns_.end();
+      if (!has) recording_.report.absent_columns.insert(written);
+    }
     return true;
   }
 
@@ -276,28 +280,6 @@ std::string cell_text(double value) {
 
 }  // namespace
 
-std::string RecordingReport::text() const {
-  std::ostringstream out;
-  out << rows_read << " rows read, " << rows_kept << " kept, every " << median_interval_s << " s";
-  const auto say = [&](int64_t count, const char* what) {
-    if (count > 0) out << "\n" << count << " " << what;
-  };
-  if (jitter_s > 1e-3 * median_interval_s) out << " with a jitter of " << jitter_s << " s";
-  say(malformed_rows, "rows with a wrong number of cells left out");
-  say(rows_without_time, "rows without a time left out");
-  say(repeated_times, "rows that repeat a time left out");
-  say(backward_times, "rows out of order left out");
-  say(static_cast<int64_t>(gaps.size()), "gaps");
-  say(empty_cells, "empty cells");
-  say(unreadable_cells, "cells that hold no number");
-  say(bad_quaternions, "quaternions that are not of unit norm left out");
-  say(flipped_quaternions, "sign flips of the quaternion undone");
-  for (const auto& [channel, count] : outliers) {
-    out << "\n" << count << " outliers in " << channel << " left out";
-  }
-  return out.str();
-}
-
 const Channel* Recording::find(std::string_view name) const {
   const auto it = std::find_if(channels.begin(), channels.end(),
                                [&](const Channel& channel) { return channel.name == name; });
@@ -346,6 +328,20 @@ RecordingOptions read_recording_options(const Settings& settings) {
 
 Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options) {
   return RecordingReader(path, options).read();
+}
+
+void refuse_absent_columns(const Settings& settings, const std::vector<const Recording*>& of) {
+  if (!settings.has("columns")) return;
+  const Settings columns = settings.table("columns");
+  for (const std::string& channel : columns.keys()) {
+    const std::string written = columns.text(channel);
+    const bool absent = std::ranges::all_of(
+        of, [&](const Recording* one) { return one->report.absent_columns.contains(written); });
+    if (absent) {
+      throw columns.error(channel, in_quotes(written) + ", which the recording has not",
+                          "one of its columns");
+    }
+  }
 }
 
 Schedule read_command_file(const std::filesystem::path& path) {

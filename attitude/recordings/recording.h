@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,7 @@ struct RecordingReport {
   double median_interval_s = 0.0;
   double jitter_s = 0.0;                    // standard deviation of the intervals, gaps left out
   std::map<std::string, int64_t> outliers;  // cells by channel
+  std::set<std::string> absent_columns;     // that the options name and the file has not
 
   // A few lines for people; only what occurred.
   std::string text() const;
@@ -85,6 +87,10 @@ RecordingOptions read_recording_options(const Settings& settings);
 // Throws InputError with file and line when the file cannot be read or decompressed, has no header
 // with t_s, no usable row, more cells than allowed, or mostly falling times.
 Recording read_recording(const std::filesystem::path& path, const RecordingOptions& options = {});
+
+// InputError for a column that [recording] names and none of these recordings has: misspelt, it
+// would be read over.
+void refuse_absent_columns(const Settings& settings, const std::vector<const Recording*>& of);
 
 // Reads a schedule of commands: like a recording, but times that do not rise are an error where
 // the file has no attitude, that is, no clock of an instrument.

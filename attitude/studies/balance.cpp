@@ -242,6 +242,7 @@ BalanceRun read_balance(const Settings& root, const std::filesystem::path& recor
   const Settings masses = own_table(root, "balance", true);
   BalanceRun run{std::move(nominal.model), std::move(nominal.sensors), read_moving_masses(masses),
                  read_recording(recording, read_recording_options(columns))};
+  refuse_absent_columns(columns, {&run.recording});
   for (const Settings& settings : {columns, masses}) settings.finish();
   run.model.schedule = run.recording.schedule();
   return run;

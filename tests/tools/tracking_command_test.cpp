@@ -85,5 +85,38 @@ TEST_F(TrackingCommands, EstimatesAreRecordingsThatOthersRead) {
   EXPECT_EQ(balanced.status, 0) << balanced.err;
 }
 
+// What a recording says of itself, and what it cannot be compared with.
+TEST_F(TrackingCommands, AnEstimateSaysWhatItCouldNotRead) {
+  std::string rows = "t_s,q_w,q_x,q_y,q_z,wx,gyro_y_rad_s,gyro_z_rad_s\n",
+              truth = "t_s,q_w,q_x,q_y,q_z\n";
+  for (int i = 0; i < 100; ++i) {
+    const std::string time = std::to_string(0.1 * i);
+    rows += time + ",0,0,0,0," + std::to_string(1e-6 * (i % 3)) + ",1e-6,-1e-6\n";
+    if (i < 4) truth += time + ",1,0,0,0\n";
+  }
+  const std::string recording = write("zero.csv", rows), start = write("start.csv", truth);
+  const std::string named = " --set recording.columns.gyro_x_rad_s=wx ";
+  const Outcome got =
+      run("estimate " + tracked + named + "--recording " + recording + " --out " + at("z"));
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("100 quaternions that are not of unit norm left out"));
+  EXPECT_THAT(got.out, HasSubstr("no attitude was read"));
+  // Four of a hundred rows lie in the twentieth in which the filter settles.
+  const Outcome early = run("estimate " + tracked + named + "--recording " + recording +
+                            " --truth " + start + " --out " + at("t"));
+  EXPECT_EQ(early.status, 2);
+  EXPECT_THAT(early.err, HasSubstr("start.csv: t_s: found no time of the recording from 0.5 s on"));
+  const std::string masses = " --set balance.moving_mass_kg=0.25 --set balance.lead_mm=2";
+  for (const std::string& command :
+       {"estimate " + tracked, "diagnose " + tracked, "balance " + tracked + masses}) {
+    const Outcome absent = run(command + " --set recording.columns.gyro_x_rad_s=w_x --recording " +
+                               recording + " --out " + at("a"));
+    EXPECT_EQ(absent.status, 2) << command;
+    EXPECT_THAT(
+        absent.err,
+        HasSubstr("recording.columns.gyro_x_rad_s: found \"w_x\", which the recording has not"));
+  }
+}
+
 }  // namespace
 }  // namespace photorque

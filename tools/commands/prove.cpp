@@ -1,8 +1,5 @@
 // photorque prove: injects effects in recordings, diagnoses them blind, and scores the answers.
 #include <atomic>
-#include <cmath>
-#include <mutex>
-#include <nlohmann/json.hpp>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -16,8 +13,9 @@
 #include "tools/proof/files.h"
 #include "tools/proof/light/files.h"
 #include "tools/proof/settings.h"
+#include "tools/scoring/blind_run.h"
+#include "tools/scoring/case_files.h"
 #include "tools/scoring/document.h"
-#include "tools/scoring/replay.h"
 
 namespace photorque {
 namespace {
@@ -80,32 +78,6 @@ ProveSettings read_settings(const CommandLine& line) {
   return settings;
 }
 
-bool is_case(const fs::path& folder) {
-  return fs::exists(folder / "truth.json");
-}
-
-// What was recorded and what is held out: as the truth lists them, of motion run1 and run2.
-struct CaseFiles {
-  std::vector<std::string> recordings = {"run1.csv.gz"}, holdouts = {"run2.csv.gz"};
-  bool of_light = false;
-};
-
-CaseFiles files_of(const fs::path& case_folder) {
-  const auto truth = nlohmann::json::parse(read_file(case_folder / "truth.json"), nullptr, false);
-  CaseFiles files;
-  const auto list = [&](const char* key, std::vector<std::string>& names) {
-    if (!truth.is_object() || !truth.contains(key) || !truth[key].is_array()) return;
-    files.of_light = true;
-    names.clear();
-    for (const auto& name : truth[key]) {
-      if (name.is_string()) names.push_back(fs::path(name.get<std::string>()).filename().string());
-    }
-  };
-  list("recordings", files.recordings);
-  list("holdouts", files.holdouts);
-  return files;
-}
-
 std::string plan_text(const ProveSettings& settings);
 
 // Cases that stand there are gone on with, but only those of the same plan.
@@ -146,121 +118,6 @@ std::vector<fs::path> make_cases(const ProveSettings& settings, const fs::path& 
   return folders;
 }
 
-std::vector<fs::path> cases_in(const fs::path& folder) {
-  std::vector<fs::path> folders;
-  std::error_code missing;
-  for (const auto& entry : fs::directory_iterator(folder, missing)) {
-    if (entry.is_directory() && is_case(entry.path())) folders.push_back(entry.path());
-  }
-  if (folders.empty()) {
-    throw InputError({}, "--cases", "no case in " + folder.string(),
-                     "folders with experiment.toml, recordings and truth.json");
-  }
-  for (const fs::path& each : folders) {
-    const CaseFiles files = files_of(each);
-    std::vector<std::string> names = {"experiment.toml"};
-    names.insert(names.end(), files.recordings.begin(), files.recordings.end());
-    names.insert(names.end(), files.holdouts.begin(), files.holdouts.end());
-    for (const std::string& file : names) {
-      if (!fs::is_regular_file(each / file)) {
-        throw InputError({(each / file).string()}, "--cases", "no such file", "a complete case");
-      }
-    }
-  }
-  std::ranges::sort(folders);
-  return folders;
-}
-
-// What prove notes of a case beside its truth; of cases made elsewhere, what most of them have.
-struct RecordedCase {
-  std::array<double, 3> camera_noise_arcsec = {37.0, 37.0, 12.0};  // as the experiment states it
-  double rate_Hz = 20.0;
-};
-RecordedCase recorded_case(const fs::path& case_folder) {
-  const fs::path file = case_folder / "truth.json";
-  const auto truth = nlohmann::json::parse(read_file(file), nullptr, false);
-  RecordedCase made;
-  if (!truth.is_object()) return made;
-  try {
-    made.camera_noise_arcsec = truth.value("camera_noise_arcsec", made.camera_noise_arcsec);
-  } catch (const nlohmann::json::exception&) {
-    throw InputError({file.string()}, "camera_noise_arcsec", "something else", "three numbers");
-  }
-  try {
-    made.rate_Hz = truth.value("rate_Hz", made.rate_Hz);
-  } catch (const nlohmann::json::exception&) {
-    throw InputError({file.string()}, "rate_Hz", "something else", "a number");
-  }
-  return made;
-}
-
-// Propagates the answer and compares with the recording; what a user would do first.
-nlohmann::json replayed(const fs::path& blind, const RecordedCase& made,
-                        const ProveSettings& settings) {
-  nlohmann::json replay = nlohmann::json::object();
-  if (!fs::exists(blind / "diagnosis" / "improved.toml")) return replay;
-  // Without the camera's own noise, which would be added to that of the recording, and so closely
-  // that the rate is as good as constant between two rows.
-  constexpr double closer = 10.0;
-  const ChildResult result =
-      run_child(own_program(),
-                {"propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads",
-                 "1", "--set", "sensors.camera.noise_arcsec=[0, 0, 0]", "--set",
-                 "propagate.output_rate_Hz=" + std::to_string(closer * made.rate_Hz)},
-                blind, settings.max_processor_s);
-  replay["replay_status"] = result.status;
-  if (result.status == 0) {
-    const std::array<double, 3> noise_arcsec =
-        found_noise_arcsec(nlohmann::json::parse(read_file(blind / "diagnosis" / "diagnosis.json")),
-                           made.camera_noise_arcsec);
-    replay["replay_chi2"] =
-        replayed_chi2(blind / "run1.csv.gz", blind / "replay" / "recording.csv", noise_arcsec);
-  } else {
-    write_file_whole(blind / "diagnosis" / "replay_error.txt", result.errors);
-  }
-  fs::remove_all(blind / "replay");
-  return replay;
-}
-
-// Diagnoses one experiment in a folder that holds nothing but what a user would have. Does nothing
-// when this very program has done so before.
-void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
-                    const fs::path& blind, const std::string& program_hash,
-                    const ProveSettings& settings, int threads) {
-  const fs::path out = blind / "diagnosis", stamp = blind / "done.txt";
-  if (fs::exists(stamp) && read_file(stamp) == program_hash) return;
-  fs::remove_all(blind);
-  fs::create_directories(out);
-  fs::copy_file(case_folder / experiment, blind / "experiment.toml");
-  const CaseFiles files = files_of(case_folder);
-  std::vector<std::string> words = {"diagnose", "experiment.toml"}, names;
-  for (const std::string& name : files.recordings) {
-    words.insert(words.end(), {"--recording", name});
-    names.push_back(name);
-  }
-  for (const std::string& name : files.holdouts) {
-    words.insert(words.end(), {"--holdout", name});
-    names.push_back(name);
-  }
-  words.insert(words.end(),
-               {"--out", "diagnosis", "--quiet", "--threads", std::to_string(threads)});
-  if (fs::exists(case_folder / "scene.gltf")) names.emplace_back("scene.gltf");
-  for (const std::string& name : names) fs::copy_file(case_folder / name, blind / name);
-  const ChildResult result = run_child(own_program(), words, blind, settings.max_processor_s);
-  fs::create_directories(out);
-  nlohmann::json runs = {{"processor_s", result.processor_s}, {"exit_status", result.status}};
-  if (settings.replay && result.status == 0 && !files.of_light) {
-    runs.update(replayed(blind, recorded_case(case_folder), settings));
-  }
-  write_file_whole(out / "runs.json", runs.dump(1) + "\n");
-  if (result.status != 0 || !result.errors.empty()) {
-    write_file_whole(out / "error.txt",
-                     "exit " + std::to_string(result.status) + ": " + result.errors);
-  }
-  for (const std::string& name : names) fs::remove(blind / name);
-  write_file_whole(stamp, program_hash);
-}
-
 // Whether the program given the truth can say how well these recordings can be predicted.
 bool has_oracle(const fs::path& case_folder, const CaseScore& score) {
   return score.verdict == "missing_physics" && !is_outside(score) &&
@@ -271,20 +128,20 @@ std::vector<CaseScore> diagnose_and_score(const std::vector<fs::path>& folders,
                                           const ProveSettings& settings, const CommandLine& line,
                                           const Console& console) {
   const fs::path out = line.out_folder();
-  const std::string program = content_hash(read_file(own_program()));
-  const int threads = std::max(1, line.threads);
-  ProveSettings of_oracle = settings;
-  of_oracle.replay = false;
+  const BlindRun how{content_hash(read_file(own_program())), settings.replay,
+                     settings.max_processor_s, std::max(1, line.threads)};
+  BlindRun told = how;
+  told.replay = false;
   std::vector<CaseScore> scores(folders.size());
   std::atomic<size_t> done = 0;
   const auto progress = console.progress("diagnosing");
   parallel_for(folders.size(), settings.at_once, [&](size_t i) {
     const std::string name = folders[i].filename().string();
     const fs::path blind = out / "blind" / name, oracle = out / "oracle" / name;
-    diagnose_blind(folders[i], "experiment.toml", blind, program, settings, threads);
+    diagnose_blind(folders[i], "experiment.toml", blind, how);
     CaseScore score = score_case(folders[i], blind / "diagnosis", oracle / "diagnosis");
     if (settings.oracle && has_oracle(folders[i], score)) {
-      diagnose_blind(folders[i], "oracle.toml", oracle, program, of_oracle, threads);
+      diagnose_blind(folders[i], "oracle.toml", oracle, told);
       score = score_case(folders[i], blind / "diagnosis", oracle / "diagnosis");
     }
     scores[i] = std::move(score);

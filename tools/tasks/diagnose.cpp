@@ -182,9 +182,14 @@ MotionRecorded read_motion(const RunOptions& options, AttitudeExperiment& experi
   MotionRecorded motion{read_attitude_model(experiment.settings()), {}, {}, {}};
   const Settings recording = own_table(experiment.settings(), "recording", false);
   const RecordingOptions reading = read_recording_options(recording);
-  recording.finish();
   motion.recordings = read_all(paths, reading, experiment);
   motion.holdouts = read_all(holdout_paths, reading, experiment);
+  std::vector<const Recording*> all;
+  for (const auto* some : {&motion.recordings, &motion.holdouts}) {
+    for (const NamedRecording& one : *some) all.push_back(&one.recording);
+  }
+  refuse_absent_columns(recording, all);
+  recording.finish();
   motion.how.threads = options.threads;
   return motion;
 }

@@ -1,7 +1,10 @@
 #include "tools/tracking/estimate.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <sstream>
 
+#include "attitude/filtering/report.h"
 #include "attitude/propagation/run.h"
 #include "attitude/stretches/segments.h"
 #include "core/errors.h"
@@ -36,6 +39,16 @@ RunFile file_of(const std::string& name, const std::vector<AttitudeEstimate>& es
           remark};
 }
 
+// What the reader met, a line each; the first says how many rows there are, which is said anyway.
+std::vector<std::string> notes_of(const RecordingReport& report) {
+  std::vector<std::string> lines;
+  std::istringstream text(report.text());
+  std::string line;
+  std::getline(text, line);
+  while (std::getline(text, line)) lines.push_back(line);
+  return lines;
+}
+
 struct Source {
   std::string name;
   Recording recording;
@@ -49,13 +62,18 @@ std::vector<Source> read_sources(AttitudeExperiment& experiment,
   const Settings& root = experiment.settings();
   const Settings columns = own_table(root, "recording", false);
   options = read_recording_options(columns);
-  columns.finish();
   std::vector<Source> sources;
   for (const std::filesystem::path& path : recordings) {
     experiment.add_input(path);
     sources.push_back({path.filename().string(), read_recording(path, options), {}});
     refuse_jump_of_clock(sources.back().recording, path.string());
   }
+  if (!sources.empty()) {
+    std::vector<const Recording*> all;
+    for (const Source& source : sources) all.push_back(&source.recording);
+    refuse_absent_columns(columns, all);
+  }
+  columns.finish();
   if (truth) {
     if (sources.size() != 1) {
       throw InputError({}, "--truth", std::to_string(sources.size()) + " recordings",
@@ -63,11 +81,16 @@ std::vector<Source> read_sources(AttitudeExperiment& experiment,
     }
     experiment.add_input(*truth);
     sources[0].truth = truth_from(read_recording(*truth), sources[0].recording);
-    const auto known = std::ranges::count_if(sources[0].truth,
-                                             [](const auto& at_row) { return at_row.has_value(); });
-    if (known == 0) {
-      throw InputError({truth->string(), 0}, "t_s", "no time of the recording",
-                       "the truth at the recording's times");
+    const TruthTrack& known = sources[0].truth;
+    const size_t settled = settled_row(known.size());
+    const auto is_known = [](const auto& at_row) { return at_row.has_value(); };
+    if (std::none_of(known.begin() + static_cast<std::ptrdiff_t>(settled), known.end(), is_known)) {
+      char line[80];
+      std::snprintf(line, sizeof line, "no time of the recording from %.6g s on",
+                    sources[0].recording.time_s[settled]);
+      throw InputError({truth->string(), 0}, "t_s", line,
+                       "the truth at the recording's times: what comes before, while the filter "
+                       "settles, is not counted");
     }
   }
   return sources;
@@ -112,7 +135,8 @@ EstimateRun estimate_of_experiment(const RunOptions& options, const Console& con
         source.name,
         readings_of(source.recording, source.name, nominal.model.platform, probe.camera_delay_s()),
         {},
-        std::move(noise.found)};
+        notes_of(source.recording.report)};
+    one.notes.insert(one.notes.end(), noise.found.begin(), noise.found.end());
     one.result = estimate_ways(study, one.readings, source.truth,
                                console.progress("estimating " + source.name));
     console.done();
