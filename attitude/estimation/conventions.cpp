@@ -153,9 +153,13 @@ std::string text_of(QuaternionReading reading) {
 }
 
 void read_gyro_as(const Mat3& matrix, Observation& seen) {
+  const Mat3 from = matrix.cwiseSign().cwiseAbs();
   for (size_t i = 0; i < seen.blocks(); ++i) {
-    seen.gyro_rad_s[i] = matrix * seen.gyro_rad_s[i];
-    seen.gyro_rows[i] = matrix.cwiseSign().cwiseAbs() * seen.gyro_rows[i];
+    // An axis that was not read stays so, without making the others nothing.
+    const Vec3 read = (seen.gyro_rows[i].array() > 0.0).select(seen.gyro_rad_s[i], Vec3::Zero());
+    seen.gyro_rows[i] = from * seen.gyro_rows[i];
+    seen.gyro_rad_s[i] =
+        (seen.gyro_rows[i].array() > 0.0).select(matrix * read, Vec3::Constant(empty_cell));
   }
 }
 

@@ -108,6 +108,9 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
   const char* axes[] = {"x", "y", "z"};
   const Platform& platform = model.platform;
   std::vector<inference::Parameter> result;
+  // Of a recording with attitudes some part may have none.
+  const bool has_attitudes =
+      std::ranges::any_of(seen.attitude_rows, [](double rows) { return rows > 0.0; });
   // Of what slides the turn may not be seen at all.
   const bool turn_is_seen = seen.sees_some_attitude() || seen.has_gyro || !platform.slides();
   const auto is_held = [&](int k) {
@@ -118,7 +121,7 @@ std::vector<inference::Parameter> initial_parameters(const AttitudeModel& model,
     inference::Parameter p{std::string("initial rotation ") + axes[k], "rad", 0.0};
     if (is_held(k)) {
       p.sigma = held;
-    } else if (!seen.sees_attitude()) {
+    } else if (!seen.sees_attitude() || !has_attitudes) {
       p.sigma = unseen_rad;
     }
     result.push_back(p);

@@ -42,8 +42,8 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds
         if (std::isfinite(residuals[run].residual[i][k])) rows.push_back(i);
       }
       for (const size_t n : inference::outliers(all[run][static_cast<size_t>(k)], limits)) {
-        ++dropped;
         // An attitude is right or wrong as a whole.
+        if (k >= 3 || runs[run].attitude_rows[rows[n]] > 0.0) ++dropped;
         if (k < 3) runs[run].attitude_rows[rows[n]] = 0.0;
         if (k >= 3 && k < vector_channels) runs[run].gyro_rows[rows[n]][k - 3] = 0.0;
         if (k < vector_channels) continue;

@@ -62,6 +62,12 @@ double fastest_rad_s(const Observation& seen) {
         fastest, fastest_of_scalar(seen.scalar[static_cast<size_t>(s)],
                                    channel_traits(vector_channels + s).measures, seen.time_s));
   }
+  // A gyro that reads all three axes tells better than differences of attitudes do.
+  Vec3 read = Vec3::Zero();
+  if (seen.has_gyro) {
+    for (const Vec3& rows : seen.gyro_rows) read = read.cwiseMax(rows);
+  }
+  const bool whole_gyro = read.minCoeff() > 0.0;
   size_t before = seen.blocks();
   for (size_t i = 0; i < seen.blocks(); ++i) {
     if (seen.has_gyro) {
@@ -70,7 +76,8 @@ double fastest_rad_s(const Observation& seen) {
         if (seen.gyro_rows[i][k] > 0.0) square += seen.gyro_rad_s[i][k] * seen.gyro_rad_s[i][k];
       }
       fastest = std::max(fastest, std::sqrt(square));
-    } else if (seen.attitude_rows[i] > 0.0) {
+    }
+    if (!whole_gyro && seen.attitude_rows[i] > 0.0) {
       if (before < i) {
         const Quat turn = seen.attitude[before].conjugate() * seen.attitude[i];
         fastest = std::max(fastest,

@@ -6,7 +6,7 @@
 namespace photorque {
 
 MeanOfCorrelated mean_of_correlated(double n, double steps) {
-  if (n <= 1.0) return {};
+  if (n <= 1.0 || !(steps > 0.0)) return {};  // one reading, or all of them one
   const double rho = std::exp(-steps), left = -std::expm1(-steps);
   const double variance =
       ((1.0 + rho) / left + 2.0 * rho * std::expm1(-n * steps) / (n * left * left)) / n;

@@ -107,7 +107,7 @@ std::vector<Break> breaks_of(const AxisRates& read, size_t window) {
   for (const Break& found : changes) {
     if (found.change_rad_s2() < least_share * found.larger_rad_s2() ||
         found.change_rad_s2() < least_medians * median_rad_s2 ||
-        found.standard_errors() < least_standard_errors) {
+        !(found.standard_errors() >= least_standard_errors)) {  // of equal readings 0/0
       continue;
     }
     if (breaks.empty() || found.at - breaks.back().at > window) {

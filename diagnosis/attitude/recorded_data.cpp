@@ -114,6 +114,23 @@ void append_to(std::vector<Observation>& to, std::vector<Observation> from) {
   std::move(from.begin(), from.end(), std::back_inserter(to));
 }
 
+// The block from which on this fraction of the blocks lies that read something of the motion.
+size_t cut_at(const Observation& seen, double fraction) {
+  std::vector<size_t> reading;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    bool any = false;
+    for (int channel = 0; channel < channel_count; ++channel) {
+      any = any || seen.rows_of(i, channel) > 0.0;
+    }
+    if (any) reading.push_back(i);
+  }
+  const double kept = 1.0 - fraction;
+  const auto of = [&](size_t count) {
+    return static_cast<size_t>(kept * static_cast<double>(count));
+  };
+  return reading.empty() ? of(seen.blocks()) : reading[of(reading.size())];
+}
+
 // The end of a recording in one piece; of one in many every fourth, so that what is held out saw
 // the same times and conditions.
 void hold_out(std::vector<Observation> stretches, double fraction, RecordedData& data) {
@@ -124,7 +141,7 @@ void hold_out(std::vector<Observation> stretches, double fraction, RecordedData&
       (i % every == every - 1 ? data.held : data.train).push_back(std::move(seen));
       continue;
     }
-    const auto cut = static_cast<size_t>((1.0 - fraction) * static_cast<double>(seen.blocks()));
+    const size_t cut = cut_at(seen, fraction);
     data.held.push_back(seen.part(cut, seen.blocks()));
     data.train.push_back(seen.part(0, cut));
   }

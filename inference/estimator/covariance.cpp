@@ -92,7 +92,8 @@ Eigen::MatrixXd posterior_of(const Eigen::MatrixXd& information) {
 }
 
 double log_determinant(const Eigen::MatrixXd& A) {
-  const Eigen::VectorXd scale = A.diagonal().cwiseSqrt();
+  // Of what nothing tells of there is no scale.
+  const Eigen::VectorXd scale = (A.diagonal().array() > 0.0).select(A.diagonal().cwiseSqrt(), 1.0);
   const Eigen::MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * A * scale.cwiseInverse().asDiagonal();
   return scaled.ldlt().vectorD().cwiseMax(1e-12).array().log().sum() +

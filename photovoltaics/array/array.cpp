@@ -205,6 +205,19 @@ LightBins mean_light(const ArrayLight& light) {
 
 }  // namespace
 
+std::vector<double> warmed(const ArrayDesign& design, std::vector<double> photocurrent_A,
+                           double from_K, double to_K) {
+  const auto warmth = [&](const CellModel& model) {
+    return photocurrent_factor(model, to_K) / photocurrent_factor(model, from_K);
+  };
+  const double of_most = warmth(design.cell);
+  for (size_t i = 0; i < photocurrent_A.size(); ++i) {
+    const CellOverride* one = design.override_of(i);
+    photocurrent_A[i] *= one != nullptr ? warmth(one->model) : of_most;
+  }
+  return photocurrent_A;
+}
+
 CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_area_m2,
                        double largest_photocurrent_A) {
   std::vector<std::pair<double, std::shared_ptr<const DiodeVoltageTable>>> known;

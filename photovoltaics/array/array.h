@@ -59,6 +59,10 @@ CellCurrents cell_currents(const ArrayDesign& design, const ArrayLight& light,
 // "pv"; maps of irradiance, photocurrent, operating voltage and operating power per cell.
 Product array_product(const ArrayResult& result);
 
+// Photocurrents of cells at `from_K`, at `to_K`: each by the slope of its own model.
+std::vector<double> warmed(const ArrayDesign& design, std::vector<double> photocurrent_A,
+                           double from_K, double to_K);
+
 // Photocurrents to curve: what evaluate_array() does in between. Cells of equal area share a table.
 CellTables cell_tables(const ArrayDesign& design, std::span<const double> cell_area_m2,
                        double largest_photocurrent_A);

@@ -13,14 +13,12 @@ class PowerSurface {
   PowerSurface(const ArrayDesign& design, const ArrayResult& array, double low_K, double high_K,
                double min_light)
       : low_K_(low_K), high_K_(high_K), min_light_(min_light) {
-    const double reference = photocurrent_factor(design.cell, design.temperature_K);
     for (size_t t = 0; t < temperatures; ++t) {
       ArrayDesign warm = design;
       warm.temperature_K = std::lerp(low_K, high_K, static_cast<double>(t) / (temperatures - 1));
-      const double warmth = photocurrent_factor(design.cell, warm.temperature_K) / reference;
       for (size_t l = 0; l < lights; ++l) {
         const double light = std::lerp(min_light, 1.0, static_cast<double>(l) / (lights - 1));
-        power_W_[t][l] = array_power_W(warm, array, light * warmth);
+        power_W_[t][l] = array_power_W(warm, array, design.temperature_K, light);
       }
     }
   }

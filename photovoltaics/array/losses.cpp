@@ -138,8 +138,10 @@ Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring) {
   return table;
 }
 
-double array_power_W(const ArrayDesign& design, const ArrayResult& array, double light_factor) {
-  std::vector<double> light_A = array.cell_photocurrent_A;
+double array_power_W(const ArrayDesign& design, const ArrayResult& array, double array_K,
+                     double light_factor) {
+  std::vector<double> light_A =
+      warmed(design, array.cell_photocurrent_A, array_K, design.temperature_K);
   for (double& i : light_A) i *= light_factor;
   const double max_A = *std::ranges::max_element(light_A);
   const CellTables tables = cell_tables(design, array.cell_area_m2, max_A);
@@ -147,15 +149,13 @@ double array_power_W(const ArrayDesign& design, const ArrayResult& array, double
 }
 
 std::vector<ArraySensitivity> sensitivities(const ArrayDesign& design, const ArrayResult& array) {
-  const double now_W = array_power_W(design, array, 1.0);
+  const double now_W = array_power_W(design, array, design.temperature_K, 1.0);
   std::vector<ArraySensitivity> all;
   const auto add = [&](const std::string& change, double light_factor,
                        const std::function<void(ArrayDesign&)>& apply) {
     ArrayDesign changed = design;
     apply(changed);
-    const double warmth = photocurrent_factor(changed.cell, changed.temperature_K) /
-                          photocurrent_factor(design.cell, design.temperature_K);
-    const double power_W = array_power_W(changed, array, light_factor * warmth);
+    const double power_W = array_power_W(changed, array, design.temperature_K, light_factor);
     all.push_back({change, power_W, now_W > 0 ? power_W / now_W - 1.0 : 0.0});
   };
   add("light or quantum efficiency +1 %", 1.01, [](ArrayDesign&) {});

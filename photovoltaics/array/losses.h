@@ -46,9 +46,10 @@ Uniformity uniformity(const ArrayResult& array, std::span<const int> cells);
 // Table "uniformity": the whole array, then each string.
 Table uniformity_table(const ArrayResult& array, const ArrayWiring& wiring);
 
-// The maximum power of `design` when every cell has `light_factor` ≥ 0 times the photocurrent that
-// it has in `array`.
-double array_power_W(const ArrayDesign& design, const ArrayResult& array, double light_factor);
+// The maximum power of `design` when every cell gets `light_factor` ≥ 0 times the light that it
+// gets in `array`, whose photocurrents are of cells at `array_K`.
+double array_power_W(const ArrayDesign& design, const ArrayResult& array, double array_K,
+                     double light_factor);
 
 // Relative change of the power per change of one thing.
 struct ArraySensitivity {

@@ -30,8 +30,9 @@ inline bool reasonable(const Eigen::VectorXd& x) {
 // Throws InputError for too few points, unequal columns or numbers that are not finite.
 void check_sweep(const IvSweep& sweep);
 
-// Where the sweep, continued straight, meets the axes. Throws InputError when it shows no positive
-// current or voltage.
+// The current of the point nearest to 0 V, and the highest voltage at which there is a current. Of
+// a sweep that ends before the axes both are the best that there is to start from. Throws
+// InputError when it shows no positive current or voltage.
 struct SweepEnds {
   double short_circuit_A = 0.0, open_circuit_V = 0.0;
 };

@@ -68,10 +68,11 @@ const CellTables& PowerSupply::tables_at(int index) {
   if (known != tables_.end()) return known->second;
   ArrayDesign warm = design_.array;
   if (index >= 0) warm.temperature_K = temperature_step_K * index;
-  const double warmth = photocurrent_factor(warm.cell, warm.temperature_K) /
-                        photocurrent_factor(warm.cell, design_.array.temperature_K);
+  const std::vector<double> largest_A =
+      warmed(warm, std::vector(design_.cell_area_m2.size(), design_.max_photocurrent_A),
+             design_.array.temperature_K, warm.temperature_K);
   return tables_
-      .emplace(index, cell_tables(warm, design_.cell_area_m2, design_.max_photocurrent_A * warmth))
+      .emplace(index, cell_tables(warm, design_.cell_area_m2, std::ranges::max(largest_A)))
       .first->second;
 }
 
@@ -84,12 +85,9 @@ void PowerSupply::step(double time_s, double step_s, const Light& light, bool ju
     const auto add = [&](int index, double weight) {
       if (weight == 0.0) return;
       const double kelvin = temperature_step_K * index;
-      const double factor =
-          index < 0 ? 1.0
-                    : photocurrent_factor(design_.array.cell, kelvin) /
-                          photocurrent_factor(design_.array.cell, design_.array.temperature_K);
-      std::vector<double> current_A = light.photocurrent_A;
-      for (double& current : current_A) current *= factor;
+      const std::vector<double> current_A = index < 0 ? light.photocurrent_A
+                                                      : warmed(design_.array, light.photocurrent_A,
+                                                               design_.array.temperature_K, kelvin);
       curves.curve.emplace_back(design_.array.wiring, tables_at(index), current_A);
       curves.weight.push_back(weight);
     };

@@ -15,8 +15,10 @@ struct CoincidentFaces {
   size_t triangles = 0;            // pairs of them
 };
 
-// The most first. Planes that differ by less than 2e-7 of the scene's size count as one, which is
-// what single precision tells apart. Looks at no more pairs than take about a second.
+// The most first. Planes count as one whose distances from the origin round to the same multiple of
+// 2e-7 of the scene's size, which is what single precision tells apart, and their normals to the
+// same of 1e-5: some that lie as close on two sides of a step are missed. Looks at no more pairs
+// than take about a second.
 std::vector<CoincidentFaces> coincident_faces(const Scene& scene);
 
 }  // namespace photorque

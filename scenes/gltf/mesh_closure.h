@@ -20,8 +20,9 @@ struct MeshClosure {
   // Open edges on which a vertex of the same mesh lies: the triangles on both sides do not meet at
   // the same corners, so that rounding leaves gaps (T-junctions).
   size_t t_junctions = 0;
-  // Meshes with open edges, but fewer than the root of all edges, which the rim of a sheet has at
-  // least: meant to be closed, it seems.
+  // Meshes with open edges, but fewer than the root of all edges, which the rim of a square sheet
+  // has at least: meant to be closed, it seems. (Not of every sheet: of a disc in many rings the rim
+  // has fewer. For notices alone.)
   size_t almost_closed = 0;
   std::vector<uint8_t> encloses;  // per mesh: closed or almost
 };

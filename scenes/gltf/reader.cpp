@@ -145,7 +145,7 @@ class Assembly {
     std::vector<Instance> all;
     std::map<std::pair<uint32_t, int>, std::vector<Instance>> known;  // by mesh and material
     std::map<int, std::optional<BaseColours>> pictures;
-    std::set<std::string> uncoloured;
+    std::set<std::string> uncoloured, of_other_coordinates;
     for (size_t i = 0; i < model_.scene.instances.size(); ++i) {
       const Instance& whole = model_.scene.instances[i];
       const int material = material_indices_[i];
@@ -162,6 +162,7 @@ class Assembly {
             gltf::base_colour_picture(document_, material, open_, options_.picture, budget_);
       }
       const std::optional<BaseColours>& picture = pictures[material];
+      if (!picture && has_picture(material)) of_other_coordinates.insert(whole.material);
       const auto [parts, is_new] = known.try_emplace({whole.mesh, material});
       if (is_new && picture) parts->second = parts_of(whole, material, *picture);
       if (parts->second.empty()) all.push_back(whole);
@@ -176,6 +177,11 @@ class Assembly {
       model_.notices.push_back(
           "material '" + name +
           "': its picture is left out where a mesh has no texture coordinates");
+    }
+    for (const std::string& name : of_other_coordinates) {
+      model_.notices.push_back("material '" + name +
+                               "': its picture is left out: it is not laid on by the first texture "
+                               "coordinates (texCoord)");
     }
     model_.scene.instances = std::move(all);
   }

@@ -81,7 +81,12 @@ std::optional<BaseColours> base_colour_picture(const Document& document, int mat
   const json::json_pointer place(where);
   if (!document.json.contains(place)) return std::nullopt;
   const json& info = document.json[place];
-  if (!info.is_object() || info.value("texCoord", json(0)) != 0) return std::nullopt;
+  if (!info.is_object()) return std::nullopt;
+  // The first coordinates alone are read.
+  json coordinates = info.value("texCoord", json(0));
+  const json::json_pointer other("/extensions/KHR_texture_transform/texCoord");
+  if (info.contains(other)) coordinates = info[other];
+  if (coordinates != 0) return std::nullopt;
   const json& texture =
       element_of(document, where + "/index", info.value("index", json()), "textures");
   const json index = texture.value("source", json());

@@ -1,6 +1,7 @@
 #include "scenes/platforms/generator_solids.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/constants.h"
@@ -58,11 +59,13 @@ std::vector<double> cut_angles(const Vec2& half, int segments) {
   std::vector<double> angles;
   for (int i = 0; i < segments; ++i) angles.push_back(2.0 * pi * i / segments);
   const double corner = std::atan2(half.y(), half.x());
-  for (const double angle : {corner, pi - corner, pi + corner, 2.0 * pi - corner}) {
-    // An even cut nearby gives way, or slivers appear.
-    std::erase_if(angles, [&](double a) { return std::abs(a - angle) < pi / segments; });
-    angles.push_back(angle);
-  }
+  const std::array<double, 4> corners = {corner, pi - corner, pi + corner, 2.0 * pi - corner};
+  // An even cut near a corner gives way, or slivers appear.
+  std::erase_if(angles, [&](double a) {
+    return std::ranges::any_of(corners,
+                               [&](double angle) { return std::abs(a - angle) < pi / segments; });
+  });
+  angles.insert(angles.end(), corners.begin(), corners.end());
   std::sort(angles.begin(), angles.end());
   return angles;
 }

@@ -140,7 +140,11 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
   lines.number_or_zero("downward flux fraction");
   lines.number_or_zero("light output ratio");
   const double conversion = lines.number("conversion factor");
-  lines.number_or_zero("tilt during measurement");
+  const double tilt_deg = lines.number_or_zero("tilt during measurement");
+  if (tilt_deg != 0.0) {
+    file.notices.push_back("measured at a tilt of " + shortest(tilt_deg) +
+                           " deg, by which the lamp is not turned");
+  }
   const Lamps lamps = read_lamps(lines);
   for (int i = 0; i < 10; ++i) lines.number_or_zero("direct ratio");
   file.input_power_W = lamps.input_power_W;
@@ -152,9 +156,11 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
   }
 
   const StoredRange range = stored_range(symmetry, planes);
-  if (symmetry > 1 && planes % 4 != 0) {
+  // Half of the planes from C0 to C180, or a quarter of them, end on a plane.
+  const size_t parts = symmetry == 2 ? 2 : 4;
+  if (symmetry > 1 && planes % parts != 0) {
     throw InputError(lines.where(), "number of C planes", std::to_string(planes),
-                     "a multiple of 4 for a symmetric table");
+                     "a multiple of " + std::to_string(parts) + " for this symmetry");
   }
   const std::vector<double> all_c_deg = lines.numbers("C angle", planes);
   StoredPlanes stored;
@@ -179,11 +185,7 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
 PhotometricFile read_photometric(const std::string& bytes, const std::string& name) {
   const size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");  // after a byte order mark
   if (first != std::string::npos && bytes[first] == '<') return read_tm33(bytes, name);
-  for (const std::string_view line : lines_of(bytes)) {
-    const std::string_view start = trimmed(line);
-    if (start.starts_with("TILT") || start.starts_with("IES")) return read_ies(bytes, name);
-  }
-  return read_eulumdat(bytes, name);
+  return looks_like_ies(lines_of(bytes)) ? read_ies(bytes, name) : read_eulumdat(bytes, name);
 }
 
 }  // namespace photorque

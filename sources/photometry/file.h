@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct PhotometricFile {
 // checked and passed over with a notice. `name` is how messages call the file. InputError with the
 // line of what is wrong.
 PhotometricFile read_ies(const std::string& bytes, const std::string& name);
+
+// Whether these are the lines of such a file: its first says so, or there is a line "TILT=".
+bool looks_like_ies(const std::vector<std::string_view>& lines);
 
 // EULUMDAT (.ldt); symmetries 0 to 4 are unfolded, cd/klm become cd with the stated lamp flux.
 PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name);

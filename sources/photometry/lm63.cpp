@@ -22,6 +22,16 @@ bool begins_with_word(std::string_view line, std::string_view word) {
          });
 }
 
+// "TILT=", in small letters as well, with blanks before the sign; not "Tilting bracket".
+bool is_tilt_line(std::string_view line) {
+  return begins_with_word(line, "TILT") && trimmed(line.substr(4)).starts_with('=');
+}
+
+// "IESNA:LM-63-2002", "IES:LM-63-2019"; not the name of a company.
+bool begins_as_ies(std::string_view line) {
+  return begins_with_word(line, "IESNA") || begins_with_word(line, "IES:");
+}
+
 // The numbers after the TILT line: separated by blanks, commas and line ends in any mixture.
 class NumberStream {
  public:
@@ -77,8 +87,8 @@ size_t read_labels(const std::vector<std::string_view>& lines, const std::string
   file.format = "LM-63-1986";
   for (size_t i = 0; i < lines.size(); ++i) {
     const std::string_view line = trimmed(lines[i]);
-    if (begins_with_word(line, "TILT")) return i;
-    if (i == 0 && (begins_with_word(line, "IESNA") || begins_with_word(line, "IES:"))) {
+    if (is_tilt_line(line)) return i;
+    if (i == 0 && begins_as_ies(line)) {
       file.format = std::string(line);
     } else if (line.starts_with('[') && line.find(']') != std::string_view::npos) {
       const size_t end = line.find(']');
@@ -171,6 +181,12 @@ void require_end(NumberStream& stream, const IesHeader& header) {
 }
 
 }  // namespace
+
+bool looks_like_ies(const std::vector<std::string_view>& lines) {
+  const auto first = std::ranges::find_if(lines, [](auto line) { return !trimmed(line).empty(); });
+  if (first != lines.end() && begins_as_ies(trimmed(*first))) return true;
+  return std::ranges::any_of(lines, [](auto line) { return is_tilt_line(trimmed(line)); });
+}
 
 PhotometricFile read_ies(const std::string& bytes, const std::string& name) {
   PhotometricFile file;

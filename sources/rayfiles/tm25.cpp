@@ -31,7 +31,8 @@ enum Column : size_t {
   spectrum,
   column_kinds
 };
-constexpr std::array<size_t, column_kinds> column_floats = {3, 3, 1, 1, 1, 7, 2, 1};
+// Of Stokes' parameters three, and the direction that they refer to.
+constexpr std::array<size_t, column_kinds> column_floats = {3, 3, 1, 1, 1, 6, 2, 1};
 
 struct Tm25Header {
   uint64_t rays = 0;

@@ -40,6 +40,7 @@ struct Tumbling {
 
 struct Largest {
   double attitude_arcsec = 0.0, gyro_rad_s = 0.0;
+  size_t attitudes = 0, rates = 0;  // that were compared
 };
 
 Largest largest_of(const Tumbling& body, const Observation& seen, PlatformState start) {
@@ -51,10 +52,12 @@ Largest largest_of(const Tumbling& body, const Observation& seen, PlatformState 
   Largest largest;
   for (const WhiteRow& off : predict(dynamics, start, seen, {}, options).off) {
     if (off.head<3>().allFinite()) {
+      ++largest.attitudes;
       largest.attitude_arcsec =
           std::max(largest.attitude_arcsec, off.head<3>().cwiseAbs().maxCoeff() / arcsecond_rad);
     }
     if (off.segment<3>(3).allFinite()) {
+      ++largest.rates;
       largest.gyro_rad_s = std::max(largest.gyro_rad_s, off.segment<3>(3).cwiseAbs().maxCoeff());
     }
   }
@@ -102,6 +105,8 @@ TEST(BlockMeans, OfACameraSlowerThanTheGyro) {
     }
   }
   const Largest left = largest_of(body, body.observed(200), body.run.initial);
+  EXPECT_GT(left.attitudes, 150U);
+  EXPECT_GT(left.rates, 150U);
   EXPECT_LT(left.attitude_arcsec, 1.0);
   EXPECT_LT(left.gyro_rad_s, 5e-5);
 }
@@ -129,6 +134,8 @@ TEST(BlockMeans, OfMeansHoldTheSameMoments) {
   const Observation rows = body.observed(100000), twice = body.observed(800).averaged(200);
   ASSERT_TRUE(rows.spread.empty());
   const Largest left = largest_of(body, twice, body.run.initial);
+  EXPECT_GT(left.attitudes, 150U);
+  EXPECT_GT(left.rates, 150U);
   EXPECT_LT(left.attitude_arcsec, 1.0);
   EXPECT_LT(left.gyro_rad_s, 1e-5);
   EXPECT_LT(largest_of(body, rows, body.run.initial).attitude_arcsec, 1e-3);

@@ -156,11 +156,17 @@ TEST(ScalarReadings, AGyroWithExchangedAxesIsNotTakenForAnotherSequence) {
       },
       true);
   std::swap(run.recording.channels[3].values, run.recording.channels[5].values);
+  run.recording.channels[4].values[10] = NAN;
   const Segments read = observe_segments(run.recording, run.name, {});
   ASSERT_TRUE(read.angles);
   EXPECT_EQ(read.angles->text, "");
   Observation seen = read.all.front();
+  const Vec3 before = seen.gyro_rad_s[10];
   EXPECT_THAT(repair_conventions(seen), HasSubstr("the gyro's axes x, y, z are +z, +y, +x"));
+  // The one axis that was not read makes nothing of the others.
+  EXPECT_EQ(seen.gyro_rows[10], Vec3(1, 0, 1));
+  EXPECT_EQ(seen.gyro_rad_s[10].x(), before.z());
+  EXPECT_EQ(seen.gyro_rad_s[10].z(), before.x());
 }
 
 TEST(ScalarReadings, ADipoleIsNamedByTiltAndHeadingAlone) {

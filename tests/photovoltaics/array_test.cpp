@@ -119,6 +119,20 @@ TEST(PhotovoltaicArray, ACellWithoutPhotocurrentIsACellInTheDark) {
   EXPECT_NEAR(dead_W, dark_W, 1e-11 * dark_W);
 }
 
+// 1 + s (T - 298.15 K) of each cell's own slope s.
+TEST(PhotovoltaicArray, EachCellWarmsByItsOwnSlope) {
+  SettingsNode::Table table = ten_by_ten();
+  table["cell_override"] =
+      tables({{{"index", whole(2)}, {"photocurrent_slope_per_K", number(0.0)}}});
+  ArrayDesign array = design(table);
+  array.cell.photocurrent_slope_1_K = 5e-4;
+  const double reference_K = array.cell.reference.temperature_K;
+  const std::vector<double> warm_A =
+      warmed(array, std::vector(100, 2.0), reference_K + 10.0, reference_K + 60.0);
+  EXPECT_NEAR(warm_A[1], 2.0 * 1.03 / 1.005, 1e-12);
+  EXPECT_EQ(warm_A[2], 2.0);
+}
+
 TEST(PhotovoltaicArray, OverridesThatMeanNothingAreRefused) {
   const auto refused = [](std::initializer_list<SettingsNode::Table> overrides) {
     SettingsNode::Table table = ten_by_ten();

@@ -145,6 +145,10 @@ TEST(GltfTexture, AMeshWithoutCoordinatesIsTold) {
   const std::string told = "'paint': its picture is left out";
   TestModel model = pictured_model();
   EXPECT_THAT(model.read(with_pictures()).notices, testing::Not(Contains(HasSubstr(told))));
+  TestModel other = pictured_model();
+  other.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]
+            ["KHR_texture_transform"]["texCoord"] = 1;
+  EXPECT_THAT(other.read(with_pictures()).notices, Contains(HasSubstr("(texCoord)")));
   model.json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
   const GltfModel bare = model.read(with_pictures());
   EXPECT_EQ(bare.scene.instances.size(), 1u);

@@ -24,6 +24,8 @@ std::vector<Named> all_solids(int segments) {
       {"box", box_solid({0.3, 0.2, 0.1}), 0.006},
       {"box_with_hole", box_with_hole_solid({0.5, 0.3, 0.02}, 0.1, segments),
        (0.15 - hole_area_m2) * 0.02},
+      {"long_box_with_hole", box_with_hole_solid({0.66, 0.02, 0.01}, 0.004, segments),
+       (0.66 * 0.02 - pi * 0.004 * 0.004) * 0.01},
       {"cylinder", cylinder_solid(0.1, 0.1, 0.4, 0, segments), pi * 0.01 * 0.4},
       {"tube", cylinder_solid(0.1, 0.1, 0.4, 0.06, segments), pi * (0.01 - 0.0036) * 0.4},
       {"frustum", cylinder_solid(0.2, 0.1, 0.3, 0, segments), pi * 0.1 * (0.04 + 0.02 + 0.01)},

@@ -337,5 +337,40 @@ TEST(EulumdatFile, SymmetryToC90C270StartsAtC270) {
   EXPECT_NEAR(intensity.at(0, 90 * deg), 7.0, 1e-12);
 }
 
+// A symmetric half or quarter of the planes ends on a plane of the file, which for a half needs an
+// even number of them alone.
+TEST(EulumdatFile, SymmetryToC0C180NeedsAnEvenNumberOfPlanes) {
+  const auto lamp = [](const std::string& maker, const std::string& tilt_deg) {
+    std::string text =
+        maker +
+        "\n3\n2\n6\n60\n2\n90\n\nTILT LED\n\n\n\n100\n0\n0\n40\n0\n0\n0\n0\n0\n100\n100\n"
+        "1\n" +
+        tilt_deg + "\n1\n1\nLED\n1000\n\n\n5\n";
+    for (int i = 0; i < 10; ++i) text += "0\n";
+    return text + "0\n60\n120\n180\n240\n300\n0\n90\n1\n0\n2\n0\n3\n0\n4\n0\n";
+  };
+  // Neither a maker nor a lamp whose name begins so makes it a file of the IES.
+  const PhotometricFile file = read_photometric(lamp("IES Leuchten", "0"), "lamp.ldt");
+  EXPECT_EQ(file.format, "EULUMDAT");
+  const TabulatedIntensity intensity(file.table);
+  for (const double c_deg : {60.0, 300.0}) EXPECT_NEAR(intensity.at(0, c_deg * deg), 2.0, 1e-12);
+  for (const double c_deg : {120.0, 240.0}) EXPECT_NEAR(intensity.at(0, c_deg * deg), 3.0, 1e-12);
+  EXPECT_NEAR(intensity.at(0, 180 * deg), 4.0, 1e-12);
+  const PhotometricFile tilted = read_photometric(lamp("maker", "15"), "lamp.ldt");
+  EXPECT_EQ(tilted.notices.size(), file.notices.size() + 1);
+  EXPECT_EQ(tilted.notices.front(),
+            "measured at a tilt of 15 deg, by which the lamp is not turned");
+}
+
+TEST(IesFile, AnyWordThatBeginsWithTiltIsNotItsTiltLine) {
+  const std::string text = with(small_ies, "[TEST] by hand\n", "Tilting bracket 2\n");
+  EXPECT_EQ(read_photometric(text, "lamp.ies").table.intensity,
+            read_photometric(small_ies, "lamp.ies").table.intensity);
+  // Of 1986, without a first line that says what it is.
+  const std::string small =
+      with(with(small_ies, "IESNA:LM-63-2002\n", ""), "TILT=NONE", "tilt = none");
+  EXPECT_EQ(read_photometric(small, "lamp.ies").format, "LM-63-1986");
+}
+
 }  // namespace
 }  // namespace photorque

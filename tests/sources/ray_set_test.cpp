@@ -149,6 +149,22 @@ TEST(RaySetFiles, FluxesBeyondEverythingAreRefused) {
   for (const char* flux : {"1e300", "1e-300", "0"}) EXPECT_THROW(read(flux), InputError) << flux;
 }
 
+// Three of Stokes' numbers and the direction that they refer to, as TM25RaySetTools and tm25ray
+// have them, stand after the fluxes.
+TEST(Tm25, PolarisationIsPassedOver) {
+  const std::string plain = write_tm25(three_rays());
+  constexpr size_t flags_at = 256, stokes_at = flags_at + 4 * 5;
+  size_t floats = 6;
+  for (size_t flag = 2; flag < 5; ++flag) floats += plain[flags_at + 4 * flag] == 1 ? 1 : 0;
+  const size_t ray_bytes = 4 * floats, rays_at = plain.size() - 3 * ray_bytes;
+  std::string polarised = plain.substr(0, rays_at);
+  polarised[stokes_at] = 1;
+  for (size_t ray = 0; ray < 3; ++ray) {
+    polarised += plain.substr(rays_at + ray * ray_bytes, ray_bytes) + std::string(4 * 6, '\x3f');
+  }
+  expect_equal(read_tm25(plain, ""), read_tm25(polarised, ""));
+}
+
 TEST(Tm25, RefusesDamage) {
   const std::string good = write_tm25(three_rays());
   const auto expect_refused = [](const std::string& bytes, const std::string& words) {

@@ -73,6 +73,25 @@ TorqueAndSlopes at_state(AttitudeModel& model, size_t own, const PlatformState& 
   return result;
 }
 
+// Of all `count` parameters of a law; 0 for those that were not fitted, as is the torque about an
+// axis that cannot turn.
+Eigen::MatrixXd covariance_of(const Fit& fit, size_t law, Eigen::Index count) {
+  const Eigen::MatrixXd shared = fit.shared_posterior();
+  std::vector<Eigen::Index> fitted, where;
+  Eigen::Index at = 0;
+  for (const Free& f : fit.best.free) {
+    if (f.per_run) continue;
+    if (f.disturbance == law) {
+      fitted.push_back(f.parameter);
+      where.push_back(at);
+    }
+    ++at;
+  }
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
+  covariance(fitted, fitted) = shared(where, where);
+  return covariance;
+}
+
 EmpiricalTorque torque_of(const Trial& chosen, size_t which, const Candidate& candidate,
                           const AttitudeModel& model, const Trajectory& propagated) {
   const size_t law = chosen.disturbances[which];
@@ -105,8 +124,7 @@ EmpiricalTorque torque_of(const Trial& chosen, size_t which, const Candidate& ca
     samples[bin] += 1.0;
   }
 
-  const std::vector<Eigen::Index> where = shared_indices(chosen, which);
-  const Eigen::MatrixXd covariance = chosen.fit.shared_posterior()(where, where);
+  const Eigen::MatrixXd covariance = covariance_of(chosen.fit, law, count);
   for (size_t bin = 0; bin < torque_bins; ++bin) {
     if (samples[bin] == 0.0) continue;
     const Eigen::Matrix3Xd slope = slopes[bin] / samples[bin];

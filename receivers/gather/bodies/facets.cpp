@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "receivers/gather/bodies/inside.h"
 #include "receivers/surface_grid.h"
 
 namespace photorque {
@@ -34,29 +35,20 @@ Ball ball_about(std::span<const Facet> facets) {
   return {0.5 * (low + high), 0.5 * (high - low).norm()};
 }
 
-// By the sign of the volume inside.
-bool fronts_look_inwards(std::span<const Facet> facets) {
-  double volume_m3 = 0.0;
-  for (const Facet& facet : facets) {
-    volume_m3 += facet.area_m2 * facet.normal.dot(facet.ball.centre_m - facets[0].ball.centre_m);
-  }
-  return volume_m3 < 0.0;
-}
-
 }  // namespace
 
 Facets::Facets(const Scene& scene) {
   for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
     first_.push_back(facets_.size());
     numbers_.emplace_back();
-    for (const SurfaceFace& face : faces_of(scene, std::span(&instance, 1))) {
+    const std::vector<SurfaceFace> faces = faces_of(scene, std::span(&instance, 1));
+    for (const SurfaceFace& face : faces) {
       if (face.area_body_m2.norm() > 0.0) facets_.push_back(facet_of(face));
       numbers_.back().push_back(static_cast<uint32_t>(std::max<size_t>(facets_.size(), 1) - 1));
     }
     const auto own = std::span(facets_).subspan(first_.back());
     balls_.push_back(ball_about(own));
-    const bool encloses = scene.meshes[scene.instances[instance].mesh].encloses;
-    inward_.push_back(encloses ? std::optional(fronts_look_inwards(own)) : std::nullopt);
+    inward_.push_back(fronts_look_inwards(faces));
   }
   first_.push_back(facets_.size());
   find_free(scene.radius_m());

@@ -40,7 +40,8 @@ class Facets {
   // Holds an instance.
   const Ball& ball_of(uint32_t instance) const { return balls_[instance]; }
   size_t count() const { return facets_.size(); }
-  // Of an instance that encloses something: whether it is the fronts that look inwards.
+  // Of an instance without a gap: whether it is the fronts that look inwards
+  // (fronts_look_inwards()).
   std::optional<bool> inward(uint32_t instance) const { return inward_[instance]; }
 
  private:
