@@ -217,13 +217,15 @@ std::array<bool, 3> reversed_wheels(const FreeInertia& found) {
 }
 
 // The names of the columns that were turned.
-std::string turn_wheels(const std::array<bool, 3>& reversed, Observation& seen) {
+std::string turn_wheels(const std::array<bool, 3>& reversed, std::span<Observation> stretches) {
   std::string names;
   for (int k = 0; k < 3; ++k) {
     if (!reversed[static_cast<size_t>(k)]) continue;
-    for (ZeroOrderHold& held : seen.schedule.held) {
-      held.wheel.speed_rad_s[k] *= -1.0;
-      held.wheel.acceleration_rad_s2[k] *= -1.0;
+    for (Observation& seen : stretches) {
+      for (ZeroOrderHold& held : seen.schedule.held) {
+        held.wheel.speed_rad_s[k] *= -1.0;
+        held.wheel.acceleration_rad_s2[k] *= -1.0;
+      }
     }
     names += std::string(names.empty() ? "" : ", ") + "wheel_" + "xyz"[k] + "_rad_s";
   }
@@ -247,14 +249,15 @@ struct FreeReading {
 };
 
 // All readings of the gyro under which the rates follow some inertia at all.
-std::vector<FreeReading> free_readings(const Observation& seen) {
+std::vector<FreeReading> free_readings(std::span<const Observation> stretches) {
   constexpr size_t most = 600;
-  const Observation rows = seen.averaged(most);
+  std::vector<Observation> rows;
+  for (const Observation& seen : stretches) rows.push_back(seen.averaged(most));
   std::vector<FreeReading> all;
   for (const GyroReading& gyro : gyro_readings()) {
-    Observation turned = rows;
-    read_gyro_as(gyro.matrix, turned);
-    if (const auto found = free_inertia({turned}, FreeDrag::none)) all.push_back({gyro, *found});
+    std::vector<Observation> turned = rows;
+    for (Observation& seen : turned) read_gyro_as(gyro.matrix, seen);
+    if (const auto found = free_inertia(turned, FreeDrag::none)) all.push_back({gyro, *found});
   }
   return all;
 }
@@ -284,14 +287,14 @@ const FreeReading* best_reading(const std::vector<FreeReading>& all, const Mat3&
 }
 
 // Without trust in the stated inertia.
-std::string repair_by_any_inertia(Observation& seen, const Mat3& inertia_kg_m2) {
-  const std::vector<FreeReading> all = free_readings(seen);
+std::string repair_by_any_inertia(std::span<Observation> stretches, const Mat3& inertia_kg_m2) {
+  const std::vector<FreeReading> all = free_readings(stretches);
   const FreeReading* taken = best_reading(all, inertia_kg_m2);
   if (taken == nullptr || taken->inertia.left > agrees) return "";
-  const std::string wheels = turn_wheels(reversed_wheels(taken->inertia), seen);
+  const std::string wheels = turn_wheels(reversed_wheels(taken->inertia), stretches);
   std::string text;
   if (taken->gyro.changes > 0) {
-    read_gyro_as(taken->gyro.matrix, seen);
+    for (Observation& seen : stretches) read_gyro_as(taken->gyro.matrix, seen);
     text = "convention: " + taken->gyro.text +
            ": the recording was read so, because only then do the rates change as any inertia "
            "makes them; a free body cannot tell one reversed axis from another, nor from two axes "
@@ -304,17 +307,21 @@ std::string repair_by_any_inertia(Observation& seen, const Mat3& inertia_kg_m2) 
 
 }  // namespace
 
-std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2) {
+std::string repair_free_rates(std::span<Observation> stretches, const Mat3& inertia_kg_m2) {
   constexpr size_t fewest = 20;
-  if (!seen.has_gyro || seen.sees_some_attitude()) return "";
-  const std::vector<Change> changes = changes_of(seen);
+  std::vector<Change> changes;
+  for (const Observation& seen : stretches) {
+    if (!seen.has_gyro || seen.sees_some_attitude()) return "";
+    const std::vector<Change> own = changes_of(seen);
+    changes.insert(changes.end(), own.begin(), own.end());
+  }
   if (changes.size() < fewest) return "";
   const double as_is = disagreement(changes, inertia_kg_m2, Mat3::Identity());
   // The body's own inertia explains half of what the rates do: torques may do the rest.
   if (as_is < 0.5) {
-    const auto found = free_inertia({seen}, FreeDrag::none);
+    const auto found = free_inertia({stretches.begin(), stretches.end()}, FreeDrag::none);
     if (!found || found->left > agrees) return "";
-    const std::string wheels = turn_wheels(reversed_wheels(*found), seen);
+    const std::string wheels = turn_wheels(reversed_wheels(*found), stretches);
     return wheels.empty() ? ""
                           : "convention: the sign of " + wheels +
                                 " was turned: as it stands the wheel would have a negative moment "
@@ -330,8 +337,8 @@ std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2) {
     best_cost = cost;
     best_gyro = gyro;
   }
-  if (best > agrees || best > 0.2 * as_is) return repair_by_any_inertia(seen, inertia_kg_m2);
-  read_gyro_as(best_gyro.matrix, seen);
+  if (best > agrees || best > 0.2 * as_is) return repair_by_any_inertia(stretches, inertia_kg_m2);
+  for (Observation& seen : stretches) read_gyro_as(best_gyro.matrix, seen);
   return "convention: " + best_gyro.text +
          ": the recording was read so, because only then do the rates change as the stated inertia "
          "makes them; a free body cannot tell one reversed axis from another";
@@ -389,9 +396,13 @@ std::optional<AngleConvention> convention_of_angles(const Recording& recording,
   return found;
 }
 
-std::string repair_conventions(Observation& seen) {
-  if (!seen.has_gyro) return "";
-  const std::vector<Pair> pairs = pairs_of(seen);
+std::string repair_conventions(std::span<Observation> stretches) {
+  std::vector<Pair> pairs;
+  for (const Observation& seen : stretches) {
+    if (!seen.has_gyro) return "";
+    const std::vector<Pair> own = pairs_of(seen);
+    pairs.insert(pairs.end(), own.begin(), own.end());
+  }
   if (pairs.size() < 20) return "";
   const double as_is = disagreement(pairs, QuaternionReading::as_is, Mat3::Identity());
   if (as_is < agrees) return "";
@@ -415,8 +426,10 @@ std::string repair_conventions(Observation& seen) {
     }
   }
   if (best > agrees || best > 0.2 * as_is) return "";
-  for (Quat& attitude : seen.attitude) attitude = read(attitude, best_reading);
-  read_gyro_as(best_gyro.matrix, seen);
+  for (Observation& seen : stretches) {
+    for (Quat& attitude : seen.attitude) attitude = read(attitude, best_reading);
+    read_gyro_as(best_gyro.matrix, seen);
+  }
   const std::string quaternions = text_of(best_reading);
   const bool both = !quaternions.empty() && !best_gyro.text.empty();
   return "convention: " + quaternions + (both ? "; " : "") + best_gyro.text +

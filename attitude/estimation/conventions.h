@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "attitude/observation/observation.h"
@@ -10,10 +11,10 @@ namespace photorque {
 
 // When gyro and attitude contradict each other as read, and one other reading of the same numbers
 // (quaternion conjugated, scalar last, axes permuted or reversed, degrees per second under a header
-// that says radians or the reverse) makes them agree, the observation is changed to that reading
-// and a sentence says so. Empty: nothing was changed. An observation without gyro cannot be
-// checked.
-std::string repair_conventions(Observation& seen);
+// that says radians or the reverse) makes them agree, the observations are changed to that reading
+// and a sentence says so. Empty: nothing was changed. Without a gyro nothing can be checked. The
+// stretches of one recording are read in one way: what a short one cannot tell, the others do.
+std::string repair_conventions(std::span<Observation> stretches);
 
 // How roll, pitch and yaw of a recording are to be read.
 struct AngleConvention {
@@ -40,6 +41,6 @@ std::optional<AngleConvention> convention_of_angles(const Recording& recording,
 // units that leaves a third of what the header's reading leaves is taken, the one nearest to the
 // stated moments. A wheel whose own moment of inertia comes out negative by five standard errors
 // was read with the wrong sign; its speed is turned.
-std::string repair_free_rates(Observation& seen, const Mat3& inertia_kg_m2);
+std::string repair_free_rates(std::span<Observation> stretches, const Mat3& inertia_kg_m2);
 
 }  // namespace photorque

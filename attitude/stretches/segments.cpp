@@ -34,9 +34,47 @@ double long_gap_s(const Recording& recording) {
   return longest_s;
 }
 
+double median_of(std::vector<double> sizes) {
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
+}
+
+// The size of most of these. Between the steps of an encoder nothing changes but by rounding: of
+// such readings, of those that do change.
+double usual_of(const std::vector<double>& sizes) {
+  constexpr double rounding = 1e-6, fewest_steps = 0.005;
+  const double usual = median_of(sizes), least = rounding * std::ranges::max(sizes);
+  if (usual > least) return usual;
+  std::vector<double> steps;
+  for (const double size : sizes) {
+    if (size > least) steps.push_back(size);
+  }
+  const double fewest = std::max(10.0, fewest_steps * static_cast<double>(sizes.size()));
+  return static_cast<double>(steps.size()) < fewest ? usual : median_of(steps);
+}
+
+// Of each the largest of the medians over so many about it, before them and after them.
+std::vector<double> usual_nearby(const std::vector<double>& sizes) {
+  constexpr size_t many = 32;
+  const size_t stretches = std::max<size_t>(1, sizes.size() / many);
+  std::vector<double> medians;
+  for (size_t s = 0; s < stretches; ++s) {
+    const auto first = sizes.begin() + static_cast<std::ptrdiff_t>(s * many);
+    medians.push_back(median_of({first, s + 1 < stretches ? first + many : sizes.end()}));
+  }
+  std::vector<double> usual;
+  for (size_t i = 0; i < sizes.size(); ++i) {
+    const size_t at = std::min(i / many, stretches - 1);
+    usual.push_back(std::max(
+        {medians[at == 0 ? 0 : at - 1], medians[at], medians[std::min(at + 1, stretches - 1)]}));
+  }
+  return usual;
+}
+
 // Rows at which the angle about the one axis, or the path of what slides, has a kink that its own
-// readings do not know: a firing that nobody noted, a wall. Noise and torques make all of them
-// alike.
+// readings do not know: a firing that nobody noted, a wall. Noise and torques make those nearby
+// alike; what has decayed later says nothing of the beginning.
 std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   std::vector<char> kinks(rows.blocks(), 0);
   const bool slides = platform.slides();
@@ -74,12 +112,12 @@ std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
   if (changes.empty()) return kinks;
   std::vector<double> sizes;
   for (const Change& change : changes) sizes.push_back(change.rate);
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
+  const double usual = usual_of(sizes);
+  const std::vector<double> nearby = usual_nearby(sizes);
   // Of a Gaussian, 12 of these medians are 8 standard deviations.
   constexpr double medians = 12.0;
-  for (const Change& change : changes) {
-    kinks[change.row] = change.rate > medians * *middle ? 1 : 0;
+  for (size_t i = 0; i < changes.size(); ++i) {
+    kinks[changes[i].row] = changes[i].rate > medians * std::max(usual, nearby[i]) ? 1 : 0;
   }
   return kinks;
 }

@@ -98,12 +98,11 @@ std::vector<std::vector<Observation>> observe_all(const std::vector<NamedRecordi
         if (!is_declared(nominal.sensors, s)) seen.scalar[static_cast<size_t>(s)] = {};
       }
       seen.fields = field_instruments(nominal.sensors);
-      const std::string of_stretch =
-          platform.has_bearing()
-              ? repair_conventions(seen)
-              : repair_conventions(seen) + repair_free_rates(seen, platform.inertia_kg_m2);
-      if (convention.empty()) convention = of_stretch;
     }
+    std::string of_rates = repair_conventions(segments.all);
+    if (!platform.has_bearing())
+      of_rates += repair_free_rates(segments.all, platform.inertia_kg_m2);
+    if (convention.empty()) convention = of_rates;
     if (!convention.empty()) warnings.push_back(r.name + ": " + convention);
     all.push_back(std::move(segments.all));
   }

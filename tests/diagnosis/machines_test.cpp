@@ -208,6 +208,29 @@ TEST(Machines, RecordingsAreCutWhereSomethingHappened) {
   EXPECT_EQ(jumped.all.size(), 4u);
 }
 
+// What an encoder counts in steps, and what swings less and less, has no kinks: an angle that turns
+// evenly by a tenth of a step a row, and one of an amplitude that falls to e^-5.
+TEST(Machines, StepsOfAnEncoderAndTheBeginningOfADecayAreNoKinks) {
+  Platform axle;
+  axle.topology = Topology::one_axis;
+  std::mt19937_64 random(23);
+  std::normal_distribution<double> noise(0.0, 1e-4);
+  Channel counted{"angle_rad", {}}, swings = counted, kicked = counted;
+  for (int i = 0; i < 6000; ++i) {
+    counted.values.push_back(0.01 * std::floor(0.1 * i));
+    const double t = 0.1 * i;
+    swings.values.push_back(0.5 * std::exp(-t / 120.0) * std::cos(t) + noise(random));
+    kicked.values.push_back(swings.values.back() + 0.8 * std::max(0.0, t - 55.0));
+  }
+  for (const Channel& channel : {counted, swings}) {
+    const Segments cut = observe_segments(recording_of(0.1, {channel}), "axle.csv", axle);
+    EXPECT_EQ(cut.kinks, 0);
+    EXPECT_EQ(cut.all.size(), 1U);
+  }
+  // A blow in the middle of the swing is one.
+  EXPECT_GE(observe_segments(recording_of(0.1, {kicked}), "axle.csv", axle).kinks, 1);
+}
+
 // A drive holds the wheel for 60 s before it coasts; now and then a count is lost.
 Channel driven_then_coasting(double noise_rad_s) {
   std::mt19937_64 random(13);

@@ -125,7 +125,7 @@ TEST(ScalarReadings, AnglesInAnotherSequenceAreReadInTheirs) {
     EXPECT_THAT(read.angles->text, HasSubstr("in the sequence " + std::string(sequence)));
     // As read they agree with the gyro, and nothing is to be repaired.
     Observation seen = read.all.front();
-    EXPECT_EQ(repair_conventions(seen), "");
+    EXPECT_EQ(repair_conventions({&seen, 1}), "");
   }
 }
 
@@ -162,7 +162,13 @@ TEST(ScalarReadings, AGyroWithExchangedAxesIsNotTakenForAnotherSequence) {
   EXPECT_EQ(read.angles->text, "");
   Observation seen = read.all.front();
   const Vec3 before = seen.gyro_rad_s[10];
-  EXPECT_THAT(repair_conventions(seen), HasSubstr("the gyro's axes x, y, z are +z, +y, +x"));
+  // A piece that is too short to tell by itself is read as the others are.
+  const size_t end = seen.blocks(), cut = end - 12;
+  std::vector<Observation> pieces = {seen.part(0, cut), seen.part(cut, end)};
+  EXPECT_EQ(repair_conventions({&pieces[1], 1}), "");
+  EXPECT_THAT(repair_conventions(pieces), HasSubstr("+z, +y, +x"));
+  EXPECT_EQ(pieces[1].gyro_rad_s[5].x(), seen.gyro_rad_s[cut + 5].z());
+  EXPECT_THAT(repair_conventions({&seen, 1}), HasSubstr("the gyro's axes x, y, z are +z, +y, +x"));
   // The one axis that was not read makes nothing of the others.
   EXPECT_EQ(seen.gyro_rows[10], Vec3(1, 0, 1));
   EXPECT_EQ(seen.gyro_rad_s[10].x(), before.z());
