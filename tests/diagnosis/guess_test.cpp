@@ -149,7 +149,7 @@ TEST_F(Guess, RatesThatFollowNoInertiaAreReadAnew) {
     Recording spoilt = recording;
     spoil(spoilt);
     Observation seen = observe(spoilt, "throw.csv", free_platform());
-    const std::string text = repair_free_rates(seen, guessed);
+    const std::string text = repair_free_rates({&seen, 1}, guessed);
     const auto found = free_inertia({seen}, FreeDrag::none);
     EXPECT_TRUE(found && found->left < 0.02 && found->wheel.z() > 0.0) << text;
     return text;

@@ -125,7 +125,7 @@ TEST(FreeRates, AreReadSoThatEulersEquationHolds) {
   for (const Mat3& wrong : {degrees, reversed, exchanged, Mat3(degrees * reversed)}) {
     Observation seen = rates_read_as(wrong);
     EXPECT_GT(std::abs(cone_per_spin(seen) / (Top::ratio - 1.0) - 1.0), 0.5);
-    EXPECT_NE(repair_free_rates(seen, inertia), "");
+    EXPECT_NE(repair_free_rates({&seen, 1}, inertia), "");
     EXPECT_NEAR(cone_per_spin(seen), Top::ratio - 1.0, 1e-9);
   }
 }
@@ -133,19 +133,19 @@ TEST(FreeRates, AreReadSoThatEulersEquationHolds) {
 TEST(FreeRates, ThatAreRightOrSayNothingStayAsTheyAre) {
   const Mat3 inertia = Vec3(1.0, 1.0, Top::ratio).asDiagonal();
   Observation right = rates_read_as(Mat3::Identity());
-  EXPECT_EQ(repair_free_rates(right, inertia), "");
+  EXPECT_EQ(repair_free_rates({&right, 1}, inertia), "");
   // Two axes reversed are the same motion seen from elsewhere.
   Observation turned = rates_read_as(Vec3(-1, -1, 1).asDiagonal());
-  EXPECT_EQ(repair_free_rates(turned, inertia), "");
+  EXPECT_EQ(repair_free_rates({&turned, 1}, inertia), "");
   // Of a ball nothing follows, of other physics nothing that an axis could mend.
   Observation mirrored = rates_read_as(Vec3(1, 1, -1).asDiagonal());
-  EXPECT_EQ(repair_free_rates(mirrored, Mat3::Identity()), "");
+  EXPECT_EQ(repair_free_rates({&mirrored, 1}, Mat3::Identity()), "");
   Observation driven = right;
   for (size_t i = 0; i < driven.blocks(); ++i) {
     const double t_s = driven.time_s[i];
     driven.gyro_rad_s[i] = {std::sin(3.0 * t_s), std::sin(4.1 * t_s), std::cos(2.3 * t_s)};
   }
-  EXPECT_EQ(repair_free_rates(driven, inertia), "");
+  EXPECT_EQ(repair_free_rates({&driven, 1}, inertia), "");
 }
 
 }  // namespace

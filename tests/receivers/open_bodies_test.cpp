@@ -80,10 +80,10 @@ double shadow_of_box_m2(const Vec3& size_m, double tilt_rad) {
          std::abs(travel.z()) * size_m.x() * size_m.y();
 }
 
-const Mesh unit_box = testing::box(Vec3::Zero(), Vec3::Ones());
+const Mesh cube_of_1_m = testing::box(Vec3::Zero(), Vec3::Ones());
 
 TEST(OpenBodies, SheetsInOneMeshWithABoxAreLitFromBothSides) {
-  Mesh mesh = unit_box;
+  Mesh mesh = cube_of_1_m;
   append(mesh, rectangle(Vec3(4, 0.5, 0.5), Vec3(1, 0, 0), Vec3(0, 2, 0)));
   EXPECT_EQ(inwards(mesh), std::nullopt);
   for (const double tilt_rad : {0.2, pi - 0.2}) {
@@ -103,7 +103,7 @@ TEST(OpenBodies, ADiscOfManyRingsIsLitFromBothSides) {
 }
 
 TEST(OpenBodies, WhatFallsThroughAHoleIsCaughtInside) {
-  Mesh mesh = unit_box;
+  Mesh mesh = cube_of_1_m;
   std::erase_if(mesh.triangles, [&](const std::array<uint32_t, 3>& t) {
     return std::ranges::all_of(t, [&](uint32_t v) { return mesh.vertices_m[v].z() == 1.0; });
   });
@@ -112,7 +112,7 @@ TEST(OpenBodies, WhatFallsThroughAHoleIsCaughtInside) {
 }
 
 TEST(OpenBodies, OneBodyOfAMeshMayBeInsideOut) {
-  Mesh mesh = unit_box;
+  Mesh mesh = cube_of_1_m;
   append(mesh, turned_inside_out(testing::box(Vec3(4, 0, 0), Vec3(4.5, 0.5, 0.5))));
   EXPECT_EQ(inwards(mesh), std::nullopt);
   EXPECT_NEAR(shadow_m2(mesh, 0.2),
@@ -121,16 +121,16 @@ TEST(OpenBodies, OneBodyOfAMeshMayBeInsideOut) {
 }
 
 TEST(OpenBodies, ClosedOnesHaveAnInside) {
-  EXPECT_EQ(inwards(unit_box), false);
-  EXPECT_EQ(inwards(turned_inside_out(unit_box)), true);
-  Mesh two = unit_box;
+  EXPECT_EQ(inwards(cube_of_1_m), false);
+  EXPECT_EQ(inwards(turned_inside_out(cube_of_1_m)), true);
+  Mesh two = cube_of_1_m;
   append(two, testing::box(Vec3(4, 0, 0), Vec3(4.5, 0.5, 0.5)));
   EXPECT_EQ(inwards(two), false);
-  Mesh mixed = unit_box;  // one triangle of twelve the other way round
+  Mesh mixed = cube_of_1_m;  // one triangle of twelve the other way round
   std::swap(mixed.triangles[3][0], mixed.triangles[3][1]);
   EXPECT_EQ(inwards(mixed), std::nullopt);
   // With a triangle that is a line, between two of its corners that are one.
-  Mesh needle = unit_box;
+  Mesh needle = cube_of_1_m;
   needle.triangles.push_back({0, 1, 1});
   EXPECT_EQ(inwards(needle), false);
 }
