@@ -26,9 +26,12 @@ struct WrenchEstimate {
   Wrench mean;
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  // One standard error per component, in the frame of `mean`.
-  Vec3 force_error_N() const { return covariance.diagonal().head<3>().cwiseSqrt(); }
-  Vec3 torque_error_N_m() const { return covariance.diagonal().tail<3>().cwiseSqrt(); }
+  // One standard error per component, in the frame of `mean`. What is exact may be below 0 by
+  // rounding once it is turned.
+  Vec3 force_error_N() const { return covariance.diagonal().head<3>().cwiseMax(0.0).cwiseSqrt(); }
+  Vec3 torque_error_N_m() const {
+    return covariance.diagonal().tail<3>().cwiseMax(0.0).cwiseSqrt();
+  }
 };
 
 // Force and torque (x, y, z each) as one row of numbers.

@@ -71,5 +71,20 @@ TEST(Wrench, InTheLabOfATiltedBody) {
   EXPECT_EQ(wrench_in_lab(lab, lab_from_body).mean.force_N, lab.mean.force_N);
 }
 
+// An exact component that is turned is 0 but for rounding, on either side of it: its error is a
+// number all the same.
+TEST(Wrench, ErrorsOfExactComponentsAreNumbersAtEveryAttitude) {
+  for (int i = 0; i < 1000; ++i) {
+    WrenchEstimate body{{{2, 0, 0}, {0, 3, 0}, {0, 0, 1}, Frame::body}, {}};
+    body.covariance(0, 0) = 4.0;
+    body.covariance(4, 4) = 9.0;
+    body.covariance(0, 4) = body.covariance(4, 0) = 6.0;
+    const WrenchEstimate lab = wrench_in_lab(body, lab_from_body_at(0.003 * i, 0.01 * i));
+    EXPECT_TRUE(lab.force_error_N().allFinite()) << i;
+    EXPECT_TRUE(lab.torque_error_N_m().allFinite()) << i;
+    EXPECT_NEAR(lab.force_error_N().norm(), 2.0, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace photorque
