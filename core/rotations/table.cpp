@@ -11,7 +11,7 @@
 namespace photorque {
 namespace {
 
-constexpr int degree = RotationTable::degree, side = RotationTable::side;
+constexpr int side = RotationTable::side;
 
 // The polynomials through values at 0, 1, … degree that are 1 at one of them, and their slopes.
 struct Lagrange {
