@@ -45,8 +45,9 @@ struct Options {
   // bring their start near, in 20 iterations at most; one whose χ² alone stays above it ends the
   // fit, as if it could not be evaluated. Infinite: none of these.
   double worth_chi2 = infinity;
-  // One of whole runs also ends where χ² fell by less than this fraction in each of six steps, and
-  // there is more than 1.2 per sample: what fits badly and hardly moves. 0: goes on.
+  // One of whole runs also ends where χ² fell by less than this fraction a step, on average over
+  // the last six, and there is more than 1.2 per sample: what fits badly and hardly moves. 0: goes
+  // on.
   double creep = 0.0;
   double initial_damping = 1e-9;  // λ, ≥ 0
   double min_damping = 0.0;  // ≥ 0: keeps combinations that nothing determines where they are

@@ -21,8 +21,8 @@ struct MeshClosure {
   // the same corners, so that rounding leaves gaps (T-junctions).
   size_t t_junctions = 0;
   // Meshes with open edges, but fewer than the root of all edges, which the rim of a square sheet
-  // has at least: meant to be closed, it seems. (Not of every sheet: of a disc in many rings the rim
-  // has fewer. For notices alone.)
+  // has at least: meant to be closed, it seems. (Not of every sheet: of a disc in many rings the
+  // rim has fewer. For notices alone.)
   size_t almost_closed = 0;
   std::vector<uint8_t> encloses;  // per mesh: closed or almost
 };
