@@ -1,5 +1,6 @@
 #include "inference/decide.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -151,7 +152,7 @@ double probability_of(const std::vector<double>& probability,
   for (size_t i = 0; i < probability.size(); ++i) {
     if (counts(i)) sum += probability[i];
   }
-  return sum;
+  return std::min(1.0, sum);  // rounding alone goes beyond
 }
 
 }  // namespace

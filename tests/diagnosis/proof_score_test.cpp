@@ -224,6 +224,19 @@ TEST_F(ProofScore, CalibrationErrorIsTheMeanDistanceByBins) {
   EXPECT_NEAR(error, 0.175, 1e-12);
 }
 
+// What another program states may be more than 1 by rounding.
+TEST_F(ProofScore, EveryAnswerIsInTheTableOfCalibration) {
+  std::vector<CaseScore> scores(12);
+  for (size_t i = 0; i < scores.size(); ++i) {
+    scores[i].answered = true;
+    scores[i].confidence = i == 0 ? 1.0 + 4e-16 : static_cast<double>(i) / 11.0;
+  }
+  double answers = 0.0;
+  const Table table = proof_calibration(scores);
+  for (const double n : table.column("answers").values) answers += n;
+  EXPECT_EQ(answers, 12.0);
+}
+
 // The closed form of Wilson's paper with z = 1.959964, evaluated by hand for 8 of 10.
 TEST(Fraction, HasWilsonsInterval) {
   const Fraction fraction{8, 10};

@@ -88,6 +88,17 @@ TEST(Decide, HopelessEvidenceHasAProbabilityAsWell) {
   EXPECT_TRUE(std::isfinite(d.confidence));
 }
 
+// Where all of the probability is on one name, written in several ways, its sum rounds beyond 1.
+TEST(Decide, NoConfidenceIsMoreThanOne) {
+  for (int k = 0; k < 200; ++k) {
+    std::vector<Explanation> trials = {explanation({}, 0.0, 40.0),
+                                       explanation({0}, 100.0 + 0.11 * k, 1.0)};
+    for (int j = 1; j < 4; ++j) trials.push_back(explanation({0}, 100.0 + 0.37 * j * k, 1.0));
+    EXPECT_LE(decided(trials).confidence, 1.0) << k;
+    EXPECT_GT(decided(trials).confidence, 0.99) << k;
+  }
+}
+
 // A law without a name is the finding; beside it only what it cannot do without is named.
 TEST(Decide, AKnownEffectIsNamedBesideALawThatNeedsIt) {
   const std::vector<CandidateTraits> all = {

@@ -40,6 +40,10 @@ if grep -q '^PHOTORQUE_HARDEN:BOOL=ON' "$build/CMakeCache.txt"; then
     "$(find "$prefix" -name 'libphotorque.so.*.*.*')"
 fi
 
+echo "== Libraries from their own places alone"
+"$source/tests/install/hardened.sh" --search "$prefix/bin/photorque" "$prefix"/lib/*/photorque/*.so \
+  "$(find "$prefix" -name 'libphotorque.so.*.*.*')"
+
 echo "== Only our own symbols"
 library="$(find "$prefix" -name 'libphotorque.so.*.*.*')"
 foreign="$(nm -D --defined-only -C "$library" | grep -cvE 'photorque::' || true)"

@@ -3,6 +3,8 @@
 #   hardened.sh FILE ...       those files
 #   hardened.sh --options SOURCE_FOLDER   a small program with the options of the build: hardened it has
 #                                         all of them, without it does not
+#   hardened.sh --search FILE ...         whether they look for libraries in the folder in which they are
+#                                         started, or below it
 set -euo pipefail
 
 # Prints what is missing in a file.
@@ -22,6 +24,34 @@ missing() {
   # endbr64 at what may be jumped to; the start files of the C library bring two.
   [[ "$(objdump -d -j .text "$file" | grep -c endbr64)" -ge 4 ]] || echo "marked entries (-fcf-protection)"
 }
+
+# Prints the entries of a file's search path that are neither absolute nor beside the file itself. An
+# empty one is the folder in which it is started.
+loose_paths() {
+  readelf -dW "$1" | sed -nE 's/.*\((RPATH|RUNPATH)\).*\[(.*)\]/\2:/p' | tr ':' '\n' | sed '$d' |
+    grep -vE '^(/|\$ORIGIN|\$\{ORIGIN\})' | sed 's/^$/(the folder in which it is started)/' || true
+}
+
+if [[ "${1:-}" == "--search" ]]; then
+  # What is looked for is found where it is.
+  place="$(mktemp -d)"
+  trap 'rm -rf "$place"' EXIT
+  echo 'int main() {}' >"$place/empty.cpp"
+  for path in /usr/lib: :/usr/lib lib /usr/lib::/lib; do
+    c++ "$place/empty.cpp" -o "$place/loose" -Wl,-rpath,"$path"
+    [[ -n "$(loose_paths "$place/loose")" ]] || { echo "a search path of $path is not found"; exit 1; }
+  done
+  c++ "$place/empty.cpp" -o "$place/firm" -Wl,-rpath,'/usr/lib:$ORIGIN/../lib'
+  [[ -z "$(loose_paths "$place/firm")" ]]
+  status=0
+  for file in "${@:2}"; do
+    while read -r path; do
+      echo "$file looks for libraries in $path"
+      status=1
+    done < <(loose_paths "$file")
+  done
+  exit "$status"
+fi
 
 if [[ "${1:-}" == "--options" ]]; then
   source="$2"

@@ -37,7 +37,7 @@ struct Bin {
 Bin bin_of(const Claims& claims, double from, double to) {
   Bin bin;
   for (const auto& [probability, right] : claims) {
-    if (!(probability >= from && (probability < to || (to == 1.0 && probability <= 1.0)))) continue;
+    if (!(probability >= from && (probability < to || to == 1.0))) continue;
     ++bin.fraction.of;
     bin.fraction.hits += right ? 1 : 0;
     bin.stated += probability;
