@@ -49,9 +49,9 @@ std::string component(const std::string& kind, int axis) {
 void add_columns(Table& table, const std::vector<WrenchEstimate>& wrenches, const std::string& kind,
                  const std::string& unit, const std::function<Vec3(const WrenchEstimate&)>& value) {
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> components;
-    for (const WrenchEstimate& wrench : wrenches) components.push_back(value(wrench)[axis]);
-    table.add(component(kind, axis) + "_" + unit, components);
+    std::vector<double> values;
+    for (const WrenchEstimate& wrench : wrenches) values.push_back(value(wrench)[axis]);
+    table.add(component(kind, axis) + "_" + unit, values);
   }
 }
 
