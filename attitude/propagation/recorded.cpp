@@ -129,6 +129,13 @@ class RecordedRun {
   bool has_begun_ = false;
 };
 
+// Every how many rows of the recording the history has one, so that with the last row, which it
+// always has, it is no longer than `history_rows` (2 at least).
+size_t thinning(size_t rows, size_t history_rows) {
+  if (rows <= history_rows) return 1;
+  return (rows - 1 + history_rows - 2) / (history_rows - 1);
+}
+
 RecordedRun::RecordedRun(const PropagationRun& run, const Companion* companion,
                          std::function<void(double)> progress)
     : companion_(companion),
@@ -137,7 +144,7 @@ RecordedRun::RecordedRun(const PropagationRun& run, const Companion* companion,
       delay_s_(camera_delay_s(dynamics_, run.initial)),
       times_(looks(run, delay_s_)),
       rows_(Seen{run}.rows()),
-      thinning_((rows_ + run.history_rows - 1) / run.history_rows),
+      thinning_(thinning(rows_, run.history_rows)),
       recorder_(run.sensors, run.seed),
       history_(dynamics_),
       propagator_(dynamics_, run.initial, run.initial.time_s + run.duration_s, run.options, {},
@@ -244,7 +251,8 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
                  .command_body_N_m = in_lane(now.command_body_N_m, lane),
                  .battery_current_A = now.battery_current_A[lane],
                  .array_power_W = now.array_power_W[lane]});
-  if (states_.size() % thinning_ == 0) history_.add(state, now, lane);
+  const bool is_last = states_.size() + 1 == rows_;
+  if (states_.size() % thinning_ == 0 || is_last) history_.add(state, now, lane);
   states_.push_back(state);
 }
 
@@ -254,7 +262,7 @@ PropagationResult RecordedRun::result() {
   result.states = std::move(states_);
   result.events = propagator_.events();
   result.statistics = propagator_.statistics();
-  result.product = history_.product(result.events, result.statistics);
+  result.product = history_.product(result.states, result.events, result.statistics);
   return result;
 }
 

@@ -171,7 +171,8 @@ void TimeHistory::keep(Snapshot& snapshot) {
   }
 }
 
-Product TimeHistory::product(const std::vector<Event>& events,
+Product TimeHistory::product(const std::vector<PlatformState>& states,
+                             const std::vector<Event>& events,
                              const Propagator::Statistics& statistics) const {
   Product product;
   const auto values = [&](size_t column) -> const std::vector<double>& {
@@ -241,10 +242,14 @@ Product TimeHistory::product(const std::vector<Event>& events,
 
   const std::vector<double>& tilts = values(tilt);
   if (!t.empty()) {
+    double largest_tilt_rad = 0.0;
+    for (const PlatformState& state : states) {
+      largest_tilt_rad = std::max(largest_tilt_rad, tilt_rad(state));
+    }
     product.quantities = {
         exact("final_time_s", t.back()),
         exact("final_tilt_deg", tilts.back()),
-        exact("largest_tilt_deg", *std::max_element(tilts.begin(), tilts.end())),
+        exact("largest_tilt_deg", largest_tilt_rad / degree_rad),
         exact("final_heading_deg", values(heading).back()),
         exact("final_rate_rad_s",
               std::hypot(values(rate_x).back(), values(rate_y).back(), values(rate_z).back())),

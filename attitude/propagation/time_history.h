@@ -18,8 +18,10 @@ class TimeHistory {
 
   // Tables "time_history" and "events"; plots "tilt", "heading", "rates", "charge" and "power"
   // (where there are any), "torques" (largest sizes of all) and one for each disturbance. Curves
-  // are thinned to a few thousand points that keep every extreme.
-  Product product(const std::vector<Event>& events, const Propagator::Statistics& statistics) const;
+  // are thinned to a few thousand points that keep every extreme. The largest tilt is that of all
+  // the states of the run, of which a row here may stand for many.
+  Product product(const std::vector<PlatformState>& states, const std::vector<Event>& events,
+                  const Propagator::Statistics& statistics) const;
 
   void keep(Snapshot& snapshot);
 

@@ -94,6 +94,30 @@ longest_step_s = 0.31
 initial_velocity_m_s = [0.3, 0.4]
 )";
 
+// A history of 150 rows of 601, whose last is the run's; figures are of the whole run.
+TEST(Propagation, AShortHistoryEndsWithTheRun) {
+  const PropagationRun run = run_of(pendulum);
+  const PropagationResult result = propagate(run);
+  const std::vector<double>& t = result.product.tables.front().column("t_s").values;
+  EXPECT_LE(t.size(), 150u);
+  EXPECT_GE(t.size(), 75u);
+  EXPECT_EQ(t.back(), 60.0);
+  double largest_rad = 0.0;
+  for (const PlatformState& state : result.states) {
+    largest_rad = std::max(largest_rad, tilt_rad(state));
+  }
+  const std::vector<double>& kept_deg = result.product.tables.front().column("tilt_deg").values;
+  EXPECT_LT(*std::ranges::max_element(kept_deg), largest_rad / degree_rad);  // or shows nothing
+  for (const Quantity& q : result.product.quantities) {
+    if (q.name == "final_time_s") {
+      EXPECT_EQ(q.estimate.value, 60.0);
+    }
+    if (q.name == "largest_tilt_deg") {
+      EXPECT_NEAR(q.estimate.value, largest_rad / degree_rad, 1e-12);
+    }
+  }
+}
+
 struct BrokenOff {};
 
 // As a run that is killed again and again, every time after the given number of steps.
