@@ -23,7 +23,7 @@ struct PropagationRun {
   PlatformState initial;
   double duration_s = 0.0;
   double output_rate_Hz = 10.0;  // rows of the recording
-  size_t history_rows = 20000;   // at most so many, evenly from the recording's
+  size_t history_rows = 20000;   // at most so many, evenly from the recording's, and its last
   PropagationOptions options;
   uint64_t seed = 1;
   std::string epoch;  // calendar time of t = 0, ISO 8601, for files that need one

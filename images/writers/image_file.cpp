@@ -117,15 +117,9 @@ std::string png_bytes(const Picture& picture, const ImageMetadata& metadata) {
   return {bytes.buffer().begin(), bytes.buffer().end()};
 }
 
+// By our own writer: that of OpenImageIO does not tell of a write that failed.
 void write_png(const fs::path& path, const Picture& picture, const ImageMetadata& metadata) {
-  OIIO::ImageSpec spec =
-      spec_of(picture.width, picture.height, {"R", "G", "B"}, OIIO::TypeDesc::UINT8, metadata);
-  write_file_whole(path, [&](const fs::path& temporary) {
-    ImageFile file(path, temporary);
-    file.open(spec);
-    file.write(OIIO::TypeDesc::UINT8, picture.rgb.data());
-    file.close();
-  });
+  write_file_whole(path, png_bytes(picture, metadata));
 }
 
 }  // namespace photorque

@@ -32,6 +32,18 @@ loose_paths() {
     grep -vE '^(/|\$ORIGIN|\$\{ORIGIN\})' | sed 's/^$/(the folder in which it is started)/' || true
 }
 
+# Says of each file what a function prints of it; fails where it prints anything.
+tell() {  # words, function, file ...
+  local words="$1" of="$2" status=0
+  for file in "${@:3}"; do
+    while read -r found; do
+      echo "$file $words $found"
+      status=1
+    done < <("$of" "$file")
+  done
+  return "$status"
+}
+
 if [[ "${1:-}" == "--search" ]]; then
   # What is looked for is found where it is.
   place="$(mktemp -d)"
@@ -43,14 +55,8 @@ if [[ "${1:-}" == "--search" ]]; then
   done
   c++ "$place/empty.cpp" -o "$place/firm" -Wl,-rpath,'/usr/lib:$ORIGIN/../lib'
   [[ -z "$(loose_paths "$place/firm")" ]]
-  status=0
-  for file in "${@:2}"; do
-    while read -r path; do
-      echo "$file looks for libraries in $path"
-      status=1
-    done < <(loose_paths "$file")
-  done
-  exit "$status"
+  tell "looks for libraries in" loose_paths "${@:2}"
+  exit
 fi
 
 if [[ "${1:-}" == "--options" ]]; then
@@ -78,11 +84,4 @@ if [[ "${1:-}" == "--options" ]]; then
   exit 0
 fi
 
-status=0
-for file in "$@"; do
-  while read -r protection; do
-    echo "$file lacks $protection"
-    status=1
-  done < <(missing "$file")
-done
-exit "$status"
+tell lacks missing "$@"
