@@ -157,8 +157,7 @@ void write_file_whole(const fs::path& path, const std::function<void(const fs::p
   }
   try {
     write(temporary);
-    // Libraries that write pictures do not all say when the disk is full.
-    if ((fs::file_size(temporary, failure) == 0 && !failure) || !reaches_disk(temporary)) {
+    if (!reaches_disk(temporary)) {
       throw InputError({path.string()}, "", "a write that failed", "space and permission");
     }
   } catch (...) {

@@ -3,6 +3,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <cstring>
+
 #include "core/errors.h"
 #include "core/files.h"
 
@@ -11,42 +13,80 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file that is being written; every failure becomes an InputError that names the final path.
+// A file that is being written at `place`; every failure becomes an InputError that names the final
+// path.
 class ImageFile {
  public:
-  ImageFile(fs::path final_path, const fs::path& temporary)
+  ImageFile(fs::path final_path, const fs::path& place)
       : final_path_(std::move(final_path)),
-        temporary_(temporary.string()),
-        output_(OIIO::ImageOutput::create(temporary_)) {
+        place_(place.string()),
+        output_(OIIO::ImageOutput::create(place_)) {
     if (!output_) fail(OIIO::geterror());
     output_->threads(1);
   }
 
   void into(OIIO::Filesystem::IOProxy& bytes) { check(output_->set_ioproxy(&bytes)); }
-  void open(const OIIO::ImageSpec& spec) { check(output_->open(temporary_, spec)); }
+  void open(const OIIO::ImageSpec& spec) { check(output_->open(place_, spec)); }
   void open_pages(const std::vector<OIIO::ImageSpec>& specs) {
-    check(output_->open(temporary_, static_cast<int>(specs.size()), specs.data()));
+    check(output_->open(place_, static_cast<int>(specs.size()), specs.data()));
   }
   void next_page(const OIIO::ImageSpec& spec) {
-    check(output_->open(temporary_, spec, OIIO::ImageOutput::AppendSubimage));
+    check(output_->open(place_, spec, OIIO::ImageOutput::AppendSubimage));
   }
   void write(const OIIO::TypeDesc& type, const void* samples) {
     check(output_->write_image(type, samples));
   }
   void close() { check(output_->close()); }
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw InputError({final_path_.string()}, "", reason, "a path that can be written");
+  }
 
  private:
   void check(bool succeeded) {
     if (!succeeded) fail(output_->geterror());
   }
-  [[noreturn]] void fail(const std::string& reason) const {
-    throw InputError({final_path_.string()}, "", reason, "a path that can be written");
-  }
 
   fs::path final_path_;
-  std::string temporary_;
+  std::string place_;
   std::unique_ptr<OIIO::ImageOutput> output_;
 };
+
+// A file of one page, made in memory: what OpenImageIO writes to a disk itself may fail without a
+// word.
+std::string bytes_of(const fs::path& path, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
+                     const void* samples) {
+  OIIO::Filesystem::IOVecOutput bytes;
+  ImageFile file(path, path);
+  file.into(bytes);
+  file.open(spec);
+  file.write(type, samples);
+  file.close();
+  return {bytes.buffer().begin(), bytes.buffer().end()};
+}
+
+// Whether a file has these pages, name by name and sample by sample.
+bool holds(const fs::path& path, const std::vector<OIIO::ImageSpec>& specs,
+           const std::vector<ImageChannel>& channels) {
+  const auto file = OIIO::ImageInput::open(path.string());
+  if (!file) return false;
+  for (size_t page = 0; page < channels.size(); ++page) {
+    const int number = static_cast<int>(page);
+    if (!file->seek_subimage(number, 0)) return false;
+    for (const char* text : {"ImageDescription", "DocumentName", "Software"}) {
+      if (file->spec().get_string_attribute(text) != specs[page].get_string_attribute(text)) {
+        return false;
+      }
+    }
+    std::vector<float> samples(channels[page].samples.size());
+    if (file->spec().image_pixels() != samples.size() ||
+        !file->read_image(number, 0, 0, 1, OIIO::TypeDesc::FLOAT, samples.data()) ||
+        std::memcmp(samples.data(), channels[page].samples.data(),
+                    samples.size() * sizeof(float)) != 0) {
+      return false;
+    }
+  }
+  return true;
+}
 
 OIIO::ImageSpec spec_of(int width, int height, const std::vector<std::string>& channels,
                         const OIIO::TypeDesc& type, const ImageMetadata& metadata) {
@@ -78,12 +118,7 @@ void write_exr(const fs::path& path, int width, int height,
   for (size_t i = 0; i < pixels; ++i) {
     for (const ImageChannel& channel : channels) interleaved.push_back(channel.samples[i]);
   }
-  write_file_whole(path, [&](const fs::path& temporary) {
-    ImageFile file(path, temporary);
-    file.open(spec);
-    file.write(OIIO::TypeDesc::FLOAT, interleaved.data());
-    file.close();
-  });
+  write_file_whole(path, bytes_of(path, spec, OIIO::TypeDesc::FLOAT, interleaved.data()));
 }
 
 void write_tiff(const fs::path& path, int width, int height,
@@ -102,22 +137,19 @@ void write_tiff(const fs::path& path, int width, int height,
       file.write(OIIO::TypeDesc::FLOAT, channels[page].samples.data());
     }
     file.close();
+    // Several pages cannot be made in memory (OpenImageIO 2.4 links the last one only), so that
+    // what failed without a word is found by reading.
+    if (!holds(temporary, specs, channels)) file.fail("a write that failed");
   });
 }
 
 std::string png_bytes(const Picture& picture, const ImageMetadata& metadata) {
-  OIIO::Filesystem::IOVecOutput bytes;
-  const fs::path name = "memory.png";
-  ImageFile file(name, name);
-  file.into(bytes);
-  file.open(
-      spec_of(picture.width, picture.height, {"R", "G", "B"}, OIIO::TypeDesc::UINT8, metadata));
-  file.write(OIIO::TypeDesc::UINT8, picture.rgb.data());
-  file.close();
-  return {bytes.buffer().begin(), bytes.buffer().end()};
+  return bytes_of(
+      "memory.png",
+      spec_of(picture.width, picture.height, {"R", "G", "B"}, OIIO::TypeDesc::UINT8, metadata),
+      OIIO::TypeDesc::UINT8, picture.rgb.data());
 }
 
-// By our own writer: that of OpenImageIO does not tell of a write that failed.
 void write_png(const fs::path& path, const Picture& picture, const ImageMetadata& metadata) {
   write_file_whole(path, png_bytes(picture, metadata));
 }

@@ -15,8 +15,8 @@ namespace {
 const std::vector<std::string> sweepable = {"trace",   "power",     "torque-map", "budget",
                                             "balance", "propagate", "fit-cell"};
 
-std::function<std::vector<Quantity>(const RunOptions&)> run_of_verb(const CommandLine& line,
-                                                                    const std::string& command) {
+std::function<std::vector<Figure>(const RunOptions&)> run_of_verb(const CommandLine& line,
+                                                                  const std::string& command) {
   const std::vector<Verb> verbs = all_verbs();
   const Verb verb = *std::ranges::find(verbs, command, &Verb::name);
   return [line, verb](const RunOptions& options) {
@@ -25,8 +25,10 @@ std::function<std::vector<Quantity>(const RunOptions&)> run_of_verb(const Comman
     one.verb = verb.name;
     one.quiet = true;
     one.json = false;
-    std::vector<Quantity> figures;
-    one.take_result = [&figures](const RunResult& result) { figures = result.product.quantities; };
+    std::vector<Figure> figures;
+    one.take_result = [&figures](const RunResult& result) {
+      figures = figures_of(result.product.quantities);
+    };
     verb.run(one);
     return figures;
   };
@@ -70,7 +72,7 @@ SweepPlan read_study_plan(const ExperimentFile& file) {
 RunEngine::Task study_task(const CommandLine& line, const SweepPlan& plan,
                            const std::filesystem::path& database) {
   return {line, plan.verb, database, run_of_verb(line, plan.verb),
-          [&plan](const std::vector<Quantity>& figures) { figure_columns(plan, figures); }};
+          [&plan](const std::vector<Figure>& figures) { figure_columns(plan, figures); }};
 }
 
 void throw_failed_study(const CommandLine& line, const RunOutcome& outcome, size_t design,

@@ -79,9 +79,8 @@ class SweepRun {
     for (const auto& shard : files_.shards(line_.collect)) engine.database().take_from(shard);
     const DesignEvaluator evaluator(plan_, engine);
     const std::vector<size_t> all = all_designs();
-    const std::vector<RunOutcome> outcomes =
-        line_.collect ? collected(engine, evaluator, all) : run_all(engine, evaluator, all);
-    SweepResult result{evaluator.designs_of(outcomes)};
+    SweepResult result{evaluator.designs_of(line_.collect ? collected(engine, evaluator, all)
+                                                          : run_all(engine, evaluator, all))};
     if (result.designs.size() > plan_.designs()) {
       result.nominal = std::move(result.designs.back());
       result.designs.pop_back();

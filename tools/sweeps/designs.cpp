@@ -6,34 +6,29 @@
 namespace photorque {
 namespace {
 
-const Quantity* find_figure(const std::vector<Quantity>& figures, const std::string& name) {
-  const auto at = std::ranges::find(figures, name, &Quantity::name);
-  return at == figures.end() ? nullptr : &*at;
-}
-
 // With the absolute values that the plan asks for.
-std::vector<Quantity> with_absolutes(const SweepPlan& plan, std::vector<Quantity> figures) {
+std::vector<Figure> with_absolutes(const SweepPlan& plan, std::vector<Figure> figures) {
   const auto add = [&figures](const SweepFigure& wanted) {
-    const Quantity* plain = find_figure(figures, wanted.name);
+    const Figure* plain = find_figure(figures, wanted.name);
     if (!wanted.absolute || plain == nullptr || find_figure(figures, wanted.column()) != nullptr) {
       return;
     }
     const Estimate size{std::abs(plain->estimate.value), plain->estimate.standard_error};
-    figures.push_back({wanted.column(), size});
+    figures.push_back({FigureName(wanted.column()), size});
   };
   for (const Objective& objective : plan.objectives) add(objective.figure);
   for (const Constraint& constraint : plan.constraints) add(constraint.figure);
   return figures;
 }
 
-std::vector<Quantity> mean_of(const SweepPlan& plan, std::span<const RunOutcome> runs,
-                              const std::vector<double>& weights) {
-  std::vector<Quantity> mean = with_absolutes(plan, runs.front().figures);
-  for (Quantity& q : mean) q.estimate = {0.0, 0.0};
+std::vector<Figure> mean_of(const SweepPlan& plan, std::span<const RunOutcome> runs,
+                            const std::vector<double>& weights) {
+  std::vector<Figure> mean = with_absolutes(plan, runs.front().figures);
+  for (Figure& q : mean) q.estimate = {0.0, 0.0};
   for (size_t i = 0; i < runs.size(); ++i) {
-    const std::vector<Quantity> figures = with_absolutes(plan, runs[i].figures);
-    for (Quantity& q : mean) {
-      const Quantity* one = find_figure(figures, q.name);
+    const std::vector<Figure> figures = with_absolutes(plan, runs[i].figures);
+    for (Figure& q : mean) {
+      const Figure* one = find_figure(figures, q.name.text());
       const double nan = std::numeric_limits<double>::quiet_NaN();
       const Estimate value = one == nullptr ? Estimate{nan, nan} : one->estimate;
       q.estimate.value += weights[i] * value.value;
@@ -48,21 +43,21 @@ double margin(const Constraint& constraint, double value) {
   return std::min(value - constraint.at_least, constraint.at_most - value);
 }
 
-bool keeps_to(const SweepPlan& plan, const std::vector<Quantity>& figures) {
+bool keeps_to(const SweepPlan& plan, const std::vector<Figure>& figures) {
   return std::ranges::all_of(plan.constraints, [&](const Constraint& constraint) {
-    const Quantity* q = find_figure(figures, constraint.figure.column());
+    const Figure* q = find_figure(figures, constraint.figure.column());
     return q != nullptr && margin(constraint, q->estimate.value) >= 0.0;
   });
 }
 
 // The point where `goodness` of the figure is least.
 template <typename Goodness>
-size_t worst_point(const std::vector<std::vector<Quantity>>& points, const std::string& name,
+size_t worst_point(const std::vector<std::vector<Figure>>& points, const std::string& name,
                    const Goodness& goodness) {
   size_t worst = 0;
   double least = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < points.size(); ++i) {
-    const Quantity* q = find_figure(points[i], name);
+    const Figure* q = find_figure(points[i], name);
     const double good = q == nullptr ? least : goodness(q->estimate.value);
     if (good < least) {
       least = good;
@@ -72,8 +67,8 @@ size_t worst_point(const std::vector<std::vector<Quantity>>& points, const std::
   return worst;
 }
 
-std::vector<Quantity> worst_of(const SweepPlan& plan,
-                               const std::vector<std::vector<Quantity>>& points) {
+std::vector<Figure> worst_of(const SweepPlan& plan,
+                             const std::vector<std::vector<Figure>>& points) {
   if (points.size() == 1) return points.front();
   struct Lead {
     std::string name;
@@ -91,11 +86,11 @@ std::vector<Quantity> worst_of(const SweepPlan& plan,
     leads.push_back(
         {name, worst_point(points, name, [&](double v) { return margin(constraint, v); })});
   }
-  std::vector<Quantity> worst = points[leads.front().point];
+  std::vector<Figure> worst = points[leads.front().point];
   for (const Lead& lead : leads) {
-    const Quantity* q = find_figure(points[lead.point], lead.name);
+    const Figure* q = find_figure(points[lead.point], lead.name);
     if (q == nullptr) continue;
-    std::ranges::find(worst, lead.name, &Quantity::name)->estimate = q->estimate;
+    std::ranges::find(worst, q->name, &Figure::name)->estimate = q->estimate;
   }
   return worst;
 }
@@ -135,7 +130,7 @@ Design combine(const SweepPlan& plan, std::span<const RunOutcome> runs) {
     if (runs[i].failed()) return {{}, runs[i].error + where_it_failed(plan, i), false};
   }
   const std::vector<double> weights = plan.mean_weights();
-  std::vector<std::vector<Quantity>> points;
+  std::vector<std::vector<Figure>> points;
   bool feasible = true;
   for (size_t begin = 0; begin < runs.size(); begin += weights.size()) {
     points.push_back(mean_of(plan, runs.subspan(begin, weights.size()), weights));
@@ -145,7 +140,7 @@ Design combine(const SweepPlan& plan, std::span<const RunOutcome> runs) {
 }
 
 std::optional<Estimate> figure_of(const Design& design, const std::string& column) {
-  const Quantity* q = find_figure(design.figures, column);
+  const Figure* q = find_figure(design.figures, column);
   return q == nullptr ? std::nullopt : std::optional(q->estimate);
 }
 

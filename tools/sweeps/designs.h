@@ -12,9 +12,9 @@
 namespace photorque {
 
 struct Design {
-  std::vector<Quantity> figures;  // means and worsts over the runs; none where one failed
-  std::string error = {};         // of the first run that failed, with its changes
-  bool feasible = true;           // succeeded, and every run's mean keeps to the constraints
+  std::vector<Figure> figures;  // means and worsts over the runs; none where one failed
+  std::string error = {};       // of the first run that failed, with its changes
+  bool feasible = true;         // succeeded, and every run's mean keeps to the constraints
 };
 
 // A figure of the copies of a design, as built.

@@ -55,7 +55,7 @@ Design DesignEvaluator::with_built(Design design, std::span<const Design> copies
     const auto reached = reached_by(plan_.built.fraction, objective.maximise,
                                     values_of(copies, objective.figure.column()));
     if (!reached) return {{}, "too many built copies fail: " + copies.front().error, false};
-    design.figures.push_back({plan_.built_column(objective.figure), *reached});
+    design.figures.push_back({FigureName(plan_.built_column(objective.figure)), *reached});
   }
   return design;
 }

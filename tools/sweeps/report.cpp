@@ -45,7 +45,7 @@ void add_figure(Table& table, const std::vector<Design>& designs, const std::str
   table.add(name, values).add(name + error_suffix, errors);
 }
 
-const std::vector<Quantity>& first_figures(const SweepResult& result) {
+const std::vector<Figure>& first_figures(const SweepResult& result) {
   const auto first =
       std::ranges::find_if(result.designs, [](const Design& d) { return d.error.empty(); });
   if (first == result.designs.end()) {
@@ -97,10 +97,9 @@ std::vector<double> flags(const std::vector<size_t>& chosen, size_t count) {
 
 }  // namespace
 
-std::vector<std::string> figure_columns(const SweepPlan& plan,
-                                        const std::vector<Quantity>& figures) {
+std::vector<std::string> figure_columns(const SweepPlan& plan, const std::vector<Figure>& figures) {
   std::vector<std::string> names;
-  for (const Quantity& q : figures) names.push_back(q.name);
+  for (const Figure& figure : figures) names.push_back(figure.name.text());
   const auto require = [&names](const std::string& key, const std::string& name) {
     if (std::ranges::find(names, name) != names.end()) return;
     const std::string suggestion = nearest(name, {names.begin(), names.end()});

@@ -14,8 +14,7 @@ namespace photorque {
 
 // The columns of figures: those named, else all, then those of objectives and constraints.
 // InputError for one that a design's figures do not have, with the nearest that they do.
-std::vector<std::string> figure_columns(const SweepPlan& plan,
-                                        const std::vector<Quantity>& figures);
+std::vector<std::string> figure_columns(const SweepPlan& plan, const std::vector<Figure>& figures);
 
 // "sweep": a row per design: its number, the axes, every figure with its standard error, then,
 // where asked for, `feasible` and `pareto` (1 or 0), and `error` where a design failed.

@@ -190,7 +190,7 @@ std::optional<RunOutcome> RunDatabase::find(const std::string& hash) const {
                     "ON quantity.id = figure.quantity WHERE run = ? ORDER BY place");
   figures.bind(1, run.whole(0));
   while (figures.step()) {
-    outcome.figures.push_back({figures.text(0), {figures.real(1), figures.real(2)}});
+    outcome.figures.push_back({FigureName(figures.text(0)), {figures.real(1), figures.real(2)}});
   }
   if (!outcome.failed() && outcome.figures.empty()) fail("a run without figures");
   return outcome;
@@ -214,11 +214,11 @@ void RunDatabase::keep(const RunRecord& record) {
                        "INSERT INTO figure(run, place, quantity, value, standard_error) "
                        "VALUES(?, ?, (SELECT id FROM quantity WHERE name = ?), ?, ?)");
       int64_t place = 0;
-      for (const Quantity& q : record.outcome.figures) {
-        quantity.bind(1, q.name).step();
+      for (const Figure& f : record.outcome.figures) {
+        quantity.bind(1, f.name.text()).step();
         quantity.again();
-        figure.bind(1, id).bind(2, place++).bind(3, q.name).bind(4, q.estimate.value);
-        figure.bind(5, q.estimate.standard_error).step();
+        figure.bind(1, id).bind(2, place++).bind(3, f.name.text()).bind(4, f.estimate.value);
+        figure.bind(5, f.estimate.standard_error).step();
         figure.again();
       }
     }

@@ -151,7 +151,9 @@ std::vector<RunOutcome> RunEngine::outcomes(std::span<const Changes> runs,
   while (!open.empty()) {
     std::vector<size_t> others;
     for (size_t k = 0; k < open.size(); ++k) {
-      if (!settle(runs[open[k]], all[open[k]])) others.push_back(open[k]);
+      RunOutcome& outcome = all[open[k]];
+      if (!settle(runs[open[k]], outcome)) others.push_back(open[k]);
+      names_.share(outcome.figures);
       const size_t left = open.size() - k - 1 + others.size();
       if (progress) {
         progress(1.0 - static_cast<double>(left) / static_cast<double>(runs.size()));
@@ -172,6 +174,7 @@ std::vector<std::optional<RunOutcome>> RunEngine::kept_outcomes(std::span<const 
       all.push_back(at != not_kept_yet_.end() ? at->second.outcome
                     : database_               ? database_->find(hash)
                                               : std::nullopt);
+      if (all.back()) names_.share(all.back()->figures);
     } catch (const InputError& error) {
       all.push_back(RunOutcome{{}, 2, without_origin(error.what())});
     }

@@ -36,9 +36,9 @@ class RunEngine {
     std::string command;
     std::filesystem::path database;
     // Runs the command and gives its figures; throws what goes wrong.
-    std::function<std::vector<Quantity>(const RunOptions&)> run;
+    std::function<std::vector<Figure>(const RunOptions&)> run;
     // Called with the figures of the first run that succeeds.
-    std::function<void(const std::vector<Quantity>&)> first = {};
+    std::function<void(const std::vector<Figure>&)> first = {};
   };
   explicit RunEngine(Task task);
   ~RunEngine();
@@ -69,6 +69,7 @@ class RunEngine {
 
   Task task_;
   RunIdentity identity_;
+  FigureNames names_;
   std::filesystem::path claims_path_;
   std::unique_ptr<Claims> claims_;
   std::unique_ptr<RunDatabase> database_;          // null until there is something to keep

@@ -1,7 +1,11 @@
 // What one run of a command gave, as a sweep keeps it.
 #pragma once
 
+#include <map>
+#include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/product.h"
@@ -11,10 +15,41 @@ namespace photorque {
 // "KEY=VALUE" of every key that a run changes.
 using Changes = std::vector<std::string>;
 
+// The name of a figure; copies share it.
+class FigureName {
+ public:
+  explicit FigureName(std::string name)
+      : name_(std::make_shared<const std::string>(std::move(name))) {}
+  const std::string& text() const { return *name_; }
+  friend bool operator==(const FigureName& a, const FigureName& b) { return a.text() == b.text(); }
+
+ private:
+  std::shared_ptr<const std::string> name_;
+};
+
+struct Figure {
+  FigureName name;
+  Estimate estimate;
+};
+
+std::vector<Figure> figures_of(std::span<const Quantity> quantities);
+
+// The figure of this name; null where there is none.
+const Figure* find_figure(std::span<const Figure> figures, const std::string& name);
+
+// The names that the runs of a sweep have in common: kept once, not once for each run.
+class FigureNames {
+ public:
+  void share(std::vector<Figure>& figures);
+
+ private:
+  std::map<std::string, FigureName> known_;
+};
+
 struct RunOutcome {
-  std::vector<Quantity> figures;  // of its summary; none when it failed
-  int status = 0;                 // as the program's exit status: 2 wrong input, 3 numerical
-  std::string error = {};         // one line
+  std::vector<Figure> figures;  // of its summary; none when it failed
+  int status = 0;               // as the program's exit status: 2 wrong input, 3 numerical
+  std::string error = {};       // one line
   bool failed() const { return status != 0; }
 };
 
