@@ -22,7 +22,7 @@ RunRecord a_run() {
   record.command = "power";
   record.program = "0";
   record.changes = {"a=1", "b=2"};
-  record.outcome.figures = {{"power_W", {1.5, 0.1}}};
+  record.outcome.figures = {{FigureName("power_W"), {1.5, 0.1}}};
   return record;
 }
 
