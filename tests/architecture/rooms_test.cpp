@@ -18,6 +18,7 @@ const std::vector<std::pair<std::string, std::string>> only_place = {
     {"draco/", "scenes/gltf/file"},
     {"meshoptimizer", "scenes/gltf/file"},
     {"OpenImageIO/", "images/writers"},
+    {"tiffio.h", "images/writers"},
     {"cairo", "images/canvas"},
     {"CLI/", "tools"},
     {"zlib.h", "attitude/recordings"},

@@ -90,6 +90,8 @@ TEST_F(MapFiles, TiffHoldsAPagePerChannel) {
   EXPECT_EQ(values.spec.nchannels, 1);
   EXPECT_EQ(values.spec.get_string_attribute("DocumentName"), "value");
   EXPECT_EQ(errors.spec.get_string_attribute("DocumentName"), "standard_error");
+  EXPECT_EQ(values.spec.get_string_attribute("tiff:PageName"), "value");
+  EXPECT_EQ(errors.spec.get_string_attribute("tiff:PageName"), "standard_error");
   EXPECT_EQ(values.spec.get_string_attribute("DateTime"), "");
   expect_description_of(map, values.spec.get_string_attribute("ImageDescription"));
   for (int i = 0; i < map.width * map.height; ++i) {

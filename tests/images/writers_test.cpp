@@ -2,8 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <chrono>
+#include <csignal>
 #include <fstream>
+#include <limits>
 #include <thread>
 
 #include "core/errors.h"
@@ -87,6 +91,44 @@ TEST_F(Writers, RefuseFoldersThatCannotBeWritten) {
     // Read-only even for the administrator.
     if (!fs::is_directory("/proc/self")) continue;
     EXPECT_THROW(kind.make()->write(sample_product(), {}, "/proc/self"), InputError) << kind.name;
+  }
+}
+
+// What fails after some bytes: no file may be longer than a limit.
+class LongestFile {
+ public:
+  explicit LongestFile(size_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~LongestFile() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  LongestFile(const LongestFile&) = delete;
+  LongestFile& operator=(const LongestFile&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_;
+};
+
+TEST_F(Writers, TellOfWritesThatFail) {
+  for (const WriterKind& kind : all_writer_kinds()) {
+    uintmax_t shortest = std::numeric_limits<uintmax_t>::max();
+    for (const fs::path& path : kind.make()->write(sample_product(), {}, folder)) {
+      shortest = std::min(shortest, fs::file_size(path));
+      fs::remove(path);
+    }
+    for (const uintmax_t limit : {uintmax_t{0}, shortest / 2, shortest - 1}) {
+      {
+        const LongestFile longest(limit);
+        EXPECT_THROW(kind.make()->write(sample_product(), {}, folder), InputError)
+            << kind.name << ", " << limit;
+      }
+      EXPECT_THAT(entries(), IsEmpty()) << kind.name << ", " << limit;
+    }
   }
 }
 

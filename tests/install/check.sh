@@ -56,7 +56,7 @@ for header in $(cd "$prefix/include/photorque" && find . -path ./core/precompile
     [[ -f "$prefix/include/photorque/$included" ]] || { echo "$header wants $included"; exit 1; }
   done
 done
-if grep -rE '#include <(embree|tbb|OpenImageIO|nlohmann|CLI|toml|cairo)' "$prefix/include"; then exit 1; fi
+if grep -rE '#include <(embree|tbb|OpenImageIO|tiffio|nlohmann|CLI|toml|cairo)' "$prefix/include"; then exit 1; fi
 
 echo "== pkg-config"
 PKG_CONFIG_PATH="$(dirname "$(find "$prefix" -name photorque.pc)")"
