@@ -7,8 +7,8 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <memory>
-#include <new>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -28,7 +28,7 @@ constexpr double largest_classic = 3.5e9;
 struct Memory {
   std::string bytes = {};
   size_t at = 0;
-  bool full = false;
+  std::exception_ptr exception = {};
   std::string error = {};
 };
 
@@ -51,8 +51,8 @@ tmsize_t write(thandle_t handle, void* from, tmsize_t size) {
   const size_t end = file.at + static_cast<size_t>(size);
   try {
     if (end > file.bytes.size()) file.bytes.resize(end);
-  } catch (const std::bad_alloc&) {
-    file.full = true;
+  } catch (...) {
+    file.exception = std::current_exception();
     return 0;
   }
   std::memcpy(file.bytes.data() + file.at, from, static_cast<size_t>(size));
@@ -147,7 +147,7 @@ void write_tiff(const fs::path& path, int width, int height,
   Memory file;
   const bool written = write_pages(open(file, sizeof(float) * samples > largest_classic).get(),
                                    width, height, channels, metadata);
-  if (file.full) throw std::bad_alloc();
+  if (file.exception) std::rethrow_exception(file.exception);
   if (!written || !file.error.empty()) {
     throw InputError({path.string()}, "", file.error, "a picture that TIFF can hold");
   }
