@@ -57,6 +57,12 @@ bool reaches_disk(const fs::path& path) {
   return synced;
 }
 
+// Whoever moves results out of such a folder brings their names onto the disk.
+bool is_temporary(const fs::path& folder) {
+  return std::any_of(folder.begin(), folder.end(),
+                     [](const fs::path& part) { return writer_of(part.string()).has_value(); });
+}
+
 }  // namespace
 
 void require_plain_file(const fs::path& path) {
@@ -148,13 +154,32 @@ void remove_leftovers_of_the_dead(const fs::path& folder) {
   remove_where(folder, [](pid_t writer) { return ::kill(writer, 0) != 0 && errno == ESRCH; });
 }
 
+void sync_folder(const fs::path& folder) {
+  const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened < 0) return;
+  ::fsync(opened);
+  ::close(opened);
+}
+
+void make_folders(const fs::path& folder, const std::string& key) {
+  std::error_code failure;
+  std::vector<fs::path> above;  // folders that get a new one
+  for (fs::path place = fs::absolute(folder, failure);
+       !fs::exists(place, failure) && place.has_relative_path(); place = place.parent_path()) {
+    above.push_back(place.parent_path());
+  }
+  fs::create_directories(folder, failure);
+  if (failure) {
+    throw InputError({folder.string()}, key, failure.message(), "a folder that can be made");
+  }
+  for (const fs::path& place : above) sync_folder(place);
+}
+
 void write_file_whole(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   const fs::path temporary = temporary_beside(path);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  make_folders(folder);
   std::error_code failure;
-  if (!path.parent_path().empty()) fs::create_directories(path.parent_path(), failure);
-  if (failure) {
-    throw InputError({path.parent_path().string()}, "", failure.message(), "a writable folder");
-  }
   try {
     write(temporary);
     if (!reaches_disk(temporary)) {
@@ -170,6 +195,7 @@ void write_file_whole(const fs::path& path, const std::function<void(const fs::p
     fs::remove(temporary, ignored);
     throw InputError({path.string()}, "", failure.message(), "a path that can be written");
   }
+  if (!is_temporary(folder)) sync_folder(folder);
 }
 
 void write_file_whole(const fs::path& path, const std::string& bytes) {

@@ -32,10 +32,19 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path);
 void remove_leftovers(const std::filesystem::path& folder, int process);
 void remove_leftovers_of_the_dead(const std::filesystem::path& folder);
 
-// Calls `write` with the path of a temporary file in the same folder (same extension) and then
-// renames it to `path`: the file appears whole or not at all, after a power cut too, since it is on
-// the disk before it has its name. If `write` throws, the temporary is removed. InputError when the
-// folder cannot be written.
+// Brings the names in a folder onto the disk: what is new or renamed there survives a power cut. A
+// file system that cannot do that is no failure.
+void sync_folder(const std::filesystem::path& folder);
+
+// Makes a folder and those above it that are missing, with their names on the disk. InputError,
+// with the key that asked for it, when that fails.
+void make_folders(const std::filesystem::path& folder, const std::string& key = "");
+
+// Calls `write` with the path of a temporary file in the same folder (same extension), which is
+// made where it is missing, and then renames it to `path`: the file appears whole or not at all,
+// after a power cut too, since it is on the disk before it has its name, and the name before this
+// returns. If `write` throws, the temporary is removed. InputError when the folder cannot be
+// written.
 void write_file_whole(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
 

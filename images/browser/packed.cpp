@@ -54,7 +54,7 @@ Json packed_coarse(std::span<const double> numbers, double low, double high) {
 std::string script_text(const Json& json) {
   // In JSON these stand within strings alone. U+2028 and U+2029 end lines of a script.
   std::string text;
-  const std::string plain = json.dump();
+  const std::string plain = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.reserve(plain.size());
   for (size_t i = 0; i < plain.size(); ++i) {
     const char c = plain[i];

@@ -1,14 +1,12 @@
 #include "images/publishing/staged_files.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/display.h"
 #include "core/text/json_extent.h"
 
 namespace photorque {
@@ -62,7 +60,7 @@ void write_lists(const fs::path& path, Json lists, const std::string& command,
     for (const std::string& name : names) left.erase(name);
     list["files"] = left;
   }
-  lists[command] = {{"files", names}, {"made_by", provenance.one_line()}};
+  lists[command] = {{"files", names}, {"made_by", clean_text(provenance.one_line())}};
   const Json all = {{"schema", "photorque.files/1"}, {"commands", lists}};
   write_file_whole(path, all.dump(2) + "\n");
 }
@@ -84,14 +82,6 @@ void keep_own_files(const fs::path& folder, const Json& lists, const std::set<st
   }
 }
 
-// New names reach the disk with their folder.
-void sync_folder(const fs::path& folder) {
-  const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (opened < 0) return;
-  ::fsync(opened);
-  ::close(opened);
-}
-
 }  // namespace
 
 bool is_result_of(const fs::path& folder, const std::string& command, const std::string& name) {
@@ -105,7 +95,8 @@ StagedFiles::StagedFiles(const fs::path& folder)
        p = p.parent_path()) {
     made_ = p;
   }
-  fs::create_directories(path_, failure);
+  make_folders(folder);
+  fs::create_directory(path_, failure);
   if (failure) throw InputError({folder.string()}, "", failure.message(), "a writable folder");
 }
 
@@ -164,6 +155,7 @@ std::vector<fs::path> StagedFiles::publish_as(const std::string& command,
   for (const std::string& name : ever) {
     if (is_head(name)) fs::remove(folder_ / name, ignored);
   }
+  sync_folder(folder_);
   for (const std::string& name : ever) {
     if (!now.contains(name)) fs::remove(folder_ / name, ignored);
   }

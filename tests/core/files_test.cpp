@@ -92,6 +92,21 @@ TEST_F(FilesInAFolder, LeftoversOfTheDeadGoAndThoseOfTheLivingStay) {
   EXPECT_TRUE(fs::exists(folder_ / ".of_the_user.part"));
 }
 
+TEST_F(FilesInAFolder, FoldersAreMadeWithThoseAboveThemOrNameWhatIsInTheWay) {
+  make_folders(folder_ / "a" / "b" / "");
+  EXPECT_TRUE(fs::is_directory(folder_ / "a" / "b"));
+  make_folders(folder_ / "a");
+  write_file_whole(folder_ / "c" / "d.txt", "new");
+  EXPECT_EQ(read_file(folder_ / "c" / "d.txt"), "new");
+  try {
+    make_folders(folder_ / "c" / "d.txt" / "e", "--out");
+    FAIL() << "a folder within a file";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("d.txt/e"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("--out"));
+  }
+}
+
 TEST_F(FilesInAFolder, AFailedWriteLeavesTheOldFileAndNothingElse) {
   write_file_whole(folder_ / "a.txt", "old");
   EXPECT_THROW(write_file_whole(folder_ / "a.txt",

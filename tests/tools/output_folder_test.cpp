@@ -158,6 +158,17 @@ TEST_F(OutputFolders, AreClearedOfWhatKilledRunsLeft) {
   EXPECT_THAT(hidden("o"), testing::IsEmpty());
 }
 
+// Latin-1, say. What is written names the file as far as UTF-8 can.
+TEST_F(OutputFolders, AndExperimentsMayHaveNamesThatAreNotUtf8) {
+  const fs::path scenes = fs::path(stasis).parent_path();
+  fs::copy(scenes / "stasis.gltf", at("stasis.gltf"));
+  write("stand_g\xFC.toml", file_text(stasis));
+  ASSERT_EQ(run("trace " + at("stand_g\xFC.toml") + quick + " --out " + at("o\xFC")).status, 0);
+  for (const std::string file : {"files.json", "summary.json"}) {
+    EXPECT_THAT(file_text(at("o\xFC/" + file)), HasSubstr("stand_g\xEF\xBF\xBD.toml")) << file;
+  }
+}
+
 TEST_F(OutputFolders, HoldFilesOfTheLastRunAlone) {
   const std::string rays = " --set trace.arriving_rays=4096";
   ASSERT_EQ(run("trace " + stasis + quick + rays + " --out " + at("o")).status, 0);

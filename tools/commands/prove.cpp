@@ -89,7 +89,6 @@ void require_same_plan(const ProveSettings& settings, const fs::path& folder) {
                      "cases of another plan (" + note.filename().string() + ")",
                      "cases of this plan, or a new folder");
   }
-  fs::create_directories(folder);
   write_file_whole(note, plan);
 }
 

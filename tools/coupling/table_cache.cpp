@@ -84,8 +84,6 @@ bool read_cached_table(const std::filesystem::path& folder, const std::string& k
 
 bool write_cached_table(const std::filesystem::path& folder, const std::string& key,
                         const RotationTable& table) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
   const std::string bytes = table.bytes();
   try {
     write_file_whole(file_of(folder, key), format + content_hash(bytes) + bytes);

@@ -63,8 +63,7 @@ void OutputFolder::make() {
   if (fs::exists(path_, failure) && !fs::is_directory(path_, failure)) {
     throw refused(path_, "a file", "a folder");
   }
-  fs::create_directories(path_, failure);
-  if (failure) throw refused(path_, failure.message(), "a folder that can be made");
+  make_folders(path_, "--out");
 }
 
 // A page of bytes, as a full disk takes the name of a file but nothing in it.

@@ -228,7 +228,6 @@ std::string injected_truth_json(const InjectedCase& c) {
 }
 
 void write_injected_case(const InjectedCase& injected, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
   write_file_whole(folder / "experiment.toml", injected_experiment(injected, false));
   write_file_whole(folder / "oracle.toml", injected_experiment(injected, true));
   write_file_whole(folder / "run1.csv.gz", gzip(injected_recording(injected, 0)));

@@ -47,7 +47,7 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
   const fs::path out = blind / "diagnosis", stamp = blind / "done.txt";
   if (fs::exists(stamp) && read_file(stamp) == how.program_hash) return;
   fs::remove_all(blind);
-  fs::create_directories(out);
+  make_folders(out);
   fs::copy_file(case_folder / experiment, blind / "experiment.toml");
   const CaseFiles files = files_of_case(case_folder);
   std::vector<std::string> words = {"diagnose", "experiment.toml"}, names;
@@ -64,7 +64,7 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
   if (fs::exists(case_folder / "scene.gltf")) names.emplace_back("scene.gltf");
   for (const std::string& name : names) fs::copy_file(case_folder / name, blind / name);
   const ChildResult result = run_child(own_program(), words, blind, how.max_processor_s);
-  fs::create_directories(out);
+  make_folders(out);
   nlohmann::json runs = {{"processor_s", result.processor_s}, {"exit_status", result.status}};
   if (how.replay && result.status == 0 && !files.of_light) {
     runs.update(replayed(blind, recorded_case(case_folder), how.max_processor_s));

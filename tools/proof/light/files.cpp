@@ -265,7 +265,6 @@ std::string truth_text(const LightCase& c) {
 }  // namespace
 
 void write_light_case(const LightCase& c, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
   write_file_whole(folder / "experiment.toml", experiment_text(c));
   if (c.verdict != "unexplained") write_file_whole(folder / "oracle.toml", oracle_text(c));
   write_file_whole(folder / "scene.gltf", scene_of(c.believed));
