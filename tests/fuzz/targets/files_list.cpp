@@ -11,14 +11,21 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   namespace fs = std::filesystem;
   const fs::path& folder = fuzz::folder_in_memory();
   static const fs::path results = folder / "results";
+  fs::remove_all(results);
   fs::create_directories(results);
   std::ofstream(folder / "precious") << "of others";
+  std::ofstream(results / "mine.csv") << "of others";
   std::ofstream(results / "files.json") << fuzz::text_of(data, size);
   fuzz::may_refuse([&] {
     StagedFiles staged(results);
     std::ofstream(staged.path() / "summary.json") << "{}";
+    const bool own = !is_result_of(results, "trace", "mine.csv");
+    if (size % 2 == 0) std::ofstream(staged.path() / "mine.csv") << "a result";
     staged.publish_as("trace", {});
     if (!fs::exists(results / "summary.json")) std::abort();
+    if (own && !fs::exists(results / "mine.csv") && !fs::exists(results / "mine.csv~")) {
+      std::abort();
+    }
   });
   if (!fs::exists(folder / "precious")) std::abort();
   return 0;
