@@ -1,7 +1,6 @@
 // The program as a user meets it: exit statuses, messages, files.
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <sstream>
 
 #include "tests/tools/command_test.h"
@@ -19,34 +18,6 @@ class CommandLine : public CommandTest {};
 
 const std::string nominal = (scenes / "stasis" / "nominal.toml").string();
 const std::string few_rays = " --set trace.rays=65536";
-
-// summary.json without the one line that may differ: what the run cost in time.
-std::string without_time(const std::string& summary) {
-  std::istringstream lines(summary);
-  std::string kept, line;
-  while (std::getline(lines, line)) {
-    if (line.find("wall_time_s") == std::string::npos) kept += line + "\n";
-  }
-  return kept;
-}
-
-TEST_F(CommandLine, SameFilesAtOneTwoAndSevenThreadsAndAgain) {
-  std::vector<std::map<std::string, std::string>> runs;
-  for (const std::string threads : {"1", "2", "7", "7"}) {
-    const std::string name = "run" + std::to_string(runs.size());
-    const Outcome got =
-        run("power " + nominal + few_rays + " --threads " + threads + " --out " + at(name));
-    ASSERT_EQ(got.status, 0) << got.err;
-    auto all = files(name);
-    all["summary.json"] = without_time(all["summary.json"]);
-    runs.push_back(std::move(all));
-  }
-  EXPECT_GT(runs[0].size(), 20u);
-  for (size_t i = 1; i < runs.size(); ++i) {
-    ASSERT_EQ(runs[i].size(), runs[0].size());
-    for (const auto& [file, bytes] : runs[0]) EXPECT_TRUE(runs[i].at(file) == bytes) << file;
-  }
-}
 
 // Ten digits that no file of numbers holds by chance.
 TEST_F(CommandLine, EveryFileCarriesProvenance) {

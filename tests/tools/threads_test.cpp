@@ -1,0 +1,163 @@
+// Every command gives the same files, to the last bit, on one thread, on two and on seven.
+#include <regex>
+#include <set>
+
+#include "tests/tools/command_test.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Command {
+  std::string name, arguments;  // SCENES and CASE are folders of the sources, HERE the test's own
+};
+
+constexpr const char* sunlit = R"([scene]
+file = "hollow.gltf"
+[[source]]
+kind = "sun"
+direction = [0.3, 0, -1]
+[[receiver]]
+kind = "wrench"
+[trace]
+direct = "rays"
+rays = 4096
+[torque_map]
+azimuth_step_deg = 90
+elevation_step_deg = 90
+rays = 4096
+[sweep]
+verb = "trace"
+maximise = "absorbed_W"
+global = 6
+local = 6
+[[sweep.axis]]
+key = "attitude.tilt_deg"
+from = 0
+to = 60
+count = 4
+)";
+
+constexpr const char* datasheet = R"([fit]
+cells_in_series = 36
+[[fit.datasheet]]
+short_circuit_A = 5.116
+open_circuit_V = 22.05
+maximum_A = 4.66
+maximum_V = 17.63
+[[fit.datasheet]]
+irradiance_W_m2 = 200
+short_circuit_A = 1.029
+open_circuit_V = 20.38
+maximum_A = 0.939
+maximum_V = 17.04
+)";
+
+constexpr const char* proof = R"([prove]
+per_kind = 0
+pairs = 0
+triples = 0
+outside = 0
+known_unknown = 0
+noise_none = 0
+noise_effect = 0
+none = 2
+duration_s = 60
+holdout_s = 60
+rates_Hz = [5]
+oracle = false
+longest_s = 60
+)";
+
+const std::string few = " --set trace.rays=16384";
+const std::vector<Command> commands = {
+    {"trace", "trace SCENES/stasis/nominal.toml" + few},
+    {"power", "power SCENES/stasis/nominal.toml" + few},
+    {"torque_map", "torque-map SCENES/stasis/nominal.toml" + few +
+                       " --set torque_map.tilt_deg=[0,10] --set torque_map.heading_deg=[0,180]"},
+    {"torque_map_of_sunlight", "torque-map HERE/sunlit.toml"},
+    {"render",
+     "render SCENES/stasis/nominal.toml" + few + " --set camera.width=160 --set camera.height=120"},
+    {"budget", "budget SCENES/stasis/attitude.toml"},
+    {"propagate", "propagate SCENES/stasis/attitude.toml --set propagate.duration_s=20"},
+    {"propagate_with_traced_light",
+     "propagate SCENES/stasis/day.toml --set propagate.duration_s=1 --set light.mode=trace"
+     " --set light.rays=12544"},
+    {"balance", "balance SCENES/stasis/attitude.toml --recording HERE/recording.csv"},
+    {"sweep", "sweep HERE/sunlit.toml"},
+    {"optimise", "optimise HERE/sunlit.toml"},
+    {"diagnose", "diagnose CASE/experiment.toml --recording CASE/run1.csv.gz"},
+    {"fit_cell", "fit-cell HERE/datasheet.toml"},
+    {"camera", "camera SCENES/stasis/camera.toml"},
+    {"estimate",
+     "estimate SCENES/stasis/camera.toml --set propagate.duration_s=20"
+     " --set propagate.output_rate_Hz=5 --set estimate.runs=1"},
+    {"supply", "supply SCENES/stasis/supply.toml"},
+    {"prove", "prove HERE/proof.toml"}};
+
+class Threads : public CommandTest, public ::testing::WithParamInterface<Command> {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    const fs::path scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
+    fs::copy(scenes / "hollow" / "hollow.gltf", at("hollow.gltf"));
+    write("sunlit.toml", sunlit);
+    write("datasheet.toml", datasheet);
+    write("proof.toml", proof);
+    if (GetParam().name != "balance") return;
+    const std::string flight = "propagate " + (scenes / "stasis" / "attitude.toml").string() +
+                               " --set propagate.duration_s=60 --out " + at("flight");
+    ASSERT_EQ(run(flight).status, 0);
+    fs::copy(at("flight/recording.csv"), at("recording.csv"));
+  }
+
+  std::string arguments() const {
+    std::string text = GetParam().arguments;
+    const fs::path sources = PHOTORQUE_SOURCE_DIR;
+    text = std::regex_replace(text, std::regex("SCENES"), (sources / "scenes").string());
+    text = std::regex_replace(text, std::regex("CASE"),
+                              (sources / "tests" / "data" / "cases" / "01").string());
+    return std::regex_replace(text, std::regex("HERE"), folder_.string());
+  }
+
+  // Every file by its path, but for what a clock says: `prove` tells how long each case took.
+  std::map<std::string, std::string> results() const {
+    static const std::set<std::string> of_prove = {
+        "proof.md", "proof_cases.csv", "proof_by_family.csv", "runs.json", "summary.json"};
+    static const std::regex wall_time("\"wall_time_s\": [^\n]*");
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(at("out"))) {
+      const std::string name = entry.path().filename().string();
+      if (!entry.is_regular_file()) continue;
+      if (GetParam().name == "prove" && of_prove.contains(name)) continue;
+      if (name.starts_with("designs.")) continue;  // a database, whose pages are as they came
+      std::string text = file_text(entry.path());
+      if (name.ends_with(".json")) text = std::regex_replace(text, wall_time, "");
+      all[fs::relative(entry.path(), at("out")).string()] = text;
+    }
+    return all;
+  }
+};
+
+TEST_P(Threads, OfAnyNumberGiveTheSameFiles) {
+  std::map<std::string, std::string> first;
+  for (const std::string threads : {"1", "2", "7"}) {
+    fs::remove_all(at("out"));
+    const Outcome got = run(arguments() + " --quiet --threads " + threads + " --out " + at("out"));
+    ASSERT_EQ(got.status, 0) << got.err;
+    const std::map<std::string, std::string> now = results();
+    if (first.empty()) first = now;
+    ASSERT_EQ(now.size(), first.size());
+    EXPECT_GE(now.size(), 2u);
+    for (const auto& [file, bytes] : first) {
+      EXPECT_TRUE(now.contains(file) && now.at(file) == bytes) << file << ", " << threads;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Threads, ::testing::ValuesIn(commands),
+                         [](const auto& command) { return command.param.name; });
+
+}  // namespace
+}  // namespace photorque
