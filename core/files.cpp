@@ -48,13 +48,17 @@ void remove_where(const fs::path& folder, const std::function<bool(pid_t)>& unwa
   }
 }
 
+// Whether what was opened is on the disk. True where the file system cannot do that.
+bool sync_and_close(int opened) {
+  const bool synced = ::fsync(opened) == 0 || errno == EINVAL || errno == EROFS;
+  ::close(opened);
+  return synced;
+}
+
 // Before a file gets its name, or a power cut could leave the name without the bytes.
 bool reaches_disk(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return false;
-  const bool synced = ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
-  ::close(file);
-  return synced;
+  return file >= 0 && sync_and_close(file);
 }
 
 // Whoever moves results out of such a folder brings their names onto the disk.
@@ -157,8 +161,9 @@ void remove_leftovers_of_the_dead(const fs::path& folder) {
 void sync_folder(const fs::path& folder) {
   const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (opened < 0) return;
-  ::fsync(opened);
-  ::close(opened);
+  if (!sync_and_close(opened)) {
+    throw InputError({folder.string()}, "", "a write that failed", "space and permission");
+  }
 }
 
 void make_folders(const fs::path& folder, const std::string& key) {

@@ -32,8 +32,9 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path);
 void remove_leftovers(const std::filesystem::path& folder, int process);
 void remove_leftovers_of_the_dead(const std::filesystem::path& folder);
 
-// Brings the names in a folder onto the disk: what is new or renamed there survives a power cut. A
-// file system that cannot do that is no failure.
+// Brings the names in a folder onto the disk: what is new or renamed there survives a power cut.
+// InputError when that fails, but not where a file system cannot do it or the folder may not be
+// read.
 void sync_folder(const std::filesystem::path& folder);
 
 // Makes a folder and those above it that are missing, with their names on the disk. InputError,

@@ -165,7 +165,6 @@ std::vector<fs::path> StagedFiles::publish_as(const std::string& command,
     places.push_back(folder_ / name);
   }
   write_lists(list_path, lists, command, now, provenance);
-  sync_folder(folder_);
   for (const std::string& name : now) {
     if (is_head(name)) move(name);
   }

@@ -16,14 +16,14 @@ namespace fs = std::filesystem;
 std::string bytes_of(const fs::path& path, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                      const void* samples) {
   const std::string name = path.string();
+  OIIO::Filesystem::IOVecOutput bytes;  // outlives `output`, whose destructor writes what is left
   const auto output = OIIO::ImageOutput::create(name);
   const auto check = [&](bool succeeded) {
     if (succeeded) return;
     throw InputError({name}, "", output ? output->geterror() : OIIO::geterror(),
-                     "a path that can be written");
+                     "a picture that this format can hold");
   };
   check(output != nullptr);
-  OIIO::Filesystem::IOVecOutput bytes;
   output->threads(1);
   check(output->set_ioproxy(&bytes));
   check(output->open(name, spec));

@@ -1,4 +1,5 @@
-// Image files with metadata: EXR and PNG by OpenImageIO, TIFF by libtiff, known nowhere else.
+// Image files with metadata: EXR and PNG by OpenImageIO, TIFF by libtiff. Only this folder knows
+// them.
 //
 // All three formats are written without dates, on one thread: equal contents give equal bytes. Each
 // file appears whole or not at all (write_file_whole); InputError when it cannot be written.
@@ -34,9 +35,9 @@ struct ImageChannel {
 void write_exr(const std::filesystem::path& path, int width, int height,
                const std::vector<ImageChannel>& channels, const ImageMetadata& metadata);
 
-// Each channel is one page of 32-bit floats, named by its PageName and DocumentName (in place of
-// the title): the form of TIFF that most programs read, as many refuse several float channels in a
-// page. Losslessly compressed.
+// Each channel, of at least one, is one page of 32-bit floats, named by its PageName and
+// DocumentName (in place of the title): the form of TIFF that most programs read, as many refuse
+// several float channels in a page. Losslessly compressed.
 void write_tiff(const std::filesystem::path& path, int width, int height,
                 const std::vector<ImageChannel>& channels, const ImageMetadata& metadata);
 

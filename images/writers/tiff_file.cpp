@@ -29,7 +29,7 @@ struct Memory {
   std::string bytes = {};
   size_t at = 0;
   std::exception_ptr exception = {};
-  std::string error = {};
+  std::array<char, 512> error = {};  // the first; empty for none
 };
 
 Memory& memory(thandle_t handle) {
@@ -76,10 +76,12 @@ toff_t size(thandle_t handle) {
 }
 
 int keep_error(TIFF*, void* handle, const char*, const char* format, va_list values) {
-  std::array<char, 512> text;
-  std::vsnprintf(text.data(), text.size(), format, values);
-  Memory& file = memory(handle);
-  if (file.error.empty()) file.error = text.data();
+  std::array<char, 512>& error = memory(handle).error;
+  if (error[0] == '\0') std::vsnprintf(error.data(), error.size(), format, values);
+  return 1;
+}
+
+int pass_over_warning(TIFF*, void*, const char*, const char*, va_list) {
   return 1;
 }
 
@@ -89,7 +91,9 @@ using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 Tiff open(Memory& file, bool big) {
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
       TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
+  if (!options) return {nullptr, &TIFFClose};
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), &keep_error, &file);
+  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), &pass_over_warning, nullptr);
   return {TIFFClientOpenExt("memory", big ? "wl8" : "wl", &file, &read, &write, &seek, &close,
                             &size, nullptr, nullptr, options.get()),
           &TIFFClose};
@@ -148,8 +152,9 @@ void write_tiff(const fs::path& path, int width, int height,
   const bool written = write_pages(open(file, sizeof(float) * samples > largest_classic).get(),
                                    width, height, channels, metadata);
   if (file.exception) std::rethrow_exception(file.exception);
-  if (!written || !file.error.empty()) {
-    throw InputError({path.string()}, "", file.error, "a picture that TIFF can hold");
+  if (!written || file.error[0] != '\0') {
+    const std::string found = file.error[0] != '\0' ? file.error.data() : "too little memory";
+    throw InputError({path.string()}, "", found, "a picture that TIFF and memory can hold");
   }
   write_file_whole(path, file.bytes);
 }

@@ -82,8 +82,24 @@ TEST_F(MapFiles, ExrNamesItsAttributes) {
   expect_description_of(map, spec.get_string_attribute("ImageDescription"));
 }
 
-TEST_F(MapFiles, TiffHoldsAPagePerChannel) {
-  const Map map = sample_map();
+// Rows of TIFF come in strips of 32.
+Map map_of_three_strips() {
+  Map map = sample_map();
+  map.width = 40;
+  map.height = 70;
+  map.value.clear();
+  map.standard_error.clear();
+  for (int i = 0; i < map.width * map.height; ++i) {
+    map.value.push_back(100.0 / 3.0 * (i + 1));
+    map.standard_error.push_back(0.01 * (i + 1));
+  }
+  return map;
+}
+
+class TiffMaps : public MapFiles, public ::testing::WithParamInterface<Map> {};
+
+TEST_P(TiffMaps, HoldAPagePerChannel) {
+  const Map map = GetParam();
   const fs::path path = written(map, "tiff");
   const Page values = read_page(path, 0);
   const Page errors = read_page(path, 1);
@@ -101,6 +117,11 @@ TEST_F(MapFiles, TiffHoldsAPagePerChannel) {
     EXPECT_EQ(errors.samples[i], static_cast<float>(map.standard_error[source]));
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Sizes, TiffMaps, ::testing::Values(sample_map(), map_of_three_strips()),
+                         [](const auto& map) {
+                           return std::to_string(map.param.height) + "_rows";
+                         });
 
 TEST_F(MapFiles, ExactMapsHaveZeroErrorsAndKeepMissingValues) {
   Map map = sample_map();

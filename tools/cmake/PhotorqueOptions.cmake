@@ -43,10 +43,11 @@ set(PHOTORQUE_ARCH "${PHOTORQUE_ARCH_DEFAULT}" CACHE STRING "Instruction set (-m
 if(PHOTORQUE_ARCH)
   add_compile_options(-march=${PHOTORQUE_ARCH})
   include(CheckCXXSourceCompiles)
+  string(MAKE_C_IDENTIFIER "PHOTORQUE_AVX512_IN_${PHOTORQUE_ARCH}" has_avx512)
   set(CMAKE_REQUIRED_FLAGS "-march=${PHOTORQUE_ARCH}")
-  check_cxx_source_compiles("#ifndef __AVX512F__\n#error\n#endif\nint main() {}" PHOTORQUE_AVX512)
+  check_cxx_source_compiles("#ifndef __AVX512F__\n#error\n#endif\nint main() {}" ${has_avx512})
   unset(CMAKE_REQUIRED_FLAGS)
-  if(PHOTORQUE_AVX512 AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  if(${has_avx512} AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC 12 reports this inside its own intrinsics.
     add_compile_options(-Wno-uninitialized)
   endif()

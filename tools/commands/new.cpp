@@ -241,8 +241,7 @@ void run_new(const CommandLine& line) {
     text += std::string(platform_text).substr(1);
   }
   // So that names of files beside it can be followed.
-  if (line.experiment.has_parent_path())
-    fs::create_directories(line.experiment.parent_path(), unreadable);
+  if (line.experiment.has_parent_path()) make_folders(line.experiment.parent_path());
   RunOptions options;
   options.experiment = line.experiment;
   options.text = text;

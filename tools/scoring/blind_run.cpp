@@ -48,7 +48,7 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
   if (fs::exists(stamp) && read_file(stamp) == how.program_hash) return;
   fs::remove_all(blind);
   make_folders(out);
-  fs::copy_file(case_folder / experiment, blind / "experiment.toml");
+  write_file_whole(blind / "experiment.toml", read_file(case_folder / experiment));
   const CaseFiles files = files_of_case(case_folder);
   std::vector<std::string> words = {"diagnose", "experiment.toml"}, names;
   for (const std::string& name : files.recordings) {
@@ -62,7 +62,9 @@ void diagnose_blind(const fs::path& case_folder, const std::string& experiment,
   words.insert(words.end(),
                {"--out", "diagnosis", "--quiet", "--threads", std::to_string(how.threads)});
   if (fs::exists(case_folder / "scene.gltf")) names.emplace_back("scene.gltf");
-  for (const std::string& name : names) fs::copy_file(case_folder / name, blind / name);
+  for (const std::string& name : names) {
+    write_file_whole(blind / name, read_file(case_folder / name));
+  }
   const ChildResult result = run_child(own_program(), words, blind, how.max_processor_s);
   make_folders(out);
   nlohmann::json runs = {{"processor_s", result.processor_s}, {"exit_status", result.status}};

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/provenance.h"
 
 namespace photorque {
@@ -51,8 +52,7 @@ RunEngine::RunEngine(Task task)
     : task_(std::move(task)),
       identity_(task_.options, task_.command),
       claims_path_(fs::path(task_.database).replace_extension("lock")) {
-  std::error_code ignored;
-  fs::create_directories(task_.database.parent_path(), ignored);
+  if (task_.database.has_parent_path()) make_folders(task_.database.parent_path());
   claims_ = std::make_unique<Claims>(claims_path_);
   if (!fs::exists(task_.database)) return;
   failed_before_ = database().failed();
