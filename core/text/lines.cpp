@@ -1,6 +1,7 @@
 #include "core/text/lines.h"
 
 #include <algorithm>
+#include <array>
 
 namespace photorque {
 namespace {
@@ -73,11 +74,14 @@ void require_text(std::string_view begin, const InputLocation& where) {
   constexpr size_t enough = 4096;
   begin = begin.substr(0, enough);
   const bool marked = begin.starts_with("\xff\xfe") || begin.starts_with("\xfe\xff");
-  const auto zeros = static_cast<size_t>(std::ranges::count(begin, '\0'));
-  if (marked || (begin.size() > 3 && 5 * zeros >= 2 * begin.size())) {
+  // Most letters of it have one byte that is zero: always the first, or always the second.
+  std::array<size_t, 2> zeros = {0, 0};
+  for (size_t i = 0; i < begin.size(); ++i) zeros[i % 2] += begin[i] == '\0' ? 1 : 0;
+  const auto [few, many] = std::minmax(zeros[0], zeros[1]);
+  if (marked || (begin.size() > 3 && 5 * many >= 2 * begin.size() && 10 * few <= many)) {
     throw InputError(where, "", "UTF-16 text", "text in UTF-8 or ASCII");
   }
-  if (zeros > 0) throw InputError(where, "", "bytes that are no text", "a text file");
+  if (many > 0) throw InputError(where, "", "bytes that are no text", "a text file");
 }
 
 namespace {

@@ -126,6 +126,9 @@ TEST(Text, SixteenBitTextAndBytesAreToldApart) {
   using namespace std::string_literals;
   EXPECT_THAT(message("\xff\xfet\0_\0s\0"s), testing::HasSubstr("found UTF-16 text"));
   EXPECT_THAT(message("t\0_\0s\0,\0"s), testing::HasSubstr("found UTF-16 text"));
+  // The beginning of HDF5.
+  EXPECT_THAT(message("\x89HDF\r\n\x1a\n\0\0\0\0\0\b\b\0\x04\0\x10\0\0\0\0\0\0\0\0\0\0\0\0\0"s),
+              testing::HasSubstr("found bytes that are no text"));
   EXPECT_THAT(message("glTF\2\0 and more text"s),
               testing::HasSubstr("found bytes that are no text"));
   EXPECT_EQ(message("\xef\xbb\xbft_s,Ω\n1,2\n"), "");
