@@ -33,7 +33,7 @@
 //
 //   }  // namespace
 //
-//   DisturbanceKind bearing_drag_kind() {
+//   DisturbanceKind kind() {
 //     return {.name = "bearing_drag",
 //             .summary = "viscous drag of the bearing's air film, linear in the rate",
 //             .read = read,

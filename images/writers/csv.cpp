@@ -9,7 +9,7 @@
 #include "images/drawing/consistency.h"
 #include "images/writers/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::csv {
 namespace {
 
 std::string preamble(const std::string& title, const Provenance& provenance) {
@@ -96,9 +96,9 @@ class CsvWriter final : public Writer {
 
 }  // namespace
 
-WriterKind csv_kind() {
+WriterKind kind() {
   return {"csv", "Maps and tables as comma-separated values behind lines of provenance",
           [] { return std::make_unique<CsvWriter>(); }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::csv

@@ -6,7 +6,7 @@
 #include "images/writers/kind.h"
 #include "images/writers/map_channels.h"
 
-namespace photorque {
+namespace photorque::kinds::exr {
 namespace {
 
 class ExrWriter final : public Writer {
@@ -25,9 +25,9 @@ class ExrWriter final : public Writer {
 
 }  // namespace
 
-WriterKind exr_kind() {
+WriterKind kind() {
   return {"exr", "Maps as OpenEXR images of 32-bit floats with their standard errors",
           [] { return std::make_unique<ExrWriter>(); }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::exr

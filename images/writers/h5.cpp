@@ -11,7 +11,7 @@
 #include "images/writers/hdf5_file.h"
 #include "images/writers/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::h5 {
 namespace {
 
 // Below a group, under a name that nobody else has there.
@@ -108,9 +108,9 @@ class H5Writer final : public Writer {
 
 }  // namespace
 
-WriterKind h5_kind() {
+WriterKind kind() {
   return {"h5", "Everything of a run as one HDF5 file, for h5py and MATLAB",
           [] { return std::make_unique<H5Writer>(); }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::h5

@@ -5,7 +5,7 @@
 #include "images/writers/kind.h"
 #include "images/writers/summary.h"
 
-namespace photorque {
+namespace photorque::kinds::json {
 namespace {
 
 class JsonWriter final : public Writer {
@@ -21,9 +21,9 @@ class JsonWriter final : public Writer {
 
 }  // namespace
 
-WriterKind json_kind() {
+WriterKind kind() {
   return {"json", "Headline figures with their standard errors, as summary.json",
           [] { return std::make_unique<JsonWriter>(); }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::json

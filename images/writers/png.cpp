@@ -9,7 +9,7 @@
 #include "images/writers/map_channels.h"
 #include "images/writers/metadata.h"
 
-namespace photorque {
+namespace photorque::kinds::png {
 namespace {
 
 class PngWriter final : public Writer {
@@ -32,9 +32,9 @@ class PngWriter final : public Writer {
 
 }  // namespace
 
-WriterKind png_kind() {
+WriterKind kind() {
   return {"png", "Maps with colour bar and plots, as pictures for people",
           [] { return std::make_unique<PngWriter>(); }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::png

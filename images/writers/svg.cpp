@@ -8,7 +8,7 @@
 #include "images/writers/kind.h"
 #include "images/writers/metadata.h"
 
-namespace photorque {
+namespace photorque::kinds::svg {
 namespace {
 
 // cairo writes no metadata; it belongs directly behind the opening tag of the root.
@@ -39,8 +39,8 @@ class SvgWriter final : public Writer {
 
 }  // namespace
 
-WriterKind svg_kind() {
+WriterKind kind() {
   return {"svg", "Plots as scalable pictures", [] { return std::make_unique<SvgWriter>(); }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::svg

@@ -6,7 +6,7 @@
 #include "images/writers/kind.h"
 #include "images/writers/map_channels.h"
 
-namespace photorque {
+namespace photorque::kinds::tiff {
 namespace {
 
 class TiffWriter final : public Writer {
@@ -25,9 +25,9 @@ class TiffWriter final : public Writer {
 
 }  // namespace
 
-WriterKind tiff_kind() {
+WriterKind kind() {
   return {"tiff", "Maps as TIFF images of 32-bit floats with their standard errors",
           [] { return std::make_unique<TiffWriter>(); }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::tiff

@@ -11,7 +11,7 @@
 #include "images/writers/hdf5_file.h"
 #include "images/writers/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::vtkhdf {
 namespace {
 
 // Where the reader wants two, one is repeated.
@@ -83,9 +83,9 @@ class VtkhdfWriter final : public Writer {
 
 }  // namespace
 
-WriterKind vtkhdf_kind() {
+WriterKind kind() {
   return {"vtkhdf", "Maps as VTKHDF images with their standard errors, for ParaView",
           [] { return std::make_unique<VtkhdfWriter>(); }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::vtkhdf

@@ -175,7 +175,9 @@ Product FluxMapReceiver::product(const BinSums& sums) const {
   return product;
 }
 
-ReceiverKind flux_map_kind() {
+namespace kinds::flux_map {
+
+ReceiverKind kind() {
   return {"flux_map", "Incident and absorbed power per bin of a surface",
           [](const Settings& settings, const Scene& scene) -> MadeReceiver {
             const ReceiverTarget target = read_target(settings, scene);
@@ -185,5 +187,7 @@ ReceiverKind flux_map_kind() {
           },
           joined({target_keys(), surface_grid_keys(Side::front)})};
 }
+
+}  // namespace kinds::flux_map
 
 }  // namespace photorque

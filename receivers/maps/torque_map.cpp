@@ -95,7 +95,9 @@ Product TorqueMapReceiver::product(const BinSums& sums) const {
   return product;
 }
 
-ReceiverKind torque_map_kind() {
+namespace kinds::torque_map {
+
+ReceiverKind kind() {
   return {"torque_map", "Torque of light per bin of a surface",
           [](const Settings& settings, const Scene& scene) -> MadeReceiver {
             const ReceiverTarget target = read_target(settings, scene);
@@ -120,5 +122,7 @@ ReceiverKind torque_map_kind() {
                          "([paper.md](paper.md))"}},
                        0, "what light does to an element")}})};
 }
+
+}  // namespace kinds::torque_map
 
 }  // namespace photorque

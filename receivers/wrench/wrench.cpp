@@ -174,7 +174,9 @@ Table wrench_rows(const std::vector<WrenchEstimate>& wrenches,
   return table;
 }
 
-ReceiverKind wrench_kind() {
+namespace kinds::wrench {
+
+ReceiverKind kind() {
   return {"wrench", "Force and torque of light on the whole body or a node, in total and per part",
           [](const Settings& settings, const Scene& scene) -> MadeReceiver {
             ReceiverTarget target = read_target_or_all(settings, scene, "platform");
@@ -185,5 +187,7 @@ ReceiverKind wrench_kind() {
           },
           joined({target_or_all_keys("platform"), {torque_point_key()}})};
 }
+
+}  // namespace kinds::wrench
 
 }  // namespace photorque

@@ -25,7 +25,7 @@
 #include "sources/lamps/settings.h"
 #include "sources/photometry/planes.h"
 
-namespace photorque {
+namespace photorque::kinds::ies {
 namespace {
 
 PhotometricFile read_inline(const Settings& settings) {
@@ -81,7 +81,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 
 }  // namespace
 
-SourceKind ies_kind() {
+SourceKind kind() {
   return {
       "ies",
       "A lamp with a measured intensity: an IES LM-63, IES TM-33 or EULUMDAT file, or a table",
@@ -114,4 +114,4 @@ SourceKind ies_kind() {
                 .optional()}})};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::ies

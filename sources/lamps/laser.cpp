@@ -25,7 +25,7 @@
 #include "sources/lamps/settings.h"
 #include "sources/profiles/block_maps.h"
 
-namespace photorque {
+namespace photorque::kinds::laser {
 namespace {
 
 class GaussianBeam : public Emitter {
@@ -104,7 +104,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 
 }  // namespace
 
-SourceKind laser_kind() {
+SourceKind kind() {
   return {
       "laser",
       "A laser beam, Gaussian in position and angle",
@@ -125,4 +125,4 @@ SourceKind laser_kind() {
                 .usually_is("diffraction")}})};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::laser

@@ -15,7 +15,7 @@
 #include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
-namespace photorque {
+namespace photorque::kinds::led {
 namespace {
 
 std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
@@ -30,7 +30,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 
 }  // namespace
 
-SourceKind led_kind() {
+SourceKind kind() {
   return {"led",
           "One LED: a round aperture with an angular profile",
           make,
@@ -49,4 +49,4 @@ SourceKind led_kind() {
                   lamp_keys()})};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::led

@@ -35,7 +35,7 @@
 #include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
 
-namespace photorque {
+namespace photorque::kinds::led_array {
 namespace {
 
 constexpr int64_t max_leds = 100000;
@@ -319,7 +319,7 @@ std::vector<Key> led_array_keys() {
 
 }  // namespace
 
-SourceKind led_array_kind() {
+SourceKind kind() {
   return {"led_array",
           "Equal LEDs in a grid, ring, hexagon or at given points",
           make,
@@ -338,4 +338,4 @@ SourceKind led_array_kind() {
           led_array_keys()};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::led_array

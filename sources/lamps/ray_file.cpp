@@ -21,7 +21,7 @@
 #include "sources/lamps/rays.h"
 #include "sources/lamps/settings.h"
 
-namespace photorque {
+namespace photorque::kinds::ray_file {
 namespace {
 
 std::string sum_notice(const RaySet& set) {
@@ -80,7 +80,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 
 }  // namespace
 
-SourceKind ray_file_kind() {
+SourceKind kind() {
   return {
       "ray_file",
       "A lamp as a file of rays: IES TM-25, Zemax binary or LightTools text",
@@ -100,4 +100,4 @@ SourceKind ray_file_kind() {
               lamp_place_keys()})};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::ray_file

@@ -25,7 +25,7 @@
 #include "sources/lamps/settings.h"
 #include "sources/profiles/block_maps.h"
 
-namespace photorque {
+namespace photorque::kinds::solar_simulator {
 namespace {
 
 class SolarSimulator : public Emitter {
@@ -92,7 +92,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 
 }  // namespace
 
-SourceKind solar_simulator_kind() {
+SourceKind kind() {
   return {"solar_simulator",
           "A bundle of limited width and collimation that lights a round field",
           make,
@@ -112,4 +112,4 @@ SourceKind solar_simulator_kind() {
                                   "(max − min)/(max + min) of the irradiance on the field")}})};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::solar_simulator

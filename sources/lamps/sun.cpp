@@ -26,7 +26,7 @@
 #include "sources/lamps/settings.h"
 #include "sources/profiles/block_maps.h"
 
-namespace photorque {
+namespace photorque::kinds::sun {
 namespace {
 
 class Sun : public Emitter {
@@ -125,7 +125,7 @@ std::vector<Beam> make(const Settings& settings, const SourceContext& context) {
 
 }  // namespace
 
-SourceKind sun_kind() {
+SourceKind kind() {
   return {
       "sun",
       "Parallel light from a disc in the sky, of a given irradiance",
@@ -144,4 +144,4 @@ SourceKind sun_kind() {
                 .usually_is("none")}})};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::sun

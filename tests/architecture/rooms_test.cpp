@@ -182,7 +182,7 @@ TEST(Rooms, HaveAtMost25FilesWhoseNamesDoNotRepeatTheRoom) {
       const std::string own = file.parent_path().filename().string();
       // A kind is named as users write it.
       const bool is_kind =
-          text_of(file).find(file.stem().string() + "_kind()") != std::string::npos;
+          text_of(file).find("kinds::" + file.stem().string() + " {") != std::string::npos;
       EXPECT_TRUE(is_kind || !file.stem().string().starts_with(own + "_")) << file;
     }
   }

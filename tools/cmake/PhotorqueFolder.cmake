@@ -16,7 +16,7 @@ endfunction()
 #   that cannot be compiled together with others.
 function(photorque_folder name)
   cmake_parse_arguments(arg "" "" "FILES;USES;LINKS;ALONE" ${ARGN})
-  set_source_files_properties(${arg_ALONE} ${${name}_KINDS} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set(target photorque_${name})
   add_library(${target} STATIC ${arg_FILES})
   target_include_directories(${target} PUBLIC ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
@@ -31,20 +31,16 @@ endfunction()
 
 # photorque_kinds(FOLDER TYPE HEADER word ...)
 #   The registry of a folder. Each WORD, such as lamps/led, is one file FOLDER/WORD.cpp that defines
-#   `TYPE photorque::led_kind()` (`led_verb()` for the type Verb); generates a source with
-#   `std::vector<TYPE> all_TYPEs()` in this order, which HEADER declares. Explicit calls, because objects that register
-#   themselves are dropped by the linker from a static library.
+#   `TYPE photorque::kinds::led::kind()`. Generates a source with `std::vector<TYPE> all_TYPEs()` in
+#   this order, which HEADER declares. Explicit calls, because objects that register themselves are
+#   dropped by the linker from a static library.
 function(photorque_kinds folder type header)
-  set(suffix "kind")
-  if(type STREQUAL "Verb")
-    set(suffix "verb")
-  endif()
   set(declarations "")
   set(calls "")
   foreach(word IN LISTS ARGN)
     get_filename_component(kind ${word} NAME)
-    string(APPEND declarations "${type} ${kind}_${suffix}();\n")
-    string(APPEND calls "      ${kind}_${suffix}(),\n")
+    string(APPEND declarations "namespace kinds::${kind} {\n${type} kind();\n}\n")
+    string(APPEND calls "      kinds::${kind}::kind(),\n")
     list(APPEND files ${word}.cpp)
   endforeach()
   string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" snake "${type}")

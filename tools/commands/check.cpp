@@ -5,7 +5,7 @@
 
 #include "tools/commands/terminal.h"
 
-namespace photorque {
+namespace photorque::kinds::check {
 namespace {
 
 void run_check(const CommandLine& line) {
@@ -32,11 +32,11 @@ void run_check(const CommandLine& line) {
 
 }  // namespace
 
-Verb check_verb() {
+Verb kind() {
   Verb verb{"check", "What is wrong with an experiment, and what every command would do with it",
             run_check};
   verb.writes = false;
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::check

@@ -10,7 +10,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/pages/diagnosis.h"
 
-namespace photorque {
+namespace photorque::kinds::diagnose {
 namespace {
 
 void print_diagnosis(const Console& console, const Diagnosis& d) {
@@ -78,7 +78,7 @@ void run_diagnose(const CommandLine& line) {
 
 }  // namespace
 
-Verb diagnose_verb() {
+Verb kind() {
   Verb verb{"diagnose", "What physics is missing between an experiment and its recordings",
             run_diagnose};
   verb.takes_recordings = true;
@@ -88,4 +88,4 @@ Verb diagnose_verb() {
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::diagnose

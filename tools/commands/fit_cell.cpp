@@ -4,7 +4,7 @@
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
 
-namespace photorque {
+namespace photorque::kinds::fit_cell {
 namespace {
 
 void run_fit_cell(const CommandLine& line) {
@@ -14,10 +14,10 @@ void run_fit_cell(const CommandLine& line) {
 
 }  // namespace
 
-Verb fit_cell_verb() {
+Verb kind() {
   return {"fit-cell",
           "Solar cell parameters, with errors, from current-voltage sweeps or a datasheet",
           run_fit_cell};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::fit_cell

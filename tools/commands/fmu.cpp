@@ -3,7 +3,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/fmi/pack.h"
 
-namespace photorque {
+namespace photorque::kinds::fmu {
 namespace {
 
 void run_fmu(const CommandLine& line) {
@@ -13,8 +13,8 @@ void run_fmu(const CommandLine& line) {
 
 }  // namespace
 
-Verb fmu_verb() {
+Verb kind() {
   return {"fmu", "The platform as an FMI 3.0 unit for co-simulation in other programs", run_fmu};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::fmu

@@ -9,7 +9,7 @@
 #include "tools/sweeps/pictures.h"
 #include "tools/sweeps/values.h"
 
-namespace photorque {
+namespace photorque::kinds::optimise {
 namespace {
 
 // The axes of [sweep] as a box. InputError for one without ends.
@@ -134,9 +134,9 @@ class Search {
 
 }  // namespace
 
-Verb optimise_verb() {
+Verb kind() {
   return {"optimise", "The best design over the axes of a sweep, without derivatives",
           [](const CommandLine& line) { Search(line).run(); }, true};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::optimise

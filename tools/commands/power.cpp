@@ -6,7 +6,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/pages/runs.h"
 
-namespace photorque {
+namespace photorque::kinds::power {
 namespace {
 
 void run_power(const CommandLine& line) {
@@ -19,7 +19,7 @@ void run_power(const CommandLine& line) {
 
 }  // namespace
 
-Verb power_verb() {
+Verb kind() {
   Verb verb{"power", "Trace, then the solar array: current-voltage curve and maximum power point",
             run_power, true};
   verb.draws_page = true;
@@ -27,4 +27,4 @@ Verb power_verb() {
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::power

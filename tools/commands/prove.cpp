@@ -17,7 +17,7 @@
 #include "tools/scoring/case_files.h"
 #include "tools/scoring/document.h"
 
-namespace photorque {
+namespace photorque::kinds::prove {
 namespace {
 
 namespace fs = std::filesystem;
@@ -259,11 +259,11 @@ void run_prove(const CommandLine& line) {
 
 }  // namespace
 
-Verb prove_verb() {
+Verb kind() {
   Verb verb{"prove", "Inject effects in recordings, diagnose them blind, score the answers",
             run_prove};
   verb.takes_cases = true;
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::prove

@@ -3,7 +3,7 @@
 
 #include "tools/commands/terminal.h"
 
-namespace photorque {
+namespace photorque::kinds::render {
 namespace {
 
 void run_render(const CommandLine& line) {
@@ -14,9 +14,9 @@ void run_render(const CommandLine& line) {
 
 }  // namespace
 
-Verb render_verb() {
+Verb kind() {
   return {"render", "A picture of the scene with the irradiance painted on its receivers",
           run_render, true};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::render

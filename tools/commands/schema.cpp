@@ -9,7 +9,7 @@
 #include "tools/keys/schema.h"
 #include "tools/keys/words.h"
 
-namespace photorque {
+namespace photorque::kinds::schema {
 namespace {
 
 // A key by its path, and the table that holds it: "source.power_W".
@@ -60,7 +60,7 @@ void run_schema(const CommandLine& line) {
 
 }  // namespace
 
-Verb schema_verb() {
+Verb kind() {
   Verb verb{"schema",
             "Every key of an experiment: as a JSON Schema for editors, or one key's meaning",
             run_schema};
@@ -70,4 +70,4 @@ Verb schema_verb() {
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::schema

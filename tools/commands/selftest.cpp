@@ -11,7 +11,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/guards/interruption.h"
 
-namespace photorque {
+namespace photorque::kinds::selftest {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,11 +165,11 @@ void run_selftest(const CommandLine& line) {
 
 }  // namespace
 
-Verb selftest_verb() {
+Verb kind() {
   Verb verb{"selftest", "Whether this machine computes what it should: closed forms, in seconds",
             run_selftest};
   verb.takes_experiment = verb.writes = false;
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::selftest

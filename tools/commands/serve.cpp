@@ -4,7 +4,7 @@
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
 
-namespace photorque {
+namespace photorque::kinds::serve {
 namespace {
 
 void run_serve(const CommandLine& line) {
@@ -14,10 +14,10 @@ void run_serve(const CommandLine& line) {
 
 }  // namespace
 
-Verb serve_verb() {
+Verb kind() {
   return {"serve",
           "The platform in real time: measurements out, commands in, over UDP or shared memory",
           run_serve};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::serve

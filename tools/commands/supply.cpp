@@ -3,7 +3,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/supply/task.h"
 
-namespace photorque {
+namespace photorque::kinds::supply {
 namespace {
 
 void run_supply(const CommandLine& line) {
@@ -13,10 +13,10 @@ void run_supply(const CommandLine& line) {
 
 }  // namespace
 
-Verb supply_verb() {
+Verb kind() {
   return {"supply",
           "Battery, cable, microwaves, coils or light: what each delivers, weighs and disturbs",
           run_supply};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::supply

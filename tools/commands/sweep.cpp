@@ -5,7 +5,7 @@
 #include "tools/commands/studies.h"
 #include "tools/commands/terminal.h"
 
-namespace photorque {
+namespace photorque::kinds::sweep {
 namespace {
 
 struct Shard {
@@ -144,11 +144,11 @@ class SweepRun {
 
 }  // namespace
 
-Verb sweep_verb() {
+Verb kind() {
   Verb verb{"sweep", "One command over many designs: any keys of the experiment, one table",
             [](const CommandLine& line) { SweepRun(line).run(); }, true};
   verb.takes_shard = true;
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::sweep

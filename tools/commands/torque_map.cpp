@@ -6,7 +6,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/pages/torque_map.h"
 
-namespace photorque {
+namespace photorque::kinds::torque_map {
 namespace {
 
 void run_torque_map(const CommandLine& line) {
@@ -30,7 +30,7 @@ void run_torque_map(const CommandLine& line) {
 
 }  // namespace
 
-Verb torque_map_verb() {
+Verb kind() {
   Verb verb{"torque-map", "Force, torque and power over a grid of attitudes or directions of light",
             run_torque_map, true};
   verb.takes_checkpoint = true;
@@ -38,4 +38,4 @@ Verb torque_map_verb() {
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::torque_map

@@ -4,7 +4,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/pages/runs.h"
 
-namespace photorque {
+namespace photorque::kinds::trace {
 namespace {
 
 void run_trace(const CommandLine& line) {
@@ -17,7 +17,7 @@ void run_trace(const CommandLine& line) {
 
 }  // namespace
 
-Verb trace_verb() {
+Verb kind() {
   Verb verb{"trace",
             "Irradiance on every receiver, where the power went, radiation force and torque",
             run_trace, true};
@@ -26,4 +26,4 @@ Verb trace_verb() {
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::trace

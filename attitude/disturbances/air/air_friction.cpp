@@ -8,7 +8,7 @@
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::air_friction {
 namespace {
 
 constexpr ScalarKey braking{"coefficient"};
@@ -41,7 +41,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind air_friction_kind() {
+DisturbanceKind kind() {
   return {.name = "air_friction",
           .summary = "laminar boundary layers of the surrounding air, power 1.5 of the rate",
           .read = read,
@@ -60,4 +60,4 @@ DisturbanceKind air_friction_kind() {
                    air_parts_key()}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::air_friction

@@ -7,7 +7,7 @@
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::air_pressure_drag {
 namespace {
 
 constexpr ScalarKey braking{"coefficient_N_m_s2"};
@@ -53,7 +53,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind air_pressure_drag_kind() {
+DisturbanceKind kind() {
   return {
       .name = "air_pressure_drag",
       .summary = "form drag of the surrounding air, square of the rate",
@@ -79,4 +79,4 @@ DisturbanceKind air_pressure_drag_kind() {
                air_parts_key()}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::air_pressure_drag

@@ -4,7 +4,7 @@
 // headings; this is the part that does not turn with it.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::room_draft {
 namespace {
 
 constexpr VectorKey torque_lab{"torque_lab_N_m"};
@@ -30,7 +30,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind room_draft_kind() {
+DisturbanceKind kind() {
   return {.name = "room_draft",
           .summary = "a steady draught: a torque constant in the lab",
           .read = read,
@@ -47,4 +47,4 @@ DisturbanceKind room_draft_kind() {
           .keys = {Key::uncertain_vector("torque_lab_N_m", "lab axes")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::room_draft

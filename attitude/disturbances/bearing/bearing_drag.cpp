@@ -11,7 +11,7 @@
 #include "attitude/disturbances/bearing/air_film.h"
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::bearing_drag {
 namespace {
 
 // Below this sum of coefficients a bearing would drive; a nominal coefficient and a fitted change
@@ -121,7 +121,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind bearing_drag_kind() {
+DisturbanceKind kind() {
   return {
       .name = "bearing_drag",
       .summary = "viscous drag of the bearing's air film, linear in the rate",
@@ -145,4 +145,4 @@ DisturbanceKind bearing_drag_kind() {
           Key::table("socket", socket_keys(), "both from the film of the ball")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::bearing_drag

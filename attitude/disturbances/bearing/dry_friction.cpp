@@ -5,7 +5,7 @@
 // creep, too slow for an instrument to tell.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::dry_friction {
 namespace {
 
 constexpr ScalarKey friction{"torque_N_m"};
@@ -44,7 +44,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind dry_friction_kind() {
+DisturbanceKind kind() {
   return {
       .name = "dry_friction",
       .summary = "rubbing contact: a torque against the motion, whatever the rate",
@@ -63,4 +63,4 @@ DisturbanceKind dry_friction_kind() {
                               "below it the torque fades to zero")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::dry_friction

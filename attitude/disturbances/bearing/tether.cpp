@@ -12,7 +12,7 @@
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 
-namespace photorque {
+namespace photorque::kinds::tether {
 namespace {
 
 constexpr ScalarKey stiffness{"stiffness_N_m_per_rad"};
@@ -77,7 +77,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind tether_kind() {
+DisturbanceKind kind() {
   return {.name = "tether",
           .summary = "a cable pulls back to zero attitude",
           .read = read,
@@ -96,4 +96,4 @@ DisturbanceKind tether_kind() {
               Key::flag_or("winds_up", false, "true: whole turns about body z count, φ + 2π n z")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::tether

@@ -4,7 +4,7 @@
 // the attitude are assumed; catalogues give no figure, so it is measured or fitted.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::turbine_torque {
 namespace {
 
 constexpr ScalarKey torque_up{"torque_N_m"};
@@ -30,7 +30,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind turbine_torque_kind() {
+DisturbanceKind kind() {
   return {.name = "turbine_torque",
           .summary = "swirling exhaust of the bearing turns the platform about the vertical",
           .read = read,
@@ -47,4 +47,4 @@ DisturbanceKind turbine_torque_kind() {
           .keys = {Key::uncertain("torque_N_m", {}, "positive counterclockwise from above")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::turbine_torque

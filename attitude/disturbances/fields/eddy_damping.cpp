@@ -7,7 +7,7 @@
 // TR R-129 (1962).
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::eddy_damping {
 namespace {
 
 constexpr ScalarKey damping{"coefficient_N_m_s_per_T2"};
@@ -36,7 +36,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind eddy_damping_kind() {
+DisturbanceKind kind() {
   return {.name = "eddy_damping",
           .summary = "eddy currents brake what turns across the ambient field",
           .read = read,
@@ -53,4 +53,4 @@ DisturbanceKind eddy_damping_kind() {
                                   "k in T = k (ω × B) × B; a thin shell has (2π/3) σ R⁴ δ")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::eddy_damping

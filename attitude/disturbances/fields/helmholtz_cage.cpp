@@ -14,7 +14,7 @@
 #include "attitude/disturbances/kind.h"
 #include "core/text/numbers.h"
 
-namespace photorque {
+namespace photorque::kinds::helmholtz_cage {
 namespace {
 
 constexpr ScalarKey gain_error{"gain_error"};
@@ -73,7 +73,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind helmholtz_cage_kind() {
+DisturbanceKind kind() {
   return {
       .name = "helmholtz_cage",
       .summary = "coils around the platform set the magnetic field",
@@ -102,4 +102,4 @@ DisturbanceKind helmholtz_cage_kind() {
           Key::uncertain_or("gain_error", 0.0, {}, "the coils give 1 + this of the correction")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::helmholtz_cage

@@ -10,7 +10,7 @@
 // their current tells which of the two acts.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::lamp_pressure {
 namespace {
 
 constexpr VectorKey torque_lab{"torque_lab_N_m"};
@@ -34,7 +34,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind lamp_pressure_kind() {
+DisturbanceKind kind() {
   return {.name = "lamp_pressure",
           .summary = "the light of the laboratory's lamps pushes, as much as they shine",
           .read = read,
@@ -50,4 +50,4 @@ DisturbanceKind lamp_pressure_kind() {
                                "of the lamps, at which the torque is that")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::lamp_pressure

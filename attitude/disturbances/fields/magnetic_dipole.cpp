@@ -5,7 +5,7 @@
 #include "attitude/disturbances/fields/current_loop.h"
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::magnetic_dipole {
 namespace {
 
 constexpr VectorKey moment{"dipole_A_m2"};
@@ -37,7 +37,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind magnetic_dipole_kind() {
+DisturbanceKind kind() {
   return {
       .name = "magnetic_dipole",
       .summary = "current loops and remanent steel turn towards the ambient field",
@@ -64,4 +64,4 @@ DisturbanceKind magnetic_dipole_kind() {
               "current loops, summed")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::magnetic_dipole

@@ -15,7 +15,7 @@
 #include "attitude/environment/eclipse.h"
 #include "core/constants.h"
 
-namespace photorque {
+namespace photorque::kinds::orbit {
 namespace {
 
 constexpr double mean_radius_m = 6371.2e3;
@@ -75,7 +75,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind orbit_kind() {
+DisturbanceKind kind() {
   return {
       .name = "orbit",
       .summary = "a circular orbit around the Earth: free fall, gradient, field and shadow",
@@ -99,4 +99,4 @@ DisturbanceKind orbit_kind() {
               .usually_is("always light")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::orbit

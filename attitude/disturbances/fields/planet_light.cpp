@@ -17,7 +17,7 @@
 #include "attitude/environment/planet_light.h"
 #include "core/constants.h"
 
-namespace photorque {
+namespace photorque::kinds::planet_light {
 namespace {
 
 constexpr double mean_radius_of_planet_m = 6371.2e3;
@@ -117,7 +117,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind planet_light_kind() {
+DisturbanceKind kind() {
   const PlanetSurface earth;
   return {
       .name = "planet_light",
@@ -150,4 +150,4 @@ DisturbanceKind planet_light_kind() {
           Key::uncertain_or("scale", 1.0, {}, "factor")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::planet_light

@@ -16,7 +16,7 @@
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 
-namespace photorque {
+namespace photorque::kinds::power_balance {
 namespace {
 
 constexpr ScalarKey load{"load_W"};
@@ -127,7 +127,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind power_balance_kind() {
+DisturbanceKind kind() {
   return {
       .name = "power_balance",
       .summary = "the battery gives what the load takes and the array does not deliver",
@@ -151,4 +151,4 @@ DisturbanceKind power_balance_kind() {
           Key::uncertain_or("array_scale", 1.0, Range::not_negative(), "factor on either")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::power_balance

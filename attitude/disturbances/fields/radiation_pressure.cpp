@@ -19,7 +19,7 @@
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 
-namespace photorque {
+namespace photorque::kinds::radiation_pressure {
 namespace {
 
 constexpr ScalarKey factor{"scale"};
@@ -119,7 +119,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 
 }  // namespace
 
-DisturbanceKind radiation_pressure_kind() {
+DisturbanceKind kind() {
   return {
       .name = "radiation_pressure",
       .summary = "light pushes on what it falls on",
@@ -144,4 +144,4 @@ DisturbanceKind radiation_pressure_kind() {
                Key::uncertain_or("scale", 1.0, {}, "factor")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::radiation_pressure

@@ -1,7 +1,7 @@
 // A camera that reports where the platform was.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::attitude_latency {
 namespace {
 
 constexpr ScalarKey latency{"latency_s"};
@@ -25,7 +25,7 @@ void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platfor
 
 }  // namespace
 
-DisturbanceKind attitude_latency_kind() {
+DisturbanceKind kind() {
   return {.name = "attitude_latency",
           .summary = "the camera reports an attitude that is already past",
           .read = read,
@@ -42,4 +42,4 @@ DisturbanceKind attitude_latency_kind() {
           .keys = {Key::uncertain("latency_s", {}, "the camera reports what was, so long ago")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::attitude_latency

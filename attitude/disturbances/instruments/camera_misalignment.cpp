@@ -1,7 +1,7 @@
 // A camera's target mounted at a small angle to the body axes.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::camera_misalignment {
 namespace {
 
 constexpr VectorKey turn{"misalignment_rad"};
@@ -27,7 +27,7 @@ void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platfor
 
 }  // namespace
 
-DisturbanceKind camera_misalignment_kind() {
+DisturbanceKind kind() {
   return {.name = "camera_misalignment",
           .summary = "the camera's target is mounted at a small angle to the body axes",
           .read = read,
@@ -45,4 +45,4 @@ DisturbanceKind camera_misalignment_kind() {
                                          "rotation vector from the true to the seen body axes")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::camera_misalignment

@@ -1,7 +1,7 @@
 // A gyro that reads a constant rate at rest.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::gyro_bias {
 namespace {
 
 constexpr VectorKey bias{"bias_rad_s"};
@@ -24,7 +24,7 @@ void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platfor
 
 }  // namespace
 
-DisturbanceKind gyro_bias_kind() {
+DisturbanceKind kind() {
   return {
       .name = "gyro_bias",
       .summary = "the gyro reads a constant rate at rest",
@@ -42,4 +42,4 @@ DisturbanceKind gyro_bias_kind() {
       .keys = {Key::uncertain_vector("bias_rad_s", "what it reads at rest")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::gyro_bias

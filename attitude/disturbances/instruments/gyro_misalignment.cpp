@@ -1,7 +1,7 @@
 // A gyro mounted at a small angle to the body axes.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::gyro_misalignment {
 namespace {
 
 constexpr VectorKey turn{"misalignment_rad"};
@@ -26,7 +26,7 @@ void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platfor
 
 }  // namespace
 
-DisturbanceKind gyro_misalignment_kind() {
+DisturbanceKind kind() {
   return {
       .name = "gyro_misalignment",
       .summary = "the gyro is mounted at a small angle to the body axes",
@@ -44,4 +44,4 @@ DisturbanceKind gyro_misalignment_kind() {
       .keys = {Key::uncertain_vector("misalignment_rad", "rotation vector of the mounting")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::gyro_misalignment

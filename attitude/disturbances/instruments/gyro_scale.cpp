@@ -1,7 +1,7 @@
 // A gyro whose axes read too much or too little, in proportion.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::gyro_scale {
 namespace {
 
 constexpr VectorKey scale{"scale"};
@@ -27,7 +27,7 @@ void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platfor
 
 }  // namespace
 
-DisturbanceKind gyro_scale_kind() {
+DisturbanceKind kind() {
   return {
       .name = "gyro_scale",
       .summary = "the gyro's axes read too much or too little, in proportion to the rate",
@@ -46,4 +46,4 @@ DisturbanceKind gyro_scale_kind() {
       .keys = {Key::uncertain_vector("scale", "three fractions: 0.01 reads 1 % too much")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::gyro_scale

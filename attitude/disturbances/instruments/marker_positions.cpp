@@ -4,7 +4,7 @@
 #include "attitude/camera/spot.h"
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::marker_positions {
 namespace {
 
 constexpr const char* marker_key = "marker";
@@ -274,7 +274,7 @@ std::vector<Parametrisation> of_markers(const DisturbanceContext& context) {
 
 }  // namespace
 
-DisturbanceKind marker_positions_kind() {
+DisturbanceKind kind() {
   return {.name = "marker_positions",
           .summary = "the camera's markers are not where the pose takes them to be",
           .read = read,
@@ -295,4 +295,4 @@ DisturbanceKind marker_positions_kind() {
                        .with_error()}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::marker_positions

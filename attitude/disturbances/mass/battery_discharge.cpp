@@ -9,7 +9,7 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/battery.h"
 
-namespace photorque {
+namespace photorque::kinds::battery_discharge {
 namespace {
 
 constexpr VectorKey shift{"shift_m_per_Ah"};
@@ -52,7 +52,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind battery_discharge_kind() {
+DisturbanceKind kind() {
   return {.name = "battery_discharge",
           .summary = "lithium moves inside the battery as it discharges",
           .read = read,
@@ -87,4 +87,4 @@ DisturbanceKind battery_discharge_kind() {
                                   0, "with cells: how much lithium moves")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::battery_discharge

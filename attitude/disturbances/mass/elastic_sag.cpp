@@ -8,7 +8,7 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/sag_compliance.h"
 
-namespace photorque {
+namespace photorque::kinds::elastic_sag {
 namespace {
 
 constexpr VectorKey diagonal{"compliance_s2"};
@@ -86,7 +86,7 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 
 }  // namespace
 
-DisturbanceKind elastic_sag_kind() {
+DisturbanceKind kind() {
   return {
       .name = "elastic_sag",
       .summary = "the structure bends differently at every tilt",
@@ -119,4 +119,4 @@ DisturbanceKind elastic_sag_kind() {
                           "beams along z, from which C follows")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::elastic_sag

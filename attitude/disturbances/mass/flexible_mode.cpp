@@ -10,7 +10,7 @@
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 
-namespace photorque {
+namespace photorque::kinds::flexible_mode {
 namespace {
 
 constexpr VectorKey direction{"axis"};
@@ -91,7 +91,7 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 
 }  // namespace
 
-DisturbanceKind flexible_mode_kind() {
+DisturbanceKind kind() {
   return {
       .name = "flexible_mode",
       .summary = "an appendage or liquid swings against the body",
@@ -126,4 +126,4 @@ DisturbanceKind flexible_mode_kind() {
                    .usually_is("the body's: it rests beside it")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::flexible_mode

@@ -3,7 +3,7 @@
 // No parameters. The field of a point mass, to first order in the platform's size over R.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::gravity_gradient {
 namespace {
 
 struct GravityGradient final : TorqueLaw<GravityGradient> {
@@ -29,7 +29,7 @@ injected::PlainTorque plain_torque(const InjectedEffect&) {
 
 }  // namespace
 
-DisturbanceKind gravity_gradient_kind() {
+DisturbanceKind kind() {
   return {.name = "gravity_gradient",
           .summary = "gravity is weaker higher up and aligns the long axis with it",
           .read = read,
@@ -40,4 +40,4 @@ DisturbanceKind gravity_gradient_kind() {
           .injection = {.draw = injected::nothing_to_draw(), .torque = plain_torque}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::gravity_gradient

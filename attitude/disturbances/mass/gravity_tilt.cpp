@@ -3,7 +3,7 @@
 // tilt_rad[2]: the rotation vector, about lab x and y, that takes the lab's −z to gravity.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::gravity_tilt {
 namespace {
 
 constexpr ScalarKey about_x{"tilt_rad"};
@@ -43,7 +43,7 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 
 }  // namespace
 
-DisturbanceKind gravity_tilt_kind() {
+DisturbanceKind kind() {
   return {.name = "gravity_tilt",
           .summary = "the camera that defines the vertical is not level",
           .read = read,
@@ -62,4 +62,4 @@ DisturbanceKind gravity_tilt_kind() {
                        .of_size(2)}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::gravity_tilt

@@ -3,7 +3,7 @@
 // delta_kg_m2[6]: xx, yy, zz, xy, xz, yz. The whole must remain an inertia.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::inertia_error {
 namespace {
 
 // xx, yy, zz, xy, xz, yz.
@@ -67,7 +67,7 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 
 }  // namespace
 
-DisturbanceKind inertia_error_kind() {
+DisturbanceKind kind() {
   return {
       .name = "inertia_error",
       .summary = "the moments or products of inertia are not those stated",
@@ -93,4 +93,4 @@ DisturbanceKind inertia_error_kind() {
               .of_size(6)}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::inertia_error

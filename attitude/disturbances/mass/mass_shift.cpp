@@ -5,7 +5,7 @@
 
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::mass_shift {
 namespace {
 
 constexpr ScalarKey start{"time_s"};
@@ -53,7 +53,7 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 
 }  // namespace
 
-DisturbanceKind mass_shift_kind() {
+DisturbanceKind kind() {
   return {
       .name = "mass_shift",
       .summary = "the centre of mass jumps at one instant",
@@ -74,4 +74,4 @@ DisturbanceKind mass_shift_kind() {
                Key::uncertain_vector("offset_m", "by what the centre of mass moves, body axes")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::mass_shift

@@ -4,7 +4,7 @@
 // negative third component.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::static_unbalance {
 namespace {
 
 constexpr VectorKey offset{"offset_m"};
@@ -30,7 +30,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind static_unbalance_kind() {
+DisturbanceKind kind() {
   return {.name = "static_unbalance",
           .summary = "the centre of mass does not lie in the centre of rotation",
           .read = read,
@@ -48,4 +48,4 @@ DisturbanceKind static_unbalance_kind() {
                                          "axes; a platform that stands stable has a negative z")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::static_unbalance

@@ -9,7 +9,7 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/mass/moving_masses.h"
 
-namespace photorque {
+namespace photorque::kinds::stepper_quantization {
 namespace {
 
 // One number for each mass.
@@ -65,7 +65,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 
 }  // namespace
 
-DisturbanceKind stepper_quantization_kind() {
+DisturbanceKind kind() {
   return {.name = "stepper_quantization",
           .summary = "balancing masses can only stand at whole steps",
           .read = read,
@@ -82,4 +82,4 @@ DisturbanceKind stepper_quantization_kind() {
                     .usually_is("½ for the first along each direction, else 0: the worst case")}})};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::stepper_quantization

@@ -3,7 +3,7 @@
 // gain_error: one number, or one for each body axis; 0.1 is 10 % too much.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::actuator_gain {
 namespace {
 
 constexpr ScalarKey common_gain{"gain_error"};
@@ -40,7 +40,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind actuator_gain_kind() {
+DisturbanceKind kind() {
   return {.name = "actuator_gain",
           .summary = "actuators give more or less torque than commanded",
           .read = read,
@@ -66,4 +66,4 @@ DisturbanceKind actuator_gain_kind() {
                   .of_size(3)}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::actuator_gain

@@ -7,7 +7,7 @@
 
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::earth_rotation {
 namespace {
 
 struct EarthRotation final : LawOf<EarthRotation> {
@@ -36,7 +36,7 @@ void plain_change(const InjectedEffect&, injected::PlainPlatform& platform) {
 
 }  // namespace
 
-DisturbanceKind earth_rotation_kind() {
+DisturbanceKind kind() {
   return {
       .name = "earth_rotation",
       .summary = "the laboratory itself turns once a day",
@@ -49,4 +49,4 @@ DisturbanceKind earth_rotation_kind() {
       .sets = "the turning of the laboratory"};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::earth_rotation

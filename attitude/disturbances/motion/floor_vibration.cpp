@@ -15,7 +15,7 @@
 #include "attitude/disturbances/sinusoid.h"
 #include "attitude/environment/time_series.h"
 
-namespace photorque {
+namespace photorque::kinds::floor_vibration {
 namespace {
 
 constexpr VectorKey shaking{"acceleration_m_s2"};
@@ -142,7 +142,7 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 
 }  // namespace
 
-DisturbanceKind floor_vibration_kind() {
+DisturbanceKind kind() {
   return {
       .name = "floor_vibration",
       .summary = "the floor shakes the bearing under a centre of mass that is off",
@@ -180,4 +180,4 @@ DisturbanceKind floor_vibration_kind() {
           Key::uncertain_or("scale", 1.0, Range::not_negative(), "factor on the last two")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::floor_vibration

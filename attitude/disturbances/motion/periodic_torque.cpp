@@ -6,7 +6,7 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/sinusoid.h"
 
-namespace photorque {
+namespace photorque::kinds::periodic_torque {
 namespace {
 
 constexpr VectorKey amplitude{"torque_N_m"};
@@ -46,7 +46,7 @@ injected::EffectNumbers draw_example(injected::RandomDraw& draw,
 
 }  // namespace
 
-DisturbanceKind periodic_torque_kind() {
+DisturbanceKind kind() {
   return {
       .name = "periodic_torque",
       .summary = "something on board shakes at one frequency",
@@ -69,4 +69,4 @@ DisturbanceKind periodic_torque_kind() {
                Key::uncertain("phase_deg", {}, "instead of `phase`").optional()}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::periodic_torque

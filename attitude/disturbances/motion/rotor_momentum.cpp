@@ -3,7 +3,7 @@
 // momentum_N_m_s[3]: angular momentum relative to the body, body axes.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::rotor_momentum {
 namespace {
 
 constexpr VectorKey momentum{"momentum_N_m_s"};
@@ -29,7 +29,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind rotor_momentum_kind() {
+DisturbanceKind kind() {
   return {.name = "rotor_momentum",
           .summary = "a spinning part resists being turned",
           .read = read,
@@ -45,4 +45,4 @@ DisturbanceKind rotor_momentum_kind() {
               "momentum_N_m_s", "h in T = −ω × h, ω inertial; against the body, body axes")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::rotor_momentum

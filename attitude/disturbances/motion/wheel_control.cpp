@@ -18,7 +18,7 @@
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 
-namespace photorque {
+namespace photorque::kinds::wheel_control {
 namespace {
 
 constexpr ScalarKey gain_on_angle{"gain_N_m_per_rad"};
@@ -125,7 +125,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
 
 }  // namespace
 
-DisturbanceKind wheel_control_kind() {
+DisturbanceKind kind() {
   return {.name = "wheel_control",
           .summary = "reaction wheels turn the platform to a target attitude",
           .read = read,
@@ -147,4 +147,4 @@ DisturbanceKind wheel_control_kind() {
               Key::uncertain_or("dry_N_m", 0.0, Range::not_negative(), "friction of a wheel")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::wheel_control

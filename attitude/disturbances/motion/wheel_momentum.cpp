@@ -5,7 +5,7 @@
 // relative to the body are the recording's columns wheel_x_rad_s, wheel_y_rad_s, wheel_z_rad_s.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::wheel_momentum {
 namespace {
 
 constexpr ScalarKey common_inertia{"inertia_kg_m2"};
@@ -39,7 +39,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind wheel_momentum_kind() {
+DisturbanceKind kind() {
   return {.name = "wheel_momentum",
           .summary = "wheels whose speed was measured exchange momentum with the body",
           .read = read,
@@ -60,4 +60,4 @@ DisturbanceKind wheel_momentum_kind() {
                        .of_size(3)}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::wheel_momentum

@@ -3,7 +3,7 @@
 // coefficient_kg_m: k ≥ 0, ½ ρ c_d A of a body.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::sliding_air_drag {
 namespace {
 
 constexpr ScalarKey coefficient{"coefficient_kg_m"};
@@ -22,7 +22,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind sliding_air_drag_kind() {
+DisturbanceKind kind() {
   return {.name = "sliding_air_drag",
           .summary = "form drag of what slides through air, by the square of the speed",
           .read = read,
@@ -35,4 +35,4 @@ DisturbanceKind sliding_air_drag_kind() {
           .keys = {Key::uncertain("coefficient_kg_m", Range::not_negative(), "k in F = −k |v| v")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::sliding_air_drag

@@ -3,7 +3,7 @@
 // coefficient_kg_s: c ≥ 0.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::sliding_drag {
 namespace {
 
 constexpr ScalarKey coefficient{"coefficient_kg_s"};
@@ -22,7 +22,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind sliding_drag_kind() {
+DisturbanceKind kind() {
   return {.name = "sliding_drag",
           .summary = "viscous drag of what slides, linear in the speed",
           .read = read,
@@ -35,4 +35,4 @@ DisturbanceKind sliding_drag_kind() {
           .keys = {Key::uncertain("coefficient_kg_s", Range::not_negative(), "c in F = −c v")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::sliding_drag

@@ -4,7 +4,7 @@
 // comes to rest stays within a creep of that size.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::sliding_friction {
 namespace {
 
 constexpr ScalarKey coefficient{"coefficient"};
@@ -28,7 +28,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind sliding_friction_kind() {
+DisturbanceKind kind() {
   return {.name = "sliding_friction",
           .summary = "dry friction of what slides, the same at every speed",
           .read = read,
@@ -41,4 +41,4 @@ DisturbanceKind sliding_friction_kind() {
           .keys = {Key::uncertain("coefficient", Range::not_negative(), "μ in F = −μ m g v/|v|")}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::sliding_friction

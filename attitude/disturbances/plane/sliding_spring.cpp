@@ -3,7 +3,7 @@
 // stiffness_N_per_m: k ≥ 0; pull_N[2]: f at the lab's origin, so that f/k is where it pulls to.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::sliding_spring {
 namespace {
 
 constexpr ScalarKey stiffness{"stiffness_N_per_m"};
@@ -26,7 +26,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind sliding_spring_kind() {
+DisturbanceKind kind() {
   return {.name = "sliding_spring",
           .summary = "a spring or cable pulls what slides back to one place",
           .read = read,
@@ -43,4 +43,4 @@ DisturbanceKind sliding_spring_kind() {
                        .with_error()}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::sliding_spring

@@ -4,7 +4,7 @@
 // constant force looks the same.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::table_slope {
 namespace {
 
 constexpr KeyOf<2> slope{"slope_rad"};
@@ -23,7 +23,7 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 
 }  // namespace
 
-DisturbanceKind table_slope_kind() {
+DisturbanceKind kind() {
   return {
       .name = "table_slope",
       .summary = "the table is not level: a constant acceleration",
@@ -39,4 +39,4 @@ DisturbanceKind table_slope_kind() {
                    .with_error()}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::table_slope

@@ -56,7 +56,9 @@ Disturbance empirical_torque(const EmpiricalShape& shape) {
   return d;
 }
 
-DisturbanceKind empirical_torque_kind() {
+namespace kinds::empirical_torque {
+
+DisturbanceKind kind() {
   return {.name = kind_name,
           .summary = "a torque that follows no known law, as a fit or a measurement gives it",
           .read = read,
@@ -65,5 +67,7 @@ DisturbanceKind empirical_torque_kind() {
                                           "own"},
           .keys = empirical_shape_keys()};
 }
+
+}  // namespace kinds::empirical_torque
 
 }  // namespace photorque

@@ -2,9 +2,9 @@
 // ≥ 0.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::ambient_light {
 
-LightEffectKind ambient_light_kind() {
+LightEffectKind kind() {
   return {.name = "ambient_light",
           .explanation = "light of the room is added to that of the lamps",
           .parameters = {{.key = "irradiance_W_m2", .scale = 20.0, .lowest = 0.0, .highest = 1e5}},
@@ -13,4 +13,4 @@ LightEffectKind ambient_light_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::ambient_light

@@ -1,9 +1,9 @@
 // The cells lie under a glass: light counts T(θ)/T(0), T by Fresnel. refractive_index > 1.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::angular_response {
 
-LightEffectKind angular_response_kind() {
+LightEffectKind kind() {
   const EffectParameter index = {.key = "refractive_index",
                                  .neutral = 1.0,
                                  .scale = 0.7,
@@ -19,4 +19,4 @@ LightEffectKind angular_response_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::angular_response

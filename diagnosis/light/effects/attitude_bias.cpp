@@ -1,9 +1,9 @@
 // The body is turned against what is recorded by a rotation vector about lab x and y. bias_deg[2].
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::attitude_bias {
 
-LightEffectKind attitude_bias_kind() {
+LightEffectKind kind() {
   return {.name = "attitude_bias",
           .explanation = "the platform stands turned against its recorded attitude",
           .parameters =
@@ -13,4 +13,4 @@ LightEffectKind attitude_bias_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::attitude_bias

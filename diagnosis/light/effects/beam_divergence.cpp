@@ -1,9 +1,9 @@
 // The angular width of all beams times `scale`, with the same power.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::beam_divergence {
 
-LightEffectKind beam_divergence_kind() {
+LightEffectKind kind() {
   return {.name = "beam_divergence",
           .explanation = "all beams are wider or narrower than stated",
           .parameters =
@@ -13,4 +13,4 @@ LightEffectKind beam_divergence_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::beam_divergence

@@ -1,9 +1,9 @@
 // The cells of a bypass diode give no voltage.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::bypass_shorted {
 
-LightEffectKind bypass_shorted_kind() {
+LightEffectKind kind() {
   return {.name = "bypass_shorted",
           .explanation = "a bypass diode is shorted and takes its cells away",
           .index = LightEffectKind::Index::bypass,
@@ -15,4 +15,4 @@ LightEffectKind bypass_shorted_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::bypass_shorted

@@ -1,9 +1,9 @@
 // The photocurrent of a cell times `factor`, 0 to 1. A scan does not see it.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::cell_degraded {
 
-LightEffectKind cell_degraded_kind() {
+LightEffectKind kind() {
   return {.name = "cell_degraded",
           .explanation = "a cell turns less of its light into current than the others",
           .index = LightEffectKind::Index::cell,
@@ -15,4 +15,4 @@ LightEffectKind cell_degraded_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::cell_degraded

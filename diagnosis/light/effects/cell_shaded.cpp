@@ -1,9 +1,9 @@
 // The light over the rectangle of a cell times `factor`, 0 to 1. A scan sees it.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::cell_shaded {
 
-LightEffectKind cell_shaded_kind() {
+LightEffectKind kind() {
   return {.name = "cell_shaded",
           .explanation = "something over a cell takes a fraction of its light",
           .index = LightEffectKind::Index::cell,
@@ -14,4 +14,4 @@ LightEffectKind cell_shaded_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::cell_shaded

@@ -1,9 +1,9 @@
 // The readings of a scan times `factor`.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::detector_gain {
 
-LightEffectKind detector_gain_kind() {
+LightEffectKind kind() {
   return {.name = "detector_gain",
           .explanation = "the photodiode reads too much or too little by one factor",
           .parameters =
@@ -15,4 +15,4 @@ LightEffectKind detector_gain_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::detector_gain

@@ -2,9 +2,9 @@
 // 0 to 1.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::interreflection {
 
-LightEffectKind interreflection_kind() {
+LightEffectKind kind() {
   return {.name = "interreflection",
           .explanation = "a wall that is assumed black throws light back",
           .index = LightEffectKind::Index::wall,
@@ -14,4 +14,4 @@ LightEffectKind interreflection_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::interreflection

@@ -1,9 +1,9 @@
 // The same as interreflection, from a wall that mirrors.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::interreflection_specular {
 
-LightEffectKind interreflection_specular_kind() {
+LightEffectKind kind() {
   return {.name = "interreflection",
           .explanation = "a wall that is assumed black mirrors light",
           .index = LightEffectKind::Index::wall,
@@ -13,4 +13,4 @@ LightEffectKind interreflection_specular_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::interreflection_specular

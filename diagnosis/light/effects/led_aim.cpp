@@ -2,9 +2,9 @@
 // perpendicular to d. angles_deg[2].
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::led_aim {
 
-LightEffectKind led_aim_kind() {
+LightEffectKind kind() {
   return {.name = "led_aim",
           .explanation = "an LED is turned away from where it is stated to look",
           .index = LightEffectKind::Index::lamp,
@@ -19,4 +19,4 @@ LightEffectKind led_aim_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::led_aim

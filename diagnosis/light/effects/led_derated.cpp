@@ -1,9 +1,9 @@
 // One LED gives a share of its power. factor: 0 to 1.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::led_derated {
 
-LightEffectKind led_derated_kind() {
+LightEffectKind kind() {
   return {.name = "led_derated",
           .explanation = "an LED gives less than its stated power",
           .index = LightEffectKind::Index::lamp,
@@ -14,4 +14,4 @@ LightEffectKind led_derated_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::led_derated

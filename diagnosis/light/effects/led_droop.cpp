@@ -2,9 +2,9 @@
 // on (t_s = 0). depth, time_constant_s.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::led_droop {
 
-LightEffectKind led_droop_kind() {
+LightEffectKind kind() {
   return {.name = "led_droop",
           .explanation = "the lamps lose power while they warm up",
           .parameters = {{.key = "depth", .scale = 0.1, .lowest = 0.0, .highest = 1.0},
@@ -22,4 +22,4 @@ LightEffectKind led_droop_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::led_droop

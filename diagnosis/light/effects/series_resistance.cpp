@@ -1,9 +1,9 @@
 // A resistance in series with the whole array. resistance_ohm ≥ 0.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::series_resistance {
 
-LightEffectKind series_resistance_kind() {
+LightEffectKind kind() {
   return {
       .name = "series_resistance",
       .explanation = "a resistance in series with the array, such as a bad contact or a long cable",
@@ -15,4 +15,4 @@ LightEffectKind series_resistance_kind() {
       }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::series_resistance

@@ -1,9 +1,9 @@
 // A resistance across every cell, beside the shunt that it has. resistance_ohm > 0.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::shunt {
 
-LightEffectKind shunt_kind() {
+LightEffectKind kind() {
   return {
       .name = "shunt",
       .explanation = "leakage across every cell beside the stated shunt",
@@ -17,4 +17,4 @@ LightEffectKind shunt_kind() {
       .act = [](LightState& state, size_t, std::span<const double> x) { state.shunt_S += x[0]; }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::shunt

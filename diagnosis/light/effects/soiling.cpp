@@ -1,9 +1,9 @@
 // Light that enters every cell times `factor`, 0 to 1. A scan does not see it.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::soiling {
 
-LightEffectKind soiling_kind() {
+LightEffectKind kind() {
   return {.name = "soiling",
           .explanation = "dirt on the cells takes the same fraction of the light from all of them",
           .parameters =
@@ -14,4 +14,4 @@ LightEffectKind soiling_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::soiling

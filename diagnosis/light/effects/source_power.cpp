@@ -1,9 +1,9 @@
 // All lamps give `factor` times their stated power.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::source_power {
 
-LightEffectKind source_power_kind() {
+LightEffectKind kind() {
   return {.name = "source_power",
           .explanation = "all lamps give more or less than their stated power",
           .parameters =
@@ -13,4 +13,4 @@ LightEffectKind source_power_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::source_power

@@ -1,9 +1,9 @@
 // All lamps stand elsewhere by offset_m[3], lab, with their axes kept.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::source_shift {
 
-LightEffectKind source_shift_kind() {
+LightEffectKind kind() {
   return {.name = "source_shift",
           .explanation = "the lamps stand beside where they are stated to stand",
           .parameters =
@@ -13,4 +13,4 @@ LightEffectKind source_shift_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::source_shift

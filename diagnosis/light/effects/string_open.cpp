@@ -1,9 +1,9 @@
 // A string carries no current.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::string_open {
 
-LightEffectKind string_open_kind() {
+LightEffectKind kind() {
   return {.name = "string_open",
           .explanation = "a string of cells is interrupted",
           .index = LightEffectKind::Index::string,
@@ -15,4 +15,4 @@ LightEffectKind string_open_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::string_open

@@ -3,9 +3,9 @@
 // reference temperature.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::temperature_coefficient {
 
-LightEffectKind temperature_coefficient_kind() {
+LightEffectKind kind() {
   return {
       .name = "temperature_coefficient",
       .explanation = "the cells follow their temperature otherwise than stated",
@@ -19,4 +19,4 @@ LightEffectKind temperature_coefficient_kind() {
       }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::temperature_coefficient

@@ -3,9 +3,9 @@
 // itself: as the platform turns, maxima change places and vanish.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::tracker_trapped {
 
-LightEffectKind tracker_trapped_kind() {
+LightEffectKind kind() {
   return {.name = "tracker_trapped",
           .explanation = "the tracker stands on a maximum of the power that is not the highest",
           .parameters = {{.key = "interval_s",
@@ -23,4 +23,4 @@ LightEffectKind tracker_trapped_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::tracker_trapped

@@ -3,9 +3,9 @@
 // size_m[2], lab or body axes.
 #include "diagnosis/light/effects/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::unmodelled_shadow {
 
-LightEffectKind unmodelled_shadow_kind() {
+LightEffectKind kind() {
   return {.name = "unmodelled_shadow",
           .explanation =
               "something opaque that is not in the model hides lamps from part of the receiver",
@@ -28,4 +28,4 @@ LightEffectKind unmodelled_shadow_kind() {
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::unmodelled_shadow

@@ -1,7 +1,7 @@
 // A kind of receiver that the program does not have: it counts hits.
 #include "receivers/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::added_receiver {
 namespace {
 
 class HitCounter final : public Receiver {
@@ -13,10 +13,10 @@ class HitCounter final : public Receiver {
 
 }  // namespace
 
-ReceiverKind added_receiver_kind() {
+ReceiverKind kind() {
   return {"added_receiver", "Counts hits", [](const Settings&, const Scene&) -> MadeReceiver {
             return {.receiver = std::make_shared<const HitCounter>()};
           }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::added_receiver

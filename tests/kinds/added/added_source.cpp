@@ -1,7 +1,7 @@
 // A kind of source that the program does not have.
 #include "sources/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::added_source {
 namespace {
 
 std::vector<Beam> make(const Settings& settings, const SourceContext&) {
@@ -10,8 +10,8 @@ std::vector<Beam> make(const Settings& settings, const SourceContext&) {
 
 }  // namespace
 
-SourceKind added_source_kind() {
+SourceKind kind() {
   return {"added_source", "A beam with a name and nothing else", make, {}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::added_source

@@ -2,7 +2,7 @@
 // charge drawn. All that anybody knows about it stands here.
 #include "attitude/disturbances/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::added_torque {
 namespace {
 
 constexpr ScalarKey growth{"torque_N_m"};
@@ -27,7 +27,7 @@ injected::PlainTorque plain_torque(const InjectedEffect& effect) {
 
 }  // namespace
 
-DisturbanceKind added_torque_kind() {
+DisturbanceKind kind() {
   return {.name = "added_torque",
           .summary = "a torque about body x in proportion to the charge drawn",
           .read = read,
@@ -40,4 +40,4 @@ DisturbanceKind added_torque_kind() {
                         .step = 1e-8}};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::added_torque

@@ -2,7 +2,7 @@
 #include "core/files.h"
 #include "images/writers/kind.h"
 
-namespace photorque {
+namespace photorque::kinds::added_writer {
 namespace {
 
 class NamesWriter final : public Writer {
@@ -19,9 +19,9 @@ class NamesWriter final : public Writer {
 
 }  // namespace
 
-WriterKind added_writer_kind() {
+WriterKind kind() {
   return {"added_writer", "Names of the headline figures",
           [] { return std::make_unique<NamesWriter>(); }};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::added_writer

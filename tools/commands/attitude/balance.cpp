@@ -5,7 +5,7 @@
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
 
-namespace photorque {
+namespace photorque::kinds::balance {
 namespace {
 
 void print_balance(const Console& console, const BalanceRun& run, const BalanceResult& result,
@@ -65,11 +65,11 @@ void run_balance(const CommandLine& line) {
 
 }  // namespace
 
-Verb balance_verb() {
+Verb kind() {
   Verb verb{"balance", "Centre of mass from a recording, and the balancing masses' moves",
             run_balance};
   verb.takes_recordings = true;
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::balance

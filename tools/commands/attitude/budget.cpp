@@ -6,7 +6,7 @@
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
 
-namespace photorque {
+namespace photorque::kinds::budget {
 namespace {
 
 const Table* find_table(const Product& product, const std::string& name) {
@@ -81,10 +81,10 @@ void run_budget(const CommandLine& line) {
 
 }  // namespace
 
-Verb budget_verb() {
+Verb kind() {
   return {"budget",
           "Every disturbance torque at one state, ranked; of STASIS beside published figures",
           run_budget};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::budget

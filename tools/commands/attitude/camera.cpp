@@ -8,7 +8,7 @@
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
 
-namespace photorque {
+namespace photorque::kinds::camera {
 namespace {
 
 const Table& camera_table(const Product& product, const std::string& name) {
@@ -94,9 +94,9 @@ void run_camera(const CommandLine& line) {
 
 }  // namespace
 
-Verb camera_verb() {
+Verb kind() {
   return {"camera", "How well a camera that tracks markers knows the attitude, by its geometry",
           run_camera};
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::camera

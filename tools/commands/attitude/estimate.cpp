@@ -5,7 +5,7 @@
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
 
-namespace photorque {
+namespace photorque::kinds::estimate {
 namespace {
 
 std::string band_text(const Band& band) {
@@ -84,7 +84,7 @@ void run_estimate(const CommandLine& line) {
 
 }  // namespace
 
-Verb estimate_verb() {
+Verb kind() {
   Verb verb{"estimate", "Attitude and rate of recordings or simulated runs, filtered and smoothed",
             run_estimate};
   verb.takes_recordings = true;
@@ -92,4 +92,4 @@ Verb estimate_verb() {
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::estimate

@@ -6,7 +6,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/pages/motion.h"
 
-namespace photorque {
+namespace photorque::kinds::propagate {
 namespace {
 
 void run_propagate(const CommandLine& line) {
@@ -25,7 +25,7 @@ void run_propagate(const CommandLine& line) {
 
 }  // namespace
 
-Verb propagate_verb() {
+Verb kind() {
   Verb verb{"propagate", "Fly the platform: attitude, rates, charge, every torque; a recording",
             run_propagate};
   verb.takes_checkpoint = true;
@@ -33,4 +33,4 @@ Verb propagate_verb() {
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::propagate

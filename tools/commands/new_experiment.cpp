@@ -16,7 +16,7 @@
 #include "tools/commands/terminal.h"
 #include "tools/tasks/check.h"
 
-namespace photorque {
+namespace photorque::kinds::new_experiment {
 namespace {
 
 namespace fs = std::filesystem;
@@ -257,7 +257,7 @@ void run_new(const CommandLine& line) {
 
 }  // namespace
 
-Verb new_verb() {
+Verb kind() {
   Verb verb{
       "new",
       "A first experiment, commented: for a model (--scene; glTF, STL, OBJ), or a platform alone",
@@ -267,4 +267,4 @@ Verb new_verb() {
   return verb;
 }
 
-}  // namespace photorque
+}  // namespace photorque::kinds::new_experiment
