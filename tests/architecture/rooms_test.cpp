@@ -48,19 +48,13 @@ std::vector<Include> includes_of(const std::string& folder) {
   return all;
 }
 
-// What ARCHITECTURE.md says: each row `| room | purpose | what it includes |` of its tables whose
-// first cell is a path in backquotes. Rooms of core are open to all and are not listed.
-std::map<std::string, std::set<std::string>> rooms_of_the_page() {
-  static const std::regex row(R"(\n\| `([a-z/_0-9]+)` \|[^|\n]*\|([^|\n]*)\|)");
-  static const std::regex word(R"([a-z_0-9]+(/[a-z_0-9]+)*)");
-  std::map<std::string, std::set<std::string>> rooms;
+// Rows `| `room` | purpose |` of ARCHITECTURE.md, whose first cell is a path in backquotes.
+std::set<std::string> rooms_of_the_page() {
+  static const std::regex row(R"(\n\| `([a-z/_0-9]+)` \|[^|\n]+\|)");
+  std::set<std::string> rooms;
   const std::string page = text_of(root / "ARCHITECTURE.md");
   for (std::sregex_iterator it(page.begin(), page.end(), row), end; it != end; ++it) {
-    const std::string cell = (*it)[2];
-    std::set<std::string>& includes = rooms[(*it)[1]];
-    for (std::sregex_iterator w(cell.begin(), cell.end(), word); w != end; ++w) {
-      includes.insert(w->str());
-    }
+    rooms.insert((*it)[1]);
   }
   return rooms;
 }
@@ -80,21 +74,11 @@ std::map<std::string, std::set<std::string>> rooms_of_the_sources() {
   return rooms;
 }
 
-// Neither an include that the page does not draw, nor an arrow on the page that nobody uses.
-TEST(Rooms, ThePageDrawsEveryIncludeAndNoOther) {
-  const auto page = rooms_of_the_page();
-  auto sources = rooms_of_the_sources();
-  ASSERT_GT(sources.size(), 40u);
-  for (auto& [room, includes] : sources) {
-    if (!lies_in(room, "core")) {
-      std::erase_if(includes, [](const std::string& to) { return lies_in(to, "core"); });
-    }
-    ASSERT_TRUE(page.contains(room)) << "ARCHITECTURE.md has no row for " << room;
-    EXPECT_EQ(page.at(room), includes) << "the includes of " << room << " in ARCHITECTURE.md";
-  }
-  for (const auto& [room, unused] : page) {
-    EXPECT_TRUE(sources.contains(room)) << room << " of ARCHITECTURE.md has no sources";
-  }
+TEST(Rooms, EveryRoomHasARowOnThePageAndNoOther) {
+  std::set<std::string> rooms;
+  for (const auto& [room, unused] : rooms_of_the_sources()) rooms.insert(room);
+  ASSERT_GT(rooms.size(), 40u);
+  EXPECT_EQ(rooms_of_the_page(), rooms);
 }
 
 // The drawing's arrows `A, B ──> C`, each from every folder on its left to every one on its right.
@@ -174,7 +158,7 @@ TEST(Rooms, IncludesNeverRunInACircle) {
   }
 }
 
-TEST(Rooms, HaveAtMost25FilesWhoseNamesDoNotRepeatTheRoom) {
+TEST(Rooms, HaveAtMost30FilesWhoseNamesDoNotRepeatTheRoom) {
   std::map<std::string, size_t> files;
   for (const std::string& folder : top_folders) {
     for (const fs::path& file : sources_of(folder)) {
@@ -186,7 +170,7 @@ TEST(Rooms, HaveAtMost25FilesWhoseNamesDoNotRepeatTheRoom) {
       EXPECT_TRUE(is_kind || !file.stem().string().starts_with(own + "_")) << file;
     }
   }
-  for (const auto& [room, count] : files) EXPECT_LE(count, 25u) << room;
+  for (const auto& [room, count] : files) EXPECT_LE(count, 30u) << room;
 }
 
 TEST(Rooms, QuotedIncludesArePathsFromTheTop) {
@@ -373,25 +357,24 @@ TEST(Rooms, UnitsOfKeysAreConvertedInSettingsAlone) {
 }
 
 // One word in the folder's list is one file, and every kind's file is in the list. No two kinds
-// share a function: linkers do not see return types and would quietly take either.
+// share a namespace: linkers do not see return types and would quietly take either function.
 TEST(Rooms, EveryKindIsListedOnce) {
-  static const std::regex kind_function(
-      R"((?:Kind|Verb)\s+([a-z0-9_]+)_(?:kind|verb)\s*\(\s*\)\s*\{)");
-  std::set<std::string> functions;
+  static const std::regex kind_namespace(R"(namespace (?:photorque::)?kinds::([a-z0-9_]+) \{)");
+  std::set<std::string> names;
   for (const std::string& folder : top_folders) {
     const std::string list = text_of(root / folder / "CMakeLists.txt");
     for (const fs::path& file : sources_of(folder)) {
       const std::string code = code_of(file);
       std::smatch match;
-      if (file.extension() != ".cpp" || !std::regex_search(code, match, kind_function)) continue;
+      if (file.extension() != ".cpp" || !std::regex_search(code, match, kind_namespace)) continue;
       EXPECT_EQ(match[1].str(), file.stem().string());
-      const std::string name = match.str();
-      EXPECT_TRUE(functions.insert(name.substr(name.find(' ') + 1)).second) << file;
+      EXPECT_TRUE(names.insert(match[1]).second) << file;
       const std::string word =
           fs::relative(file, root / folder).replace_extension().generic_string();
       EXPECT_TRUE(std::regex_search(list, std::regex("[\\s]" + word + "[\\s)]"))) << file;
     }
   }
+  EXPECT_GT(names.size(), 60u);
 }
 
 }  // namespace

@@ -1,13 +1,33 @@
-# Several files are compiled as one, which halves the time of a whole build. Names in anonymous
-# namespaces must therefore differ within a folder (but for the kinds: they stay alone, each with
-# its own `make` or `read`). OFF suits daily work on a few files.
-option(PHOTORQUE_UNITY "Compile several files of a folder as one" OFF)
+# Files of one room (a folder that holds sources) are compiled together, in batches of at most
+# `max_kB`: most of a file's compile time goes into headers, which a batch reads once. Names in
+# anonymous namespaces must therefore differ within a room. OFF suits daily work on a few files.
+option(PHOTORQUE_UNITY "Compile the files of a room together" OFF)
 function(photorque_unity target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${PHOTORQUE_UNITY} UNITY_BUILD_BATCH_SIZE 6)
-  if(PHOTORQUE_UNITY)
-    # A local name may be that of another file's constant.
-    target_compile_options(${target} PRIVATE -Wno-shadow)
+  set(max_kB 80)
+  if(ARGC GREATER 1)
+    set(max_kB ${ARGV1})
   endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${PHOTORQUE_UNITY} UNITY_BUILD_MODE GROUP)
+  if(NOT PHOTORQUE_UNITY)
+    return()
+  endif()
+  get_target_property(files ${target} SOURCES)
+  foreach(file IN LISTS files)
+    get_source_file_property(alone ${file} SKIP_UNITY_BUILD_INCLUSION)
+    cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE path)
+    if(alone OR NOT path MATCHES "\\.cpp$" OR NOT EXISTS ${path})
+      continue()
+    endif()
+    cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE room)
+    cmake_path(GET room PARENT_PATH room)
+    string(MAKE_C_IDENTIFIER "${room}" room)
+    file(SIZE ${path} bytes)
+    math(EXPR sum_${room} "0${sum_${room}} + ${bytes}")
+    math(EXPR batch "${sum_${room}} / (1024 * ${max_kB})")
+    set_source_files_properties(${file} PROPERTIES UNITY_GROUP "${room}_${batch}")
+  endforeach()
+  # A local name may be that of another file's constant.
+  target_compile_options(${target} PRIVATE -Wno-shadow)
 endfunction()
 
 # photorque_folder(NAME FILES ... [USES folder ...] [LINKS library ...] [ALONE files ...])
