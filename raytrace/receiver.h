@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "core/estimate.h"
 #include "core/product.h"
 #include "core/spectrum.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/spectrum.h"
-#include "core/vector.h"
+#include "core/transform.h"
 #include "raytrace/surfaces/surface.h"
 
 namespace photorque {

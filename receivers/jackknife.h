@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "core/estimate.h"
+#include "core/product.h"
 #include "raytrace/receiver.h"
 
 namespace photorque {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

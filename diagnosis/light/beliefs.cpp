@@ -2,7 +2,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "diagnosis/light/written.h"
 #include "scenes/experiment/toml_writer.h"
 

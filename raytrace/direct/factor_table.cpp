@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numerics/chebyshev.h"
+#include "core/numerics/interpolation.h"
 #include "core/parallel.h"
 
 namespace photorque {

@@ -15,7 +15,7 @@
 #include <string>
 
 #include "core/numerics/random.h"
-#include "core/vector.h"
+#include "core/transform.h"
 #include "raytrace/surfaces/surface.h"
 
 namespace photorque {

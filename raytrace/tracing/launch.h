@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/numerics/sobol_cells.h"
+#include "core/numerics/random.h"
 #include "core/transform.h"
 #include "raytrace/emitter.h"
 #include "raytrace/tracing/ray_placement.h"

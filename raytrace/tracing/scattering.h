@@ -2,7 +2,7 @@
 // surfaces, plain or with a BSDF, take this way.
 #pragma once
 
-#include "core/numerics/sobol.h"
+#include "core/numerics/random.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/tracing/find_hits.h"
 #include "raytrace/tracing/interaction.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numerics/sobol.h"
+#include "core/numerics/random.h"
 #include "raytrace/tracing/view.h"
 
 namespace photorque {

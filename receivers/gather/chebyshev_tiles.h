@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/chebyshev.h"
+#include "core/numerics/interpolation.h"
 #include "receivers/gather/plane.h"
 
 namespace photorque {

@@ -6,7 +6,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/numerics/chebyshev.h"
+#include "core/numerics/interpolation.h"
 #include "receivers/gather/chebyshev_tiles.h"
 #include "receivers/gather/first_contact.h"
 #include "receivers/gather/shaded_sampler.h"

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "core/constants.h"
-#include "core/estimate.h"
 #include "core/parallel.h"
+#include "core/product.h"
 
 namespace photorque {
 namespace {

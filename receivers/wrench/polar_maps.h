@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/product.h"
-#include "core/wrench_table.h"
+#include "core/wrench.h"
 
 namespace photorque {
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/wrench_table.h"
+#include "core/wrench.h"
 
 namespace photorque {
 
@@ -24,7 +24,7 @@ struct SpadFile {
 
 // Reads a table of type "Area" with forces in m², mm², cm², in² or ft² (torques in the cubes). Rows
 // may come in any order; every direction must be there once. Values are taken as they are: see
-// multiplicity_spread() and mean_push_N() for what real files need checked. `name` is the file in
+// single_valued() and mean_push_N() for what real files need checked. `name` is the file in
 // errors. InputError with the line for anything that does not fit.
 SpadFile parse_spad(const std::string& text, const std::string& name);
 SpadFile read_spad(const std::filesystem::path& path);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/product.h"
-#include "core/wrench_table.h"
+#include "core/wrench.h"
 
 namespace photorque {
 

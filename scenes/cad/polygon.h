@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque::cad {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "core/files.h"
-#include "core/text/lines.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

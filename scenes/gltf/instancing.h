@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 #include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 #include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {

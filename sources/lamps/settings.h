@@ -6,7 +6,7 @@
 
 #include "core/settings/settings.h"
 #include "core/spectrum.h"
-#include "core/vector.h"
+#include "core/transform.h"
 #include "sources/kind.h"
 #include "sources/profiles/angular_distribution.h"
 

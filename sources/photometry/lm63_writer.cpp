@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "sources/photometry/file.h"
 
 namespace photorque {

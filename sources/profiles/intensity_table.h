@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -6,7 +6,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/numerics/monotone_cubic.h"
+#include "core/numerics/interpolation.h"
 #include "core/numerics/quadrature.h"
 
 namespace photorque {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/numerics/monotone_cubic.h"
+#include "core/numerics/interpolation.h"
 #include "core/numerics/quadrature.h"
 
 namespace photorque {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/constants.h"
-#include "core/numerics/monotone_cubic.h"
+#include "core/numerics/interpolation.h"
 #include "core/numerics/quadrature.h"
 #include "core/numerics/vector_math.h"
 

@@ -4,8 +4,7 @@
 #include <optional>
 #include <set>
 
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "sources/rayfiles/checks.h"
 #include "sources/rayfiles/set.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "sources/rayfiles/checks.h"
 
 namespace photorque {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "sources/rayfiles/checks.h"
 #include "sources/rayfiles/little_endian.h"
 #include "sources/rayfiles/set.h"

@@ -1,4 +1,4 @@
-#include "core/text/base64.h"
+#include "core/text/format.h"
 
 #include <gtest/gtest.h>
 

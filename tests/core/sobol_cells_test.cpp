@@ -1,4 +1,4 @@
-#include "core/numerics/sobol_cells.h"
+#include "core/numerics/random.h"
 
 #include <gtest/gtest.h>
 

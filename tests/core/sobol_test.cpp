@@ -1,10 +1,8 @@
-#include "core/numerics/sobol.h"
+#include "core/numerics/random.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
-
-#include "core/numerics/random.h"
 
 namespace photorque {
 namespace {

@@ -1,11 +1,9 @@
-#include "core/solar_spectra.h"
+#include "core/spectrum.h"
 
 #include <gtest/gtest.h>
 
 #include <span>
 #include <vector>
-
-#include "core/spectrum.h"
 
 namespace photorque {
 namespace {

@@ -6,11 +6,7 @@
 #include <filesystem>
 
 #include "core/files.h"
-#include "core/text/columns.h"
-#include "core/text/json_extent.h"
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
-#include "core/text/percent.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/estimate.h"
 #include "core/files.h"
+#include "core/product.h"
 #include "core/spectrum.h"
 #include "core/transform.h"
 
@@ -18,19 +18,6 @@ TEST(Estimate, MeanAndErrorOfFourNumbers) {
   const Estimate e = estimate_from_replicates(replicates);
   EXPECT_DOUBLE_EQ(e.value, 3.0);
   EXPECT_DOUBLE_EQ(e.standard_error, std::sqrt(14.0 / 3.0 / 4.0));  // s² = 14/3
-}
-
-// Abramowitz and Stegun, table 26.10.
-TEST(StudentT, TwoSidedNinetyFivePercent) {
-  EXPECT_NEAR(student_t_975(2), 12.706, 1e-3);
-  EXPECT_NEAR(student_t_975(3), 4.303, 1e-3);
-  EXPECT_NEAR(student_t_975(4), 3.182, 1e-3);
-  EXPECT_NEAR(student_t_975(5), 2.776, 1e-3);
-  EXPECT_NEAR(student_t_975(6), 2.571, 1e-3);
-  EXPECT_NEAR(student_t_975(7), 2.447, 2e-3);
-  EXPECT_NEAR(student_t_975(9), 2.306, 2e-3);
-  EXPECT_NEAR(student_t_975(16), 2.131, 1e-3);
-  EXPECT_NEAR(student_t_975(31), 2.042, 1e-3);
 }
 
 TEST(RigidTransform, ComposesAsTheNamesRead) {

@@ -54,37 +54,5 @@ TEST(Wrench, CorrelatedErrorsCancelWhereTheForceActs) {
   EXPECT_NEAR(there.covariance(5, 5), 0.0, 1e-14);
 }
 
-TEST(Wrench, InTheLabOfATiltedBody) {
-  // Tilted by 30° about y: body x points to (cos 30°, 0, −sin 30°) in the lab.
-  const RigidTransform lab_from_body = lab_from_body_at(30 * degree_rad, 0.0);
-  WrenchEstimate body{{{2, 0, 0}, {0, 3, 0}, {0, 0, 1}, Frame::body}, {}};
-  body.covariance(0, 0) = 4.0;
-  body.covariance(4, 4) = 9.0;
-  const WrenchEstimate lab = wrench_in_lab(body, lab_from_body);
-  const double c = std::cos(30 * degree_rad), s = 0.5;
-  EXPECT_LT((lab.mean.force_N - Vec3(2 * c, 0, -2 * s)).norm(), 1e-15);
-  EXPECT_LT((lab.mean.torque_N_m - Vec3(0, 3, 0)).norm(), 1e-15);
-  EXPECT_LT((lab.mean.about_m - Vec3(s, 0, c)).norm(), 1e-15);
-  EXPECT_LT((lab.force_error_N() - Vec3(2 * c, 0, 2 * s)).norm(), 1e-14);
-  EXPECT_LT((lab.torque_error_N_m() - Vec3(0, 3, 0)).norm(), 1e-14);
-  EXPECT_EQ(lab.mean.frame, Frame::lab);
-  EXPECT_EQ(wrench_in_lab(lab, lab_from_body).mean.force_N, lab.mean.force_N);
-}
-
-// An exact component that is turned is 0 but for rounding, on either side of it: its error is a
-// number all the same.
-TEST(Wrench, ErrorsOfExactComponentsAreNumbersAtEveryAttitude) {
-  for (int i = 0; i < 1000; ++i) {
-    WrenchEstimate body{{{2, 0, 0}, {0, 3, 0}, {0, 0, 1}, Frame::body}, {}};
-    body.covariance(0, 0) = 4.0;
-    body.covariance(4, 4) = 9.0;
-    body.covariance(0, 4) = body.covariance(4, 0) = 6.0;
-    const WrenchEstimate lab = wrench_in_lab(body, lab_from_body_at(0.003 * i, 0.01 * i));
-    EXPECT_TRUE(lab.force_error_N().allFinite()) << i;
-    EXPECT_TRUE(lab.torque_error_N_m().allFinite()) << i;
-    EXPECT_NEAR(lab.force_error_N().norm(), 2.0, 1e-12);
-  }
-}
-
 }  // namespace
 }  // namespace photorque

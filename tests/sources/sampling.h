@@ -10,7 +10,7 @@
 
 #include "core/constants.h"
 #include "core/files.h"
-#include "core/numerics/sobol.h"
+#include "core/numerics/random.h"
 #include "core/settings/settings.h"
 #include "raytrace/emitter.h"
 #include "sources/kind.h"

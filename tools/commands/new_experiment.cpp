@@ -7,7 +7,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "receivers/surface_grid.h"
 #include "scenes/cad/model.h"
 #include "scenes/experiment/toml_reader.h"

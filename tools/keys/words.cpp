@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "scenes/experiment/toml_writer.h"
 
 namespace photorque {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "attitude/estimation/nominal_model.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "diagnosis/report/charts.h"
 #include "scenes/experiment/toml_reader.h"
 #include "tools/pages/diagnosed.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/snapshots/snapshot.h"
-#include "core/wrench_table.h"
+#include "core/snapshot.h"
+#include "core/wrench.h"
 #include "receivers/wrench/smoothing.h"
 #include "tools/runs/optical_run.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

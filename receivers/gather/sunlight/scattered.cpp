@@ -6,7 +6,6 @@
 #include <iterator>
 
 #include "core/numerics/random.h"
-#include "core/numerics/sobol.h"
 #include "core/parallel.h"
 #include "raytrace/surfaces/bsdf.h"
 #include "receivers/gather/sunlight/cells.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "core/provenance.h"
-#include "core/text/percent.h"
+#include "core/text/parse.h"
 #include "scenes/gltf/file/schema.h"
 
 namespace photorque::gltf {

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/text/json_extent.h"
+#include "core/text/parse.h"
 #include "scenes/gltf/file/compression.h"
 #include "scenes/gltf/file/container.h"
 #include "scenes/gltf/file/schema.h"

@@ -1,6 +1,8 @@
 // Text for files and pictures: clean, and numbers as people and as programs read them.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -30,5 +32,9 @@ std::string power_of_ten(int exponent);
 // An axis label or a unit as (part of) the name of a column, in ASCII: "tilt [deg]" → "tilt_deg",
 // "W/m²" → "W_m2", "N m" → "N_m".
 std::string column_name(std::string_view label);
+
+// Bytes as text that may stand in JSON, URIs and HTML.
+// Source: RFC 4648, section 4, with padding.
+std::string base64(std::span<const std::byte> bytes);
 
 }  // namespace photorque
