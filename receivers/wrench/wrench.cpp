@@ -3,7 +3,6 @@
 #include <set>
 
 #include "receivers/kind.h"
-#include "receivers/settings.h"
 
 namespace photorque {
 namespace {

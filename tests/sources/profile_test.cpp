@@ -6,8 +6,8 @@
 #include "sampling.h"
 #include "sources/lamps/disc.h"
 #include "sources/profiles/beam_shape.h"
-#include "sources/profiles/block_maps.h"
 #include "sources/profiles/inverse_flux.h"
+#include "sources/profiles/sampling.h"
 
 namespace photorque {
 namespace {
