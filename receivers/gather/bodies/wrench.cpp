@@ -40,6 +40,14 @@ struct WrenchEntries {
   WrenchSum& bound;
 };
 
+// Adds the light on a side that nothing can shade.
+void add_open(const SampledLight& light, const FacetSide& side, const WrenchEntries& entries) {
+  const auto open = light.lamp.open_wrench(side, light.contact[side.front ? 1 : 0], light.about_m);
+  for (WrenchSum& replicate : entries.replicates) replicate += open.wrench;
+  entries.bound.head<3>() += open.force_error_N;
+  entries.bound.tail<3>() += open.torque_error_N_m;
+}
+
 // A ray towards a side of the group.
 struct GroupRay {
   Vec3 at_m, travel;  // body frame
@@ -175,14 +183,6 @@ class FacetSampler {
   std::array<ShadowRay, ray_block> shadow_;
   std::array<uint8_t, ray_block> lit_;
 };
-
-// Adds the light on a side that nothing can shade.
-void add_open(const SampledLight& light, const FacetSide& side, const WrenchEntries& entries) {
-  const auto open = light.lamp.open_wrench(side, light.contact[side.front ? 1 : 0], light.about_m);
-  for (WrenchSum& replicate : entries.replicates) replicate += open.wrench;
-  entries.bound.head<3>() += open.force_error_N;
-  entries.bound.tail<3>() += open.torque_error_N_m;
-}
 
 // Adds the light that gets through to `sides`. Where all rays get through to a plain side, it is
 // what nothing shades, without noise; where most do, that less what is kept away. The points of
