@@ -54,4 +54,3 @@ std::string load_uri(const UriHolder& holder, const std::string& file, const Glt
                      MemoryBudget* budget);
 
 }  // namespace photorque::gltf
-namespace photorque {
