@@ -1,10 +1,22 @@
 #include "core/product.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/errors.h"
 
 namespace photorque {
+
+Estimate estimate_from_replicates(std::span<const double> replicates) {
+  const double count = static_cast<double>(replicates.size());
+  double sum = 0.0;
+  for (const double x : replicates) sum += x;
+  const double mean = sum / count;
+  double squares = 0.0;
+  for (const double x : replicates) squares += (x - mean) * (x - mean);
+  return {mean, std::sqrt(squares / (count * (count - 1.0)))};
+}
+
 namespace {
 
 // Of a table that may be constant; null if there is none.

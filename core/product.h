@@ -1,13 +1,24 @@
-// Results as plain data, on their way to a writer.
+// Results as plain data, on their way to a writer: estimates, maps, tables, curves, bars.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/estimate.h"
-
 namespace photorque {
+
+// A number that was estimated. `standard_error` is one standard deviation of `value`, in the same
+// unit; 0 for exact values.
+struct Estimate {
+  double value = 0.0;
+  double standard_error = 0.0;
+};
+
+// Mean and its standard error from independent, identically distributed replicates, at least two.
+// With R replicates the error itself is uncertain by about 1/√(2(R−1)).
+// Source: W. G. Cochran, Sampling Techniques, 3rd ed., eq. 2.20 (without finite correction).
+Estimate estimate_from_replicates(std::span<const double> replicates);
 
 // A headline figure. `name` ends in its unit: "power_on_array_W".
 struct Quantity {

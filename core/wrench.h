@@ -1,11 +1,12 @@
-// Force and torque on a body.
+// Force and torque on a body, and tables of them over its attitude.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "core/transform.h"
-#include "core/vector.h"
 
 namespace photorque {
 
@@ -47,9 +48,67 @@ WrenchEstimate wrench_from_replicates(std::span<const WrenchComponents> replicat
 Wrench wrench_about(const Wrench& wrench, const Vec3& about_m);
 WrenchEstimate wrench_about(const WrenchEstimate& wrench, const Vec3& about_m);
 
-// The same wrench about the same material point, expressed in the lab. A wrench that is in the lab
-// already is returned as it is.
-Wrench wrench_in_lab(const Wrench& wrench, const RigidTransform& lab_from_body);
-WrenchEstimate wrench_in_lab(const WrenchEstimate& wrench, const RigidTransform& lab_from_body);
+// The wrench on a body as a function of two angles, tabulated: how traced light reaches a
+// simulation of attitude without tracing.
+
+// Where a table is looked up.
+struct TableAngles {
+  double polar_rad = 0.0;   // tilt or elevation
+  double around_rad = 0.0;  // heading or azimuth
+};
+
+// Body-frame wrenches on the grid `around_rad` × `polar_rad`, around outermost.
+struct WrenchTable {
+  enum class Angles {
+    // Of a platform under fixed light: polar is the tilt from the vertical in [0, π], around the
+    // heading of the tilt, as in lab_from_body_at().
+    tilt_heading,
+    // Of the direction towards a far light, in body axes: polar is the elevation in [−π/2, π/2]
+    // above the xy plane, around the azimuth from x towards y.
+    azimuth_elevation,
+  };
+
+  Angles angles = Angles::tilt_heading;
+  std::vector<double> polar_rad;   // strictly ascending, at least one
+  std::vector<double> around_rad;  // strictly ascending, at least one, spanning at most 2π
+  Vec3 about_body_m = Vec3::Zero();
+  std::vector<Vec3> force_body_N;
+  std::vector<Vec3> torque_body_N_m;
+  std::vector<Vec3> force_error_N;     // one standard error per component; zero where exact
+  std::vector<Vec3> torque_error_N_m;  // likewise
+
+  size_t nodes() const { return polar_rad.size() * around_rad.size(); }
+  size_t node(size_t around, size_t polar) const { return around * polar_rad.size() + polar; }
+};
+
+// A table of zeros on the given grid. InputError when an axis is empty, not ascending or out of the
+// range named above.
+WrenchTable make_wrench_table(WrenchTable::Angles angles, std::vector<double> polar_rad,
+                              std::vector<double> around_rad,
+                              const Vec3& about_body_m = Vec3::Zero());
+
+// Puts a body-frame wrench at a node, moved to the table's point.
+void set_node(WrenchTable& table, size_t node, const WrenchEstimate& wrench);
+
+// The wrench between the nodes, bilinear in the two angles. The second angle wraps when the table
+// goes all round (its last node is no further from its first than its widest step); at a pole it
+// does not matter. NumericalError outside the grid (by more than 1e-9 rad): a table says nothing
+// about what was not traced.
+Wrench wrench_at(const WrenchTable& table, const TableAngles& angles);
+
+// Azimuth and elevation of a direction in body axes (any length but zero), and back (unit length).
+TableAngles azimuth_and_elevation(const Vec3& towards_light_body);
+Vec3 towards_light(const TableAngles& azimuth_elevation);
+
+// At a pole (tilt 0 or 180 deg, elevation ±90 deg) every azimuth is the same attitude, and azimuths
+// 360 deg apart always are: the table with all such nodes replaced by their mean.
+WrenchTable single_valued(const WrenchTable& table);
+
+// All forces and torques times `factor`: from a table per unit pressure to one at a given pressure.
+WrenchTable scaled(const WrenchTable& table, double factor);
+
+// For azimuth and elevation: the mean over the sphere of the force along the light's travel [N].
+// Positive for every passive body; a negative one betrays a table of the opposite sign convention.
+double mean_push_N(const WrenchTable& table);
 
 }  // namespace photorque

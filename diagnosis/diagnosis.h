@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 #include "inference/estimator/predictive.h"
 
 namespace photorque {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/numerics/sobol.h"
+#include "core/numerics/random.h"
 #include "core/spectrum.h"
 #include "core/transform.h"
 

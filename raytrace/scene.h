@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/spectrum.h"
-#include "core/vector.h"
-#include "raytrace/surfaces/surface.h"
+#include "core/transform.h"
+#include "raytrace/surfaces/bsdf.h"
 
 namespace photorque {
 

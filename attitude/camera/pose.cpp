@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "core/rotations/small_turns.h"
+#include "core/transform.h"
 
 namespace photorque {
 namespace {

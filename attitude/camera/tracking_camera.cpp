@@ -4,7 +4,7 @@
 
 #include "attitude/camera/spot.h"
 #include "core/constants.h"
-#include "core/rotations/small_turns.h"
+#include "core/transform.h"
 
 namespace photorque {
 namespace {

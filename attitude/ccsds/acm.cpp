@@ -1,8 +1,7 @@
 #include "attitude/ccsds/acm.h"
 
 #include "core/errors.h"
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "attitude/ccsds/kvn.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

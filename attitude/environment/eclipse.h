@@ -1,7 +1,7 @@
 // How much of the Sun is seen past a sphere.
 #pragma once
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -7,7 +7,7 @@
 #include "attitude/environment/sun.h"
 #include "core/constants.h"
 #include "core/settings/settings.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -8,7 +8,7 @@
 #include "core/constants.h"
 #include "core/numerics/dual.h"
 #include "core/settings/settings.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

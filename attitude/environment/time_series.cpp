@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/text/columns.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

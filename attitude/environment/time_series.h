@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/numerics/dual.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

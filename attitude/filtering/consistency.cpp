@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "core/rotations/small_turns.h"
+#include "core/transform.h"
 
 namespace photorque {
 namespace {

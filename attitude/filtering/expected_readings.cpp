@@ -3,7 +3,7 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/filtering/motion_model.h"
-#include "core/rotations/small_turns.h"
+#include "core/transform.h"
 
 namespace photorque {
 namespace {

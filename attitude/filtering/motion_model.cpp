@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "attitude/disturbances/kind.h"
-#include "core/rotations/small_turns.h"
+#include "core/transform.h"
 
 namespace photorque {
 namespace {

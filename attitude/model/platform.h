@@ -5,7 +5,7 @@
 
 #include "core/constants.h"
 #include "core/settings/settings.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

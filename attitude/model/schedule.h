@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "attitude/propagation/settling.h"
-#include "core/snapshots/snapshot.h"
+#include "core/snapshot.h"
 
 namespace photorque {
 namespace {

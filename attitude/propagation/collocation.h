@@ -20,7 +20,7 @@
 
 namespace photorque {
 
-class Snapshot;  // core/snapshots/snapshot.h
+class Snapshot;  // core/snapshot.h
 
 class CollocationStep {
  public:

@@ -6,7 +6,7 @@
 
 #include "attitude/propagation/sampling.h"
 #include "core/errors.h"
-#include "core/snapshots/snapshot.h"
+#include "core/snapshot.h"
 
 namespace photorque {
 namespace {

@@ -18,7 +18,7 @@
 
 namespace photorque {
 
-class Snapshot;  // core/snapshots/snapshot.h
+class Snapshot;  // core/snapshot.h
 
 struct PropagationOptions {
   // Bound on the estimated error of the polynomial within a step, relative to Dynamics::scales(): 1

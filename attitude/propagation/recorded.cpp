@@ -9,7 +9,7 @@
 #include "attitude/propagation/sampling.h"
 #include "attitude/propagation/time_history.h"
 #include "core/errors.h"
-#include "core/snapshots/snapshot.h"
+#include "core/snapshot.h"
 
 namespace photorque {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/snapshots/snapshot.h"
+#include "core/snapshot.h"
 
 namespace photorque {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/constants.h"
-#include "core/snapshots/snapshot.h"
+#include "core/snapshot.h"
 
 namespace photorque {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

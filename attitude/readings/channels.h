@@ -8,7 +8,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

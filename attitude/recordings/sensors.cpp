@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/numerics/random.h"
-#include "core/snapshots/snapshot.h"
+#include "core/snapshot.h"
 
 namespace photorque {
 namespace {

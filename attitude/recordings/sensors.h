@@ -19,7 +19,7 @@
 
 namespace photorque {
 
-class Snapshot;  // core/snapshots/snapshot.h
+class Snapshot;  // core/snapshot.h
 
 // Star-tracker-like camera that reports attitudes. Defaults: the source paper's, 12 arcsec in the
 // image plane (about lab z, for a camera above) and 37 arcsec out of it.

@@ -4,7 +4,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/text/lines.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

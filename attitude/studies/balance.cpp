@@ -9,7 +9,7 @@
 #include "attitude/propagation/run.h"
 #include "attitude/stretches/segments.h"
 #include "core/errors.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {

@@ -8,7 +8,7 @@
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "core/transform.h"
 
 namespace photorque {

@@ -13,7 +13,7 @@
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/bearing/air_bearing.h"
 #include "core/product.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -5,7 +5,7 @@
 #include "attitude/disturbances/fields/current_loop.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/numerics/elliptic.h"
+#include "core/numerics/quadrature.h"
 
 namespace photorque {
 namespace {

@@ -8,7 +8,7 @@
 // 3591; coaxial circles have Maxwell's closed form (Treatise, art. 701). Thin wires in vacuum.
 #pragma once
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

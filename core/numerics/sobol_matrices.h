@@ -8,7 +8,6 @@
 #endif
 
 #include "core/numerics/random.h"
-#include "core/numerics/sobol.h"
 
 namespace photorque::sobol_matrices {
 

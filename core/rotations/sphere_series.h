@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/errors.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

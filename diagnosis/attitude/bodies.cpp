@@ -6,7 +6,7 @@
 #include <map>
 
 #include "attitude/estimation/free_inertia.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {

@@ -1,7 +1,7 @@
 #include "diagnosis/guess/guess.h"
 
 #include "core/errors.h"
-#include "core/text/lines.h"
+#include "core/text/parse.h"
 #include "diagnosis/light/recordings/recording.h"
 
 namespace photorque {

@@ -3,11 +3,11 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/light/recordings/recording.h"
 #include "photovoltaics/fit/fit.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

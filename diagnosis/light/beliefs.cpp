@@ -2,9 +2,9 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "diagnosis/light/written.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

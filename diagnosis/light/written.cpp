@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "diagnosis/light/effects/kind.h"
 
 namespace photorque {

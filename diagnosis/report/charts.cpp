@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "diagnosis/report/text.h"
 
 namespace photorque {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {

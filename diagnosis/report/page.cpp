@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "diagnosis/report/charts.h"
 #include "diagnosis/report/light_charts.h"
 #include "diagnosis/report/style.h"

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "core/settings/settings.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/browser/packed.h"
 #include "images/browser/stage_content.h"
 #include "images/drawing/colour_map.h"

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "core/text/base64.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {

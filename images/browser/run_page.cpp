@@ -1,6 +1,6 @@
 #include "images/browser/run_page.h"
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/browser/content.h"
 #include "images/browser/packed.h"
 #include "images/browser/script.h"

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/estimate.h"
 #include "core/product.h"
-#include "core/vector.h"
+#include "core/transform.h"
 #include "images/canvas/colour.h"
 
 namespace photorque {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/errors.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/browser/packed.h"
 #include "images/drawing/colour_map.h"
 #include "images/writers/metadata.h"

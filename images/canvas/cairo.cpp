@@ -3,7 +3,7 @@
 #include <cairo.h>
 
 #include "core/errors.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/canvas/page.h"
 
 namespace photorque {

@@ -1,6 +1,6 @@
 #include "images/canvas/canvas.h"
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/canvas/page.h"
 
 namespace photorque {

@@ -1,8 +1,7 @@
 // Pages of vectors as an <svg> element of an HTML page, written without cairo: its glyphs become
 // outlines with ids, which clash where a page holds several pictures.
 #include "core/errors.h"
-#include "core/text/base64.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/canvas/page.h"
 
 namespace photorque {

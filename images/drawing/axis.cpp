@@ -1,6 +1,6 @@
 #include "images/drawing/axis.h"
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/drawing/page_layout.h"
 
 namespace photorque {

@@ -1,6 +1,6 @@
 #include "images/drawing/bar_chart.h"
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/drawing/page_layout.h"
 #include "images/drawing/plot_curves.h"
 #include "images/drawing/plot_picture.h"

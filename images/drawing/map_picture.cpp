@@ -1,6 +1,6 @@
 #include "images/drawing/map_picture.h"
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/drawing/consistency.h"
 #include "images/drawing/map_grid.h"
 #include "images/drawing/page_layout.h"

@@ -1,6 +1,6 @@
 #include "images/drawing/page_layout.h"
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/drawing/page_layout.h"
 
 namespace photorque {

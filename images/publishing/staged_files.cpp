@@ -6,8 +6,8 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/text/display.h"
-#include "core/text/json_extent.h"
+#include "core/text/format.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

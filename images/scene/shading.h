@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 #include "images/canvas/picture.h"
 #include "images/drawing/colour_map.h"
 

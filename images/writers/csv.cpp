@@ -5,7 +5,7 @@
 // value and standard error, each named with its unit: "x_m,y_m,value_W_m2,standard_error_W_m2".
 // Numbers read back as the same doubles; NaN is an empty cell, infinities are "inf" and "-inf".
 #include "core/files.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/drawing/consistency.h"
 #include "images/writers/kind.h"
 

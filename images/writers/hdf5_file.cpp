@@ -7,7 +7,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace hdf5 {

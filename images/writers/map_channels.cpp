@@ -1,6 +1,6 @@
 #include "images/writers/map_channels.h"
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/drawing/consistency.h"
 #include "images/writers/metadata.h"
 

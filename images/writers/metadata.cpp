@@ -1,6 +1,6 @@
 #include "images/writers/metadata.h"
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 
 namespace photorque {
 

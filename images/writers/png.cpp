@@ -1,7 +1,7 @@
 // Maps and plots as PNG pictures for people.
 //
 // "Description" is JSON with unit, extents and provenance.
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/drawing/map_picture.h"
 #include "images/drawing/plot_picture.h"
 #include "images/writers/image_file.h"

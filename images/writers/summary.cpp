@@ -1,7 +1,7 @@
 #include "images/writers/summary.h"
 
 #include "core/errors.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/writers/metadata.h"
 
 namespace photorque {

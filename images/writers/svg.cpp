@@ -3,7 +3,7 @@
 // <title> holds the title, <desc> the provenance for people, <metadata> the same as JSON.
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/drawing/plot_picture.h"
 #include "images/writers/kind.h"
 #include "images/writers/metadata.h"

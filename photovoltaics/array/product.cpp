@@ -1,5 +1,5 @@
 // The results of an array as tables, curves and maps.
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "photovoltaics/array/array.h"
 
 namespace photorque {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/snapshots/snapshot.h"
+#include "core/snapshot.h"
 #include "photovoltaics/array/tracker.h"
 
 namespace photorque {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/estimate.h"
+#include "core/product.h"
 #include "photovoltaics/cell/model.h"
 #include "photovoltaics/network/curve.h"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "core/estimate.h"
+#include "core/product.h"
 #include "inference/estimator/fit.h"
 #include "inference/estimator/residual_model.h"
 #include "photovoltaics/fit/fit.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/errors.h"
-#include "core/numerics/monotone_cubic.h"
+#include "core/numerics/interpolation.h"
 #include "core/numerics/root.h"
 
 namespace photorque {

@@ -10,7 +10,7 @@
 
 #include <functional>
 
-#include "core/vector.h"
+#include "core/transform.h"
 #include "raytrace/surfaces/cosine_table.h"
 
 namespace photorque {

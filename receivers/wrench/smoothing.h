@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/rotations/sphere_series.h"
-#include "core/wrench_table.h"
+#include "core/wrench.h"
 
 namespace photorque {
 

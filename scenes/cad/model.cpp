@@ -7,7 +7,7 @@
 
 #include "core/files.h"
 #include "core/provenance.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "scenes/cad/part.h"
 #include "scenes/gltf/writer.h"
 

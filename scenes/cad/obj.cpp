@@ -3,10 +3,8 @@
 #include <optional>
 #include <unordered_map>
 
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "scenes/cad/part.h"
-#include "scenes/cad/polygon.h"
 
 namespace photorque::cad {
 namespace {

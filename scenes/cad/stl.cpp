@@ -3,8 +3,7 @@
 #include <optional>
 #include <unordered_map>
 
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "scenes/cad/part.h"
 
 namespace photorque::cad {

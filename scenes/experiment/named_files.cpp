@@ -3,8 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
-#include "core/text/json_extent.h"
-#include "core/text/percent.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/settings/settings.h"
-#include "core/vector.h"
+#include "core/transform.h"
 #include "scenes/gltf/reader.h"
 
 namespace photorque {

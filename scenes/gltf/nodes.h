@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 #include "scenes/gltf/file/document.h"
 
 namespace photorque::gltf {
@@ -42,5 +42,15 @@ void visit_nodes(const Document& document,
 // InputError for hierarchies deeper than 1000 nodes, for products of transforms that are singular
 // or overflow, for skinned meshes and for morph targets whose weights are not zero.
 std::vector<Placement> place_meshes(const Document& document, MemoryBudget* budget);
+
+// EXT_mesh_gpu_instancing: one node that repeats its mesh.
+
+// The places of a node's mesh, relative to the node: one identity, or one per instance of the
+// extension, from its attributes TRANSLATION (VEC3 of float), ROTATION (VEC4 of float, or of
+// normalized signed bytes or shorts) and SCALE (VEC3 of float), each optional.
+// Source: KhronosGroup/glTF, extensions/2.0/Vendor/EXT_mesh_gpu_instancing.
+// Throws InputError for attributes of other types or of different counts, and for instances that
+// are not invertible.
+std::vector<Affine> gpu_instances(const Document& document, int node, MemoryBudget* budget);
 
 }  // namespace photorque::gltf

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/text/base64.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {

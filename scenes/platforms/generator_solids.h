@@ -9,7 +9,6 @@
 #include <span>
 
 #include "core/transform.h"
-#include "core/vector.h"
 #include "raytrace/scene.h"
 
 namespace photorque {

@@ -8,8 +8,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

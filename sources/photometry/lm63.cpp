@@ -5,10 +5,8 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "sources/photometry/file.h"
-#include "sources/photometry/planes.h"
 
 namespace photorque {
 namespace {

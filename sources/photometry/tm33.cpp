@@ -7,10 +7,8 @@
 #include <set>
 
 #include "core/constants.h"
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "sources/photometry/file.h"
-#include "sources/photometry/planes.h"
 
 namespace photorque {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 namespace {

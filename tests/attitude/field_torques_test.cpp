@@ -8,7 +8,7 @@
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/wrench_table.h"
+#include "core/wrench.h"
 #include "tests/attitude/disturbance_bench.h"
 
 namespace photorque {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "attitude/filtering/study.h"
-#include "core/rotations/small_turns.h"
+#include "core/transform.h"
 #include "tests/attitude/disturbance_bench.h"
 
 namespace photorque {

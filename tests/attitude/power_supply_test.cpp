@@ -10,8 +10,8 @@
 #include "attitude/supply/microwave.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/numerics/elliptic.h"
-#include "core/text/columns.h"
+#include "core/numerics/quadrature.h"
+#include "core/text/parse.h"
 #include "tests/outside.h"
 
 namespace photorque {

@@ -9,7 +9,7 @@
 #include "attitude/camera/accuracy.h"
 #include "attitude/recordings/sensors.h"
 #include "core/constants.h"
-#include "core/rotations/small_turns.h"
+#include "core/transform.h"
 #include "tests/attitude/settings_bench.h"
 
 namespace photorque {

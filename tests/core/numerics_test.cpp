@@ -5,8 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/numerics/chebyshev.h"
-#include "core/numerics/monotone_cubic.h"
+#include "core/numerics/interpolation.h"
 #include "core/numerics/quadrature.h"
 #include "core/numerics/root.h"
 

@@ -6,7 +6,6 @@
 
 #include "core/constants.h"
 #include "core/numerics/random.h"
-#include "core/numerics/sobol.h"
 
 namespace photorque {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/text/base64.h"
+#include "core/text/format.h"
 #include "tests/fuzz/random_bytes.h"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 
 namespace photorque {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "images/drawing/axis.h"
 #include "images/drawing/ticks.h"
 

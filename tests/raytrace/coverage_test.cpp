@@ -5,7 +5,7 @@
 // difference of Gaussians.
 #include <gtest/gtest.h>
 
-#include "core/estimate.h"
+#include "core/product.h"
 #include "tests/raytrace/test_scenes.h"
 
 namespace photorque {
@@ -128,6 +128,13 @@ struct Coverage {
   std::vector<double> held;
   std::vector<double> held_by_less;  // with standard errors a fifth smaller than they are
 };
+
+// Two-sided 97.5 % quantile of Student's t with `replicates` − 1 degrees of freedom.
+// Source: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, table 26.10.
+double student_t_975(int replicates) {
+  static const std::map<int, double> quantile = {{8, 2.365}, {16, 2.131}};
+  return quantile.at(replicates);
+}
 
 Coverage coverage_with(int replicates) {
   constexpr int seeds = 1000;

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "core/constants.h"
-#include "core/vector.h"
+#include "core/transform.h"
 #include "tests/tools/command_test.h"
 
 namespace photorque {

@@ -5,8 +5,7 @@
 
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "tests/outside.h"
 #include "tests/tools/command_test.h"
 

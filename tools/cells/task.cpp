@@ -5,8 +5,8 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/columns.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
+#include "core/text/parse.h"
 #include "diagnosis/light/recordings/recording.h"
 
 namespace photorque {

@@ -7,11 +7,10 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "receivers/surface_grid.h"
 #include "scenes/cad/model.h"
-#include "scenes/experiment/toml_reader.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 #include "scenes/gltf/reader.h"
 #include "tools/commands/terminal.h"
 #include "tools/tasks/check.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "tools/commands/studies.h"
 #include "tools/commands/terminal.h"
 #include "tools/sweeps/optimiser.h"

@@ -5,7 +5,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/provenance.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

@@ -7,8 +7,8 @@
 #include "attitude/propagation/error_bound.h"
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/display.h"
-#include "core/text/numbers.h"
+#include "core/text/format.h"
+#include "core/text/parse.h"
 #include "tools/coupling/report.h"
 
 namespace photorque {

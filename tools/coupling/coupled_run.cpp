@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/snapshots/snapshot.h"
+#include "core/snapshot.h"
 
 namespace photorque {
 namespace {

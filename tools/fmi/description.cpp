@@ -1,6 +1,6 @@
 #include "tools/fmi/description.h"
 
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/text/numbers.h"
-#include "scenes/experiment/toml_writer.h"
+#include "core/text/parse.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

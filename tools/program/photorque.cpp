@@ -14,7 +14,7 @@
 #include "core/errors.h"
 #include "core/provenance.h"
 #include "core/settings/settings.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "images/loading/functions.h"
 #include "images/publishing/staged_files.h"
 #include "tools/commands/verb.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/errors.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

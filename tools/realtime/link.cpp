@@ -5,7 +5,7 @@
 
 #include "core/constants.h"
 #include "core/numerics/random.h"
-#include "core/text/columns.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/errors.h"
 #include "core/numerics/random.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "core/estimate.h"
+#include "core/product.h"
 
 namespace photorque {
 

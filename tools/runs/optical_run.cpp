@@ -7,7 +7,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "diagnosis/light/apply.h"
 #include "images/writers/read_picture.h"
 #include "receivers/gather/bodies/wrench.h"

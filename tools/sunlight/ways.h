@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/snapshots/snapshot.h"
-#include "core/wrench_table.h"
+#include "core/snapshot.h"
+#include "core/wrench.h"
 #include "receivers/wrench/smoothing.h"
 #include "tools/runs/optical_run.h"
 
@@ -53,8 +53,8 @@ class LightDirections {
 std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m);
 
-// By quadrature (receivers/gather/sunlight/wrench.h). Null where the scene is not for that, or the
-// experiment wants rays.
+// By quadrature (receivers/gather/bodies/sunlit_body.h). Null where the scene is not for that, or
+// the experiment wants rays.
 std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m, int threads);
 

@@ -7,7 +7,7 @@
 #include "attitude/supply/eddy_sphere.h"
 #include "attitude/supply/microwave.h"
 #include "core/constants.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "core/transform.h"
 #include "tools/supply/options.h"
 

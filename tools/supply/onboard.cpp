@@ -3,8 +3,8 @@
 
 #include "attitude/disturbances/mass/battery.h"
 #include "attitude/supply/cable.h"
-#include "core/text/display.h"
-#include "core/text/numbers.h"
+#include "core/text/format.h"
+#include "core/text/parse.h"
 #include "tools/supply/options.h"
 
 namespace photorque {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "attitude/model/dynamics.h"
-#include "core/estimate.h"
+#include "core/product.h"
 #include "core/settings/settings.h"
 
 namespace photorque {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/settings/settings.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "tools/runs/console.h"
 
 namespace photorque {

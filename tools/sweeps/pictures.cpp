@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "core/text/display.h"
-#include "core/text/numbers.h"
+#include "core/text/format.h"
+#include "core/text/parse.h"
 #include "tools/sweeps/labels.h"
 
 namespace photorque {

@@ -5,7 +5,7 @@
 
 #include "core/errors.h"
 #include "core/settings/settings.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "tools/sweeps/pictures.h"
 #include "tools/sweeps/tolerances.h"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/estimate.h"
+#include "core/product.h"
 #include "tools/sweeps/plan.h"
 #include "tools/sweeps/store/identity.h"
 

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "core/numerics/quadrature.h"
+#include "core/numerics/random.h"
 #include "core/numerics/root.h"
-#include "core/numerics/sobol.h"
 
 namespace photorque {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/wrench_table.h"
+#include "core/wrench.h"
 #include "tools/coupling/checkpoint_file.h"
 #include "tools/runs/optical_run.h"
 

@@ -6,7 +6,7 @@
 
 #include "attitude/environment/igrf.h"
 #include "attitude/environment/time_series.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/settings/settings.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

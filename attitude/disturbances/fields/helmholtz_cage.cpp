@@ -12,7 +12,7 @@
 // is.
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 
 namespace photorque::kinds::helmholtz_cage {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "core/text/columns.h"
+#include "core/text/parse.h"
 
 namespace photorque {
 namespace {

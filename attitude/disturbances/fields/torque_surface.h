@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/wrench_table.h"
+#include "core/wrench.h"
 
 namespace photorque {
 

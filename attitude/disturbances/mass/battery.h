@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/constants.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -7,7 +7,7 @@
 
 #include "core/settings/keys.h"
 #include "core/settings/settings.h"
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

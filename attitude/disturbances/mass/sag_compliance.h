@@ -8,7 +8,7 @@
 // (docs/physics.md).
 #pragma once
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

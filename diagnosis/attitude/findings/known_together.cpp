@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "core/text/display.h"
+#include "core/text/format.h"
 #include "diagnosis/attitude/findings/formula.h"
 
 namespace photorque {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

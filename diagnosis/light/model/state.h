@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

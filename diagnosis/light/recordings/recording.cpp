@@ -13,8 +13,7 @@
 #include "core/numerics/random.h"
 #include "core/numerics/steady_stretches.h"
 #include "core/settings/settings.h"
-#include "core/text/lines.h"
-#include "core/text/numbers.h"
+#include "core/text/parse.h"
 #include "core/transform.h"
 
 namespace photorque {

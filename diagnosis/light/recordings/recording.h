@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/transform.h"
 
 namespace photorque {
 

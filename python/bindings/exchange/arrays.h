@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "core/estimate.h"
-#include "core/vector.h"
+#include "core/product.h"
+#include "core/transform.h"
 
 namespace photorque::python {
 

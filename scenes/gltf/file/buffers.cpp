@@ -1,13 +1,15 @@
 #include "scenes/gltf/file/buffers.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <filesystem>
 
 #include "core/provenance.h"
-#include "core/text/percent.h"
-#include "scenes/gltf/file/schema.h"
+#include "core/text/parse.h"
+#include "scenes/gltf/file/fault.h"
 
 namespace photorque::gltf {
 namespace {

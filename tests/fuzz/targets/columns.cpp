@@ -1,5 +1,5 @@
 // Fuzz target: any bytes as a table of numbers, and as measured values over time.
-#include "core/text/columns.h"
+#include "core/text/parse.h"
 
 #include "attitude/environment/time_series.h"
 #include "tests/fuzz/target.h"

@@ -8,7 +8,7 @@
 #include "attitude/recordings/text_lines.h"
 #include "core/constants.h"
 #include "core/files.h"
-#include "core/text/base64.h"
+#include "core/text/format.h"
 #include "tools/proof/light/words.h"
 
 namespace photorque {

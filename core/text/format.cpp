@@ -1,0 +1,174 @@
+#include "core/text/format.h"
+
+#include <charconv>
+#include <cstdint>
+
+namespace photorque {
+namespace {
+
+constexpr std::string_view minus_sign = "−";
+constexpr std::array<std::string_view, 10> superscripts = {"⁰", "¹", "²", "³", "⁴",
+                                                           "⁵", "⁶", "⁷", "⁸", "⁹"};
+
+// Bytes of the valid UTF-8 character at the start of `text`, or 0 (RFC 3629, section 4).
+size_t valid_character_bytes(std::string_view text) {
+  const auto byte = [&](size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto continues = [&](size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return continues(1) ? 2 : 0;
+  if (lead >= 0xE0 && lead <= 0xEF) {
+    const bool overlong = lead == 0xE0 && byte(1) < 0xA0;
+    const bool surrogate = lead == 0xED && byte(1) > 0x9F;
+    return continues(1) && continues(2) && !overlong && !surrogate ? 3 : 0;
+  }
+  if (lead >= 0xF0 && lead <= 0xF4) {
+    const bool overlong = lead == 0xF0 && byte(1) < 0x90;
+    const bool beyond_unicode = lead == 0xF4 && byte(1) > 0x8F;
+    return continues(1) && continues(2) && continues(3) && !overlong && !beyond_unicode ? 4 : 0;
+  }
+  return 0;
+}
+
+std::string with_true_minus(const std::string& ascii) {
+  std::string text;
+  for (const char c : ascii) {
+    if (c == '-') {
+      text += minus_sign;
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string clean_text(std::string_view text) {
+  std::string clean;
+  while (!text.empty()) {
+    const size_t bytes = valid_character_bytes(text);
+    const auto lead = static_cast<unsigned char>(text.front());
+    if (bytes == 0) {
+      clean += "\uFFFD";
+    } else if (lead < 0x20 || lead == 0x7F) {
+      clean += ' ';
+    } else {
+      clean += text.substr(0, bytes);
+    }
+    text.remove_prefix(std::max<size_t>(bytes, 1));
+  }
+  return clean;
+}
+
+size_t first_character_bytes(std::string_view text) {
+  return std::max<size_t>(valid_character_bytes(text), 1);
+}
+
+std::string xml_text(std::string_view text) {
+  std::string escaped;
+  for (const char c : clean_text(text)) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string round_trip_number(double value) {
+  if (std::isnan(value)) return "";
+  if (value == 0.0) value = 0.0;  // no "-0"
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end.ptr};
+}
+
+std::string readable_number(double value, int significant) {
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
+  if (value == 0.0) return "0";
+  std::array<char, 64> buffer{};
+  // Rounded first, so that 99999.7 is judged as the 1.000e5 that it prints as.
+  std::snprintf(buffer.data(), buffer.size(), "%.*e", significant - 1, value);
+  const std::string scientific = buffer.data();
+  const size_t e = scientific.find('e');
+  const int exponent = std::stoi(scientific.substr(e + 1));
+  if (exponent < -3 || exponent >= 5) {
+    return with_true_minus(scientific.substr(0, e)) + "×" + power_of_ten(exponent);
+  }
+  const int decimals = std::max(0, significant - 1 - exponent);
+  std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, value);
+  return with_true_minus(buffer.data());
+}
+
+std::string power_of_ten(int exponent) {
+  if (exponent == 0) return "";
+  std::string text = "10";
+  for (const char c : std::to_string(exponent)) {
+    text += c == '-' ? std::string_view("⁻") : superscripts[static_cast<size_t>(c - '0')];
+  }
+  return text;
+}
+
+std::string column_name(std::string_view label) {
+  std::string name;
+  const auto separate = [&] {
+    if (!name.empty() && name.back() != '_') name += '_';
+  };
+  while (!label.empty()) {
+    const std::string_view character = label.substr(0, first_character_bytes(label));
+    label.remove_prefix(character.size());
+    const auto digit = std::ranges::find(superscripts, character);
+    if (digit != superscripts.end()) {
+      name += static_cast<char>('0' + (digit - superscripts.begin()));
+    } else if (character == "%") {
+      name += "percent";
+    } else if (character == "°") {
+      name += "deg";
+    } else if (character == "µ" || character == "μ") {  // micro sign, Greek mu
+      name += 'u';
+    } else if (character.size() == 1 &&
+               std::isalnum(static_cast<unsigned char>(character[0])) != 0) {
+      name += character;
+    } else {
+      separate();
+    }
+  }
+  while (name.ends_with('_')) name.pop_back();
+  return name;
+}
+
+std::string base64(std::span<const std::byte> bytes) {
+  static constexpr char letters[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t group = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      group = group << 8 | (i + k < bytes.size() ? std::to_integer<uint32_t>(bytes[i + k]) : 0u);
+    }
+    for (size_t k = 0; k < 4; ++k) {
+      const bool is_padding = i + k > bytes.size();
+      text += is_padding ? '=' : letters[group >> (18 - 6 * k) & 63];
+    }
+  }
+  return text;
+}
+
+}  // namespace photorque

@@ -1,0 +1,40 @@
+// Text for files and pictures: clean, and numbers as people and as programs read them.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace photorque {
+
+// Valid UTF-8 without control characters: what is not becomes U+FFFD or a space. Names come from
+// users' files, and one bad byte would stop cairo from drawing and a JSON file from being read.
+std::string clean_text(std::string_view text);
+
+// The number of leading bytes of `text` (valid UTF-8, not empty) that make one character.
+size_t first_character_bytes(std::string_view text);
+
+// `text` as content or attribute value of an XML element.
+std::string xml_text(std::string_view text);
+
+// The shortest decimal that reads back as the same double: "0.1", "1.127e-09", "inf"; empty for
+// NaN.
+std::string round_trip_number(double value);
+
+// For people: `significant` digits, a true minus sign, and a power of ten outside
+// [1e-3, 1e5): "812.3", "−1.127×10⁻⁹". NaN is "–".
+std::string readable_number(double value, int significant = 4);
+
+// "10⁻⁹" for −9; empty for 0.
+std::string power_of_ten(int exponent);
+
+// An axis label or a unit as (part of) the name of a column, in ASCII: "tilt [deg]" → "tilt_deg",
+// "W/m²" → "W_m2", "N m" → "N_m".
+std::string column_name(std::string_view label);
+
+// Bytes as text that may stand in JSON, URIs and HTML.
+// Source: RFC 4648, section 4, with padding.
+std::string base64(std::span<const std::byte> bytes);
+
+}  // namespace photorque

@@ -1,0 +1,105 @@
+// Text taken apart: lines, cells and words, which are views into the text that was given; numbers
+// and columns; what JSON texts and URIs need before they are read.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/errors.h"
+
+namespace photorque {
+
+// Without blanks at both ends: space, tab, CR, LF, vertical tab, form feed and the end-of-file
+// byte 0x1a that old programs leave.
+std::string_view trimmed(std::string_view text);
+
+// Without blanks and double quotes at both ends, as cells of a table may have them.
+std::string_view unquoted(std::string_view text);
+
+// Lines without their ends (LF, CR LF or CR).
+std::vector<std::string_view> lines_of(std::string_view text);
+
+// The cells between separators, each unquoted(); one more than there are separators. A separator
+// inside quotes separates all the same.
+std::vector<std::string_view> cells_of(std::string_view line, char separator = ',');
+// The same into `cells`, for readers of millions of lines.
+void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
+
+// The pieces between any number of separating characters; none is empty.
+std::vector<std::string_view> words_of(std::string_view line,
+                                       std::string_view separators = " \t\r\v\f");
+
+// "text" in quotes for a message, cut after 40 bytes.
+std::string in_quotes(std::string_view text);
+
+// Throws InputError when the beginning of a text file is UTF-16 or no text at all: readers of lines
+// would find no column in it and say so misleadingly.
+void require_text(std::string_view begin, const InputLocation& where);
+
+// The lines of a text that say something: neither blank nor a comment from # on.
+class DataLines {
+ public:
+  // `text` must outlive the reader; `file` is what messages name. See require_text().
+  DataLines(std::string_view text, const std::string& file);
+
+  // The next such line, trimmed; false at the end.
+  bool next(std::string_view& line);
+  // Of the line that next() gave last, or of the last line of all.
+  const InputLocation& where() const { return where_; }
+
+ private:
+  std::vector<std::string_view> lines_;
+  InputLocation where_;
+};
+
+// A whole text as a finite number, the same in every locale; a leading plus is accepted. Nothing
+// for anything else, blanks included.
+std::optional<double> number_in(std::string_view text);
+
+// The same where nothing else will do: InputError at `where` under the key `what`.
+double require_number(std::string_view text, const InputLocation& where, const std::string& what,
+                      const std::string& expected = "a number");
+
+// A number that counts something, as what it counts; InputError unless whole and in [low, high].
+size_t require_count(double value, const InputLocation& where, const std::string& what, int low,
+                     int high);
+
+// The shortest text that reads back as the same number.
+std::string shortest(double value);
+
+// Numbers from a comma-separated file with a header.
+struct NumberColumns {
+  std::vector<std::string> header;           // all columns of the file
+  std::vector<std::vector<double>> columns;  // those asked for, in that order
+  std::vector<int> lines;                    // of the file, for each row
+};
+
+// Reads the columns with these names, in any order among others; empty lines and lines that start
+// with # are skipped. InputError with the line for a missing column, or a cell of these columns
+// that is not a finite number.
+NumberColumns read_number_columns(const std::filesystem::path& path,
+                                  const std::vector<std::string>& names);
+
+// The header of such a file alone.
+std::vector<std::string> read_column_names(const std::filesystem::path& path);
+
+// How much a JSON text asks of who reads it, found before anything is built from it.
+struct JsonExtent {
+  uint64_t values = 0;  // at most: each but the first follows one of [ { , : outside a string
+  int depth = 0;        // of brackets within each other; libraries recurse once per level
+};
+
+JsonExtent extent_of_json(std::string_view text);
+
+// Deeper than anything that programs write for each other.
+inline constexpr int deepest_json = 256;
+
+// Escapes of URIs: "a%20b" is "a b" (RFC 3986 section 2.1). A plus sign stays one: that it means a
+// space holds in web forms, not in URIs. Nothing when an escape is malformed.
+std::optional<std::string> percent_decoded(std::string_view text);
+
+}  // namespace photorque
