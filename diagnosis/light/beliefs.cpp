@@ -3,7 +3,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/display.h"
-#include "diagnosis/light/written.h"
+#include "scenes/effects/stated.h"
 #include "scenes/experiment/toml_writer.h"
 
 namespace photorque {
@@ -18,7 +18,8 @@ struct OwnedLab {
 
 LightPrior::Side side_of(Experiment experiment, double errors) {
   const auto owned = std::make_shared<const OwnedLab>(std::move(experiment));
-  return {std::shared_ptr<const LightLab>(owned, &owned->lab), written_state(owned->lab), errors};
+  return {std::shared_ptr<const LightLab>(owned, &owned->lab),
+          stated_effects(owned->experiment, owned->lab.parts()), errors};
 }
 
 std::string assignment_of(const UncertainKey& key, const std::vector<double>& values) {
@@ -59,7 +60,7 @@ LightPrior prior_of(const UncertainKey& key, size_t component, const LightPrior:
 
 LightBelief light_belief(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
                          const std::function<Experiment(const std::string&)>& reread) {
-  LightBelief belief{written_state(lab), {}};
+  LightBelief belief{stated_effects(lab.experiment(), lab.parts()), {}};
   const LightPrior::Side itself{std::shared_ptr<const LightLab>(std::shared_ptr<void>(), &lab),
                                 belief.state, 0.0};
   for (const UncertainKey& key : uncertain) {

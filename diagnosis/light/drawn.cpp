@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "diagnosis/light/account.h"
-#include "diagnosis/light/effects/kind.h"
+#include "scenes/effects/kind.h"
 
 namespace photorque {
 namespace {

@@ -27,21 +27,6 @@ LampGeometry geometry_of(const LightState& state, size_t lamp, bool enters_cells
           enters_cells ? state.glass_index : std::nullopt};
 }
 
-RigidTransform pose_of(const Beam& beam, const LampGeometry& geometry) {
-  RigidTransform pose = beam.lab_from_emitter;
-  pose.translation_m += geometry.shift_m;
-  if (geometry.aim.isZero(0.0)) return pose;
-  const Vec3 d = pose.direction(Vec3::UnitZ());
-  const auto across = [&](const Vec3& axis) {
-    const Vec3 e = axis - axis.dot(d) * d;
-    return e.norm() > 1e-9 ? Vec3(e.normalized()) : Vec3(Vec3::Zero());
-  };
-  const Vec3 turned_to =
-      d + geometry.aim.x() * across(Vec3::UnitX()) + geometry.aim.y() * across(Vec3::UnitY());
-  pose.rotation = (Quat::FromTwoVectors(d, turned_to) * pose.rotation).normalized();
-  return pose;
-}
-
 LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
                      const LampGeometry& geometry, const std::optional<KnownField>& known) {
   Illumination lamp(lab, lamps, sites, geometry);

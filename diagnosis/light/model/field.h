@@ -56,7 +56,4 @@ struct KnownField {
 LampField lamp_field(const LightLab& lab, const LampSet& lamps, const LightSites& sites,
                      const LampGeometry& geometry, const std::optional<KnownField>& known = {});
 
-// The lamp's pose where it stands and looks, in the lab.
-RigidTransform pose_of(const Beam& beam, const LampGeometry& geometry);
-
 }  // namespace photorque

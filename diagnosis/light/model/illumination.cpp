@@ -2,17 +2,9 @@
 
 #include <cmath>
 
+#include "scenes/effects/stated.h"
+
 namespace photorque {
-namespace {
-
-Quat turned(const Quat& recorded, const Vec2& bias_rad) {
-  const double angle = bias_rad.norm();
-  if (angle == 0.0) return recorded;
-  const Vec3 axis(bias_rad.x() / angle, bias_rad.y() / angle, 0.0);
-  return Quat(Eigen::AngleAxisd(angle, axis)) * recorded;
-}
-
-}  // namespace
 
 LampAtAttitude::LampAtAttitude(const RigidTransform& lab_from_lamp, const Quat& lab_from_body,
                                double radius_m)
@@ -31,10 +23,10 @@ Illumination::Illumination(const LightLab& lab, const LampSet& lamps, const Ligh
       sites_(sites),
       geometry_(geometry),
       light_(*lamps.tables[geometry.lamp]),
-      pose_(pose_of(lamps.beams[geometry.lamp], geometry)) {}
+      pose_(displaced_pose(lamps.beams[geometry.lamp], geometry.aim, geometry.shift_m)) {}
 
 void Illumination::move_to(size_t attitude) {
-  const Quat q = turned(sites_.lab_from_body[attitude], geometry_.attitude_bias_rad);
+  const Quat q = biased_attitude(sites_.lab_from_body[attitude], geometry_.attitude_bias_rad);
   at_.emplace(pose_, q, std::isfinite(light_.radius_m()) ? light_.radius_m() : 0.0);
   obstacles_.emplace(lab_, geometry_.boxes, q);
 }

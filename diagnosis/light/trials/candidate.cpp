@@ -27,9 +27,9 @@ size_t count_of(const LightLab& lab, LightEffectKind::Index index) {
     case LightEffectKind::Index::cell:
       return lab.cells().size();
     case LightEffectKind::Index::string:
-      return lab.strings();
+      return lab.parts().strings();
     case LightEffectKind::Index::bypass:
-      return lab.bypasses();
+      return lab.parts().bypasses();
     case LightEffectKind::Index::wall:
       return lab.walls().size();
     case LightEffectKind::Index::frame:

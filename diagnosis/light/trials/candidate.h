@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "diagnosis/light/effects/kind.h"
 #include "diagnosis/light/model/run.h"
 #include "diagnosis/light/trials/prior.h"
 #include "inference/limits/thresholds.h"
+#include "scenes/effects/kind.h"
 
 namespace photorque {
 

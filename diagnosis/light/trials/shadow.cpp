@@ -31,7 +31,8 @@ CarvingData carving_data(const LightTrial& parent, const LightCandidates& all,
     const LightFields fields = run.run->fields(state, run.nominal.get());
     const auto lamps = all.lab->lamps_with(state.divergence);
     for (size_t l = 0; l < lamps->beams.size(); ++l) {
-      const RigidTransform pose = pose_of(lamps->beams[l], fields.lamps[l].geometry);
+      const RigidTransform pose = displaced_pose(lamps->beams[l], fields.lamps[l].geometry.aim,
+                                                 fields.lamps[l].geometry.shift_m);
       for (size_t i = 0; i < r.rows(); ++i) {
         const double light = state.power * state.lamp_power[l] * state.detector_gain *
                              (*fields.lamps[l].field)[i] / run.run->row_noise(i);

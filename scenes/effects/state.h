@@ -23,7 +23,7 @@ struct ShadowBox {
 
 // Light that a part of the scene, which is assumed black, throws back.
 struct WallShare {
-  size_t wall = 0;        // which of LightLab::walls
+  size_t wall = 0;        // which of LightParts::walls
   double diffuse = 0.0;   // share that leaves by Lambert's law, 0 to 1
   double specular = 0.0;  // share that leaves as from a mirror, 0 to 1
 

@@ -1,7 +1,7 @@
-// One kind of effect on light and power that may be missing from an experiment.
+// One kind of effect on light and power: stated by an experiment, or found by a diagnosis.
 //
-// A kind says its parameters as differences from what leaves everything as it is, and writes them
-// into a LightState. Adding one is one file and one word in diagnosis/CMakeLists.txt.
+// A kind states its parameters as differences from what leaves everything as it is, and writes them
+// into a LightState. Adding one is one entry in the table of its family.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/light/model/state.h"
+#include "scenes/effects/state.h"
 
 namespace photorque {
 
@@ -49,6 +49,8 @@ struct LightEffectKind {
   bool in_scans = true, in_sweeps = true, in_runs = true;
   // Whether it acts on the array's circuit, and not on light or photocurrents alone.
   bool in_circuit = false;
+  // Whether a trace of the experiment shows it.
+  bool is_traced = false;
   // How the recordings say where to start what is not linear.
   enum class Scan { none, shadow, trapped, wave };
   Scan scan = Scan::none;
@@ -65,7 +67,11 @@ double x_of(const EffectParameter& parameter, double value);
 // Which values the key can have, in its own unit: "from 0 to 1"; empty where any number will do.
 std::string range_of(const EffectParameter& parameter);
 
-// Every kind named in diagnosis/CMakeLists.txt, in that order.
+// The families, each a table in the file of its name.
+std::vector<LightEffectKind> lamp_effect_kinds();
+std::vector<LightEffectKind> surroundings_effect_kinds();
+std::vector<LightEffectKind> array_effect_kinds();
+// All of them, in that order.
 std::vector<LightEffectKind> all_light_effect_kinds();
 
 }  // namespace photorque

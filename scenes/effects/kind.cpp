@@ -1,4 +1,4 @@
-#include "diagnosis/light/effects/kind.h"
+#include "scenes/effects/kind.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,6 +91,14 @@ std::string range_of(const EffectParameter& parameter) {
   if (std::isinf(high)) return "at least " + shown(low);
   if (std::isinf(low)) return "at most " + shown(high);
   return "from " + shown(low) + " to " + shown(high);
+}
+
+std::vector<LightEffectKind> all_light_effect_kinds() {
+  std::vector<LightEffectKind> all = lamp_effect_kinds();
+  for (const auto& family : {surroundings_effect_kinds(), array_effect_kinds()}) {
+    all.insert(all.end(), family.begin(), family.end());
+  }
+  return all;
 }
 
 }  // namespace photorque
