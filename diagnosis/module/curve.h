@@ -1,7 +1,7 @@
 // The current-voltage curve of a module of like cells in even light, some of which are not alike.
 //
-// All cells but the changed ones share one voltage at one current, so that a module is three cells
-// whatever their number. Temperature and light act on a cell of ideality n as
+// The module is one string of photovoltaics/network, in which like cells under like light are
+// evaluated once. Temperature and light act on a cell of ideality n as
 //
 //   I₀(T) = I₀ (T/T₀)^(3/n) exp(E/(n k) (1/T₀ − 1/T)),   R_sh(S) = R_sh S₀/S,
 //
@@ -12,7 +12,7 @@
 
 #include <vector>
 
-#include "photovoltaics/cell/cell.h"
+#include "photovoltaics/network/curve.h"
 
 namespace photorque {
 
@@ -54,12 +54,8 @@ struct ModuleWiring {
   double bypass_drop_V = 0.5;
 };
 
-// Current at each voltage; −dI/dV ≥ 0 with it. All changed cells of one kind are under one diode.
-struct ModulePoint {
-  double current_A = 0.0, slope_S = 0.0;
-};
-std::vector<ModulePoint> module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
-                                      const ModuleState& state,
-                                      const std::vector<double>& voltage_V);
+// All changed cells of one kind are under one diode.
+ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
+                        const ModuleState& state);
 
 }  // namespace photorque

@@ -37,7 +37,8 @@ Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const Mo
 VectorXd ModuleFitter::residuals(const ModuleHypothesis& h, const VectorXd& x,
                                  const ModuleRun& run) const {
   const Acting a = acting(design_, nominal_, h, x);
-  const auto curve = module_curve(wiring_of(design_), a.cell, a.state, run.sweep.voltage_V);
+  const auto curve =
+      module_curve(wiring_of(design_), a.cell, a.state).at_voltages(run.sweep.voltage_V);
   VectorXd r(static_cast<Index>(curve.size()));
   for (size_t i = 0; i < curve.size(); ++i) {
     const double sigma_A = std::hypot(run.sigma_A, curve[i].slope_S * nominal_.voltage_noise_V);
@@ -121,11 +122,11 @@ VectorXd ModuleFitter::numbers_of(const ModuleTrial& trial, size_t run) {
   return x;
 }
 
-std::vector<ModulePoint> ModuleFitter::curve(const ModuleHypothesis& h, const ModuleTrial& trial,
-                                             size_t run,
-                                             const std::vector<double>& voltage_V) const {
+std::vector<ArrayCurve::SlopedPoint> ModuleFitter::curve(
+    const ModuleHypothesis& h, const ModuleTrial& trial, size_t run,
+    const std::vector<double>& voltage_V) const {
   const Acting a = acting(design_, nominal_, h, numbers_of(trial, run));
-  return module_curve(wiring_of(design_), a.cell, a.state, voltage_V);
+  return module_curve(wiring_of(design_), a.cell, a.state).at_voltages(voltage_V);
 }
 
 }  // namespace photorque

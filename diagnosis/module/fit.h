@@ -28,8 +28,9 @@ class ModuleFitter {
   ModuleTrial fit(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
                   const Eigen::VectorXd* from = nullptr) const;
   // Currents by a fit with the light and temperature that it found for a run.
-  std::vector<ModulePoint> curve(const ModuleHypothesis& h, const ModuleTrial& trial, size_t run,
-                                 const std::vector<double>& voltage_V) const;
+  std::vector<ArrayCurve::SlopedPoint> curve(const ModuleHypothesis& h, const ModuleTrial& trial,
+                                             size_t run,
+                                             const std::vector<double>& voltage_V) const;
   // Measured less predicted over their errors.
   Eigen::VectorXd residuals(const ModuleHypothesis& h, const Eigen::VectorXd& x,
                             const ModuleRun& run) const;

@@ -89,8 +89,9 @@ ReferenceFit fit_references(const ModuleDesign& design) {
     ModuleState state;
     state.light = std::exp(x[0]);
     state.temperature_K = design.reference_temperature_K + x[1];
-    const auto curve = module_curve(wiring, cell_of(x.tail(5), design.reference_temperature_K),
-                                    state, sweep.voltage_V);
+    const auto curve =
+        module_curve(wiring, cell_of(x.tail(5), design.reference_temperature_K), state)
+            .at_voltages(sweep.voltage_V);
     VectorXd r(static_cast<Index>(curve.size()));
     for (size_t i = 0; i < curve.size(); ++i) {
       r[static_cast<Index>(i)] = (sweep.current_A[i] - curve[i].current_A) / (of_scale * scale_A);

@@ -72,7 +72,8 @@ ElementPoint solve_nested(std::span<const LitCell> cells, double current_A,
     double sum_A = -current_A;
     sums = {};
     for (size_t i = 0; i < cells.size(); ++i) {
-      const double i_A = cells[i].table->curve().current_A(cells[i].photocurrent_A, voltage_V);
+      const double i_A =
+          cells[i].law->curve().current_A(cells[i].photocurrent_A, voltage_V - cells[i].offset_V);
       sums.add(cell_at(cells[i], i_A, states[i]));
       sum_A += i_A;
     }
@@ -98,6 +99,16 @@ SlopeRange tied_cells_range(std::span<const LitCell> cells, std::span<const Junc
     sum += inverted(cell_range(cells[i], high_v[i], low_v[i]));
   }
   return inverted(sum);
+}
+
+double extrapolated_A(const ElementPoint& at, double current_A, double voltage_V) {
+  const Slopes current = inverted(at.slopes());
+  const double h = voltage_V - at.voltage_V;
+  const double growth = current.curvature != 0.0 ? h * current.third / current.curvature : 0.0;
+  const double bend = std::abs(growth) > 1e-3 && std::abs(growth) < 30.0
+                          ? (std::expm1(growth) - growth) / (growth * growth)
+                          : 0.5 + growth / 6.0;
+  return current_A - h * (current.slope - h * current.curvature * bend);
 }
 
 }  // namespace photorque

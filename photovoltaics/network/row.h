@@ -4,17 +4,18 @@
 #include <algorithm>
 #include <span>
 
+#include "photovoltaics/cell/diode_voltage.h"
 #include "photovoltaics/cell/slope.h"
-#include "photovoltaics/cell/table.h"
 
 namespace photorque {
 
 // `copies` like cells in series; 1 in a row.
 struct LitCell {
-  const DiodeVoltageTable* table = nullptr;
+  const DiodeVoltageLaw* law = nullptr;
   double photocurrent_A = 0.0;
   double series_ohm = 0.0;
   double copies = 1.0;
+  double offset_V = 0.0;  // added to the voltage of each
 };
 
 // A two-terminal element at a current.
@@ -37,10 +38,10 @@ struct ElementPoint {
 
 // One cell at a current of either sign.
 inline ElementPoint cell_at(const LitCell& cell, double current_A, JunctionState& state) {
-  const DiodeVoltage v = cell.table->at(cell.photocurrent_A - current_A);
+  const DiodeVoltage v = cell.law->at(cell.photocurrent_A - current_A);
   state = {v.slope_ohm, v.curvature_V_A2};
-  return {v.value_V - current_A * cell.series_ohm, v.slope_ohm + cell.series_ohm, v.curvature_V_A2,
-          -v.third_V_A3};
+  return {v.value_V + cell.offset_V - current_A * cell.series_ohm, v.slope_ohm + cell.series_ohm,
+          v.curvature_V_A2, -v.third_V_A3};
 }
 
 // Bounds on V(I) of one cell between two states; `high_v` at the higher diode voltage.
@@ -51,7 +52,7 @@ inline SlopeRange cell_range(const LitCell& cell, const JunctionState& high_v,
                              const JunctionState& low_v) {
   const double low = std::min(high_v.slope_ohm, low_v.slope_ohm);
   const double high = high_v.curvature_V_A2 < 0 && low_v.curvature_V_A2 > 0
-                          ? cell.table->largest_slope_ohm()
+                          ? cell.law->largest_slope_ohm()
                           : std::max(high_v.slope_ohm, low_v.slope_ohm);
   const double min_r = (high_v.curvature_V_A2 < 0 ? high : low) / high_v.slope_ohm;
   const double max_r = (low_v.curvature_V_A2 > 0 ? high : low) / low_v.slope_ohm;
@@ -59,6 +60,10 @@ inline SlopeRange cell_range(const LitCell& cell, const JunctionState& high_v,
           high_v.curvature_V_A2 * min_r * min_r * min_r,
           low_v.curvature_V_A2 * max_r * max_r * max_r};
 }
+
+// I(V) beyond a point from V(I) and its derivatives there: a straight line and an exponential, as a
+// shunt and a diode have it; to third order any curve.
+double extrapolated_A(const ElementPoint& at, double current_A, double voltage_V);
 
 // Cells tied in parallel at a total current; `states` has one entry per cell.
 ElementPoint tied_cells_at(std::span<const LitCell> cells, double current_A,

@@ -17,7 +17,6 @@
 #include "core/parallel.h"
 #include "ivcurves.h"
 #include "photovoltaics/cell/batch.h"
-#include "photovoltaics/cell/one_diode.h"
 #include "photovoltaics/cell/table.h"
 #include "reference.h"
 
@@ -62,9 +61,9 @@ TEST(PhotovoltaicCell, OneDiodeByTheOmegaFunctionSolvesItsEquation) {
       p.shunt_ohm = shunt_ohm;
       p.temperature_K = temperature_K;
       const CellCurve exact(p);
-      const OneDiode cell(p, exact.thermal_V());
+      const OneDiode cell(exact);
       for (double dark_A = -0.5; dark_A < 2.0; dark_A += 0.0137) {
-        const OneDiode::Point at = cell.at(dark_A);
+        const DiodeVoltage at = cell.at(dark_A), solved = solved_diode_voltage(exact, dark_A);
         const DarkCurrent d = exact.dark(at.value_V);
         const double scale_V = 1.2 * exact.thermal_V();
         EXPECT_NEAR(d.value_A, dark_A, 1e-11 * (d.slope_S * scale_V + std::abs(dark_A)));
@@ -72,6 +71,9 @@ TEST(PhotovoltaicCell, OneDiodeByTheOmegaFunctionSolvesItsEquation) {
         EXPECT_NEAR(at.curvature_V_A2, -d.curvature_A_V2 * std::pow(at.slope_ohm, 3),
                     1e-9 * scale_V * std::pow(at.slope_ohm * d.slope_S / scale_V, 2) *
                         std::pow(at.slope_ohm, 2));
+        EXPECT_NEAR(
+            at.third_V_A3, solved.third_V_A3,
+            1e-8 * (std::abs(solved.third_V_A3) + std::pow(at.slope_ohm, 3) / (scale_V * scale_V)));
       }
     }
   }

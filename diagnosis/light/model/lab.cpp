@@ -230,10 +230,30 @@ std::vector<const CellModel*> LightLab::models() const {
   return models;
 }
 
-LitCells LightLab::lit(double temperature_K, double extra_shunt_S, bool tabulated) const {
-  std::vector<double> area_m2;
-  for (const LightCell& cell : cells_) area_m2.push_back(cell.area_m2);
-  return lit_cells(models(), area_m2, temperature_K, extra_shunt_S, tabulated);
+CellTables LightLab::cell_laws(double temperature_K, double leak_S, bool tabulated) const {
+  constexpr double largest_A_m2 = 2000.0;  // five suns on silicon; beyond it the exact solution
+  struct Kind {
+    const CellModel* model;
+    double area_m2;
+    std::shared_ptr<const DiodeVoltageLaw> law;
+  };
+  std::vector<Kind> kinds;
+  CellTables laws;
+  const std::vector<const CellModel*> all = models();
+  for (size_t i = 0; i < all.size(); ++i) {
+    const double area_m2 = cells_[i].area_m2;
+    auto kind = std::ranges::find_if(kinds, [&](const Kind& k) {
+      return k.model == all[i] && std::abs(k.area_m2 - area_m2) <= 1e-9 * area_m2;
+    });
+    if (kind == kinds.end()) {
+      const CellParameters p = with_leak(parameters_at(*all[i], area_m2, temperature_K), leak_S);
+      kinds.push_back(
+          {all[i], area_m2, diode_voltage_law(p, tabulated ? largest_A_m2 * area_m2 : 0.0)});
+      kind = std::prev(kinds.end());
+    }
+    laws.push_back(kind->law);
+  }
+  return laws;
 }
 
 }  // namespace photorque

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/light/model/lit_cells.h"
+#include "photovoltaics/network/string.h"
 #include "raytrace/direct/disc_light.h"
 #include "scenes/effects/parts.h"
 
@@ -56,8 +56,9 @@ class LightLab {
   const std::vector<LightCell>& cells() const { return cells_; }
   // What each cell is.
   std::vector<const CellModel*> models() const;
-  // The cells' diodes at a temperature, with a conductance more across each.
-  LitCells lit(double temperature_K, double extra_shunt_S, bool tabulated) const;
+  // The cells' diodes at a temperature, with a leak more across each. `tabulated`: worth its time
+  // where hundreds of points follow.
+  CellTables cell_laws(double temperature_K, double leak_S, bool tabulated) const;
   // Photocurrent over light [A/W] at the reference temperature.
   double responsivity_A_W() const { return responsivity_A_W_; }
 
