@@ -91,4 +91,20 @@ void believe_tilt(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_r
   }
 }
 
+Eigen::MatrixXd slopes_by_priors(const LightRun& run, const std::vector<LightPrior>& priors) {
+  Eigen::MatrixXd slopes(static_cast<Eigen::Index>(run.samples()),
+                         static_cast<Eigen::Index>(priors.size()));
+  const auto residuals = [&](const LightPrior::Side& side) {
+    const LightRun there = run.in(*side.lab);
+    return there.residuals(side.state, there.signals(side.state, there.fields(side.state, nullptr)),
+                           nullptr);
+  };
+  for (size_t k = 0; k < priors.size(); ++k) {
+    const LightPrior::Side &low = priors[k].low, &high = priors[k].high;
+    slopes.col(static_cast<Eigen::Index>(k)) =
+        (residuals(low) - residuals(high)) / (high.errors - low.errors);
+  }
+  return slopes;
+}
+
 }  // namespace photorque

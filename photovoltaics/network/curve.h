@@ -11,7 +11,7 @@
 // breakpoint the slope falls, so P′ jumps upwards and no maximum lies there. Inside a piece, bounds
 // on slope and curvature over an interval follow from the diode voltages at its ends: with D‴ > 0
 // (true while n V_t ≪ |V_br|) D″ is monotone and D′ has its one minimum where D″ = 0; sums and
-// reciprocals of such bounds cover the network (cell/slope.h). An interval is halved until the
+// reciprocals of such bounds cover the network (elements.h). An interval is halved until the
 // bounds show that P′ has no zero in it, or is monotone in it and so has at most one. All local
 // maxima are found thereby and none is missed.
 #pragma once

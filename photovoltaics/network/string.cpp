@@ -8,7 +8,6 @@
 namespace photorque {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // Beyond this a junction carries nothing that double precision can see; keeps its cube finite.
 constexpr double max_ohm = 1e90;
 
@@ -50,7 +49,8 @@ std::vector<double> StringCurve::clamp_currents_A() const {
 double StringCurve::lowest_V() const {
   double sum_V = -blocking_drop_V(0.0);
   for (const Substring& s : substrings_) {
-    sum_V -= s.bypass.kind == Diode::Kind::clamp ? s.bypass.drop_V : infinity;
+    sum_V -= s.bypass.kind == Diode::Kind::clamp ? s.bypass.drop_V
+                                                 : std::numeric_limits<double>::infinity();
   }
   return sum_V;
 }
@@ -291,7 +291,7 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
   if (regime.blocked) {
     state.current_A = 0.0;
     state.voltage_V = voltage_V;
-    state.slope_ohm = infinity;
+    state.slope_ohm = std::numeric_limits<double>::infinity();
     state.curvature_V_A2 = state.third_V_A3 = 0.0;
     return;
   }

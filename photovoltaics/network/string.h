@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "core/numerics/root.h"
-#include "photovoltaics/network/junction.h"
-#include "photovoltaics/network/row.h"
+#include "photovoltaics/network/elements.h"
 #include "photovoltaics/network/wiring.h"
 
 namespace photorque {

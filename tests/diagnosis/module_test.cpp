@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "diagnosis/module/curve.h"
-#include "diagnosis/module/diagnose.h"
+#include "diagnosis/light/module/curve.h"
+#include "diagnosis/light/module/diagnose.h"
 #include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/curve.h"
 

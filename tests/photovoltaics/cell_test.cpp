@@ -16,7 +16,6 @@
 #include "core/numerics/random.h"
 #include "core/parallel.h"
 #include "ivcurves.h"
-#include "photovoltaics/cell/batch.h"
 #include "photovoltaics/cell/table.h"
 #include "reference.h"
 
@@ -232,27 +231,6 @@ TEST(PhotovoltaicCell, MaximumIsOneOnRandomCells) {
       const double v = open_V * k / 40.0;
       ASSERT_LE(v * cell.current_A(light_A, v), best.power_W() * (1 + 1e-12)) << i;
     }
-  }
-}
-
-TEST(PhotovoltaicCell, BatchAgreesWithSingleCells) {
-  constexpr size_t count = 1003;  // not a multiple of any vector's width
-  std::vector<double> light, saturation, scale, series, shunt, v(count), i(count);
-  for (size_t k = 0; k < count; ++k) {
-    const auto [p, light_A] = random_cell(13, k);
-    light.push_back(k % 50 == 7 ? 0.0 : light_A);
-    saturation.push_back(p.saturation_1_A);
-    scale.push_back(p.ideality_1 * boltzmann_J_K * p.temperature_K / elementary_charge_C);
-    series.push_back(p.series_ohm);
-    shunt.push_back(1.0 / p.shunt_ohm);
-  }
-  maximum_power_points({light, saturation, scale, series, shunt}, v, i);
-  for (size_t k = 0; k < count; ++k) {
-    CellParameters p = random_cell(13, k).parameters;
-    p.saturation_2_A = p.breakdown_fraction = 0.0;
-    const CellOperatingPoint alone = CellCurve(p).maximum_power(light[k]);
-    EXPECT_NEAR(v[k] * i[k], alone.power_W(), 1e-13 * alone.power_W()) << k;
-    EXPECT_NEAR(v[k], alone.voltage_V, 1e-9 * alone.voltage_V) << k;
   }
 }
 

@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/text/columns.h"
 #include "core/text/display.h"
-#include "diagnosis/light/recordings/recording.h"
+#include "diagnosis/light/model/recording.h"
 
 namespace photorque {
 namespace {

@@ -16,8 +16,8 @@
 #include <optional>
 
 #include "diagnosis/light/model/bounce.h"
-#include "diagnosis/light/model/field.h"
-#include "diagnosis/light/recordings/recording.h"
+#include "diagnosis/light/model/illumination.h"
+#include "diagnosis/light/model/recording.h"
 #include "photovoltaics/network/curve.h"
 
 namespace photorque {
