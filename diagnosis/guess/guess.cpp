@@ -1,10 +1,98 @@
 #include "diagnosis/guess/guess.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
 #include "core/errors.h"
+#include "core/text/format.h"
 #include "core/text/parse.h"
-#include "diagnosis/light/recordings/recording.h"
+#include "diagnosis/light/model/recording.h"
+#include "photovoltaics/fit/fit.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A curve and how well one diode describes it.
+struct MeasuredCurve {
+  fs::path file;
+  double short_A = 0.0, open_V = 0.0;
+  double misfit = INFINITY;  // rms over the short-circuit current
+};
+
+MeasuredCurve measured_curve(const fs::path& file) {
+  const LightRecording recording = read_light_recording(file, {});
+  if (recording.kind != LightRecording::Kind::sweep) {
+    throw InputError({file.string()}, "header", "another kind of recording than the first",
+                     "curves of current over voltage alone");
+  }
+  MeasuredCurve curve{file};
+  for (size_t i = 0; i < recording.rows(); ++i) {
+    curve.short_A = std::max(curve.short_A, recording.current_A[i]);
+    if (recording.current_A[i] >= 0.0)
+      curve.open_V = std::max(curve.open_V, recording.voltage_V[i]);
+  }
+  if (!(curve.short_A > 0.0) || !(curve.open_V > 0.0)) {
+    throw InputError({file.string()}, "rows", "no positive current at a positive voltage",
+                     "a curve of a lit module");
+  }
+  try {
+    const IvSweep sweep{recording.voltage_V, recording.current_A};
+    curve.misfit = fit_sweeps(std::vector<IvSweep>{sweep}, {}).rms_A / curve.short_A;
+  } catch (const InputError&) {
+    // No diode comes near it: it is not the best of them.
+  } catch (const NumericalError&) {
+  }
+  return curve;
+}
+
+// Cells of crystalline silicon in series. They give 0.55 to 0.74 V each without load; makers build
+// few numbers of them.
+int cells_in_series(double open_V) {
+  constexpr double usual_V = 0.65;
+  constexpr int usual[] = {1,  2,  3,  4,  6,  8,  9,  10, 12,  18,  20,  24, 32,
+                           36, 40, 48, 54, 60, 66, 72, 96, 108, 120, 132, 144};
+  const double cells = open_V / usual_V;
+  int best = 1;
+  for (const int n : usual) {
+    if (std::abs(std::log(n / cells)) < std::abs(std::log(best / cells))) best = n;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string guess_module(const std::vector<fs::path>& recordings, const fs::path& folder) {
+  std::vector<MeasuredCurve> curves;
+  for (const fs::path& file : recordings) curves.push_back(measured_curve(file));
+  const MeasuredCurve& clearest = *std::min_element(
+      curves.begin(), curves.end(),
+      [](const MeasuredCurve& a, const MeasuredCurve& b) { return a.misfit < b.misfit; });
+  const int cells = cells_in_series(clearest.open_V);
+  const fs::path reference = fs::absolute(clearest.file).lexically_proximate(fs::absolute(folder));
+  std::string text = "[module]\n";
+  text += comment_lines("CONFIRM: " + std::to_string(cells) + " cells of silicon give " +
+                        readable_number(clearest.open_V, 3) + " V at " +
+                        readable_number(clearest.open_V / cells, 3) +
+                        " V each; the label says how many there are.");
+  text += "cells_in_series = " + std::to_string(cells) + "\n";
+  text += comment_lines(
+      recordings.size() > 1
+          ? "CONFIRM: of these curves one diode describes this one best (to " +
+                readable_number(100.0 * clearest.misfit, 2) +
+                " % of the short-circuit current): it stands for the module as it was."
+          : "CONFIRM: no curve of the module as it was is at hand, so this one stands for it, and "
+            "what one diode cannot describe is all that can be found. A curve from before, or "
+            "[[module.datasheet]] (docs/light_diagnosis.md), says more.");
+  text += "reference_curve = " + toml_value({reference.generic_string()}) + "\n";
+  text += comment_lines("CONFIRM: the temperature of the cells, and how well it is known.");
+  text += "temperature_K = 298.15\ntemperature_sigma_K = 20\n";
+  text += comment_lines("CONFIRM: no bypass diodes are stated (bypass_every = cells under one).");
+  return text;
+}
 
 std::string comment_lines(const std::string& text, size_t width) {
   std::string result, line = "#";

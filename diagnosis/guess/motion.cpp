@@ -10,7 +10,6 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/guess/guess.h"
-#include "diagnosis/guess/names.h"
 #include "scenes/experiment/toml.h"
 
 namespace photorque {

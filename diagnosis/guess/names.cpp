@@ -1,4 +1,4 @@
-#include "diagnosis/guess/names.h"
+#include "diagnosis/guess/guess.h"
 
 #include <algorithm>
 #include <array>

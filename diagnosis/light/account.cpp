@@ -6,7 +6,6 @@
 #include <map>
 
 #include "core/settings/settings.h"
-#include "diagnosis/light/rivals.h"
 
 namespace photorque {
 namespace {

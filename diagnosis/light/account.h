@@ -2,7 +2,7 @@
 #pragma once
 
 #include "diagnosis/diagnosis.h"
-#include "diagnosis/light/trials/trial.h"
+#include "diagnosis/light/trial.h"
 #include "inference/decide.h"
 
 namespace photorque {
@@ -32,6 +32,15 @@ std::optional<DrawnArray> drawn_array(const LightLab& lab, const std::vector<Fou
 
 // What was known to within an error, after the fit.
 std::vector<FittedParameter> refined_light_beliefs(const LightAnswer& answer);
+
+// Kinds other than that of the chosen trial's candidate `which` that explain all `runs` as well in
+// its place.
+std::vector<std::string> light_rivals(const LightAnswer& answer, size_t which,
+                                      const std::vector<FittedRun>& runs);
+
+// Readings beside both models: of runs voltage and current over time and the motion, of scans and
+// sweeps every row.
+RecordingSeries light_series(const LightAnswer& answer, const FittedRun& run, bool is_held_out);
 
 std::string light_sentence(const Diagnosis& diagnosis);
 

@@ -4,6 +4,7 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "diagnosis/light/written.h"
+#include "scenes/effects/stated.h"
 #include "scenes/experiment/toml.h"
 
 namespace photorque {
@@ -18,7 +19,8 @@ struct OwnedLab {
 
 LightPrior::Side side_of(Experiment experiment, double errors) {
   const auto owned = std::make_shared<const OwnedLab>(std::move(experiment));
-  return {std::shared_ptr<const LightLab>(owned, &owned->lab), written_state(owned->lab), errors};
+  return {std::shared_ptr<const LightLab>(owned, &owned->lab),
+          stated_effects(owned->experiment, owned->lab.parts()), errors};
 }
 
 std::string assignment_of(const UncertainKey& key, const std::vector<double>& values) {
@@ -59,7 +61,7 @@ LightPrior prior_of(const UncertainKey& key, size_t component, const LightPrior:
 
 LightBelief light_belief(const LightLab& lab, const std::vector<UncertainKey>& uncertain,
                          const std::function<Experiment(const std::string&)>& reread) {
-  LightBelief belief{written_state(lab), {}};
+  LightBelief belief{stated_effects(lab.experiment(), lab.parts()), {}};
   const LightPrior::Side itself{std::shared_ptr<const LightLab>(std::shared_ptr<void>(), &lab),
                                 belief.state, 0.0};
   for (const UncertainKey& key : uncertain) {
@@ -88,6 +90,22 @@ void believe_tilt(const LightLab& lab, const Vec2& bias_rad, const Vec2& sigma_r
                                 side(-LightPrior::part),
                                 side(LightPrior::part)});
   }
+}
+
+Eigen::MatrixXd slopes_by_priors(const LightRun& run, const std::vector<LightPrior>& priors) {
+  Eigen::MatrixXd slopes(static_cast<Eigen::Index>(run.samples()),
+                         static_cast<Eigen::Index>(priors.size()));
+  const auto residuals = [&](const LightPrior::Side& side) {
+    const LightRun there = run.in(*side.lab);
+    return there.residuals(side.state, there.signals(side.state, there.fields(side.state, nullptr)),
+                           nullptr);
+  };
+  for (size_t k = 0; k < priors.size(); ++k) {
+    const LightPrior::Side &low = priors[k].low, &high = priors[k].high;
+    slopes.col(static_cast<Eigen::Index>(k)) =
+        (residuals(low) - residuals(high)) / (high.errors - low.errors);
+  }
+  return slopes;
 }
 
 }  // namespace photorque

@@ -1,13 +1,46 @@
 // What an experiment says of light and power before anything is fitted: the effects that it states,
 // and the numbers that it knows to within an error.
+//
+// Each of these is a nuisance p of every trial, in units of its error, with a Gaussian prior of
+// width 1. The recordings move with it as a difference says, between a tenth of its error more and
+// less: the experiment is read again with either. Where it bears only one of them (a quantum
+// efficiency of 1), the other side is the number itself.
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
+#include <memory>
+#include <string>
+#include <vector>
 
-#include "diagnosis/light/trials/candidate.h"
+#include "diagnosis/light/model/run.h"
 #include "scenes/experiment/uncertain.h"
 
 namespace photorque {
+
+struct LightPrior {
+  std::string key;            // "source[0].power_W"
+  std::vector<double> value;  // all of the key, in its unit, before anything is fitted
+  size_t component = 0;       // the one of them that this is about
+  double sigma = 1.0;         // of that
+  static constexpr double part = 0.1;
+  struct Side {
+    std::shared_ptr<const LightLab> lab;
+    LightState state;
+    double errors = 0.0;  // how many of them away: −part, part, or 0
+  };
+  Side low, high;
+};
+
+// ∂(predicted/noise) of a recording by each.
+Eigen::MatrixXd slopes_by_priors(const LightRun& run, const std::vector<LightPrior>& priors);
+
+// The nominal model: nothing beside the experiment acts but `state`; `uncertain` is known to
+// within errors.
+struct LightBelief {
+  LightState state;
+  std::vector<LightPrior> uncertain = {};
+};
 
 // `reread` is the experiment of the lab again with one more key assigned. The lab must outlive the
 // result. InputError for an error of what cannot be any other number.

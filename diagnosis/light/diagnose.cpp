@@ -8,7 +8,6 @@
 #include "diagnosis/light/account.h"
 #include "diagnosis/light/clean.h"
 #include "diagnosis/light/domain.h"
-#include "diagnosis/light/series.h"
 #include "diagnosis/verdict.h"
 #include "inference/decide.h"
 #include "inference/search.h"

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "diagnosis/diagnosis.h"
+#include "diagnosis/light/candidate.h"
 #include "diagnosis/light/model/lab.h"
-#include "diagnosis/light/recordings/recording.h"
-#include "diagnosis/light/trials/candidate.h"
+#include "diagnosis/light/model/recording.h"
 #include "inference/limits/thresholds.h"
 
 namespace photorque {

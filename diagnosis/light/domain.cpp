@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/light/trials/scan.h"
+#include "diagnosis/light/scan.h"
 #include "inference/estimator/score.h"
 #include "inference/whiteness.h"
 

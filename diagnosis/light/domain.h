@@ -1,7 +1,7 @@
 // Recordings of light and power as the search for what is missing sees them (inference/domain.h).
 #pragma once
 
-#include "diagnosis/light/trials/trial.h"
+#include "diagnosis/light/trial.h"
 #include "inference/domain.h"
 
 namespace photorque {

@@ -1,6 +1,6 @@
 #include "diagnosis/light/keys.h"
 
-#include "diagnosis/light/effects/kind.h"
+#include "scenes/effects/kind.h"
 
 namespace photorque {
 namespace {

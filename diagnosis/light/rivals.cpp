@@ -1,4 +1,4 @@
-#include "diagnosis/light/rivals.h"
+#include "diagnosis/light/account.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/errors.h"
+#include "photovoltaics/cell/table.h"
 #include "raytrace/receiver.h"
 
 namespace photorque {

@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "core/errors.h"
-#include "photovoltaics/array/layout_bound.h"
 
 namespace photorque {
 namespace {

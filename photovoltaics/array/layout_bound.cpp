@@ -1,4 +1,4 @@
-#include "photovoltaics/array/layout_bound.h"
+#include "photovoltaics/array/layout.h"
 
 #include <algorithm>
 #include <limits>

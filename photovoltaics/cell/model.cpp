@@ -56,6 +56,13 @@ CellParameters parameters_at(const CellModel& model, double area_m2, double temp
   return p;
 }
 
+CellParameters with_leak(CellParameters p, double extra_S) {
+  const double shunt_ohm = 1.0 / (1.0 / p.shunt_ohm + extra_S);
+  p.breakdown_fraction *= shunt_ohm / p.shunt_ohm;
+  p.shunt_ohm = shunt_ohm;
+  return p;
+}
+
 double photocurrent_factor(const CellModel& model, double temperature_K) {
   return std::max(
       0.0, 1.0 + model.photocurrent_slope_1_K * (temperature_K - model.reference.temperature_K));

@@ -30,6 +30,9 @@ struct CellModel {
 // The circuit of a cell of `area_m2` > 0 at `temperature_K` > 0.
 CellParameters parameters_at(const CellModel& model, double area_m2, double temperature_K);
 
+// The circuit with a leak beside the shunt, of `extra_S` ≥ 0. Breakdown keeps its own current.
+CellParameters with_leak(CellParameters parameters, double extra_S);
+
 // The photocurrent at a temperature over that at T₀; never negative.
 double photocurrent_factor(const CellModel& model, double temperature_K);
 

@@ -1,30 +1,10 @@
 #include "photovoltaics/cell/table.h"
 
 #include <algorithm>
-
-#include "core/numerics/root.h"
+#include <cstring>
 
 namespace photorque {
 namespace {
-
-DiodeVoltage inverse(const DarkCurrent& d, double diode_V) {
-  const double slope = 1.0 / d.slope_S;
-  const double cube = slope * slope * slope;
-  return {diode_V, slope, -d.curvature_A_V2 * cube,
-          (3.0 * d.curvature_A_V2 * d.curvature_A_V2 * slope - d.third_A_V3) * slope * cube};
-}
-
-// D″ rises through zero once and D′ is least there; without breakdown D′ falls to the shunt's.
-double largest_slope(const CellCurve& curve) {
-  const CellParameters& p = curve.parameters();
-  if (p.breakdown_fraction == 0.0) return p.shunt_ohm;
-  const double low = p.breakdown_V * (1.0 - 1e-12);
-  double high = 0.0;
-  while (curve.dark(high).curvature_A_V2 < 0.0) high += curve.thermal_V();
-  const auto bends_down = [&](double v) { return curve.dark(v).curvature_A_V2 < 0.0; };
-  high = bisect(low, high, bends_down, {52}).high;
-  return 1.0 / curve.dark(high).slope_S;
-}
 
 double scale_of(const CellCurve& curve) {
   const CellParameters& p = curve.parameters();
@@ -34,13 +14,22 @@ double scale_of(const CellCurve& curve) {
   return std::exp2(std::floor(std::log2(curve.dark(0.0).slope_S * scale_V)));
 }
 
+// {slope, curvature} of one cell after the other.
+void store(Quad slope_ohm, Quad curvature_V_A2, JunctionState* states) {
+  static_assert(sizeof(JunctionState) == 2 * sizeof(double));
+  const Quad low = __builtin_shufflevector(slope_ohm, curvature_V_A2, 0, 4, 1, 5);
+  const Quad high = __builtin_shufflevector(slope_ohm, curvature_V_A2, 2, 6, 3, 7);
+  std::memcpy(&states[0].slope_ohm, &low, sizeof low);
+  std::memcpy(&states[2].slope_ohm, &high, sizeof high);
+}
+
 }  // namespace
 
 DiodeVoltageTable::DiodeVoltageTable(const CellCurve& curve, double largest_A)
-    : curve_(curve),
+    : DiodeVoltageLaw(curve),
       origin_A_(scale_of(curve)),
       first_bin_(std::bit_cast<uint64_t>(origin_A_) >> bin_shift),
-      largest_slope_ohm_(largest_slope(curve)) {
+      largest_slope_ohm_(largest_diode_slope_ohm(curve)) {
   constexpr int max_octaves = 200;
   const int octaves = std::min(
       max_octaves, 1 + static_cast<int>(std::ceil(std::log2(largest_A / origin_A_ + 1.0))));
@@ -49,13 +38,9 @@ DiodeVoltageTable::DiodeVoltageTable(const CellCurve& curve, double largest_A)
   tabulate(-1.0, octaves);
 }
 
-DiodeVoltage DiodeVoltageTable::exact(double dark_A) const {
-  const double diode_V = curve_.diode_voltage_V(dark_A);
-  return inverse(curve_.dark(diode_V), diode_V);
-}
-
 DiodeVoltageTable::Piece DiodeVoltageTable::fit(double sign, double low_s, double high_s) const {
-  const DiodeVoltage a = exact(sign * (low_s - origin_A_)), b = exact(sign * (high_s - origin_A_));
+  const DiodeVoltage a = solved_diode_voltage(curve(), sign * (low_s - origin_A_)),
+                     b = solved_diode_voltage(curve(), sign * (high_s - origin_A_));
   const double h = high_s - low_s;
   const double a1 = sign * a.slope_ohm * h, b1 = sign * b.slope_ohm * h;
   const double a2 = a.curvature_V_A2 * h * h, b2 = b.curvature_V_A2 * h * h;
@@ -68,12 +53,12 @@ DiodeVoltageTable::Piece DiodeVoltageTable::fit(double sign, double low_s, doubl
 }
 
 bool DiodeVoltageTable::good(const Piece& p, double sign, double low_s, double high_s) const {
-  const double tolerance_V = 1e-12 * curve_.parameters().ideality_1 * curve_.thermal_V();
+  const double tolerance_V = 1e-12 * curve().parameters().ideality_1 * curve().thermal_V();
   for (const double t : {0.2, 0.5, 0.8}) {
     const double v =
         p.c[0] + t * (p.c[1] + t * (p.c[2] + t * (p.c[3] + t * (p.c[4] + t * p.c[5]))));
-    if (v <= curve_.parameters().breakdown_V) return false;
-    const DarkCurrent d = curve_.dark(v);
+    if (v <= curve().parameters().breakdown_V) return false;
+    const DarkCurrent d = curve().dark(v);
     const double wanted_A = sign * (low_s + t * (high_s - low_s) - origin_A_);
     const double allowed_V = tolerance_V + 2e-15 * std::abs(v);
     if (std::abs(d.value_A - wanted_A) > allowed_V * d.slope_S) return false;
@@ -102,6 +87,27 @@ void DiodeVoltageTable::tabulate(double sign, int octaves) {
       while (width < bins_per_octave && bin % (2 * width) == 0 && width <= bin) width *= 2;
     }
   }
+}
+
+DiodeVoltage DiodeVoltageTable::series_at(std::span<const double> photocurrents_A,
+                                          std::span<const double> copies, double current_A,
+                                          std::span<JunctionState> states) const {
+  Quad value_V{}, slope_ohm{}, curvature_V_A2{}, third_V_A3{};
+  QuadBits any_outside{};
+  for (size_t i = 0; i < photocurrents_A.size(); i += lanes) {
+    const QuadVoltage v = quad_at_dark(quad_at(&photocurrents_A[i]) - current_A);
+    const Quad weight = quad_at(&copies[i]);
+    any_outside |= v.outside;
+    value_V = multiply_add(weight, v.value_V, value_V);
+    slope_ohm = multiply_add(weight, v.slope_ohm, slope_ohm);
+    curvature_V_A2 = multiply_add(weight, v.curvature_V_A2, curvature_V_A2);
+    third_V_A3 = multiply_add(weight, v.third_V_A3, third_V_A3);
+    store(v.slope_ohm, v.curvature_V_A2, &states[i]);
+  }
+  if (any_of(any_outside)) {
+    return series_one_by_one(*this, photocurrents_A, copies, current_A, states);
+  }
+  return {sum_of(value_V), sum_of(slope_ohm), sum_of(curvature_V_A2), sum_of(third_V_A3)};
 }
 
 }  // namespace photorque

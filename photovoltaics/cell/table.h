@@ -1,9 +1,7 @@
 // The diode voltage of a cell as a table.
 //
-// Like cells under different light differ only in I_L, and V_d depends on I_L − I alone. One
-// function of one variable, j ↦ V_d with D(V_d) = j (cell.h, eq. 2), therefore serves
-// every cell of an array, whatever falls on it: it is tabulated once per cell type and temperature,
-// and every voltage in a network is then an explicit expression.
+// The function of diode_voltage.h is tabulated once per cell type and temperature, and every
+// voltage in a network is then an explicit expression.
 //
 // Pieces are quintic and match value, slope and curvature at their ends, in s = |j| + j₀. Their
 // widths are binary fractions of an octave of s, halved until the error, measured as the residual
@@ -15,40 +13,28 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/numerics/quad.h"
-#include "photovoltaics/cell/cell.h"
+#include "photovoltaics/cell/diode_voltage.h"
 
 namespace photorque {
 
-struct DiodeVoltage {
-  double value_V = 0.0;
-  double slope_ohm = 0.0;       // dV_d/dj = 1/D′ > 0
-  double curvature_V_A2 = 0.0;  // d²V_d/dj²
-  double third_V_A3 = 0.0;      // d³V_d/dj³, good to 1e-3 of itself: for the speed of solutions
+// As DiodeVoltage, of four dark currents.
+struct QuadVoltage {
+  Quad value_V, slope_ohm, curvature_V_A2, third_V_A3;
+  QuadBits outside;  // lanes beyond the table, whose numbers mean nothing: not zero
 };
 
-// What bounds over an interval need to know of one junction at each end.
-struct JunctionState {
-  double slope_ohm = 0.0;
-  double curvature_V_A2 = 0.0;
-};
-
-struct QuadVoltage;  // table_quad.h
-
-class DiodeVoltageTable {
+class DiodeVoltageTable final : public DiodeVoltageLaw {
  public:
   // Covers currents up to `largest_A` in size (> 0) in both directions.
   DiodeVoltageTable(const CellCurve& curve, double largest_A);
 
-  const CellCurve& curve() const { return curve_; }
-
-  DiodeVoltage at(double dark_A) const {
+  DiodeVoltage at(double dark_A) const override {
     const double s = std::abs(dark_A) + origin_A_;
     const uint64_t bin = (std::bit_cast<uint64_t>(s) >> bin_shift) - first_bin_;
-    if (bin >= bins_) return exact(dark_A);
+    if (bin >= bins_) return solved_diode_voltage(curve(), dark_A);
     const Piece& p = pieces_[piece_of_bin_[dark_A < 0 ? bin + bins_ : bin]];
     const double t = (s - p.start_A) * p.per_A;
     // Horner's scheme for the polynomial and its derivatives over their factorials.
@@ -63,18 +49,12 @@ class DiodeVoltageTable {
     return {value, per_A * first, 2 * per_A2 * second, 6 * per_A2 * per_A * third};
   }
 
-  // Four of at() side by side; defined in table_quad.h.
+  // Four of at() side by side.
   QuadVoltage quad_at_dark(Quad dark_A) const;
 
-  // The sum over cells in series, copies[i] times that of cell i at the dark current
-  // photocurrents_A[i] − current_A; `states` gets those of the single cells. Several cells at a
-  // time: all spans have one length, a multiple of `lanes`.
-  static constexpr size_t lanes = 4;
   DiodeVoltage series_at(std::span<const double> photocurrents_A, std::span<const double> copies,
-                         double current_A, std::span<JunctionState> states) const;
-
-  // The largest slope of the table's function, at the inflection of D.
-  double largest_slope_ohm() const { return largest_slope_ohm_; }
+                         double current_A, std::span<JunctionState> states) const override;
+  double largest_slope_ohm() const override { return largest_slope_ohm_; }
   size_t pieces() const { return pieces_.size(); }
 
  private:
@@ -86,16 +66,10 @@ class DiodeVoltageTable {
     double per_A = 0.0;  // 1/width
     double c[6] = {};    // powers of (s − start)/width
   };
-  DiodeVoltage series_one_by_one(std::span<const double> photocurrents_A,
-                                 std::span<const double> copies, double current_A,
-                                 std::span<JunctionState> states) const;
-
-  DiodeVoltage exact(double dark_A) const;
   void tabulate(double sign, int octaves);
   Piece fit(double sign, double low_s, double high_s) const;
   bool good(const Piece& piece, double sign, double low_s, double high_s) const;
 
-  CellCurve curve_;
   double origin_A_;  // j₀: a power of two near the current scale of D at zero voltage
   uint64_t first_bin_;
   double largest_slope_ohm_;
@@ -103,5 +77,39 @@ class DiodeVoltageTable {
   std::vector<Piece> pieces_;
   std::vector<uint32_t> piece_of_bin_;  // forwards, then backwards
 };
+
+inline QuadVoltage DiodeVoltageTable::quad_at_dark(Quad dark_A) const {
+  const QuadBits sign_bit = QuadBits{} + INT64_MIN, bins = QuadBits{} + static_cast<int64_t>(bins_);
+  const QuadBits sign = bits_of(dark_A) & sign_bit;
+  const Quad s = reinterpret_cast<Quad>(bits_of(dark_A) ^ sign) + origin_A_;
+  const QuadBits bin = reinterpret_cast<QuadBits>(reinterpret_cast<QuadWords>(s) >> bin_shift) -
+                       static_cast<int64_t>(first_bin_);
+  const QuadBits outside = bin >= bins;
+  const QuadBits place = (bin + ((sign == sign_bit) & bins)) & ~outside;
+  // A piece is eight numbers in a row: start, 1/width and the six coefficients.
+  const auto piece = [&](size_t lane) {
+    return &pieces_[piece_of_bin_[static_cast<size_t>(place[lane])]].start_A;
+  };
+  const double *p0 = piece(0), *p1 = piece(1), *p2 = piece(2), *p3 = piece(3);
+  const auto [start_A, per_A, c0, c1] =
+      transposed(quad_at(p0), quad_at(p1), quad_at(p2), quad_at(p3));
+  const auto [c2, c3, c4, c5] =
+      transposed(quad_at(p0 + 4), quad_at(p1 + 4), quad_at(p2 + 4), quad_at(p3 + 4));
+  const Quad t = (s - start_A) * per_A;
+  Quad value = c5, first{}, second{}, third{};
+  const auto horner = [&](Quad coefficient) {
+    third = multiply_add(third, t, second);
+    second = multiply_add(second, t, first);
+    first = multiply_add(first, t, value);
+    value = multiply_add(value, t, coefficient);
+  };
+  horner(c4);
+  horner(c3);
+  horner(c2);
+  horner(c1);
+  horner(c0);
+  const Quad scale = reinterpret_cast<Quad>(bits_of(per_A) ^ sign), scale2 = scale * scale;
+  return {value, scale * first, 2.0 * scale2 * second, 6.0 * scale2 * scale * third, outside};
+}
 
 }  // namespace photorque

@@ -9,7 +9,6 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "photovoltaics/fit/limits.h"
 #include "photovoltaics/fit/parts.h"
 
 namespace photorque {

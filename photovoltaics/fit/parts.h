@@ -1,8 +1,13 @@
-// What the fits of fit.h share.
+// What the fits of fit.h share; and what data say of a number that they do not determine: how
+// large, or how small, it is at most.
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "core/product.h"
 #include "inference/estimator/fit.h"
@@ -37,5 +42,43 @@ struct SweepEnds {
   double short_circuit_A = 0.0, open_circuit_V = 0.0;
 };
 SweepEnds sweep_ends(const IvSweep& sweep);
+
+// Beyond these parts of V_oc/I_sc no curve shows a resistance; fits stay within.
+constexpr double least_resistance_part = 1e-9;
+constexpr double most_resistance_part = 1e9;
+
+// Parameters of a fit that are logarithms of what vanishes in an ideal device: a series resistance,
+// or the conductance of a leak. Where the data exclude the lower bound of parameter `k` at 95 %
+// (one-sided), it is determined, and there is no limit. Otherwise the limit is where the profile of
+// χ² (all others fitted anew) has risen by 2.706 times the variance, the point that 5 % of a normal
+// distribution exceed (S. S. Wilks, Annals of Mathematical Statistics 9 (1938) 60); never past the
+// upper bound. `best`: the fit, whose parameters have finite bounds at k; `residuals`: what it
+// fitted; `variance` > 0: of a residual, 1 where residuals are over their noise.
+std::optional<double> upper_limit(const inference::Fit& best,
+                                  const inference::ResidualFunction& residuals, Eigen::Index k,
+                                  double variance);
+
+// Keeps logarithms of a series resistance and of a leak's conductance within those parts of
+// `ohm`, V_oc/I_sc of the device.
+void bound_resistances(double ohm, inference::Parameter& series, inference::Parameter& shunt);
+
+// Sets the limits of `diode` where the fit determines its resistances not.
+void limit_resistances(const inference::Fit& best, const inference::ResidualFunction& residuals,
+                       Eigen::Index series, Eigen::Index shunt, double variance,
+                       SingleDiode& diode);
+
+// A parameter's figure at a bound, and what it means that a fit ended there.
+struct NamedBound {
+  Eigen::Index parameter;
+  std::string key;       // of the figure, which is e^(sign · parameter)
+  double sign;           // 1 or −1
+  std::string at_least;  // what the parameter's lower bound means
+  std::string at_most;   // its upper one
+};
+std::vector<BoundReached> bounds_reached(const inference::Fit& best,
+                                         std::span<const NamedBound> named);
+
+// Those of the two resistances, as every fit here has them.
+std::vector<NamedBound> resistance_bounds(Eigen::Index series, Eigen::Index shunt);
 
 }  // namespace photorque

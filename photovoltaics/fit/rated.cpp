@@ -11,10 +11,10 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "photovoltaics/fit/limits.h"
 #include "photovoltaics/fit/parts.h"
 
 namespace photorque {
+namespace rated_points {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -273,8 +273,10 @@ double last_decimal(double number) {
 }
 
 }  // namespace
+}  // namespace rated_points
 
 RatedTolerance written_steps(std::span<const RatedPoint> points) {
+  using namespace rated_points;
   RatedTolerance steps{1.0, 1.0, 0.0};
   for (const RatedPoint& p : points) {
     for (const double i : {p.short_circuit_A, p.maximum_A}) {
@@ -289,6 +291,7 @@ RatedTolerance written_steps(std::span<const RatedPoint> points) {
 
 RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureSlopes& slopes,
                           double ideality_guess_V, const RatedTolerance& tolerance) {
+  using namespace rated_points;
   check(points);
   const bool moves = std::ranges::any_of(
       points, [&](const RatedPoint& p) { return p.temperature_K != points[0].temperature_K; });
@@ -325,6 +328,7 @@ RatedFit fit_rated_points(std::span<const RatedPoint> points, const TemperatureS
 }
 
 RatedPoint RatedFit::predict(double irradiance_W_m2, double temperature_K) const {
+  using namespace rated_points;
   const CellCurve cell(parameters_at(model, 1.0, temperature_K));
   const double short_circuit_A =
       short_circuit_A_m2_W * irradiance_W_m2 * photocurrent_factor(model, temperature_K);

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "core/errors.h"
-#include "core/numerics/root.h"
-#include "photovoltaics/fit/limits.h"
 #include "photovoltaics/fit/parts.h"
 
 namespace photorque {
+namespace shaded_string {
 namespace {
 
 using Eigen::Index, Eigen::VectorXd;
@@ -18,43 +18,37 @@ using Eigen::Index, Eigen::VectorXd;
 // Logarithms of I₀, n V_t, R_s, 1/R_sh and the bypass diodes' drop; then of each photocurrent.
 enum Parameter { saturation, scale, series, shunt, drop, first_light };
 
-// V(I) of the string is explicit; I(V) is a search along it.
-class ShadedString {
- public:
-  explicit ShadedString(const VectorXd& x)
-      : cell_(single_diode(std::exp(x[saturation]), std::exp(x[scale]), std::exp(x[series]),
-                           std::exp(-x[shunt]))),
-        drop_V_(std::exp(x[drop])) {
-    for (Index k = first_light; k < x.size(); ++k) light_A_.push_back(std::exp(x[k]));
+// Cells in series, each with a bypass diode of its own.
+ArrayCurve string_curve(const CellParameters& cell, double bypass_drop_V,
+                        const std::vector<double>& light_A) {
+  ArrayWiring wiring{{{}}};
+  for (size_t k = 0; k < light_A.size(); ++k) {
+    ArrayWiring::Substring& substring = wiring.strings[0].substrings.emplace_back();
+    substring.rows = {{static_cast<int>(k)}};
+    substring.bypass.kind = Diode::Kind::clamp;
+    substring.bypass.drop_V = bypass_drop_V;
   }
+  return {wiring, CellTables(light_A.size(), diode_voltage_law(cell)), light_A};
+}
 
-  FunctionAt voltage(double current_A) const {
-    FunctionAt sum;
-    for (const double light : light_A_) {
-      const double diode_V = cell_.diode_voltage_V(light - current_A);
-      const double v = diode_V - current_A * cell_.parameters().series_ohm;
-      sum.value += std::max(v, -drop_V_);
-      if (v > -drop_V_) {
-        sum.slope -= 1.0 / cell_.dark(diode_V).slope_S + cell_.parameters().series_ohm;
-      }
-    }
-    return sum;
-  }
-  double current_A(double voltage_V, double guess_A) const {
-    const double max_A = 1.5 * *std::ranges::max_element(light_A_);
-    return falling_root(-max_A, max_A, guess_A, 1e-12, [&](double i) {
-      FunctionAt f = voltage(i);
-      f.value -= voltage_V;
-      if (f.slope == 0.0) f.slope = -1e-9;  // every substring bypassed
-      return f;
-    });
-  }
-
- private:
-  CellCurve cell_;
-  double drop_V_;
-  std::vector<double> light_A_;
-};
+// Current and slope of the string at each voltage.
+std::vector<ArrayCurve::SlopedPoint> string_points(const VectorXd& x,
+                                                   const std::vector<double>& voltage_V) {
+  std::vector<double> light_A;
+  for (Index k = first_light; k < x.size(); ++k) light_A.push_back(std::exp(x[k]));
+  const ArrayCurve curve = string_curve(single_diode(std::exp(x[saturation]), std::exp(x[scale]),
+                                                     std::exp(x[series]), std::exp(-x[shunt])),
+                                        std::exp(x[drop]), light_A);
+  std::vector<size_t> order(voltage_V.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::sort(order, {}, [&](size_t i) { return voltage_V[i]; });
+  std::vector<double> rising_V;
+  for (const size_t i : order) rising_V.push_back(voltage_V[i]);
+  const std::vector<ArrayCurve::SlopedPoint> rising = curve.at_voltages(rising_V);
+  std::vector<ArrayCurve::SlopedPoint> points(order.size());
+  for (size_t i = 0; i < order.size(); ++i) points[order[i]] = rising[i];
+  return points;
+}
 
 // The current in the middle of each substring's part of the voltage is about that substring's.
 VectorXd first_guess(const IvSweep& sweep, int substrings, double knee) {
@@ -123,12 +117,12 @@ VectorXd measured_slopes_S(const IvSweep& sweep) {
 }
 
 VectorXd fitted_slopes_S(const IvSweep& sweep, const VectorXd& x) {
-  const ShadedString string(x);
-  VectorXd slopes(static_cast<Index>(sweep.voltage_V.size()));
-  for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-    const double slope =
-        string.voltage(string.current_A(sweep.voltage_V[i], sweep.current_A[i])).slope;
-    slopes[static_cast<Index>(i)] = slope < 0.0 ? -1.0 / slope : 0.0;
+  // Where all substrings are bypassed there is none.
+  constexpr double steepest_S = 1e9;
+  const auto points = string_points(x, sweep.voltage_V);
+  VectorXd slopes(static_cast<Index>(points.size()));
+  for (size_t i = 0; i < points.size(); ++i) {
+    slopes[static_cast<Index>(i)] = points[i].slope_S < steepest_S ? points[i].slope_S : 0.0;
   }
   return slopes;
 }
@@ -140,12 +134,12 @@ VectorXd weighted_errors(const IvSweep& sweep, const SweepNoise& noise, double m
   const auto points = static_cast<Index>(sweep.voltage_V.size());
   VectorXd errors = VectorXd::Constant(points, std::numeric_limits<double>::infinity());
   if (!reasonable(x)) return errors;
-  const ShadedString string(x);
+  const auto curve = string_points(x, sweep.voltage_V);
   for (Index i = 0; i < points; ++i) {
     const double v = sweep.voltage_V[static_cast<size_t>(i)],
                  measured_A = sweep.current_A[static_cast<size_t>(i)];
     const double from_voltage_A = noise.voltage_fraction * std::abs(v) * slopes_S[i];
-    errors[i] = (measured_A - string.current_A(v, measured_A)) /
+    errors[i] = (measured_A - curve[static_cast<size_t>(i)].current_A) /
                 std::hypot(from_voltage_A, noise.current_fraction * max_A);
   }
   return errors;
@@ -189,8 +183,10 @@ StringFit best_fit(const IvSweep& sweep, int substrings, const SweepNoise& noise
 }
 
 }  // namespace
+}  // namespace shaded_string
 
 ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoise& noise) {
+  using namespace shaded_string;
   check_sweep(sweep);
   const auto parameters = static_cast<size_t>(first_light + substrings);
   if (substrings < 1 || sweep.voltage_V.size() <= parameters) {
@@ -215,11 +211,10 @@ ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoi
   limit_resistances(best, residuals, series, shunt, best.variance(), fit.substring);
   fit.bounds = bounds_reached(best, named_bounds(substrings));
   fit.bypass_drop_V = exponential(x[drop], error[drop]);
-  const ShadedString string(x);
+  const auto curve = string_points(x, sweep.voltage_V);
   double squares = 0.0;
   for (size_t i = 0; i < sweep.voltage_V.size(); ++i) {
-    const double apart =
-        string.current_A(sweep.voltage_V[i], sweep.current_A[i]) - sweep.current_A[i];
+    const double apart = curve[i].current_A - sweep.current_A[i];
     squares += apart * apart;
   }
   fit.rms_A = std::sqrt(squares / static_cast<double>(sweep.voltage_V.size()));
@@ -227,18 +222,10 @@ ShadedFit fit_shaded_string(const IvSweep& sweep, int substrings, const SweepNoi
 }
 
 ArrayCurve ShadedFit::curve(double temperature_K) const {
-  Diode bypass;
-  bypass.kind = Diode::Kind::clamp;
-  bypass.drop_V = bypass_drop_V.value;
-  const auto table = std::make_shared<const DiodeVoltageTable>(
-      CellCurve(substring.parameters(temperature_K)), 2.0 * photocurrents_A[0].value);
-  ArrayWiring wiring{{{}}};
   std::vector<double> light_A;
-  for (size_t k = 0; k < photocurrents_A.size(); ++k) {
-    wiring.strings[0].substrings.push_back({{{static_cast<int>(k)}}, bypass});
-    light_A.push_back(photocurrents_A[k].value);
-  }
-  return {wiring, CellTables(light_A.size(), table), light_A};
+  for (const Estimate& light : photocurrents_A) light_A.push_back(light.value);
+  return shaded_string::string_curve(substring.parameters(temperature_K), bypass_drop_V.value,
+                                     light_A);
 }
 
 }  // namespace photorque

@@ -39,18 +39,6 @@ void check(const ArrayWiring& wiring, size_t cells) {
   if (wiring.strings.empty()) throw InputError({}, "array", "no strings", "at least one");
 }
 
-// I(V) beyond a point of a string from its derivatives there: a straight line and an exponential,
-// as a shunt and a diode have it; to third order any curve.
-double extrapolated_A(const StringState& a, double voltage_V) {
-  const Slopes current = inverted(a.slopes());
-  const double h = voltage_V - a.voltage_V;
-  const double growth = current.curvature != 0.0 ? h * current.third / current.curvature : 0.0;
-  const double bend = std::abs(growth) > 1e-3 && std::abs(growth) < 30.0
-                          ? (std::expm1(growth) - growth) / (growth * growth)
-                          : 0.5 + growth / 6.0;
-  return a.current_A - h * (current.slope - h * current.curvature * bend);
-}
-
 // Between two points, from values and slopes.
 double hermite_A(const StringState& a, const StringState& b, double voltage_V) {
   const double width = b.voltage_V - a.voltage_V, t = (voltage_V - a.voltage_V) / width;
@@ -61,19 +49,40 @@ double hermite_A(const StringState& a, const StringState& b, double voltage_V) {
 
 }  // namespace
 
-ArrayCurve::ArrayCurve(const ArrayWiring& wiring, const CellTables& tables,
-                       const std::vector<double>& photocurrents_A)
-    : tables_(tables), cells_(photocurrents_A.size()) {
-  if (tables.size() != cells_) {
-    throw InputError({}, "array", std::to_string(tables.size()) + " cell tables",
+ArrayCurve::ArrayCurve(const ArrayWiring& wiring, CellTables tables,
+                       const std::vector<double>& photocurrents_A, const ArrayChanges& changes)
+    : tables_(std::move(tables)), cells_(photocurrents_A.size()), series_ohm_(changes.series_ohm) {
+  if (tables_.size() != cells_) {
+    throw InputError({}, "array", std::to_string(tables_.size()) + " cell tables",
                      "one per photocurrent");
   }
   check(wiring, cells_);
-  strings_.reserve(wiring.strings.size());
-  for (const auto& string : wiring.strings) strings_.emplace_back(string, tables, photocurrents_A);
+  add_strings(wiring, photocurrents_A, changes);
   if (!by_current()) group_strings();
   for (const StringCurve& string : strings_) switches_.push_back(switches_of(string));
   end_x_ = find_end_x();
+}
+
+void ArrayCurve::add_strings(const ArrayWiring& wiring, const std::vector<double>& photocurrents_A,
+                             const ArrayChanges& changes) {
+  const auto holds = [](const std::vector<bool>& all, size_t i) {
+    return i < all.size() && all[i];
+  };
+  strings_.reserve(wiring.strings.size());
+  size_t first = 0;  // substring of the string, over all strings
+  for (size_t s = 0; s < wiring.strings.size(); ++s) {
+    const ArrayWiring::String& string = wiring.strings[s];
+    if (!holds(changes.string_open, s)) {
+      strings_.emplace_back(string, tables_, photocurrents_A, changes.cell_offset_V,
+                            [&](size_t b) { return holds(changes.bypass_shorted, first + b); });
+      if (strings_.back().is_shorted()) {
+        strings_.pop_back();
+        is_shorted_ = is_shorted_ || string.blocking.kind == Diode::Kind::none;
+      }
+    }
+    first += string.substrings.size();
+  }
+  if (is_shorted_) strings_.clear();
 }
 
 void ArrayCurve::group_strings() {
@@ -88,11 +97,12 @@ void ArrayCurve::group_strings() {
 }
 
 ArrayPoint ArrayCurve::point(double x, double y) const {
-  return by_current() ? ArrayPoint{y, x} : ArrayPoint{x, y};
+  return by_current() ? ArrayPoint{y, x} : ArrayPoint{x - series_ohm_ * y, y};
 }
 
 ArrayCurve::Node ArrayCurve::make_node() const {
   Node node;
+  node.series_ohm = by_current() ? 0.0 : series_ohm_;
   node.strings.reserve(strings_.size());
   for (const StringCurve& string : strings_) node.strings.push_back(string.make_state());
   return node;
@@ -104,8 +114,8 @@ void ArrayCurve::evaluate(double x, const std::vector<StringRegime>& regimes, No
   if (by_current()) {
     StringState& state = node.strings[0];
     strings_[0].at_current(x, regimes[0], tolerance, state);
-    node.y = state.voltage_V;
-    node.slope = state.slope_ohm;
+    node.y = state.voltage_V - series_ohm_ * x;
+    node.slope = state.slope_ohm + series_ohm_;
     node.curvature = state.curvature_V_A2;
     node.third = state.third_V_A3;
     return;
@@ -146,7 +156,9 @@ ArrayCurve::CurrentGuess ArrayCurve::guess_current(size_t s, double x, Node& nod
     state.current_A = hermite_A(low->strings[s], high->strings[s], x);
     return {high->strings[s].current_A, low->strings[s].current_A};
   }
-  state.current_A = state.slope_ohm > 0.0 ? extrapolated_A(state, x) : strings_[s].first_guess_A();
+  const ElementPoint at{state.voltage_V, state.slope_ohm, state.curvature_V_A2, state.third_V_A3};
+  state.current_A =
+      state.slope_ohm > 0.0 ? extrapolated_A(at, state.current_A, x) : strings_[s].first_guess_A();
   return {0.0, strings_[s].largest_photocurrent_A()};
 }
 
@@ -189,21 +201,27 @@ ArrayCurve::Switches ArrayCurve::switches_of(const StringCurve& string) const {
 }
 
 std::vector<StringRegime> ArrayCurve::regimes_at(double x) const {
-  std::vector<StringRegime> regimes(strings_.size());
+  std::vector<StringRegime> regimes;
+  find_regimes(x, regimes);
+  return regimes;
+}
+
+void ArrayCurve::find_regimes(double x, std::vector<StringRegime>& regimes) const {
+  regimes.resize(strings_.size());
   for (size_t s = 0; s < strings_.size(); ++s) {
+    regimes[s].clamped.clear();
     for (const double clamp_x : switches_[s].clamp_x) {
       const bool clamped = clamp_x != never && (by_current() ? x >= clamp_x : x < clamp_x);
       regimes[s].clamped.push_back(clamped);
     }
     regimes[s].blocked = x >= switches_[s].blocked_x;
   }
-  return regimes;
 }
 
-double ArrayCurve::y_at(double x) const {
+ArrayCurve::Node ArrayCurve::node_at(double x) const {
   Node node = make_node();
   evaluate(x, regimes_at(x), node, fine);
-  return node.y;
+  return node;
 }
 
 double ArrayCurve::find_end_x() const {
@@ -239,11 +257,12 @@ double ArrayCurve::x_at(double y) const {
 }
 
 double ArrayCurve::current_A(double voltage_V) const {
-  return by_current() ? x_at(voltage_V) : y_at(voltage_V);
+  if (by_current()) return x_at(voltage_V);
+  return series_ohm_ == 0.0 ? y_at(voltage_V) : at_voltages({voltage_V}).front().current_A;
 }
 
 double ArrayCurve::voltage_V(double current_A) const {
-  return by_current() ? y_at(current_A) : x_at(current_A);
+  return by_current() ? y_at(current_A) : x_at(current_A) - series_ohm_ * current_A;
 }
 
 std::vector<double> ArrayCurve::edges() const {
@@ -265,8 +284,7 @@ ArrayCurve::Piece ArrayCurve::piece(double low_x, double high_x) const {
 CellStates ArrayCurve::cells_at(double voltage_V) const {
   CellStates states{std::vector<double>(cells_, 0.0), std::vector<double>(cells_, 0.0)};
   const double x = by_current() ? x_at(voltage_V) : voltage_V;
-  Node node = make_node();
-  evaluate(x, regimes_at(x), node, fine);
+  const Node node = node_at(x);
   for (size_t s = 0; s < strings_.size(); ++s) {
     strings_[s].cells_at(node.strings[s].current_A, states.voltages_V, states.currents_A);
   }

@@ -4,13 +4,16 @@
 // smooth function: one string is V(I), explicit through the cells' tables; several strings are
 // I(V), each string solved for its current. `x` is that independent variable, `y` the other one.
 //
-// Maxima of the power x·y are zeros of P′ = y − x·slope. At a breakpoint the slope falls, so P′
-// jumps upwards and no maximum lies there. Inside a piece, bounds on slope and curvature over an
-// interval follow from the diode voltages at its ends: with D‴ > 0 (true while n V_t ≪ |V_br|) D″
-// is monotone and D′ has its one minimum where D″ = 0; sums and reciprocals of such bounds cover
-// the network (cell/slope.h). An interval is halved until the bounds show that P′ has no
-// zero in it, or is monotone in it and so has at most one. All local maxima are found thereby and
-// none is missed.
+// A resistance R in series with the array adds to V(I) of one string; several strings keep x, the
+// voltage before it, and the power is y (x − R y).
+//
+// Maxima of the power are zeros of P′ = y − (x − 2 R y)·slope, without R of P′ = y − x·slope. At a
+// breakpoint the slope falls, so P′ jumps upwards and no maximum lies there. Inside a piece, bounds
+// on slope and curvature over an interval follow from the diode voltages at its ends: with D‴ > 0
+// (true while n V_t ≪ |V_br|) D″ is monotone and D′ has its one minimum where D″ = 0; sums and
+// reciprocals of such bounds cover the network (elements.h). An interval is halved until the
+// bounds show that P′ has no zero in it, or is monotone in it and so has at most one. All local
+// maxima are found thereby and none is missed.
 #pragma once
 
 #include <vector>
@@ -35,9 +38,9 @@ struct CellStates {
 class ArrayCurve {
  public:
   // `tables[i]` and `photocurrents_A[i]` (≥ 0) belong to cell i of the wiring; like cells share a
-  // table. Throws InputError for a wiring without cells or with a cell that is not there.
-  ArrayCurve(const ArrayWiring& wiring, const CellTables& tables,
-             const std::vector<double>& photocurrents_A);
+  // law. Throws InputError for a wiring without cells or with a cell that is not there.
+  ArrayCurve(const ArrayWiring& wiring, CellTables tables,
+             const std::vector<double>& photocurrents_A, const ArrayChanges& changes = {});
 
   double short_circuit_A() const { return by_current() ? end_x_ : current_A(0.0); }
   double open_circuit_V() const { return by_current() ? voltage_V(0.0) : end_x_; }
@@ -56,24 +59,56 @@ class ArrayCurve {
   struct Scan {
     std::vector<ArrayPoint> points;
     std::vector<ArrayPoint> maxima;
+    // Breakpoints without a maximum beside which the power is nearly level: a maximum has just
+    // vanished there, or appears with a little other light.
+    std::vector<ArrayPoint> corners;
   };
   Scan scan(int intervals) const;
   CellStates cells_at(double voltage_V) const;
 
+  // Current and −dI/dV ≥ 0 at rising voltages of any sign, beyond short and open circuit too.
+  struct SlopedPoint {
+    double voltage_V = 0.0, current_A = 0.0, slope_S = 0.0;
+  };
+  std::vector<SlopedPoint> at_voltages(const std::vector<double>& rising_V) const;
+  // Points from backwards to beyond the open circuit, some hundredth of voltage and current apart.
+  std::vector<ArrayPoint> trace() const;
+  // The point of the curve, beyond short and open circuit too, that is nearest to a reading in
+  // units of its errors (> 0). Among many readings the search starts from the nearest point of a
+  // trace().
+  SlopedPoint nearest(const ArrayPoint& reading, const ArrayPoint& error,
+                      const std::vector<ArrayPoint>& trace = {}) const;
+
+  // How much the current at a fixed voltage moves with the photocurrent of each cell.
+  std::vector<double> current_by_photocurrent(const ArrayPoint& at) const;
+  // How a maximum moves with the photocurrent of each cell.
+  struct MaximumMotion {
+    std::vector<double> voltage_ohm, current;  // ∂V/∂I_k, ∂I/∂I_k
+  };
+  MaximumMotion maximum_by_photocurrent(const ArrayPoint& maximum) const;
+
  private:
   struct Node {
     double x = 0.0, y = 0.0, slope = 0.0, curvature = 0.0, third = 0.0;
+    double series_ohm = 0.0;  // R where x is the voltage, else 0
     std::vector<StringState> strings;
     void sum_strings();
-    double power_slope() const { return y - x * slope; }
-    double power_curvature() const { return -2.0 * slope + x * curvature; }
-    double power_third() const { return 3.0 * curvature + x * third; }
+    double power_W() const { return (x - series_ohm * y) * y; }
+    double lever() const { return x - 2.0 * series_ohm * y; }
+    double power_slope() const { return y - lever() * slope; }
+    double power_curvature() const {
+      return -2.0 * slope - 2.0 * series_ohm * slope * slope + lever() * curvature;
+    }
+    double power_third() const {
+      return (3.0 + 6.0 * series_ohm * slope) * curvature + lever() * third;
+    }
   };
   struct Piece {
     double low_x = 0.0, high_x = 0.0;
     std::vector<StringRegime> regimes;
   };
   class Search;
+  class Probe;
 
   // Where a string's ideal diodes begin to conduct or block, in terms of x.
   struct Switches {
@@ -93,15 +128,27 @@ class ArrayCurve {
   };
   CurrentGuess guess_current(size_t s, double x, Node& node, const Node* low,
                              const Node* high) const;
+  void add_strings(const ArrayWiring& wiring, const std::vector<double>& photocurrents_A,
+                   const ArrayChanges& changes);
   void group_strings();
   // From the end of `last` to the beginning of `piece` after it: only strings whose diodes switch
   // there are evaluated again.
   void enter(const Piece& piece, const Piece& last, double tolerance, Node& node) const;
+  void find_regimes(double x, std::vector<StringRegime>& regimes) const;
   std::vector<StringRegime> regimes_at(double x) const;
   Switches switches_of(const StringCurve& string) const;
   double find_end_x() const;
-  double y_at(double x) const;
+  Node node_at(double x) const;
+  double y_at(double x) const { return node_at(x).y; }
   double x_at(double y) const;
+  double x_of(const ArrayPoint& point) const;
+  // Within which x the curve is defined.
+  double lowest_x() const;
+  // By the photocurrent of each cell at fixed voltage: of the current, and of −dI/dV.
+  struct Moved {
+    std::vector<double> current, slope_1_V;
+  };
+  Moved moved_by_photocurrents(const Node& node, const std::vector<StringRegime>& regimes) const;
   // The ends of the curve and its breakpoints between them, rising; pieces lie between neighbours,
   // and are made when they are needed: each has a word for every bypass diode.
   std::vector<double> edges() const;
@@ -114,7 +161,9 @@ class ArrayCurve {
   std::vector<size_t> singles_;     // the others
   std::vector<Switches> switches_;
   size_t cells_ = 0;
-  double end_x_ = 0.0;  // where y = 0
+  double series_ohm_ = 0.0;
+  bool is_shorted_ = false;  // by a string without voltage
+  double end_x_ = 0.0;       // where y = 0
 };
 
 }  // namespace photorque

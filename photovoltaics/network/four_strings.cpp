@@ -5,14 +5,15 @@
 #include <limits>
 
 #include "core/numerics/root.h"
-#include "photovoltaics/cell/table_quad.h"
+#include "photovoltaics/cell/table.h"
 
 namespace photorque {
 std::vector<FourStrings> FourStrings::groups(std::span<const StringCurve> strings) {
   std::vector<FourStrings> all;
   for (size_t s = 0; s < strings.size(); ++s) {
     const auto plain = strings[s].plain();
-    if (!plain) continue;
+    // Other laws are not evaluated in lanes.
+    if (!plain || dynamic_cast<const DiodeVoltageTable*>(plain->law) == nullptr) continue;
     auto group = std::ranges::find_if(
         all, [&](const FourStrings& g) { return g.count_ < 4 && g.fits(*plain); });
     if (group == all.end()) group = all.emplace(all.end());
@@ -23,7 +24,7 @@ std::vector<FourStrings> FourStrings::groups(std::span<const StringCurve> string
 }
 
 bool FourStrings::fits(const PlainString& string) const {
-  return string.table == table_ &&
+  return string.law == table_ &&
          (string.bypass->kind == Diode::Kind::junction) == bypass_junctions_ &&
          (string.blocking->kind == Diode::Kind::junction) == blocking_junctions_;
 }
@@ -31,7 +32,7 @@ bool FourStrings::fits(const PlainString& string) const {
 void FourStrings::add(size_t index, const StringCurve& curve, const PlainString& string) {
   const DiodeJunction &bypass = *string.bypass, &blocking = *string.blocking;
   if (count_ == 0) {
-    table_ = string.table;
+    table_ = static_cast<const DiodeVoltageTable*>(string.law);
     bypass_junctions_ = bypass.kind == Diode::Kind::junction;
     blocking_junctions_ = blocking.kind == Diode::Kind::junction;
     close_V_ = std::numeric_limits<double>::infinity();

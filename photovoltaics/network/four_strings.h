@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/numerics/quad.h"
+#include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/string.h"
 
 namespace photorque {

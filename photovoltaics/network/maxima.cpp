@@ -14,7 +14,7 @@ class ArrayCurve::Search {
   Search(const ArrayCurve& curve, int intervals) : curve_(curve), intervals_(intervals) {}
 
   Scan run() {
-    if (curve_.end_x_ == 0.0) return {{ArrayPoint{}}, {}};
+    if (curve_.end_x_ == 0.0) return {{ArrayPoint{}}, {}, {}};
     Node low = curve_.make_node(), high;
     const std::vector<double> edges = curve_.edges();
     Piece last;
@@ -33,6 +33,11 @@ class ArrayCurve::Search {
       curve_.evaluate(piece.high_x, piece.regimes, high, near);
       add_point(high);
       search(low, high, piece, 0);
+      if (high.power_slope() >= 0.0) {
+        if (k + 2 < edges.size()) add_corner(high);
+      } else if (low.power_slope() <= 0.0 && k > 0) {
+        add_corner(low);
+      }
       last = std::move(piece);
     }
     std::ranges::sort(scan_.points, {}, &ArrayPoint::voltage_V);
@@ -90,7 +95,7 @@ class ArrayCurve::Search {
   // Pieces from one edge to another, `low` being solved at the first: halves that may hold more
   // than the most power seen so far, the one that may hold more of it first.
   void search_for_largest(size_t from, size_t to, const Node& low) {
-    most_W_ = std::max(most_W_, low.x * low.y);
+    most_W_ = std::max(most_W_, low.power_W());
     if (to - from == 1) {
       const Piece piece = curve_.piece(edges_[from], edges_[to]);
       Node high = low;
@@ -107,7 +112,7 @@ class ArrayCurve::Search {
     const auto search_lower = [&] {
       if (lower_W >= enough * most_W_) search_for_largest(from, half, low);
     };
-    most_W_ = std::max(most_W_, middle.x * middle.y);
+    most_W_ = std::max(most_W_, middle.power_W());
     if (lower_W > upper_W) search_lower();
     if (upper_W >= enough * most_W_) search_for_largest(half, to, middle);
     if (lower_W <= upper_W) search_lower();
@@ -125,20 +130,26 @@ class ArrayCurve::Search {
     return sum;
   }
 
-  // P″ = −2 slope + x curvature.
+  // P″ = −2 slope − 2 R slope² + lever·curvature, the lever x − 2 R y rising with x.
   static Bounds power_curvature(const Node& low, const Node& high, const SlopeRange& r) {
-    return {-2.0 * r.slope_high + (r.curvature_low < 0 ? high.x : low.x) * r.curvature_low,
-            -2.0 * r.slope_low + (r.curvature_high > 0 ? high.x : low.x) * r.curvature_high};
+    const double R = low.series_ohm, from = low.lever(), to = high.lever();
+    const auto fall = [&](double slope) { return -2.0 * slope - 2.0 * R * slope * slope; };
+    const auto [least, most] = std::minmax({from * r.curvature_low, to * r.curvature_low,
+                                            from * r.curvature_high, to * r.curvature_high});
+    return {fall(r.slope_high) + least, fall(r.slope_low) + most};
   }
 
-  // P′ = y − x slope, directly and by the mean value theorem from either end.
+  // P′ = y − lever·slope, directly and by the mean value theorem from either end.
   static Bounds power_slope(const Node& low, const Node& high, const SlopeRange& r,
                             const Bounds& second) {
     const double width = high.x - low.x;
     const double from_low = low.power_slope(), from_high = high.power_slope();
-    return {std::max({high.y - high.x * r.slope_high, from_low + std::min(0.0, width * second.low),
+    const double from = low.lever(), to = high.lever();
+    return {std::max({high.y - to * (to > 0.0 ? r.slope_high : r.slope_low),
+                      from_low + std::min(0.0, width * second.low),
                       from_high - std::max(0.0, width * second.high)}),
-            std::min({low.y - low.x * r.slope_low, from_low + std::max(0.0, width * second.high),
+            std::min({low.y - from * (from > 0.0 ? r.slope_low : r.slope_high),
+                      from_low + std::max(0.0, width * second.high),
                       from_high - std::min(0.0, width * second.low)})};
   }
 
@@ -153,6 +164,13 @@ class ArrayCurve::Search {
     const double h = x - at.x;  // from the last trial
     const double y = at.y - h * (at.slope - h * (at.curvature / 2 + h * at.third / 6));
     scan_.maxima.push_back(curve_.point(x, y));
+  }
+
+  // By d ln P/d ln x: some thousandths of the light turn it round.
+  void add_corner(const Node& at) {
+    constexpr double nearly_level = 0.1;
+    if (std::abs(at.power_slope()) * at.x > nearly_level * at.power_W()) return;
+    scan_.corners.push_back(curve_.point(at.x, at.y));
   }
 
   void add_points_between(const Piece& piece, Node& at) {

@@ -8,7 +8,6 @@
 namespace photorque {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // Beyond this a junction carries nothing that double precision can see; keeps its cube finite.
 constexpr double max_ohm = 1e90;
 
@@ -17,7 +16,8 @@ constexpr double max_ohm = 1e90;
 std::optional<PlainString> StringCurve::plain() const {
   if (substrings_.size() != 1 || runs_.size() != 1 || !rows_.empty()) return std::nullopt;
   const Run& run = runs_[0];
-  return PlainString{run.table,
+  if (run.offset_V != 0.0) return std::nullopt;
+  return PlainString{run.law,
                      std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
                      std::span(copies_).subspan(run.first_cell, run.filled_cells),
                      run.series_ohm,
@@ -46,6 +46,15 @@ std::vector<double> StringCurve::clamp_currents_A() const {
   return currents;
 }
 
+double StringCurve::lowest_V() const {
+  double sum_V = -blocking_drop_V(0.0);
+  for (const Substring& s : substrings_) {
+    sum_V -= s.bypass.kind == Diode::Kind::clamp ? s.bypass.drop_V
+                                                 : std::numeric_limits<double>::infinity();
+  }
+  return sum_V;
+}
+
 double StringCurve::first_guess_A() const {
   double guess_A = largest_photocurrent_A_;
   for (const Substring& s : substrings_) guess_A = std::min(guess_A, s.clamp_A);
@@ -56,12 +65,12 @@ ElementPoint StringCurve::rows_at(const Substring& substring, double current_A,
                                   StringState& state) const {
   ElementPoint sum;
   for (const Run& run : runs_of(substring)) {
-    const DiodeVoltage v = run.table->series_at(
-        std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
-        std::span(copies_).subspan(run.first_cell, run.filled_cells), current_A,
-        std::span(state.cells).subspan(run.first_cell, run.filled_cells));
-    sum += {v.value_V - current_A * run.series_ohm, v.slope_ohm + run.series_ohm, v.curvature_V_A2,
-            -v.third_V_A3};
+    const DiodeVoltage v =
+        run.law->series_at(std::span(photocurrents_A_).subspan(run.first_cell, run.filled_cells),
+                           std::span(copies_).subspan(run.first_cell, run.filled_cells), current_A,
+                           std::span(state.cells).subspan(run.first_cell, run.filled_cells));
+    sum += {v.value_V + run.offset_V - current_A * run.series_ohm, v.slope_ohm + run.series_ohm,
+            v.curvature_V_A2, -v.third_V_A3};
   }
   for (const Row& row : rows_of(substring)) {
     sum += tied_cells_at(lit(row), current_A,
@@ -282,7 +291,7 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
   if (regime.blocked) {
     state.current_A = 0.0;
     state.voltage_V = voltage_V;
-    state.slope_ohm = infinity;
+    state.slope_ohm = std::numeric_limits<double>::infinity();
     state.curvature_V_A2 = state.third_V_A3 = 0.0;
     return;
   }
@@ -301,6 +310,17 @@ void StringCurve::at_voltage(double voltage_V, const StringRegime& regime, doubl
     return FunctionAt{excess, -state.slope_ohm, state.curvature_V_A2, state.third_V_A3,
                       close(excess)};
   };
+  if (voltage_V < 0.0) {
+    // More than any photocurrent: through shunts, breakdown and diodes.
+    constexpr double most_A = 1e6;
+    const double guess_A = state.current_A;
+    for (double step = 1e-3 * high_A + 1e-9; high_A < most_A && excess_V(high_A).value > 0.0;
+         step *= 4.0) {
+      low_A = high_A;
+      high_A += step;
+    }
+    state.current_A = guess_A;
+  }
   if (voltage_V > open_circuit_V_ && low_A >= 0.0) {
     // Fed backwards by the other strings.
     double step = 1e-3 * largest_photocurrent_A_ + 1e-9;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -10,18 +11,17 @@
 #include <vector>
 
 #include "core/numerics/root.h"
-#include "photovoltaics/network/junction.h"
-#include "photovoltaics/network/row.h"
+#include "photovoltaics/network/elements.h"
 #include "photovoltaics/network/wiring.h"
 
 namespace photorque {
 
-using CellTables = std::vector<std::shared_ptr<const DiodeVoltageTable>>;
+using CellTables = std::vector<std::shared_ptr<const DiodeVoltageLaw>>;
 
-// A string of cells of one table in series, with one bypass diode over all of them at most.
+// A string of cells of one law in series, with one bypass diode over all of them at most.
 struct PlainString {
-  const DiodeVoltageTable* table = nullptr;
-  std::span<const double> photocurrents_A, copies;  // filled up to DiodeVoltageTable::lanes
+  const DiodeVoltageLaw* law = nullptr;
+  std::span<const double> photocurrents_A, copies;  // filled up to DiodeVoltageLaw::lanes
   double series_ohm = 0.0;                          // of all cells
   const DiodeJunction* bypass = nullptr;
   const DiodeJunction* blocking = nullptr;
@@ -59,11 +59,22 @@ struct StringRegime {
   bool operator==(const StringRegime&) const = default;
 };
 
+// How V, and its slope dV/dI, move with the photocurrent of a cell at fixed current.
+struct VoltageMotion {
+  size_t cell = 0;  // of the wiring
+  double voltage_ohm = 0.0, slope_V_A2 = 0.0;
+};
+
 class StringCurve {
  public:
-  // Points into the tables, which must live as long.
+  // Points into the tables, which must live as long. Adds `cell_offset_V` to the voltage of every
+  // cell; a substring for which is_shorted(its place in the string) is true has no voltage.
   StringCurve(const ArrayWiring::String& wiring, const CellTables& tables,
-              const std::vector<double>& photocurrents_A);
+              const std::vector<double>& photocurrents_A, double cell_offset_V,
+              const std::function<bool(size_t)>& is_shorted);
+
+  // Whether all substrings are shorted.
+  bool is_shorted() const { return substrings_.empty(); }
 
   // The regime at a current ≥ 0.
   StringRegime regime_at(double current_A) const;
@@ -75,6 +86,8 @@ class StringCurve {
   double first_guess_A() const;
   // The voltage at no current behind the blocking diode's drop: above it a clamping diode blocks.
   double open_circuit_V() const { return open_circuit_V_; }
+  // What V does not fall below at any current; −∞ unless clamping diodes bypass all cells.
+  double lowest_V() const;
   bool has_blocking_clamp() const { return blocking_.kind == Diode::Kind::clamp; }
   // Nothing for other strings. Points into this.
   std::optional<PlainString> plain() const;
@@ -92,6 +105,11 @@ class StringCurve {
   void at_voltage(double voltage_V, const StringRegime& regime, double low_A, double high_A,
                   double tolerance, StringState& state) const;
 
+  // Of each cell whose substring is not clamped, from a state whose cells were evaluated within a
+  // small tolerance.
+  std::vector<VoltageMotion> voltage_motions(const StringState& state,
+                                             const StringRegime& regime) const;
+
   // Bounds on I(V) between two states; `high_i` at the higher current.
   SlopeRange conductance_range(const StringState& low_i, const StringState& high_i,
                                const StringRegime& regime) const;
@@ -105,14 +123,14 @@ class StringCurve {
                 std::vector<double>& currents_A) const;
 
  private:
-  // Cells of a substring: first those in series, in runs of one table, then the rows of tied ones.
+  // Cells of a substring: first those in series, in runs of one law, then the rows of tied ones.
   struct Row {
     uint32_t first_cell, cells;
   };
-  // Filled up with cells of no copies to a multiple of DiodeVoltageTable::lanes.
+  // Filled up with cells of no copies to a multiple of DiodeVoltageLaw::lanes.
   struct Run {
-    const DiodeVoltageTable* table;
-    double series_ohm;  // of all cells
+    const DiodeVoltageLaw* law;
+    double series_ohm, offset_V;  // of all cells
     uint32_t first_cell, cells, filled_cells;
   };
   struct Substring {
@@ -177,6 +195,7 @@ class StringCurve {
   std::vector<Row> rows_;
   std::vector<Substring> substrings_;
   DiodeJunction blocking_;
+  double cell_offset_V_ = 0.0;
   double close_V_ = std::numeric_limits<double>::infinity();
   double largest_photocurrent_A_ = 0.0;
   double open_circuit_V_ = 0.0;

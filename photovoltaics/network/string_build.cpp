@@ -1,7 +1,6 @@
 // A StringCurve from its wiring: cells in runs, and where its diodes begin to conduct.
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "core/numerics/root.h"
@@ -10,10 +9,13 @@
 namespace photorque {
 
 StringCurve::StringCurve(const ArrayWiring::String& wiring, const CellTables& tables,
-                         const std::vector<double>& photocurrents_A)
-    : blocking_(wiring.blocking) {
+                         const std::vector<double>& photocurrents_A, double cell_offset_V,
+                         const std::function<bool(size_t)>& is_shorted)
+    : blocking_(wiring.blocking), cell_offset_V_(cell_offset_V) {
   reserve(wiring);
-  for (const auto& substring : wiring.substrings) add_substring(substring, tables, photocurrents_A);
+  for (size_t s = 0; s < wiring.substrings.size(); ++s) {
+    if (!is_shorted(s)) add_substring(wiring.substrings[s], tables, photocurrents_A);
+  }
   for (const Substring& substring : substrings_) {
     largest_photocurrent_A_ = std::max(largest_photocurrent_A_, largest_A(substring));
   }
@@ -38,7 +40,7 @@ void StringCurve::reserve(const ArrayWiring::String& wiring) {
   size_t cells = 0;
   for (const auto& substring : wiring.substrings) {
     for (const auto& row : substring.rows) cells += row.size();
-    cells += DiodeVoltageTable::lanes;
+    cells += DiodeVoltageLaw::lanes;
   }
   cells_.reserve(cells);
   photocurrents_A_.reserve(cells);
@@ -51,8 +53,8 @@ void StringCurve::reserve(const ArrayWiring::String& wiring) {
 void StringCurve::add_cell(int cell, const CellTables& tables,
                            const std::vector<double>& photocurrents_A) {
   const auto i = static_cast<size_t>(cell);
-  cells_.push_back(
-      {tables[i].get(), photocurrents_A[i], tables[i]->curve().parameters().series_ohm});
+  cells_.push_back({tables[i].get(), photocurrents_A[i], tables[i]->curve().parameters().series_ohm,
+                    1.0, cell_offset_V_});
   photocurrents_A_.push_back(photocurrents_A[i]);
   close_V_ = std::min(close_V_, 0.1 * tables[i]->curve().min_scale_V());
   copies_.push_back(1.0);
@@ -60,21 +62,25 @@ void StringCurve::add_cell(int cell, const CellTables& tables,
   wired_.push_back(cell);
 }
 
-// Cells of one table stand next to each other; like cells under the same light become one.
+// Cells of one law stand next to each other; like cells under the same light become one.
 void StringCurve::add_series(std::vector<int> cells, const CellTables& tables,
                              const std::vector<double>& photocurrents_A) {
-  const auto table = [&](int cell) { return tables[static_cast<size_t>(cell)].get(); };
-  // Tables in the order in which the string meets them, which no address in memory changes.
-  std::map<const DiodeVoltageTable*, size_t> place;
-  for (const int cell : cells) place.emplace(table(cell), place.size());
+  const auto law = [&](int cell) { return tables[static_cast<size_t>(cell)].get(); };
+  // In the order in which the string meets them, which no address in memory changes.
+  std::vector<const DiodeVoltageLaw*> laws;
+  for (const int cell : cells) {
+    if (std::ranges::find(laws, law(cell)) == laws.end()) laws.push_back(law(cell));
+  }
   const auto light_A = [&](int cell) { return photocurrents_A[static_cast<size_t>(cell)]; };
   std::ranges::stable_sort(cells, [&](int a, int b) {
-    if (table(a) != table(b)) return place.at(table(a)) < place.at(table(b));
+    if (law(a) != law(b)) {
+      return std::ranges::find(laws, law(a)) < std::ranges::find(laws, law(b));
+    }
     return light_A(a) < light_A(b);
   });
   for (size_t first = 0, end = 0; first < cells.size(); first = end) {
-    Run run{table(cells[first]), 0.0, static_cast<uint32_t>(cells_.size()), 0, 0};
-    for (; end < cells.size() && table(cells[end]) == run.table; ++end) {
+    Run run{law(cells[first]), 0.0, 0.0, static_cast<uint32_t>(cells_.size()), 0, 0};
+    for (; end < cells.size() && law(cells[end]) == run.law; ++end) {
       if (end > first && light_A(cells[end]) == light_A(cells[end - 1])) {
         cells_.back().copies += 1.0;
         copies_.back() += 1.0;
@@ -83,9 +89,10 @@ void StringCurve::add_series(std::vector<int> cells, const CellTables& tables,
         add_cell(cells[end], tables, photocurrents_A);
       }
       run.series_ohm += cells_.back().series_ohm;
+      run.offset_V += cell_offset_V_;
     }
     run.cells = static_cast<uint32_t>(cells_.size()) - run.first_cell;
-    while ((cells_.size() - run.first_cell) % DiodeVoltageTable::lanes != 0) {
+    while ((cells_.size() - run.first_cell) % DiodeVoltageLaw::lanes != 0) {
       add_cell(cells[end - 1], tables, photocurrents_A);
       copies_.back() = 0.0;
     }

@@ -35,4 +35,13 @@ struct ArrayWiring {
   std::vector<String> strings;
 };
 
+// What differs from an array as it is wired.
+struct ArrayChanges {
+  double series_ohm = 0.0;     // ≥ 0, in series with the whole array
+  double cell_offset_V = 0.0;  // added to the voltage of every cell
+  // By string, and by substring over all strings in turn; may be empty.
+  std::vector<bool> string_open;     // carries no current
+  std::vector<bool> bypass_shorted;  // its cells give no voltage
+};
+
 }  // namespace photorque

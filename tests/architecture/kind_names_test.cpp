@@ -24,7 +24,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"diagnosis/report/charts.cpp", {"empirical_torque"}},
     {"diagnosis/report/json.cpp", {"empirical_torque"}},
     // What motion and light share is this very kind.
-    {"diagnosis/joint/together.cpp", {"gravity_tilt"}},
+    {"diagnosis/light/together.cpp", {"gravity_tilt"}},
     // Kinds of the same form, named by one of the two.
     {"attitude/disturbances/bearing/turbine_torque.cpp", {"room_draft"}},
     {"attitude/disturbances/mass/battery_discharge.cpp", {"mass_shift", "static_unbalance"}},

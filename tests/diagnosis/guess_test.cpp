@@ -16,7 +16,6 @@
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
-#include "diagnosis/guess/names.h"
 #include "scenes/experiment/toml.h"
 
 namespace photorque {

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "diagnosis/joint/together.h"
 #include "diagnosis/light/beliefs.h"
+#include "diagnosis/light/together.h"
 #include "scenes/experiment/experiment.h"
 #include "tests/diagnosis/named.h"
 #include "tests/diagnosis/rigid_body_recording.h"

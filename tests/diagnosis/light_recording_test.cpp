@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "core/errors.h"
-#include "diagnosis/light/recordings/recording.h"
+#include "diagnosis/light/model/recording.h"
 
 namespace photorque {
 namespace {

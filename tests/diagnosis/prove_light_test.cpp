@@ -8,7 +8,7 @@
 
 #include "core/constants.h"
 #include "diagnosis/light/model/run.h"
-#include "diagnosis/light/written.h"
+#include "scenes/effects/stated.h"
 #include "scenes/experiment/experiment.h"
 #include "tools/proof/light/files.h"
 #include "tools/scoring/score.h"
@@ -94,7 +94,7 @@ void expect_agreement(const fs::path& folder, const char* experiment_file,
     if (file.path().extension() != ".gz") continue;
     const LightRun run(lab, read_light_recording(file.path(), {Quat::Identity(), 298.15}));
     seen.insert(run.recording().kind);
-    LightState state = written_state(lab);
+    LightState state = stated_effects(lab.experiment(), lab.parts());
     // The tracker of the recording held out is free.
     if (file.path().stem().stem().string().back() == '2') state.trapped.clear();
     const Eigen::VectorXd r =

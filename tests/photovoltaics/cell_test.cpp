@@ -16,8 +16,6 @@
 #include "core/numerics/random.h"
 #include "core/parallel.h"
 #include "ivcurves.h"
-#include "photovoltaics/cell/batch.h"
-#include "photovoltaics/cell/one_diode.h"
 #include "photovoltaics/cell/table.h"
 #include "reference.h"
 
@@ -62,9 +60,9 @@ TEST(PhotovoltaicCell, OneDiodeByTheOmegaFunctionSolvesItsEquation) {
       p.shunt_ohm = shunt_ohm;
       p.temperature_K = temperature_K;
       const CellCurve exact(p);
-      const OneDiode cell(p, exact.thermal_V());
+      const OneDiode cell(exact);
       for (double dark_A = -0.5; dark_A < 2.0; dark_A += 0.0137) {
-        const OneDiode::Point at = cell.at(dark_A);
+        const DiodeVoltage at = cell.at(dark_A), solved = solved_diode_voltage(exact, dark_A);
         const DarkCurrent d = exact.dark(at.value_V);
         const double scale_V = 1.2 * exact.thermal_V();
         EXPECT_NEAR(d.value_A, dark_A, 1e-11 * (d.slope_S * scale_V + std::abs(dark_A)));
@@ -72,6 +70,9 @@ TEST(PhotovoltaicCell, OneDiodeByTheOmegaFunctionSolvesItsEquation) {
         EXPECT_NEAR(at.curvature_V_A2, -d.curvature_A_V2 * std::pow(at.slope_ohm, 3),
                     1e-9 * scale_V * std::pow(at.slope_ohm * d.slope_S / scale_V, 2) *
                         std::pow(at.slope_ohm, 2));
+        EXPECT_NEAR(
+            at.third_V_A3, solved.third_V_A3,
+            1e-8 * (std::abs(solved.third_V_A3) + std::pow(at.slope_ohm, 3) / (scale_V * scale_V)));
       }
     }
   }
@@ -230,27 +231,6 @@ TEST(PhotovoltaicCell, MaximumIsOneOnRandomCells) {
       const double v = open_V * k / 40.0;
       ASSERT_LE(v * cell.current_A(light_A, v), best.power_W() * (1 + 1e-12)) << i;
     }
-  }
-}
-
-TEST(PhotovoltaicCell, BatchAgreesWithSingleCells) {
-  constexpr size_t count = 1003;  // not a multiple of any vector's width
-  std::vector<double> light, saturation, scale, series, shunt, v(count), i(count);
-  for (size_t k = 0; k < count; ++k) {
-    const auto [p, light_A] = random_cell(13, k);
-    light.push_back(k % 50 == 7 ? 0.0 : light_A);
-    saturation.push_back(p.saturation_1_A);
-    scale.push_back(p.ideality_1 * boltzmann_J_K * p.temperature_K / elementary_charge_C);
-    series.push_back(p.series_ohm);
-    shunt.push_back(1.0 / p.shunt_ohm);
-  }
-  maximum_power_points({light, saturation, scale, series, shunt}, v, i);
-  for (size_t k = 0; k < count; ++k) {
-    CellParameters p = random_cell(13, k).parameters;
-    p.saturation_2_A = p.breakdown_fraction = 0.0;
-    const CellOperatingPoint alone = CellCurve(p).maximum_power(light[k]);
-    EXPECT_NEAR(v[k] * i[k], alone.power_W(), 1e-13 * alone.power_W()) << k;
-    EXPECT_NEAR(v[k], alone.voltage_V, 1e-9 * alone.voltage_V) << k;
   }
 }
 

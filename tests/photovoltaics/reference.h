@@ -15,6 +15,7 @@
 
 #include "core/constants.h"
 #include "photovoltaics/array/design.h"
+#include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/curve.h"
 #include "tests/outside.h"
 

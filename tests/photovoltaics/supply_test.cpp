@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "photovoltaics/array/losses.h"
-#include "photovoltaics/supply/lamp_output.h"
 
 namespace photorque {
 namespace {

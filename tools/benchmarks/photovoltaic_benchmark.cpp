@@ -14,7 +14,7 @@
 
 #include "core/numerics/random.h"
 #include "photovoltaics/array/design.h"
-#include "photovoltaics/cell/batch.h"
+#include "photovoltaics/cell/table.h"
 #include "photovoltaics/network/curve.h"
 
 namespace photorque {
@@ -89,38 +89,6 @@ void hundred_cells(benchmark::State& state, const std::string& map, int strings,
   state.counters["maxima"] = static_cast<double>(maxima);
 }
 
-struct Batch {
-  std::vector<double> light_A, saturation_A, scale_V, series_ohm, shunt_S, voltage_V, current_A;
-};
-
-// Cells as a Monte Carlo over technologies and light would draw them.
-Batch make_batch(size_t count) {
-  Batch b;
-  for (size_t i = 0; i < count; ++i) {
-    const auto draw = [&](uint64_t d) { return unit_interval(hash_words(5, i, d)); };
-    b.light_A.push_back(0.05 + 9.0 * draw(0));
-    b.saturation_A.push_back(std::pow(10.0, -12.0 + 5.0 * draw(1)));
-    b.scale_V.push_back(0.0257 * (1.0 + 0.5 * draw(2)));
-    b.series_ohm.push_back(0.01 * draw(3));
-    b.shunt_S.push_back(std::pow(10.0, -4.0 + 3.0 * draw(4)));
-  }
-  b.voltage_V.resize(count);
-  b.current_A.resize(count);
-  return b;
-}
-
-void single_cells(benchmark::State& state) {
-  constexpr size_t count = 10000;
-  Batch b = make_batch(count);
-  const double start = user_s();
-  for (auto _ : state) {
-    maximum_power_points({b.light_A, b.saturation_A, b.scale_V, b.series_ohm, b.shunt_S},
-                         b.voltage_V, b.current_A);
-    benchmark::DoNotOptimize(b.voltage_V.data());
-  }
-  report(state, start, static_cast<double>(count));
-}
-
 void single_cell_alone(benchmark::State& state) {
   const CellCurve curve(cell());
   const double start = user_s();
@@ -142,7 +110,6 @@ void cell_table(benchmark::State& state) {
   report(state, start, 1.0);
 }
 
-BENCHMARK(single_cells);
 BENCHMARK(single_cell_alone);
 BENCHMARK(cell_table);
 

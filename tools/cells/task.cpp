@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
-#include "diagnosis/light/recordings/recording.h"
+#include "diagnosis/light/model/recording.h"
 
 namespace photorque {
 namespace {

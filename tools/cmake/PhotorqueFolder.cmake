@@ -30,12 +30,19 @@ function(photorque_unity target)
   target_compile_options(${target} PRIVATE -Wno-shadow)
 endfunction()
 
-# photorque_folder(NAME FILES ... [USES folder ...] [LINKS library ...] [ALONE files ...])
-#   One static library photorque_NAME for a top-level folder. USES names the folders it may include
-#   (public), LINKS the outside libraries that only this folder may see (private), ALONE the files
-#   that cannot be compiled together with others.
+# photorque_folder(NAME [FILES file ...] [WITHOUT file ...] [USES folder ...] [LINKS library ...] [ALONE file ...])
+#   One static library photorque_NAME for a top-level folder: FILES, or every source below the folder but
+#   those WITHOUT. USES names the folders it may include (public), LINKS the outside libraries that only
+#   this folder may see (private), ALONE the files that cannot be compiled together with others.
 function(photorque_folder name)
-  cmake_parse_arguments(arg "" "" "FILES;USES;LINKS;ALONE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "FILES;WITHOUT;USES;LINKS;ALONE" ${ARGN})
+  if(NOT arg_FILES)
+    file(GLOB_RECURSE arg_FILES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
+    if(arg_WITHOUT)
+      list(REMOVE_ITEM arg_FILES ${arg_WITHOUT})
+    endif()
+    list(APPEND arg_FILES ${${name}_REGISTRY})
+  endif()
   set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set(target photorque_${name})
   add_library(${target} STATIC ${arg_FILES})

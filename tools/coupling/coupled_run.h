@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "attitude/propagation/run.h"
-#include "photovoltaics/supply/lamp_output.h"
+#include "photovoltaics/supply/supply.h"
 #include "tools/coupling/light_model.h"
 
 namespace photorque {

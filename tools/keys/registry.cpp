@@ -13,7 +13,7 @@
 #include "attitude/recordings/keys.h"
 #include "attitude/studies/keys.h"
 #include "diagnosis/light/keys.h"
-#include "diagnosis/module/keys.h"
+#include "diagnosis/light/module/design.h"
 #include "scenes/experiment/keys.h"
 #include "tools/keys/tables.h"
 

@@ -11,6 +11,7 @@
 #include "diagnosis/light/apply.h"
 #include "images/writers/read_picture.h"
 #include "receivers/gather/bodies/wrench.h"
+#include "scenes/effects/stated.h"
 #include "sources/profiles/beam_shape.h"
 #include "tools/guards/memory.h"
 
@@ -43,7 +44,7 @@ Experiment read(const RunOptions& options) {
     LinearPicture picture = read_picture(bytes);
     return BaseColours{picture.width, picture.height, std::move(picture.rgb)};
   });
-  for (std::string& notice : apply_written_effects(experiment)) {
+  for (std::string& notice : apply_stated_effects(experiment)) {
     experiment.notices.push_back(std::move(notice));
   }
   add_notices_of_layers(experiment);

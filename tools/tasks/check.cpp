@@ -12,7 +12,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/light/model/lab.h"
-#include "diagnosis/module/design.h"
+#include "diagnosis/light/module/design.h"
 #include "scenes/experiment/toml.h"
 #include "tools/coupling/couple.h"
 #include "tools/keys/registry.h"

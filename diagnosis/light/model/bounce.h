@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "diagnosis/light/model/field.h"
+#include "diagnosis/light/model/illumination.h"
 
 namespace photorque {
 

@@ -101,8 +101,7 @@ void LightRun::place_cells() {
     }
     first_output_.push_back(sites_.outputs.size() - cells);
     auto& known = cells_at_[r.temperature_K[i]];
-    if (known) continue;
-    known = std::make_shared<const LitCells>(lab_->lit(r.temperature_K[i], 0.0, true));
+    if (known.empty()) known = lab_->cell_laws(r.temperature_K[i], 0.0, true);
   }
 }
 

@@ -11,14 +11,14 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "diagnosis/light/model/bounce.h"
-#include "diagnosis/light/model/field.h"
-#include "diagnosis/light/model/network.h"
-#include "diagnosis/light/recordings/recording.h"
+#include "diagnosis/light/model/illumination.h"
+#include "diagnosis/light/model/recording.h"
+#include "photovoltaics/network/curve.h"
 
 namespace photorque {
 
@@ -107,7 +107,8 @@ class LightRun {
   // Where each output is, and when.
   const std::vector<Circumstance>& circumstances() const { return circumstances_; }
   size_t output_of_row(size_t row) const { return first_output_[row]; }
-  LitNetwork network(const LightState& state, const std::vector<double>& signals, size_t row) const;
+  // The array under the light of a row.
+  ArrayCurve curve(const LightState& state, const std::vector<double>& signals, size_t row) const;
 
  private:
   bool is_scan() const { return recording_.kind == LightRecording::Kind::scan; }
@@ -127,13 +128,20 @@ class LightRun {
   void number_samples();
   bool is_trapped(const LightState& state, size_t row) const;
   // χ² of a reading about a maximum.
-  std::function<double(const LitNetwork::Maximum&)> off(size_t row) const;
+  double chi2_at(const ArrayPoint& maximum, size_t row) const;
+  // The maximum at which the tracker stands; none in the dark.
+  struct Held {
+    ArrayPoint at, highest;
+    bool is_corner = false;  // see ArrayCurve::Scan
+    bool is_highest = true, has_others = false;
+  };
+  std::optional<Held> held_maximum(const ArrayCurve& curve, bool is_trapped, size_t row) const;
   double current_law(const LightState& state, size_t row, double voltage_V) const;
   std::vector<double> photocurrents(const std::vector<double>& signals, size_t row) const;
 
   void choose_knots();
   LampField expanded(LampField field) const;
-  std::shared_ptr<const LitCells> cells_at(double temperature_K, double shunt_S) const;
+  CellTables cells_at(double temperature_K, double leak_S) const;
 
   // A row between some attitudes at which light is evaluated: places among the knots, weights.
   struct Between {
@@ -145,10 +153,10 @@ class LightRun {
   LightSites sites_;
   std::vector<std::shared_ptr<const WallExchange>> exchange_;  // with each wall
   std::vector<Between> between_;  // of runs, per row; empty: light is evaluated where it counts
-  std::map<double, std::shared_ptr<const LitCells>> cells_at_;  // of sweeps, by temperature
-  std::vector<size_t> first_output_;      // of each row; rows of one curve share theirs
-  std::vector<size_t> cell_of_point_;     // scans: whose rectangle a row lies in; else none
-  std::vector<double> irradiance_sigma_;  // scans, per row
+  std::map<double, CellTables> cells_at_;  // of sweeps, by temperature
+  std::vector<size_t> first_output_;       // of each row; rows of one curve share theirs
+  std::vector<size_t> cell_of_point_;      // scans: whose rectangle a row lies in; else none
+  std::vector<double> irradiance_sigma_;   // scans, per row
   int number_ = 0;
   double noise_factor_ = 1.0;
   double voltage_scale_V_ = 1.0, current_scale_A_ = 1.0;

@@ -6,47 +6,29 @@
 #include "diagnosis/light/model/run.h"
 
 namespace photorque {
-namespace {
-
-// Of the maxima, highest first, the one at which the tracker stands: the highest, or, where it is
-// trapped, the one from which the reading is least far. (One that the light has just taken away or
-// brought up may stand in the model's light and not in the true one, or the other way round: a
-// corner counts, and so does the highest.) `chi2` is that of a maximum.
-template <class Chi2>
-size_t held_maximum(const std::vector<LitNetwork::Maximum>& maxima, bool is_trapped,
-                    const Chi2& chi2) {
-  size_t nearest = 0;
-  for (size_t i = 1; is_trapped && i < maxima.size(); ++i) {
-    if (chi2(maxima[i]) < chi2(maxima[nearest])) nearest = i;
-  }
-  return nearest;
-}
-
-}  // namespace
-
 std::vector<double> LightRun::photocurrents(const std::vector<double>& signals, size_t row) const {
   const auto first = signals.begin() + static_cast<std::ptrdiff_t>(first_output_[row]);
   return {first, first + static_cast<std::ptrdiff_t>(lab_->cells().size())};
 }
 
-LitNetwork LightRun::network(const LightState& state, const std::vector<double>& signals,
-                             size_t row) const {
+ArrayCurve LightRun::curve(const LightState& state, const std::vector<double>& signals,
+                           size_t row) const {
   const ArrayDesign& design = lab_->design();
-  NetworkSettings settings;
   const double temperature_K = recording_.temperature_K[row];
-  settings.series_ohm = state.series_ohm;
-  settings.cell_offset_V =
+  ArrayChanges changes;
+  changes.series_ohm = state.series_ohm;
+  changes.cell_offset_V =
       state.voltage_V_per_K * (temperature_K - design.cell.reference.temperature_K);
-  settings.string_open = state.string_open;
-  settings.bypass_shorted = state.bypass_shorted;
-  return {design.wiring, cells_at(temperature_K, state.shunt_S), settings,
-          photocurrents(signals, row)};
+  changes.string_open = state.string_open;
+  changes.bypass_shorted = state.bypass_shorted;
+  return {design.wiring, cells_at(temperature_K, state.shunt_S), photocurrents(signals, row),
+          changes};
 }
 
-std::shared_ptr<const LitCells> LightRun::cells_at(double temperature_K, double shunt_S) const {
+CellTables LightRun::cells_at(double temperature_K, double leak_S) const {
   const auto known = cells_at_.find(temperature_K);
-  if (shunt_S == 0.0 && known != cells_at_.end()) return known->second;
-  return std::make_shared<const LitCells>(lab_->lit(temperature_K, shunt_S, false));
+  if (leak_S == 0.0 && known != cells_at_.end()) return known->second;
+  return lab_->cell_laws(temperature_K, leak_S, false);
 }
 
 bool LightRun::is_trapped(const LightState& state, size_t row) const {
@@ -56,14 +38,36 @@ bool LightRun::is_trapped(const LightState& state, size_t row) const {
   });
 }
 
-std::function<double(const LitNetwork::Maximum&)> LightRun::off(size_t row) const {
-  const double sigma_V = noise_factor_ * lab_->noise().voltage_V,
-               sigma_A = noise_factor_ * lab_->noise().current_A;
-  return [=, V = recording_.voltage_V[row],
-          I = recording_.current_A[row]](const LitNetwork::Maximum& m) {
-    const double v = (V - m.voltage_V) / sigma_V, i = (I - m.current_A) / sigma_A;
-    return v * v + i * i;
+double LightRun::chi2_at(const ArrayPoint& maximum, size_t row) const {
+  const double v = (recording_.voltage_V[row] - maximum.voltage_V) / lab_->noise().voltage_V,
+               i = (recording_.current_A[row] - maximum.current_A) / lab_->noise().current_A;
+  return (v * v + i * i) / (noise_factor_ * noise_factor_);
+}
+
+// The highest maximum, or, where the tracker is trapped, the one from which the reading is least
+// far. (One that the light has just taken away or brought up may stand in the model's light and not
+// in the true one, or the other way round: a corner counts, and so does the highest.)
+std::optional<LightRun::Held> LightRun::held_maximum(const ArrayCurve& curve, bool is_trapped,
+                                                     size_t row) const {
+  if (!is_trapped) {
+    const ArrayPoint highest = curve.maximum_power();
+    if (!(highest.power_W() > 0.0)) return std::nullopt;
+    return Held{highest, highest, false, true, false};
+  }
+  const ArrayCurve::Scan scan = curve.scan(1);
+  const auto by_power = [](const ArrayPoint& p) { return p.power_W(); };
+  const auto highest = std::ranges::max_element(scan.maxima, {}, by_power);
+  if (highest == scan.maxima.end()) return std::nullopt;
+  const bool has_others = scan.maxima.size() + scan.corners.size() > 1;
+  Held held{*highest, *highest, false, true, has_others};
+  const auto consider = [&](const std::vector<ArrayPoint>& points, bool are_corners) {
+    for (const ArrayPoint& p : points) {
+      if (chi2_at(p, row) < chi2_at(held.at, row)) held = {p, *highest, are_corners, false, true};
+    }
   };
+  consider(scan.maxima, false);
+  consider(scan.corners, true);
+  return held;
 }
 
 double LightRun::current_law(const LightState& state, size_t row, double voltage_V) const {
@@ -91,44 +95,43 @@ Eigen::VectorXd LightRun::residuals(const LightState& state, const std::vector<d
   if (slopes != nullptr) slopes->by_photocurrent.setZero(r.size(), cells);
   const double sigma_V = noise_factor_ * lab_->noise().voltage_V,
                sigma_A = noise_factor_ * lab_->noise().current_A;
-  std::optional<LitNetwork> network_of_row;
-  LitNetwork::Trace trace;
+  std::optional<ArrayCurve> curve_of_row;
+  std::vector<ArrayPoint> trace;
   size_t known = static_cast<size_t>(-1);
   Eigen::Index at = 0;
   for (size_t row = 0; row < rows(); ++row) {
     if (first_output_[row] != known) {
-      network_of_row.emplace(network(state, signals, row));
+      curve_of_row.emplace(curve(state, signals, row));
       known = first_output_[row];
-      if (!is_run()) trace = network_of_row->trace();
+      if (!is_run()) trace = curve_of_row->trace();
     }
     const double law_A = current_law(state, row, recording_.voltage_V[row]);
     const double V = recording_.voltage_V[row], I = recording_.current_A[row] - law_A;
     if (!holds_maximum()) {
-      const LitNetwork::Point p =
-          network_of_row->nearest(V, I, sigma_V, sigma_A, slopes != nullptr, trace);
+      const ArrayCurve::SlopedPoint p = curve_of_row->nearest({V, I}, {sigma_V, sigma_A}, trace);
       const double across = std::hypot(sigma_A, p.slope_S * sigma_V);
       const double off_V = (V - p.voltage_V) / sigma_V, off_A = (I - p.current_A) / sigma_A;
       const double side = (I - p.current_A) + p.slope_S * (V - p.voltage_V);
       r[at] = std::copysign(std::hypot(off_V, off_A), side);
-      for (Eigen::Index k = 0; slopes != nullptr && k < cells; ++k) {
-        slopes->by_photocurrent(at, k) =
-            -p.current_by_photocurrent[static_cast<size_t>(k)] / across;
+      if (slopes != nullptr) {
+        const std::vector<double> moved =
+            curve_of_row->current_by_photocurrent({p.voltage_V, p.current_A});
+        slopes->by_photocurrent.row(at) =
+            Eigen::Map<const Eigen::RowVectorXd>(moved.data(), cells) / -across;
       }
       ++at;
       continue;
     }
-    const bool trapped = is_trapped(state, row);
-    const std::vector<LitNetwork::Maximum> maxima = network_of_row->maxima(
-        trapped ? LitNetwork::Which::with_corners : LitNetwork::Which::highest, slopes != nullptr);
-    const bool dark = maxima.empty();
-    const LitNetwork::Maximum none;
-    const LitNetwork::Maximum& m = dark ? none : maxima[held_maximum(maxima, trapped, off(row))];
+    const std::optional<Held> held = held_maximum(*curve_of_row, is_trapped(state, row), row);
+    const ArrayPoint m = held ? held->at : ArrayPoint{};
     r[at] = (V - m.voltage_V) / sigma_V;
     r[at + 1] = (I - m.current_A) / sigma_A;
-    for (Eigen::Index k = 0; slopes != nullptr && !dark && k < cells; ++k) {
-      const auto c = static_cast<size_t>(k);
-      slopes->by_photocurrent(at, k) = -m.voltage_by_photocurrent[c] / sigma_V;
-      slopes->by_photocurrent(at + 1, k) = -m.current_by_photocurrent[c] / sigma_A;
+    if (slopes != nullptr && held && !held->is_corner) {
+      const ArrayCurve::MaximumMotion moved = curve_of_row->maximum_by_photocurrent(m);
+      slopes->by_photocurrent.row(at) =
+          Eigen::Map<const Eigen::RowVectorXd>(moved.voltage_ohm.data(), cells) / -sigma_V;
+      slopes->by_photocurrent.row(at + 1) =
+          Eigen::Map<const Eigen::RowVectorXd>(moved.current.data(), cells) / -sigma_A;
     }
     at += 2;
   }
@@ -164,11 +167,10 @@ std::vector<double> LightRun::gain_if_trapped(const LightState& state,
   // Of a reading at the highest: few of those may lie between the others.
   constexpr double loss = 10.0;
   for (size_t row = 0; row < rows(); ++row) {
-    const auto maxima = network(state, signals, row).maxima(LitNetwork::Which::with_corners, false);
-    if (maxima.size() < 2) continue;
-    const auto chi2 = off(row);
-    const size_t held = held_maximum(maxima, true, chi2);
-    gain[row] = held > 0 ? chi2(maxima[0]) - chi2(maxima[held]) : -loss;
+    const ArrayCurve array = curve(state, signals, row);
+    const std::optional<Held> held = held_maximum(array, true, row);
+    if (!held || !held->has_others) continue;
+    gain[row] = held->is_highest ? -loss : chi2_at(held->highest, row) - chi2_at(held->at, row);
   }
   return gain;
 }
@@ -182,21 +184,20 @@ std::vector<LightRun::Expected> LightRun::expected(const LightState& state) cons
       e.irradiance_W_m2 = signal[row];
       continue;
     }
-    const LitNetwork at = network(state, signal, row);
+    const ArrayCurve at = curve(state, signal, row);
     if (!holds_maximum()) {
       // The current at the measured voltage: an error of the current far above its own.
       constexpr double far = 1e6;
-      const auto p = at.nearest(recording_.voltage_V[row], recording_.current_A[row],
-                                lab_->noise().voltage_V, far * lab_->noise().current_A, false);
+      const auto p = at.nearest({recording_.voltage_V[row], recording_.current_A[row]},
+                                {lab_->noise().voltage_V, far * lab_->noise().current_A});
       e.voltage_V = recording_.voltage_V[row];
       e.current_A = p.current_A + current_law(state, row, e.voltage_V);
       continue;
     }
-    const auto maxima = at.maxima(LitNetwork::Which::with_corners, false);
-    if (maxima.empty()) continue;
-    const auto& m = maxima[held_maximum(maxima, is_trapped(state, row), off(row))];
-    e.voltage_V = m.voltage_V;
-    e.current_A = m.current_A + current_law(state, row, m.voltage_V);
+    const std::optional<Held> held = held_maximum(at, is_trapped(state, row), row);
+    if (!held) continue;
+    e.voltage_V = held->at.voltage_V;
+    e.current_A = held->at.current_A + current_law(state, row, held->at.voltage_V);
   }
   return result;
 }

@@ -1,7 +1,7 @@
 // Fuzz target: any bytes as a recording of light: a scan, a sweep or a run.
 #include <cmath>
 
-#include "diagnosis/light/recordings/recording.h"
+#include "diagnosis/light/model/recording.h"
 #include "tests/fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,0 +1,134 @@
+#include "diagnosis/light/candidate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photorque {
+namespace {
+
+void add_numbers(LightCandidate& c) {
+  for (size_t p = 0; p < c.kind.parameters.size(); ++p) {
+    const EffectParameter& e = c.kind.parameters[p];
+    for (size_t k = 0; k < e.count; ++k) {
+      const double start = e.starts.empty() ? 0.0 : e.starts.front();
+      c.numbers.push_back({p, start, e.scale, e.lowest, e.highest,
+                           e.step > 0.0 ? e.step : 0.02 * e.scale, e.is_strength && e.is_fitted,
+                           e.is_fitted});
+    }
+  }
+}
+
+size_t count_of(const LightLab& lab, LightEffectKind::Index index) {
+  switch (index) {
+    case LightEffectKind::Index::none:
+      return 1;
+    case LightEffectKind::Index::lamp:
+      return lab.lamps();
+    case LightEffectKind::Index::cell:
+      return lab.cells().size();
+    case LightEffectKind::Index::string:
+      return lab.parts().strings();
+    case LightEffectKind::Index::bypass:
+      return lab.parts().bypasses();
+    case LightEffectKind::Index::wall:
+      return lab.walls().size();
+    case LightEffectKind::Index::frame:
+      return 2;
+  }
+  return 0;
+}
+
+bool can_show(const LightEffectKind& kind, const std::vector<FittedRun>& runs) {
+  return std::ranges::any_of(runs, [&](const FittedRun& r) {
+    switch (r.run->recording().kind) {
+      case LightRecording::Kind::scan:
+        return kind.in_scans;
+      case LightRecording::Kind::sweep:
+        return kind.in_sweeps;
+      case LightRecording::Kind::run:
+        return kind.in_runs;
+    }
+    return false;
+  });
+}
+
+}  // namespace
+
+FittedRun prepared_run(LightRun run, const LightBelief& nominal) {
+  FittedRun result;
+  result.run = std::make_shared<const LightRun>(std::move(run));
+  // With the light by way of every wall, of which most trials have none.
+  LightState with_walls = nominal.state;
+  with_walls.walls.clear();
+  for (size_t w = 0; w < result.run->lab().walls().size(); ++w) {
+    with_walls.walls.push_back({w, 1.0, 1.0});
+  }
+  result.nominal = std::make_shared<const LightFields>(result.run->fields(with_walls, nullptr));
+  result.prior_slopes =
+      std::make_shared<const Eigen::MatrixXd>(slopes_by_priors(*result.run, nominal.uncertain));
+  return result;
+}
+
+FittedRun part_of(const FittedRun& whole, const std::vector<size_t>& rows,
+                  const LightBelief& nominal) {
+  // The knots of a run over time lie elsewhere among fewer rows.
+  const bool is_scan = whole.run->recording().kind == LightRecording::Kind::scan;
+  if (!is_scan) return prepared_run(whole.run->part(rows), nominal);
+  FittedRun result;
+  result.run = std::make_shared<const LightRun>(whole.run->part(rows));
+  result.nominal = std::make_shared<const LightFields>(LightRun::part(*whole.nominal, rows));
+  const std::vector<Eigen::Index> at(rows.begin(), rows.end());
+  result.prior_slopes =
+      std::make_shared<const Eigen::MatrixXd>((*whole.prior_slopes)(at, Eigen::all));
+  return result;
+}
+
+std::vector<double> LightCandidate::start() const {
+  std::vector<double> x;
+  for (const Number& n : numbers) x.push_back(n.start);
+  return x;
+}
+
+size_t LightCandidate::fitted() const {
+  return static_cast<size_t>(
+      std::ranges::count_if(numbers, [](const Number& n) { return n.is_fitted; }));
+}
+
+bool LightCandidate::has_strength() const {
+  return std::ranges::any_of(numbers, [](const Number& n) { return n.is_strength; });
+}
+
+bool LightCandidate::is_linear() const {
+  return std::ranges::all_of(numbers,
+                             [](const Number& n) { return n.is_strength || !n.is_fitted; });
+}
+
+LightCandidates light_candidates(const LightLab& lab, const LightBelief& nominal,
+                                 const std::vector<FittedRun>& runs, const Thresholds& limits) {
+  LightCandidates all{{}, limits, &lab, nominal};
+  for (const LightEffectKind& kind : all_light_effect_kinds()) {
+    if (!can_show(kind, runs)) continue;
+    // What is believed of the tilt already is a nuisance of every trial.
+    const bool is_believed = std::ranges::any_of(
+        nominal.uncertain, [&](const LightPrior& p) { return p.key.starts_with(kind.name + "."); });
+    if (is_believed) continue;
+    const size_t count = count_of(lab, kind.index);
+    // An interrupted only string, or a shorted only diode, leaves nothing to measure.
+    const bool is_only = count < 2 && (kind.index == LightEffectKind::Index::string);
+    for (size_t i = 0; i < count && !is_only; ++i) {
+      LightCandidate c{kind, i, kind.name, {}, {}};
+      const bool has_number =
+          kind.index != LightEffectKind::Index::none && kind.index != LightEffectKind::Index::frame;
+      if (has_number) c.label += "[" + std::to_string(i) + "]";
+      add_numbers(c);
+      all.list.push_back(std::move(c));
+    }
+  }
+  for (LightCandidate& c : empirical_light_candidates(runs)) {
+    add_numbers(c);
+    all.list.push_back(std::move(c));
+  }
+  return all;
+}
+
+}  // namespace photorque

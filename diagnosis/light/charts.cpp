@@ -1,0 +1,150 @@
+// What people see of a diagnosis: where on the array something was found, and readings of light and
+// power beside both models.
+#include <algorithm>
+
+#include "diagnosis/light/account.h"
+#include "scenes/effects/kind.h"
+
+namespace photorque {
+namespace {
+
+// Cells of one string, or of one bypass diode, by its number along the serpentine.
+std::vector<size_t> wired_cells(const ArrayWiring& wiring, bool of_string, size_t number) {
+  std::vector<size_t> cells;
+  size_t string = 0, bypass = 0;
+  for (const ArrayWiring::String& s : wiring.strings) {
+    for (const ArrayWiring::Substring& part : s.substrings) {
+      if ((of_string ? string : bypass) == number) {
+        for (const std::vector<int>& row : part.rows) {
+          cells.insert(cells.end(), row.begin(), row.end());
+        }
+      }
+      ++bypass;
+    }
+    ++string;
+  }
+  return cells;
+}
+
+// What the index of a kind counts.
+LightEffectKind::Index index_of(const std::string& kind) {
+  static const std::vector<LightEffectKind> kinds = all_light_effect_kinds();
+  const auto known = std::ranges::find(kinds, kind, &LightEffectKind::name);
+  return known == kinds.end() ? LightEffectKind::Index::none : known->index;
+}
+
+const std::vector<double>* found_numbers(const FoundEffect& effect, const std::string& key) {
+  const auto found = std::ranges::find(effect.parameters, key, &FittedParameter::key);
+  return found == effect.parameters.end() ? nullptr : &found->value;
+}
+
+}  // namespace
+
+std::optional<DrawnArray> drawn_array(const LightLab& lab,
+                                      const std::vector<FoundEffect>& effects) {
+  if (!lab.has_array() || effects.empty()) return std::nullopt;
+  DrawnArray array;
+  for (const LightCell& cell : lab.cells()) {
+    const CellRectangle& r = cell.rectangle;
+    array.cells.push_back({r.u_low, r.u_high, r.v_low, r.v_high});
+  }
+  for (const FoundEffect& effect : effects) {
+    const auto *u = found_numbers(effect, "u_m"), *v = found_numbers(effect, "v_m");
+    if (u != nullptr && v != nullptr && u->size() == 2 && v->size() == 2) {
+      array.shadows.push_back({(*u)[0], (*u)[1], (*v)[0], (*v)[1]});
+    }
+    const std::vector<double>* index = found_numbers(effect, "index");
+    if (index == nullptr) continue;
+    const auto number = static_cast<size_t>(index->front());
+    const LightEffectKind::Index of = index_of(effect.kind);
+    if (of == LightEffectKind::Index::cell) array.suspects.push_back(number);
+    const bool of_string = of == LightEffectKind::Index::string;
+    if (!of_string && of != LightEffectKind::Index::bypass) continue;
+    const std::vector<size_t> cells = wired_cells(lab.design().wiring, of_string, number);
+    array.suspects.insert(array.suspects.end(), cells.begin(), cells.end());
+  }
+  return array;
+}
+
+namespace {
+
+using Expected = std::vector<LightRun::Expected>;
+
+ChannelSeries channel_of(const LightRecording& r, const std::vector<double>& measured,
+                         const Expected& before, const Expected& after,
+                         double LightRun::Expected::*reading, double noise) {
+  ChannelSeries channel;
+  channel.time_s = r.time_s;
+  channel.measured = measured;
+  channel.noise = noise;
+  for (size_t i = 0; i < r.rows(); ++i) {
+    channel.before.push_back(before[i].*reading);
+    channel.after.push_back(after[i].*reading);
+    channel.residual_before.push_back(measured[i] - channel.before.back());
+    channel.residual_after.push_back(measured[i] - channel.after.back());
+  }
+  return channel;
+}
+
+void add_channels(const FittedRun& run, const Expected& before, const Expected& after,
+                  RecordingSeries& series) {
+  const LightRecording& r = run.run->recording();
+  const LightNoise& noise = run.run->lab().noise();
+  if (run.run->channels().size() > 1) {
+    ChannelSeries voltage =
+        channel_of(r, r.voltage_V, before, after, &LightRun::Expected::voltage_V, noise.voltage_V);
+    voltage.name = "array_voltage_V";
+    voltage.label = "Voltage of the array";
+    voltage.unit = voltage.residual_unit = "V";
+    series.channels.push_back(std::move(voltage));
+  }
+  ChannelSeries current =
+      channel_of(r, r.current_A, before, after, &LightRun::Expected::current_A, noise.current_A);
+  current.name = "array_current_A";
+  current.label = "Current of the array";
+  current.unit = current.residual_unit = "A";
+  series.channels.push_back(std::move(current));
+  series.attitude.time_s = r.time_s;
+  series.attitude.measured = r.lab_from_body;
+}
+
+LightSeries rows_of(const FittedRun& run, const Expected& before, const Expected& after) {
+  const LightRecording& r = run.run->recording();
+  const bool is_scan = r.kind == LightRecording::Kind::scan;
+  LightSeries rows;
+  rows.name = is_scan ? "irradiance_W_m2" : "current_A";
+  rows.u_m = r.u_m;
+  rows.v_m = r.v_m;
+  rows.voltage_V = r.voltage_V;
+  rows.sweep = r.sweep;
+  rows.lab_from_body = r.lab_from_body;
+  rows.measured = is_scan ? r.irradiance_W_m2 : r.current_A;
+  const auto reading =
+      is_scan ? &LightRun::Expected::irradiance_W_m2 : &LightRun::Expected::current_A;
+  for (size_t i = 0; i < r.rows(); ++i) {
+    rows.before.push_back(before[i].*reading);
+    rows.after.push_back(after[i].*reading);
+    rows.noise.push_back(is_scan ? run.run->row_noise(i) : run.run->lab().noise().current_A);
+  }
+  return rows;
+}
+
+}  // namespace
+
+RecordingSeries light_series(const LightAnswer& answer, const FittedRun& run, bool is_held_out) {
+  const LightRecording& r = run.run->recording();
+  const Expected before = run.run->expected(state_of(answer.trials.front(), answer.all)),
+                 after = run.run->expected(state_of(answer.chosen(), answer.all));
+  RecordingSeries series;
+  series.recording = r.name;
+  series.is_held_out = is_held_out;
+  if (r.kind == LightRecording::Kind::run) {
+    add_channels(run, before, after, series);
+    if (is_held_out) series.held_out_s = {{r.time_s.front(), r.time_s.back()}};
+  } else {
+    series.light = rows_of(run, before, after);
+  }
+  return series;
+}
+
+}  // namespace photorque

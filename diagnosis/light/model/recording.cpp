@@ -1,0 +1,335 @@
+#include "diagnosis/light/model/recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <unordered_set>
+
+#include "attitude/recordings/text_lines.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/numerics/random.h"
+#include "core/numerics/steady_stretches.h"
+#include "core/settings/settings.h"
+#include "core/text/parse.h"
+#include "core/transform.h"
+
+namespace photorque {
+namespace {
+
+constexpr double absent = std::numeric_limits<double>::quiet_NaN();
+
+// Where a column stands in a row, and what its unit is in SI.
+struct LightColumn {
+  size_t place = 0;
+  double to_SI = 1.0;
+};
+
+class LightHeader {
+ public:
+  explicit LightHeader(std::string_view line) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // as spreadsheets write it
+    for (std::string_view cell : cells_of(line)) {
+      if (cell.starts_with(byte_order_mark)) cell.remove_prefix(byte_order_mark.size());
+      if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
+        cell = cell.substr(1, cell.size() - 2);
+      }
+      // As some instruments write it.
+      if (cell == "V") cell = "voltage_V";
+      if (cell == "I") cell = "current_A";
+      const KeyUnit unit = unit_of_key(cell);
+      names_.emplace_back(cell);
+      units_.push_back(unit);
+    }
+  }
+  size_t columns() const { return names_.size(); }
+  const std::vector<std::string>& names() const { return names_; }
+
+  // By its name in SI, or in another unit of the same quantity.
+  std::optional<LightColumn> find(const std::string& name) const {
+    const KeyUnit wanted = unit_of_key(name);
+    for (size_t i = 0; i < names_.size(); ++i) {
+      if (names_[i] == name) return LightColumn{i, wanted.to_SI};
+    }
+    for (size_t i = 0; i < names_.size(); ++i) {
+      const bool same = !wanted.unit.empty() && units_[i].stem == wanted.stem &&
+                        units_[i].dimension == wanted.dimension;
+      if (same) return LightColumn{i, units_[i].to_SI};
+    }
+    return std::nullopt;
+  }
+  std::optional<LightRecording::Kind> kind() const {
+    if (find("u_m") && find("v_m") && find("irradiance_W_m2")) return LightRecording::Kind::scan;
+    if (find("t_s") && find("q_w") && find("array_voltage_V") && find("array_current_A")) {
+      return LightRecording::Kind::run;
+    }
+    if (find("voltage_V") && find("current_A")) return LightRecording::Kind::sweep;
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<KeyUnit> units_;
+};
+
+// The first line that is neither blank nor a comment.
+bool next_line(TextLines& lines, std::string_view& line) {
+  while (lines.next(line)) {
+    line = trimmed(line.substr(0, line.find('#')));
+    if (!line.empty()) return true;
+  }
+  return false;
+}
+
+// Preambles need not be comments: the header is the first line that names what a recording has.
+std::optional<LightHeader> find_header(TextLines& lines) {
+  constexpr int most = 200;
+  std::string_view line;
+  for (int i = 0; i < most && next_line(lines, line); ++i) {
+    LightHeader header(line);
+    if (header.kind()) return header;
+  }
+  return std::nullopt;
+}
+
+struct ColumnsOfLight {
+  std::optional<LightColumn> u, v, irradiance, voltage, current, time, q[4], tilt, heading,
+      temperature, sweep, lamps;
+};
+
+ColumnsOfLight columns_of(const LightHeader& header, LightRecording::Kind kind) {
+  const bool run = kind == LightRecording::Kind::run;
+  ColumnsOfLight c;
+  c.u = header.find("u_m");
+  c.v = header.find("v_m");
+  c.irradiance = header.find("irradiance_W_m2");
+  c.voltage = header.find(run ? "array_voltage_V" : "voltage_V");
+  c.current = header.find(run ? "array_current_A" : "current_A");
+  c.time = header.find("t_s");
+  const char* const names[] = {"q_w", "q_x", "q_y", "q_z"};
+  for (size_t k = 0; k < 4; ++k) c.q[k] = header.find(names[k]);
+  c.tilt = header.find("tilt_deg");
+  c.heading = header.find("heading_deg");
+  c.temperature = header.find("cell_temperature_K");
+  c.sweep = header.find("sweep");
+  if (run) c.lamps = header.find("led_current_A");
+  return c;
+}
+
+// An attitude of which a part is missing, or named otherwise, would pass for that of the
+// experiment.
+void require_whole_attitude(const LightHeader& header, const ColumnsOfLight& columns,
+                            const std::filesystem::path& path) {
+  if (columns.q[0] && columns.q[1] && columns.q[2] && columns.q[3]) return;
+  if (columns.tilt && columns.heading) return;
+  for (const std::string& name : header.names()) {
+    const bool is_attitude =
+        name.starts_with("tilt") || name.starts_with("heading") || name.starts_with("q_");
+    if (!is_attitude) continue;
+    throw InputError({path.string()}, "header", "the column " + name + " alone of an attitude",
+                     "tilt_deg and heading_deg, or q_w, q_x, q_y and q_z");
+  }
+}
+
+// One row of a file; each reader says why it is left out, or nothing.
+class RowReader {
+ public:
+  RowReader(const ColumnsOfLight& columns, const UsualCircumstances& usual, LightRecording& into)
+      : columns_(columns), usual_(usual), into_(into) {}
+
+  std::string add(const std::vector<std::string_view>& cells) {
+    cells_ = &cells;
+    if (into_.kind != LightRecording::Kind::run && !is_new()) return "repeated row";
+    const auto attitude = attitude_of_row();
+    if (!attitude) return "unreadable attitude";
+    const double temperature_K =
+        columns_.temperature ? value(columns_.temperature) : usual_.temperature_K;
+    if (into_.kind != LightRecording::Kind::scan && !(temperature_K > 0.0)) {
+      return "unreadable temperature";
+    }
+    if (into_.kind == LightRecording::Kind::scan) {
+      const double u = value(columns_.u), v = value(columns_.v), E = value(columns_.irradiance);
+      if (!std::isfinite(u) || !std::isfinite(v) || !std::isfinite(E)) return "unreadable number";
+      into_.u_m.push_back(u);
+      into_.v_m.push_back(v);
+      into_.irradiance_W_m2.push_back(E);
+    } else {
+      const double V = value(columns_.voltage), I = value(columns_.current);
+      if (!std::isfinite(V) || !std::isfinite(I)) return "unreadable number";
+      double time_s = 0.0;
+      if (into_.kind == LightRecording::Kind::run) {
+        time_s = value(columns_.time);
+        if (!std::isfinite(time_s)) return "row without time";
+        if (!into_.time_s.empty() && time_s == into_.time_s.back()) return "repeated time";
+        into_.time_s.push_back(time_s);
+        // Where a cell says nothing, what was before holds.
+        const double lamps = value(columns_.lamps);
+        const double before = into_.lamp_light.empty() ? 1.0 : into_.lamp_light.back();
+        into_.lamp_light.push_back(std::isfinite(lamps) ? std::max(0.0, lamps) : before);
+      } else {
+        const double sweep = columns_.sweep ? value(columns_.sweep) : 0.0;
+        constexpr double most = 1e9;  // what an int holds, and more than anybody measures
+        if (!(std::abs(sweep) <= most)) return "unreadable number";
+        into_.sweep.push_back(static_cast<int>(sweep));
+      }
+      into_.voltage_V.push_back(V);
+      into_.current_A.push_back(I);
+    }
+    into_.temperature_K.push_back(temperature_K);
+    into_.lab_from_body.push_back(*attitude);
+    return "";
+  }
+
+ private:
+  // Of readings that have noise, a second with all digits of the first is a copy of it.
+  bool is_new() {
+    uint64_t hash = 0;
+    for (const std::string_view cell : *cells_) {
+      hash = hash_words(hash, std::hash<std::string_view>()(cell), 0, 0);
+    }
+    return seen_.insert(hash).second;
+  }
+
+  double value(const std::optional<LightColumn>& column) const {
+    if (!column || column->place >= cells_->size()) return absent;
+    const auto number = number_in((*cells_)[column->place]);
+    return number ? *number * column->to_SI : absent;
+  }
+
+  std::optional<Quat> attitude_of_row() const {
+    if (columns_.q[0] && columns_.q[1] && columns_.q[2] && columns_.q[3]) {
+      const Quat q(value(columns_.q[0]), value(columns_.q[1]), value(columns_.q[2]),
+                   value(columns_.q[3]));
+      constexpr double off = 0.01;  // of its norm
+      if (!(std::abs(q.norm() - 1.0) < off)) return std::nullopt;
+      return q.normalized();
+    }
+    if (!columns_.tilt || !columns_.heading) return usual_.lab_from_body;
+    const double tilt = value(columns_.tilt), heading = value(columns_.heading);
+    if (!std::isfinite(tilt) || !std::isfinite(heading)) return std::nullopt;
+    return lab_from_body_at(tilt, heading).rotation;
+  }
+
+  const ColumnsOfLight& columns_;
+  const UsualCircumstances& usual_;
+  LightRecording& into_;
+  const std::vector<std::string_view>* cells_ = nullptr;
+  std::unordered_set<uint64_t> seen_;
+};
+
+// Steady stretches of the lamps' current by their means: its noise is none of the light's.
+void smooth_steady(std::vector<double>& lamps) {
+  if (lamps.size() < 3) return;
+  std::vector<double> steps;
+  for (size_t i = 1; i < lamps.size(); ++i) steps.push_back(std::abs(lamps[i] - lamps[i - 1]));
+  const auto middle = steps.begin() + static_cast<ptrdiff_t>((steps.size() - 1) / 2);
+  std::ranges::nth_element(steps, middle);
+  // The median of |difference of two readings| is 0.954 of their noise.
+  constexpr double median_of_noise = 0.954, beyond = 5.0, least_change = 0.01;
+  hold_means(lamps,
+             std::min(beyond * *middle / median_of_noise, least_change * std::ranges::max(lamps)));
+}
+
+// Currents of lamps over the largest. What hardly changes is noise of a constant one.
+void make_relative(std::vector<double>& lamps) {
+  constexpr double changes = 0.05;
+  if (lamps.empty()) return;
+  const auto [low, high] = std::ranges::minmax(lamps);
+  if (!(high > 0.0) || high - low < changes * high) {
+    lamps.clear();
+    return;
+  }
+  smooth_steady(lamps);
+  const double brightest = std::ranges::max(lamps);
+  for (double& current : lamps) current /= brightest;
+}
+
+}  // namespace
+
+LightRecording LightRecording::part(const std::vector<size_t>& rows) const {
+  const auto keep = [&](auto& column) {
+    if (column.empty()) return;
+    std::decay_t<decltype(column)> some;
+    some.reserve(rows.size());
+    for (const size_t row : rows) some.push_back(column[row]);
+    column = std::move(some);
+  };
+  LightRecording some = *this;
+  for (auto* column : {&some.u_m, &some.v_m, &some.irradiance_W_m2, &some.voltage_V,
+                       &some.current_A, &some.time_s, &some.temperature_K, &some.lamp_light}) {
+    keep(*column);
+  }
+  keep(some.lab_from_body);
+  keep(some.sweep);
+  return some;
+}
+
+std::optional<LightRecording::Kind> light_kind_of(const std::filesystem::path& path) {
+  try {
+    TextLines lines(path);
+    const std::optional<LightHeader> header = find_header(lines);
+    return header ? header->kind() : std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+bool is_light_recording(const std::filesystem::path& path) {
+  return light_kind_of(path).has_value();
+}
+
+LightRecording read_light_recording(const std::filesystem::path& path,
+                                    const UsualCircumstances& usual) {
+  TextLines lines(path);
+  const std::optional<LightHeader> header = find_header(lines);
+  if (!header) {
+    throw InputError({path.string()}, "header", "no line with the columns of a recording",
+                     "u_m,v_m,irradiance_W_m2 (a scan), voltage_V,current_A (a sweep) or "
+                     "t_s,q_w,q_x,q_y,q_z,array_voltage_V,array_current_A (a run)");
+  }
+  LightRecording recording;
+  recording.kind = *header->kind();
+  recording.name = path.string();
+  const ColumnsOfLight columns = columns_of(*header, recording.kind);
+  require_whole_attitude(*header, columns, path);
+  recording.has_temperatures = columns.temperature.has_value();
+  recording.has_attitudes = columns.q[0].has_value() || (columns.tilt && columns.heading);
+  RowReader reader(columns, usual, recording);
+  std::string_view line;
+  std::vector<std::string_view> cells;
+  const std::string wrong_length = "wrong number of cells";
+  int64_t of_wrong_length = 0;
+  int first_of_wrong_length = 0;
+  size_t cells_there = 0;
+  while (next_line(lines, line)) {
+    ++recording.rows_read;
+    split_cells(line, ',', cells);
+    const std::string reason = cells.size() == header->columns() ? reader.add(cells) : wrong_length;
+    if (reason == wrong_length && ++of_wrong_length == 1) {
+      first_of_wrong_length = static_cast<int>(lines.number());
+      cells_there = cells.size();
+    }
+    if (!reason.empty()) ++recording.rejected[reason];
+  }
+  // A few torn rows are left out; where most are, something else is wrong, such as decimal commas.
+  if (2 * of_wrong_length > recording.rows_read) {
+    throw InputError(
+        {path.string(), first_of_wrong_length}, "",
+        "a row of " + std::to_string(cells_there) + " cells",
+        std::to_string(header->columns()) + ", as in the header; numbers have a point, no comma");
+  }
+  if (recording.rows() == 0) {
+    throw InputError({path.string(), static_cast<int>(lines.number())}, "rows", "no usable row",
+                     "at least one row of numbers");
+  }
+  if (columns.lamps && !(std::ranges::max(recording.lamp_light) > 0.0)) {
+    throw InputError({path.string()}, "led_current_A", "no current in any row",
+                     "the current of the lamps that shone, or no such column");
+  }
+  make_relative(recording.lamp_light);
+  return recording;
+}
+
+}  // namespace photorque

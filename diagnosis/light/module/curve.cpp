@@ -1,0 +1,122 @@
+#include "diagnosis/light/module/curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "core/constants.h"
+#include "photovoltaics/cell/model.h"
+
+namespace photorque {
+namespace {
+
+constexpr double silicon_gap_eV = 1.121;
+
+// A fit may try numbers that no cell has; there it finds a bad curve and no error.
+CellParameters at_state(const ModuleCell& cell, const ModuleState& state) {
+  const double T = std::clamp(state.temperature_K, 100.0, 800.0), T0 = cell.temperature_K,
+               n = std::clamp(cell.ideality, 0.05, 50.0);
+  const double per_kelvin = silicon_gap_eV * elementary_charge_C / boltzmann_J_K / n;
+  CellParameters p;
+  p.temperature_K = T;
+  p.ideality_1 = n;
+  p.saturation_1_A = std::clamp(
+      cell.saturation_A * std::pow(T / T0, 3.0 / n) * std::exp(per_kelvin * (1.0 / T0 - 1.0 / T)),
+      1e-60, 1e3);
+  p.series_ohm = std::clamp(cell.series_ohm, 0.0, 1e6);
+  const double leak_S =
+      std::max(state.light, 1e-6) / std::max(cell.shunt_ohm, 1e-9) + state.shunt_S;
+  p.shunt_ohm = 1.0 / std::clamp(leak_S, 1e-12, 1e6);
+  return p;
+}
+
+std::shared_ptr<const DiodeVoltageLaw> part_of(CellParameters p, double fraction,
+                                               double resistance_ohm) {
+  p.saturation_1_A *= fraction;
+  p.series_ohm = p.series_ohm / fraction + resistance_ohm;
+  p.shunt_ohm /= fraction;
+  return diode_voltage_law(p);
+}
+
+// A module under construction.
+struct ModuleString {
+  int left = 0;  // cells like the others that no substring has yet
+  ArrayWiring wiring{{{}}};
+  CellTables laws;
+  std::vector<double> light_A;
+
+  int add_cell(const std::shared_ptr<const DiodeVoltageLaw>& law, double photocurrent_A) {
+    laws.push_back(law);
+    light_A.push_back(photocurrent_A);
+    return static_cast<int>(laws.size()) - 1;
+  }
+};
+
+}  // namespace
+
+ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
+                        const ModuleState& state) {
+  const CellParameters usual = at_state(cell, state);
+  const auto usual_law = diode_voltage_law(usual);
+  const double light_A = cell.photocurrent_A * state.light;
+  ModuleString module;
+  module.left = wiring.cells - state.bypassed;
+  // Changed cells, then as many of the others as their diode bypasses beside them.
+  struct Group {
+    ArrayWiring::Substring substring;
+    int cells;
+  };
+  std::vector<Group> groups;
+  const auto add = [&](int count, const auto& add_row) {
+    count = std::min(count, module.left);
+    if (count <= 0) return;
+    module.left -= count;
+    Group& group = groups.emplace_back(Group{{}, count});
+    for (int i = 0; i < count; ++i) group.substring.rows.push_back(add_row());
+  };
+  for (const auto& s : state.shaded) {
+    CellParameters p = usual;
+    p.breakdown_fraction = s.breakdown_fraction;
+    p.breakdown_V = s.breakdown_V;
+    p.breakdown_exponent = s.breakdown_exponent;
+    const auto law = diode_voltage_law(p);
+    add(s.count, [&] { return std::vector{module.add_cell(law, light_A * s.factor)}; });
+  }
+  for (const auto& s : state.shunted) {
+    const auto law = diode_voltage_law(with_leak(usual, s.shunt_S));
+    add(s.count, [&] { return std::vector{module.add_cell(law, light_A)}; });
+  }
+  for (const auto& c : state.cracked) {
+    // Two parts of one cell in parallel, one of them behind a resistance.
+    const auto law = part_of(usual, 1.0 - c.fraction, 0.0),
+               cut = part_of(usual, c.fraction, c.resistance_ohm);
+    add(c.count, [&] {
+      return std::vector{module.add_cell(law, light_A * (1.0 - c.fraction)),
+                         module.add_cell(cut, light_A * c.fraction)};
+    });
+  }
+  const auto add_usual = [&](int count, ArrayWiring::Substring& substring) {
+    for (int i = 0; i < count; ++i) substring.rows.push_back({module.add_cell(usual_law, light_A)});
+    module.left -= count;
+  };
+  std::vector<ArrayWiring::Substring>& substrings = module.wiring.strings[0].substrings;
+  for (Group& group : groups) {
+    if (wiring.bypass_every > 0) {
+      group.substring.bypass.kind = Diode::Kind::clamp;
+      group.substring.bypass.drop_V = wiring.bypass_drop_V;
+      add_usual(std::clamp(wiring.bypass_every - group.cells, 0, std::max(0, module.left)),
+                group.substring);
+    }
+    substrings.push_back(std::move(group.substring));
+  }
+  if (module.left > 0) add_usual(module.left, substrings.emplace_back());
+  ArrayChanges changes;
+  changes.series_ohm = state.series_ohm;
+  if (substrings.empty()) {
+    add_usual(1, substrings.emplace_back());
+    changes.bypass_shorted = {true};
+  }
+  return {module.wiring, std::move(module.laws), module.light_A, changes};
+}
+
+}  // namespace photorque

@@ -1,0 +1,61 @@
+// The current-voltage curve of a module of like cells in even light, some of which are not alike.
+//
+// The module is one string of photovoltaics/network, in which like cells under like light are
+// evaluated once. Temperature and light act on a cell of ideality n as
+//
+//   I₀(T) = I₀ (T/T₀)^(3/n) exp(E/(n k) (1/T₀ − 1/T)),   R_sh(S) = R_sh S₀/S,
+//
+// E the gap of silicon. Source: W. De Soto, S. A. Klein, W. A. Beckman, Solar Energy 80, 78 (2006),
+// eq. 12–15, here with the voltage of the junction over n in the exponent, so that the open-circuit
+// voltage tends to the gap at T = 0 whatever n is.
+#pragma once
+
+#include <vector>
+
+#include "photovoltaics/network/curve.h"
+
+namespace photorque {
+
+// One cell of the module at the reference's light and temperature.
+struct ModuleCell {
+  double photocurrent_A = 0.0, saturation_A = 0.0, ideality = 1.0, series_ohm = 0.0,
+         shunt_ohm = 1e4, temperature_K = 298.15;
+};
+
+// What acts on the module.
+struct ModuleState {
+  double light = 1.0;  // over the reference's
+  double temperature_K = 298.15;
+  double series_ohm = 0.0;  // more, of the whole module
+  double shunt_S = 0.0;     // more, across every cell
+  int bypassed = 0;         // cells whose bypass diode is shorted
+  struct Shaded {
+    int count = 0;
+    double factor = 1.0;  // of their light
+    double breakdown_fraction = 0.0, breakdown_V = -15.0, breakdown_exponent = 3.0;
+  };
+  std::vector<Shaded> shaded;
+  // A part of a cell's area that the rest reaches through a resistance alone.
+  struct Cracked {
+    int count = 0;
+    double fraction = 0.0, resistance_ohm = 0.0;
+  };
+  std::vector<Cracked> cracked;
+  struct Shunted {
+    int count = 0;
+    double shunt_S = 0.0;
+  };
+  std::vector<Shunted> shunted;
+};
+
+struct ModuleWiring {
+  int cells = 1;
+  int bypass_every = 0;  // 0: no diodes
+  double bypass_drop_V = 0.5;
+};
+
+// All changed cells of one kind are under one diode.
+ArrayCurve module_curve(const ModuleWiring& wiring, const ModuleCell& cell,
+                        const ModuleState& state);
+
+}  // namespace photorque

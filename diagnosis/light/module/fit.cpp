@@ -1,0 +1,132 @@
+#include "diagnosis/light/module/fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "inference/estimator/evidence.h"
+#include "inference/estimator/residual_model.h"
+
+namespace photorque {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+constexpr Index of_curve = 2, of_module = 5;
+
+struct Acting {
+  ModuleState state;
+  ModuleCell cell;
+};
+
+Acting acting(const ModuleDesign& design, const ModuleNominal& nominal, const ModuleHypothesis& h,
+              const VectorXd& x) {
+  Acting a;
+  a.state = design.acting;
+  a.cell = moved(nominal, x.segment<of_module>(of_curve));
+  a.state.light = std::exp(x[0]);
+  a.state.temperature_K =
+      design.temperature_K + design.warmer_K + design.temperature_sigma_K * x[1];
+  const Index first = of_curve + of_module;
+  h.act({x.data() + first, static_cast<size_t>(x.size() - first)}, a.state, a.cell);
+  a.state.temperature_K = std::clamp(a.state.temperature_K, 100.0, 800.0);
+  return a;
+}
+
+}  // namespace
+
+VectorXd ModuleFitter::residuals(const ModuleHypothesis& h, const VectorXd& x,
+                                 const ModuleRun& run) const {
+  const Acting a = acting(design_, nominal_, h, x);
+  const auto curve =
+      module_curve(wiring_of(design_), a.cell, a.state).at_voltages(run.sweep.voltage_V);
+  VectorXd r(static_cast<Index>(curve.size()));
+  for (size_t i = 0; i < curve.size(); ++i) {
+    const double sigma_A = std::hypot(run.sigma_A, curve[i].slope_S * nominal_.voltage_noise_V);
+    r[static_cast<Index>(i)] = (run.sweep.current_A[i] - curve[i].current_A) / sigma_A;
+  }
+  return r;
+}
+
+ModuleTrial ModuleFitter::fit_from(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
+                                   const std::vector<double>& own, const VectorXd* from) const {
+  inference::Parameters parameters;
+  for (const ModuleRun& run : runs) {
+    const double light = std::log(run.sweep.light);
+    parameters.of_run.push_back({{"light", "ln", light, light, 1.0, light - 5.0, light + 5.0},
+                                 {"temperature", "", 0.0, 0.0, 1.0, -20.0, 20.0}});
+  }
+  for (Index k = 0; k < of_module; ++k) {
+    parameters.shared.push_back({"module", "", from ? (*from)[k] : 0.0, 0.0, 1.0, -10.0, 10.0});
+  }
+  for (size_t k = 0; k < h.parameters.size(); ++k) {
+    inference::Parameter p = h.parameters[k];
+    p.value =
+        std::clamp(from ? (*from)[of_module + static_cast<Index>(k)] : own[k], p.lowest, p.highest);
+    parameters.shared.push_back(std::move(p));
+  }
+  const inference::ResidualModel model(parameters, [&](const VectorXd& x, Index run, VectorXd& r,
+                                                       MatrixXd* slopes) {
+    const ModuleRun& of = runs[static_cast<size_t>(run)];
+    r = residuals(h, x, of);
+    if (slopes == nullptr) return;
+    slopes->resize(r.size(), x.size());
+    for (Index k = 0; k < x.size(); ++k) {
+      // Away from a bound.
+      const Index shared = k - of_curve;
+      const double highest =
+          shared < 0 ? inference::infinity : parameters.shared[static_cast<size_t>(shared)].highest;
+      const double step = x[k] + 1e-5 < highest ? 1e-5 : -1e-5;
+      VectorXd by = x;
+      by[k] += step;
+      slopes->col(k) = (r - residuals(h, by, of)) / step;
+    }
+  });
+  inference::Options options;
+  options.max_iterations = 30;
+  ModuleTrial trial;
+  trial.fit = inference::fit(model, model.start(), options);
+  trial.shared = trial.fit.at.tail(of_module + static_cast<Index>(h.parameters.size()));
+  return trial;
+}
+
+ModuleTrial ModuleFitter::fit(const ModuleHypothesis& h, const std::vector<ModuleRun>& runs,
+                              const VectorXd* from) const {
+  std::vector<double> plain;
+  for (const inference::Parameter& p : h.parameters) plain.push_back(p.value);
+  std::vector<std::vector<double>> starts = h.starts;
+  if (starts.empty() || from != nullptr) starts = {plain};
+  ModuleTrial best;
+  for (const std::vector<double>& start : starts) {
+    ModuleTrial trial = fit_from(h, runs, start, from);
+    if (!(trial.fit.chi2 < best.fit.chi2) && best.fit.at.size() > 0) continue;
+    best = std::move(trial);
+  }
+  double evidence = inference::log_evidence(best.fit);
+  if (!std::isfinite(evidence)) evidence = -1e300;
+  if (h.is_empirical || !h.kind.empty()) {
+    evidence += h.is_empirical ? limits_.evidence.log_prior_empirical
+                               : limits_.evidence.log_prior_effect - std::log(h.alternatives);
+    // What cannot be negative has half of a Gaussian as its prior.
+    for (const inference::Parameter& p : h.parameters) {
+      if (p.mean == 0.0 && p.lowest == 0.0) evidence += std::log(2.0);
+    }
+  }
+  best.log_evidence = evidence;
+  if (!std::isfinite(best.fit.chi2)) best.objection = "cannot be evaluated";
+  return best;
+}
+
+VectorXd ModuleFitter::numbers_of(const ModuleTrial& trial, size_t run) {
+  VectorXd x(of_curve + trial.shared.size());
+  x << trial.fit.at.segment(of_curve * static_cast<Index>(run), of_curve), trial.shared;
+  return x;
+}
+
+std::vector<ArrayCurve::SlopedPoint> ModuleFitter::curve(
+    const ModuleHypothesis& h, const ModuleTrial& trial, size_t run,
+    const std::vector<double>& voltage_V) const {
+  const Acting a = acting(design_, nominal_, h, numbers_of(trial, run));
+  return module_curve(wiring_of(design_), a.cell, a.state).at_voltages(voltage_V);
+}
+
+}  // namespace photorque

@@ -1,0 +1,67 @@
+#include "diagnosis/light/module/design.h"
+
+#include "photovoltaics/fit/rated_keys.h"
+
+namespace photorque {
+namespace {
+
+constexpr int64_t most_cells = 10000;
+
+Key resistance_key(const std::string& what) {
+  return Key::number("resistance_ohm", Range::positive(), what);
+}
+
+Key count_key() {
+  return Key::integer_or("count", 1, 1, most_cells, "of the cells, at most all")
+      .range_that_varies();
+}
+
+}  // namespace
+
+Key module_table() {
+  return Key::table(
+      "module",
+      joined({{Key::integer("cells_in_series", 1, most_cells, "of the module"),
+               Key::integer_or("bypass_every", 0, 0, most_cells,
+                               "cells per bypass diode, at most all; 0: no diodes")
+                   .range_that_varies(),
+               Key::number_or("bypass_drop_V", 0.5, Range::positive(), "of a bypass diode"),
+               Key::other("reference_curve", Key::a_text | Key::an_array,
+                          "curves of the module as it was, one file or several; *or* "
+                          "`[[module.datasheet]]`")
+                   .optional(),
+               Key::tables("datasheet", rated_point_keys(), "the module as its maker rates it")},
+              rated_slope_keys(),
+              {Key::number("reference_temperature_K", {1.0, 1000.0}, "of the references")
+                   .usually_is("298.15, or the first of the datasheet"),
+               Key::uncertain("temperature_K", {1.0, 1000.0}, "of the curves that are diagnosed")
+                   .usually_is("as the references"),
+               Key::number_or("temperature_sigma_K", 2.0, Range::positive(),
+                              "how well temperatures are known"),
+               Key::number("current_noise_A", Range::positive(), "of a reading")
+                   .usually_is("found from second differences"),
+               Key::number_or("voltage_noise_V", 0.0, Range::not_negative(), "of a reading")}}),
+      "a module in sunlight, whose curves are diagnosed");
+}
+
+std::vector<Key::Choice> module_effects() {
+  return {{"cell_shaded",
+           "cells in the shade",
+           {count_key(), Key::number("factor", Range::fraction(), "of the light"),
+            Key::number_or("breakdown_fraction", 0.0, {0.0, 7.0}, "a of the reverse conduction"),
+            Key::number_or("breakdown_V", -15.0, {-1e308, 0.0, false, true}, "V_br of it"),
+            Key::number_or("breakdown_exponent", 3.0, {1.0, 1e3}, "m of it")}},
+          {"cell_cracked",
+           "cells of which a part is reached through a resistance alone",
+           {count_key(), Key::number("fraction", {0.0, 1.0, true, true}, "of the area"),
+            resistance_key("in front of that part")}},
+          {"cell_shunted", "a cell with a short cut", {resistance_key("beside the cell")}},
+          {"shunt", "short cuts in every cell", {resistance_key("beside every cell")}},
+          {"series_resistance", "a resistance in series", {resistance_key("of the module")}},
+          {"temperature",
+           "warmer or colder than stated",
+           {Key::number("change_K", {-150.0, 150.0}, "of all cells")}},
+          {"bypass_shorted", "a bypass diode that conducts always", {}}};
+}
+
+}  // namespace photorque

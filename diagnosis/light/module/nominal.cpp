@@ -1,0 +1,308 @@
+#include "diagnosis/light/module/nominal.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "inference/estimator/fit.h"
+#include "inference/estimator/residual_model.h"
+
+namespace photorque {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+double median(std::vector<double> values) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+ModuleCell cell_of(const VectorXd& logs, double temperature_K) {
+  return {std::exp(logs[0]), std::exp(logs[1]), std::exp(logs[2]),
+          std::exp(logs[3]), std::exp(logs[4]), temperature_K};
+}
+
+// From second differences, which a smooth curve hardly has.
+double noise_of(const std::vector<double>& current_A) {
+  std::vector<double> second;
+  for (size_t i = 2; i < current_A.size(); ++i) {
+    second.push_back(std::abs(current_A[i] - 2.0 * current_A[i - 1] + current_A[i - 2]));
+  }
+  constexpr double of_median = 0.6745;  // of a normal variable's standard deviation
+  return median(std::move(second)) / of_median / std::sqrt(6.0);
+}
+
+// Logarithms of one cell from the fit of a whole device.
+VectorXd logs_of(const SingleDiode& d, int cells, double temperature_K) {
+  const double thermal_V = boltzmann_J_K * temperature_K / elementary_charge_C;
+  VectorXd logs(5);
+  logs << std::log(d.photocurrent_A.value), std::log(d.saturation_A.value),
+      std::log(d.scale_V.value / (cells * thermal_V)),
+      std::log(std::max(d.series_ohm.value, 1e-6) / cells), std::log(d.shunt_ohm.value / cells);
+  return logs;
+}
+
+struct ReferenceFit {
+  inference::Fit fit;
+  std::vector<ModuleSweep> sweeps;
+  std::vector<VectorXd> residuals_A;
+};
+
+constexpr Index own = 2;  // of each curve: logarithm of its light, temperature off what is stated
+
+inference::Parameters reference_parameters(const ModuleDesign& design,
+                                           const std::vector<ModuleSweep>& sweeps) {
+  const ModuleSweep& first = sweeps.front();
+  const double scale_A = first.current_A.front();
+  const SweepFit start = fit_sweeps(std::vector<IvSweep>{{first.voltage_V, first.current_A}}, {});
+  const VectorXd logs = logs_of(start.diode, design.cells, design.reference_temperature_K);
+  inference::Parameters parameters;
+  const char* const names[] = {"photocurrent", "saturation", "ideality", "series", "shunt"};
+  // Bounds of what silicon and its contacts can be: a fit that ends there says so by its misfit.
+  const double low[] = {logs[0] - 1.0, logs[1] - 30.0, std::log(0.5), std::log(1e-6),
+                        std::log(1e-2)};
+  const double high[] = {logs[0] + 1.0, logs[1] + 30.0, std::log(4.0), std::log(1e2),
+                         std::log(1e7)};
+  for (size_t k = 0; k < 5; ++k) {
+    const double at = std::clamp(logs[static_cast<Index>(k)], low[k] + 1e-6, high[k] - 1e-6);
+    parameters.shared.push_back({names[k], "ln", at, at, inference::infinity, low[k], high[k]});
+  }
+  for (const ModuleSweep& sweep : sweeps) {
+    const bool is_first = &sweep == &first;
+    const double light = std::log(sweep.current_A.front() / scale_A);
+    parameters.of_run.push_back({{"light", "ln", light, light, is_first ? 1e-9 : 1.0, -20.0, 20.0},
+                                 {"temperature", "K", 0.0, 0.0,
+                                  is_first ? 1e-6 : design.temperature_sigma_K, -150.0, 150.0}});
+  }
+  return parameters;
+}
+
+ReferenceFit fit_references(const ModuleDesign& design) {
+  constexpr size_t most_points = 200;
+  ReferenceFit result;
+  for (const LightRecording& r : design.references) {
+    result.sweeps.push_back(module_sweep(r, design, most_points, nullptr));
+  }
+  const double scale_A = result.sweeps.front().current_A.front();
+  const inference::Parameters parameters = reference_parameters(design, result.sweeps);
+  const ModuleWiring wiring = wiring_of(design);
+  constexpr double of_scale = 1e-3;
+  const auto residuals = [&](const VectorXd& x, Index run) -> VectorXd {
+    const ModuleSweep& sweep = result.sweeps[static_cast<size_t>(run)];
+    ModuleState state;
+    state.light = std::exp(x[0]);
+    state.temperature_K = design.reference_temperature_K + x[1];
+    const auto curve =
+        module_curve(wiring, cell_of(x.tail(5), design.reference_temperature_K), state)
+            .at_voltages(sweep.voltage_V);
+    VectorXd r(static_cast<Index>(curve.size()));
+    for (size_t i = 0; i < curve.size(); ++i) {
+      r[static_cast<Index>(i)] = (sweep.current_A[i] - curve[i].current_A) / (of_scale * scale_A);
+    }
+    return r;
+  };
+  const inference::ResidualModel model(
+      parameters, [&](const VectorXd& x, Index run, VectorXd& r, MatrixXd* slopes) {
+        r = residuals(x, run);
+        if (slopes == nullptr) return;
+        slopes->resize(r.size(), x.size());
+        for (Index k = 0; k < x.size(); ++k) {
+          constexpr double step = 1e-5;
+          VectorXd high_x = x, low_x = x;
+          high_x[k] += step;
+          low_x[k] -= step;
+          slopes->col(k) = (residuals(low_x, run) - residuals(high_x, run)) / (2.0 * step);
+        }
+      });
+  inference::Options options;
+  options.max_iterations = 60;
+  result.fit = inference::fit(model, model.start(), options);
+  if (!std::isfinite(result.fit.chi2)) {
+    throw InputError({design.references.front().name}, "module.reference_curve",
+                     "a curve that no diode fits", "a current-voltage curve of a lit module");
+  }
+  for (size_t run = 0; run < result.sweeps.size(); ++run) {
+    VectorXd x(own + 5);
+    x << result.fit.at.segment(own * static_cast<Index>(run), own), result.fit.at.tail(5);
+    result.residuals_A.push_back(of_scale * scale_A * residuals(x, static_cast<Index>(run)));
+  }
+  return result;
+}
+
+// The distance in points over which residuals are alike, at least one.
+double correlation_points(const VectorXd& r) {
+  double sum = 1.0;
+  const double all = r.squaredNorm();
+  for (Index lag = 1; lag < r.size() / 3; ++lag) {
+    const double rho = r.head(r.size() - lag).dot(r.tail(r.size() - lag)) / all;
+    constexpr double none = 0.05;
+    if (rho < none) break;
+    sum += 2.0 * rho;
+  }
+  return sum;
+}
+
+// Of a covariance, cut to a factor of e where the curves leave something open.
+Eigen::Matrix<double, 5, 5> root_of(MatrixXd C) {
+  Eigen::Matrix<double, 5, 5> root = Eigen::Matrix<double, 5, 5>::Zero();
+  for (Index k = 0; k < 5; ++k) {
+    const double most = 1.0;
+    if (!(C(k, k) < most)) {
+      const double shrink = std::sqrt(most / C(k, k));
+      C.row(k) *= shrink;
+      C.col(k) *= shrink;
+    }
+  }
+  C.diagonal().array() += 1e-10;
+  const Eigen::LLT<MatrixXd> llt(C);
+  if (llt.info() == Eigen::Success) {
+    root = llt.matrixL();
+  } else {
+    root.diagonal() = C.diagonal().cwiseMax(0.0).cwiseSqrt();
+  }
+  return root;
+}
+
+double voltage_noise_of(const ModuleDesign& design, double open_V) {
+  constexpr double of_open_circuit = 1e-4;
+  return design.voltage_noise_V > 0.0 ? design.voltage_noise_V : of_open_circuit * open_V;
+}
+
+ModuleNominal nominal_of_datasheet(const ModuleDesign& design) {
+  ModuleNominal nominal;
+  const double guess_V =
+      1.2 * design.cells * boltzmann_J_K * design.reference_temperature_K / elementary_charge_C;
+  const RatedTolerance steps = written_steps(design.datasheet);
+  const RatedFit fit = fit_rated_points(design.datasheet, design.slopes, guess_V, steps);
+  nominal.cell = cell_of(logs_of(fit.diode, design.cells, design.reference_temperature_K),
+                         design.reference_temperature_K);
+  const SingleDiode& d = fit.diode;
+  const Estimate* of[] = {&d.photocurrent_A, &d.saturation_A, &d.scale_V, &d.series_ohm,
+                          &d.shunt_ohm};
+  // Modules of one kind differ among each other by some per cent, whatever the sheet says.
+  constexpr double alike = 0.02, most = 1.0;
+  for (Index k = 0; k < 5; ++k) {
+    const Estimate& e = *of[k];
+    nominal.root(k, k) = std::clamp(e.standard_error / e.value, alike, most);
+  }
+  const double open_V = design.datasheet.front().open_circuit_V;
+  constexpr double one_diode = 3e-3;
+  nominal.misfit = one_diode;
+  nominal.correlation_V = 0.1 * open_V;
+  nominal.voltage_noise_V = voltage_noise_of(design, open_V);
+  return nominal;
+}
+
+ModuleNominal nominal_of_references(const ModuleDesign& design) {
+  ModuleNominal nominal;
+  const ReferenceFit reference = fit_references(design);
+  nominal.cell = cell_of(reference.fit.at.tail(5), design.reference_temperature_K);
+  double squares = 0.0, points = 0.0, noise2 = 0.0, length_V = 0.0;
+  for (size_t run = 0; run < reference.sweeps.size(); ++run) {
+    const ModuleSweep& sweep = reference.sweeps[run];
+    const VectorXd& r = reference.residuals_A[run];
+    squares += r.squaredNorm() / std::pow(sweep.current_A.front(), 2);
+    points += static_cast<double>(r.size());
+    noise2 += std::pow(sweep.noise_A / sweep.current_A.front(), 2) * static_cast<double>(r.size());
+    const double step_V =
+        (sweep.voltage_V.back() - sweep.voltage_V.front()) / static_cast<double>(r.size() - 1);
+    length_V += correlation_points(r) * step_V / static_cast<double>(reference.sweeps.size());
+  }
+  const double freedom =
+      std::max(1.0, points - 5.0 - own * (static_cast<double>(reference.sweeps.size()) - 1.0));
+  nominal.misfit = std::sqrt(std::max(0.0, squares / freedom - noise2 / points));
+  nominal.correlation_V = length_V;
+  const double open_V = reference.sweeps.front().voltage_V.back();
+  nominal.voltage_noise_V = voltage_noise_of(design, open_V);
+  // The fit's errors, on the scatter that counts once in a length of correlation.
+  const double step_V = open_V / (points / static_cast<double>(reference.sweeps.size()));
+  const double repeated = std::max(1.0, length_V / step_V);
+  nominal.root = root_of(reference.fit.shared_posterior() * reference.fit.variance() * repeated);
+  return nominal;
+}
+
+}  // namespace
+
+ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& design,
+                         size_t max_rows, int64_t* dropped) {
+  std::vector<size_t> order(recording.rows());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(
+      order, [&](size_t a, size_t b) { return recording.voltage_V[a] < recording.voltage_V[b]; });
+  ModuleSweep all;
+  all.name = recording.name;
+  for (const size_t i : order) {
+    all.voltage_V.push_back(recording.voltage_V[i]);
+    all.current_A.push_back(recording.current_A[i]);
+  }
+  constexpr size_t fewest = 12;
+  const double largest_A = all.current_A.empty() ? 0.0 : std::ranges::max(all.current_A);
+  if (all.current_A.size() < fewest || !(largest_A > 0.0) || !(all.voltage_V.back() > 0.0)) {
+    throw InputError({recording.name}, "rows", std::to_string(all.current_A.size()) + " points",
+                     "a curve of at least 12 points with positive currents and voltages");
+  }
+  all.noise_A =
+      design.current_noise_A.value_or(std::max(noise_of(all.current_A), 1e-5 * largest_A));
+  // What leaves the line between its neighbours by far more than curves bend.
+  ModuleSweep good = all;
+  good.voltage_V.clear();
+  good.current_A.clear();
+  const double wild_A = std::max(20.0 * all.noise_A, 0.05 * largest_A);
+  for (size_t i = 0; i < all.current_A.size(); ++i) {
+    const bool inner = i > 0 && i + 1 < all.current_A.size();
+    const double low = inner ? std::min(all.current_A[i - 1], all.current_A[i + 1]) : 0.0,
+                 high = inner ? std::max(all.current_A[i - 1], all.current_A[i + 1]) : 0.0;
+    const bool is_wild =
+        inner && (all.current_A[i] < low - wild_A || all.current_A[i] > high + wild_A);
+    if (is_wild) {
+      if (dropped != nullptr) ++*dropped;
+      continue;
+    }
+    good.voltage_V.push_back(all.voltage_V[i]);
+    good.current_A.push_back(all.current_A[i]);
+  }
+  const size_t every = (good.current_A.size() + max_rows - 1) / max_rows;
+  ModuleSweep result = good;
+  result.voltage_V.clear();
+  result.current_A.clear();
+  for (size_t i = 0; i < good.current_A.size(); i += every) {
+    result.voltage_V.push_back(good.voltage_V[i]);
+    result.current_A.push_back(good.current_A[i]);
+  }
+  return result;
+}
+
+ModuleWiring wiring_of(const ModuleDesign& design) {
+  return {design.cells, design.bypass_every, design.bypass_drop_V};
+}
+
+ModuleCell moved(const ModuleNominal& nominal, const Eigen::Matrix<double, 5, 1>& z) {
+  const Eigen::Matrix<double, 5, 1> by = nominal.root * z;
+  ModuleCell cell = nominal.cell;
+  cell.photocurrent_A *= std::exp(by[0]);
+  cell.saturation_A *= std::exp(by[1]);
+  cell.ideality *= std::exp(by[2]);
+  cell.series_ohm *= std::exp(by[3]);
+  cell.shunt_ohm *= std::exp(by[4]);
+  return cell;
+}
+
+ModuleNominal nominal_module(const ModuleDesign& design) {
+  return design.datasheet.empty() ? nominal_of_references(design) : nominal_of_datasheet(design);
+}
+
+double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep) {
+  const double step_V = (sweep.voltage_V.back() - sweep.voltage_V.front()) /
+                        static_cast<double>(sweep.voltage_V.size() - 1);
+  // A part of it is the instrument's, and stays where there is less light.
+  const double misfit_A =
+      nominal.misfit * std::max(sweep.current_A.front(), nominal.cell.photocurrent_A);
+  const double repeated = std::max(1.0, nominal.correlation_V / step_V);
+  return std::hypot(sweep.noise_A, misfit_A * std::sqrt(repeated));
+}
+
+}  // namespace photorque

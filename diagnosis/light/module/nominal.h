@@ -1,0 +1,46 @@
+// The nominal module: one diode fitted to reference curves, or a datasheet.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "diagnosis/light/module/curve.h"
+#include "diagnosis/light/module/design.h"
+
+namespace photorque {
+
+// A curve with the errors of its points.
+struct ModuleSweep {
+  std::string name;
+  std::vector<double> voltage_V, current_A;  // rising voltage
+  double light = 1.0;                        // over the reference, from the currents at low voltage
+  double noise_A = 0.0;                      // of a reading, from its neighbours where not stated
+};
+
+// One row in `every` of a sweep's, by voltage; readings that neighbours contradict left out.
+// InputError for fewer than 12 points or no current.
+ModuleSweep module_sweep(const LightRecording& recording, const ModuleDesign& design,
+                         size_t max_rows, int64_t* dropped);
+
+struct ModuleNominal {
+  ModuleCell cell;
+  // Of the logarithms of photocurrent, saturation current, ideality, series and shunt resistance:
+  // all points within (log) + root · N(0, 1).
+  Eigen::Matrix<double, 5, 5> root = Eigen::Matrix<double, 5, 5>::Zero();
+  // What one diode leaves of the reference beyond its noise, over the short-circuit current, and
+  // the voltage over which that changes.
+  double misfit = 0.0, correlation_V = 0.0;
+  double voltage_noise_V = 0.0;
+};
+
+ModuleWiring wiring_of(const ModuleDesign& design);
+// The cell with the logarithms moved by root · z.
+ModuleCell moved(const ModuleNominal& nominal, const Eigen::Matrix<double, 5, 1>& z);
+
+// InputError for references that no diode fits.
+ModuleNominal nominal_module(const ModuleDesign& design);
+
+// The standard deviation of each point of a sweep: the noise of its readings and what one diode
+// cannot describe, which changes slowly and so counts once in a length of correlation.
+double point_sigma_A(const ModuleNominal& nominal, const ModuleSweep& sweep);
+
+}  // namespace photorque

@@ -1,0 +1,46 @@
+// Where to start what enters nonlinearly, found in what a trial leaves of the recordings.
+#pragma once
+
+#include "diagnosis/light/trial.h"
+
+namespace photorque {
+
+// What a trial leaves of a recording, with what it takes to see how a law on the light would lower
+// it.
+struct LeftOfRun {
+  const LightRun* run;
+  std::vector<double> signals;
+  Eigen::VectorXd residuals;
+  SignalSlopes slopes;
+};
+
+// Of each candidate, the few starts that promise most; none where nothing does.
+std::vector<std::vector<LightStart>> scanned_starts(const LightTrial& parent,
+                                                    const LightCandidates& all,
+                                                    const std::vector<size_t>& candidates,
+                                                    const std::vector<FittedRun>& runs,
+                                                    int threads);
+
+// Opaque boxes that could cast what is missing of the light of the scans: numbers of the effect
+// unmodelled_shadow, the best first. A plane above the receiver is carved: an element of it may be
+// opaque only where every ray of light through it is missing at its end. The rectangle about the
+// largest patch of such elements, at the height where it explains most.
+std::vector<LightStart> shadow_starts(const LightTrial& parent, const LightCandidates& all,
+                                      const std::vector<FittedRun>& runs, bool on_body);
+
+// Waves over the receiver, of those whose cycles over half of its width and height lie on a grid up
+// to 16 each way, that explain most of what is left of the scans.
+std::vector<LightStart> wave_starts(const LightCandidate& wave, const std::vector<LeftOfRun>& left,
+                                    const Thresholds::Scoring& limits);
+
+// The interval over which maxima other than the highest explain most, {from_s, to_s, recording}; of
+// no length where it explains nothing.
+std::vector<double> trapped_interval(const LightTrial& parent, const LightCandidates& all,
+                                     const std::vector<FittedRun>& runs);
+
+// The residuals of a recording's channels, neighbours in place or time side by side: scans in
+// blocks of some four by five.
+std::vector<std::vector<double>> in_order_of_place(const LightRun& run,
+                                                   const Eigen::VectorXd& residuals);
+
+}  // namespace photorque

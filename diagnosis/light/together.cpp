@@ -1,0 +1,328 @@
+#include "diagnosis/light/together.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "attitude/disturbances/kind.h"
+#include "core/constants.h"
+#include "diagnosis/light/beliefs.h"
+
+namespace photorque {
+namespace {
+
+// The camera is not level: as the motion feels it. Its rotation vector takes the lab's −z to
+// gravity, and the body stands turned the other way.
+constexpr const char* of_motion = "gravity_tilt";
+constexpr const char* tilt_key = "tilt_rad";
+// And as the light sees it.
+constexpr const char* of_light = "attitude_bias";
+
+// Before anything is known; and the error with which it is known.
+constexpr double any_tilt_rad = 0.1, known_tilt_rad = 0.01;
+constexpr double beyond_doubt_sigma = 5.0;
+
+double tilt_sigma(const Tilt& tilt) {
+  return tilt.bias_rad.cwiseQuotient(tilt.sigma_rad).norm();
+}
+
+bool has_tilt(const AttitudeModel& model) {
+  return std::ranges::any_of(model.disturbances,
+                             [](const Disturbance& d) { return d.kind == of_motion; });
+}
+
+Diagnosis light_believing(const LightRecorded& light, const Tilt& tilt) {
+  LightBelief belief = light.nominal;
+  believe_tilt(light.lab, tilt.bias_rad, tilt.sigma_rad, belief);
+  return diagnose_light(light.lab, belief, light.recordings, light.holdouts, light.how);
+}
+
+// What an explanation of the light says of the tilt.
+std::optional<Tilt> tilt_of_light(const Diagnosis& light) {
+  for (const FittedParameter& p : light.priors_refined) {
+    if (p.key != tilt_belief) continue;
+    return Tilt{Vec2(p.value[0], p.value[1]) * degree_rad,
+                Vec2(p.sigma[0], p.sigma[1]) * degree_rad};
+  }
+  return std::nullopt;
+}
+
+// The same of the motion: as it was refined, or as it was found.
+std::optional<Tilt> tilt_of_motion(const Diagnosis& motion) {
+  const auto tilt_in = [](const std::vector<FittedParameter>& all,
+                          const auto& is_it) -> std::optional<Tilt> {
+    for (const FittedParameter& p : all) {
+      if (!is_it(p.key) || p.value.size() != 2 || p.sigma.size() != 2) continue;
+      if (!(p.sigma[0] > 0.0 && p.sigma[1] > 0.0)) continue;
+      return Tilt{-Vec2(p.value[0], p.value[1]), Vec2(p.sigma[0], p.sigma[1])};
+    }
+    return std::nullopt;
+  };
+  if (motion.verdict == Verdict::unexplained) return std::nullopt;
+  for (const FoundEffect& effect : motion.effects) {
+    if (effect.kind != of_motion) continue;
+    return tilt_in(effect.parameters, [](const std::string& key) { return key == tilt_key; });
+  }
+  return tilt_in(motion.priors_refined, [](const std::string& key) {
+    return key.ends_with(std::string("].") + tilt_key);
+  });
+}
+
+bool names_tilt(const Diagnosis& motion) {
+  return std::ranges::find(motion.effects, of_motion, &FoundEffect::kind) != motion.effects.end();
+}
+
+// What the motion alone says, where `both` is that and the light together; nothing where that is
+// hardly more than the light.
+std::optional<Tilt> beside(const Tilt& both, const Tilt& light) {
+  constexpr double better = 0.7;
+  if (!(both.sigma_rad.array() < better * light.sigma_rad.array()).any()) return std::nullopt;
+  Tilt alone{both.bias_rad, Vec2::Constant(any_tilt_rad)};
+  for (int k = 0; k < 2; ++k) {
+    const double weight = std::pow(both.sigma_rad[k], -2.0) - std::pow(light.sigma_rad[k], -2.0);
+    if (!(weight > std::pow(any_tilt_rad, -2.0))) continue;
+    alone.sigma_rad[k] = 1.0 / std::sqrt(weight);
+    alone.bias_rad[k] = (both.bias_rad[k] * std::pow(both.sigma_rad[k], -2.0) -
+                         light.bias_rad[k] * std::pow(light.sigma_rad[k], -2.0)) /
+                        weight;
+  }
+  return alone;
+}
+
+// The light moves with a small tilt in proportion: where it is not small, about itself.
+Diagnosis light_with_any_tilt(const LightRecorded& light) {
+  constexpr double small_rad = 0.004;
+  Tilt any{Vec2::Zero(), Vec2::Constant(any_tilt_rad)};
+  Diagnosis d = light_believing(light, any);
+  for (int round = 0; round < 2; ++round) {
+    const std::optional<Tilt> seen = tilt_of_light(d);
+    if (!seen || !((seen->bias_rad - any.bias_rad).norm() > small_rad)) break;
+    if (!(seen->bias_rad.norm() < 3.0 * any_tilt_rad)) break;
+    any.bias_rad = seen->bias_rad;
+    d = light_believing(light, any);
+  }
+  return d;
+}
+
+bool knows_tilt(const std::optional<Tilt>& tilt) {
+  return tilt && tilt->sigma_rad.maxCoeff() < known_tilt_rad;
+}
+
+Disturbance believed_tilt(const NominalModel& nominal, const Tilt& tilt) {
+  Disturbance d = make_disturbance_of(
+      of_motion, {{tilt_key, {-tilt.bias_rad.x(), -tilt.bias_rad.y()}}}, nominal.context());
+  for (size_t k = 0; k < d.parameters.size(); ++k) {
+    d.parameters[k].sigma = tilt.sigma_rad[static_cast<Eigen::Index>(k)];
+  }
+  return d;
+}
+
+// As effects of either domain, where it is beyond doubt.
+void add_tilt(const std::optional<Tilt>& tilt, Diagnosis& motion, Diagnosis& light) {
+  // What was believed of it stands in no experiment.
+  const auto is_tilt = [](const FittedParameter& p) {
+    return p.key == tilt_belief || p.key.ends_with(std::string("].") + tilt_key);
+  };
+  std::erase_if(light.priors_refined, is_tilt);
+  if (!tilt) return;
+  const double sigma = tilt_sigma(*tilt);
+  std::erase_if(motion.priors_refined, is_tilt);
+  if (!(sigma > beyond_doubt_sigma)) return;
+  const auto numbers = [](const Vec2& v) { return std::vector<double>{v.x(), v.y()}; };
+  FoundEffect effect;
+  effect.probability = 1.0;
+  if (!names_tilt(motion)) {
+    effect.kind = of_motion;
+    effect.explanation = "the camera is not level: motion and light say so together";
+    effect.parameters = {{tilt_key, numbers(-tilt->bias_rad), numbers(tilt->sigma_rad)}};
+    motion.effects.push_back(effect);
+  }
+  effect.kind = of_light;
+  effect.explanation = "the platform stands turned against its recorded attitude";
+  effect.parameters = {
+      {"bias_deg", numbers(tilt->bias_rad / degree_rad), numbers(tilt->sigma_rad / degree_rad)}};
+  light.effects.push_back(effect);
+}
+
+// What the camera would have reported without noise, by the model that was found.
+std::map<double, Quat> attitudes_of(const Diagnosis& motion, const std::string& recording) {
+  std::map<double, Quat> at;
+  for (const RecordingSeries& series : motion.series) {
+    if (series.recording != recording) continue;
+    const AttitudeSeries& seen = series.attitude;
+    for (size_t i = 0; i < seen.time_s.size(); ++i) {
+      const Vec3& off = seen.off_after_rad[i];
+      const double angle = off.norm();
+      if (!std::isfinite(angle)) continue;
+      const Quat back(angle > 0.0 ? Eigen::AngleAxisd(-angle, off / angle)
+                                  : Eigen::AngleAxisd::Identity());
+      at[seen.time_s[i]] = (back * seen.measured[i]).normalized();
+    }
+  }
+  return at;
+}
+
+Vec3 turn(const Quat& from, const Quat& to) {
+  const Eigen::AngleAxisd by(from.conjugate() * to);
+  const double angle = by.angle() > pi ? by.angle() - 2.0 * pi : by.angle();
+  return angle * by.axis();
+}
+
+Quat turned(const Quat& from, const Vec3& by) {
+  const double angle = by.norm();
+  return angle > 0.0 ? Quat(from * Quat(Eigen::AngleAxisd(angle, by / angle))) : from;
+}
+
+// Between four neighbours, by the cubic whose slopes are theirs; nothing outside or in a gap.
+std::optional<Quat> between(const std::map<double, Quat>& all, double time_s, double max_gap_s) {
+  const auto exact = all.find(time_s);
+  if (exact != all.end()) return exact->second;
+  const auto next = all.upper_bound(time_s);
+  if (next == all.begin() || next == all.end()) return std::nullopt;
+  const auto last = std::prev(next);
+  const double h = next->first - last->first;
+  if (h > max_gap_s) return std::nullopt;
+  const Vec3 step = turn(last->second, next->second);
+  const auto before = last == all.begin() ? last : std::prev(last);
+  const auto after = std::next(next) == all.end() ? next : std::next(next);
+  const Vec3 slope_last = turn(before->second, next->second) / (next->first - before->first),
+             slope_next = turn(last->second, after->second) / (after->first - last->first);
+  const double t = (time_s - last->first) / h, u = 1.0 - t;
+  const Vec3 by = t * t * (3.0 - 2.0 * t) * step + h * t * u * (u * slope_last - t * slope_next);
+  return turned(last->second, by);
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+double mean_of(double a, int64_t samples_a, double b, int64_t samples_b) {
+  const auto all = static_cast<double>(samples_a + samples_b);
+  return all > 0.0 ? (a * static_cast<double>(samples_a) + b * static_cast<double>(samples_b)) / all
+                   : 0.0;
+}
+
+Holdout both_held(const Holdout& a, const Holdout& b) {
+  Holdout both = a;
+  both.rms_before.insert(b.rms_before.begin(), b.rms_before.end());
+  both.rms_after.insert(b.rms_after.begin(), b.rms_after.end());
+  both.chi2_per_sample_before =
+      mean_of(a.chi2_per_sample_before, a.samples, b.chi2_per_sample_before, b.samples);
+  both.chi2_per_sample_after =
+      mean_of(a.chi2_per_sample_after, a.samples, b.chi2_per_sample_after, b.samples);
+  both.samples = a.samples + b.samples;
+  both.explained_fraction = std::min(a.explained_fraction, b.explained_fraction);
+  // The worse of the two is what a reader has to know.
+  if (b.predictive && (!a.predictive || b.predictive->sigma > a.predictive->sigma)) {
+    both.predictive = b.predictive;
+  }
+  return both;
+}
+
+std::string word_of(Verdict verdict) {
+  std::string word = name_of(verdict);
+  std::ranges::replace(word, '_', ' ');
+  return word;
+}
+
+}  // namespace
+
+void take_attitudes(const Diagnosis& motion, std::vector<LightRecording>& runs) {
+  if (motion.verdict == Verdict::unexplained) return;
+  for (LightRecording& run : runs) {
+    if (run.kind != LightRecording::Kind::run || run.time_s.empty()) continue;
+    const std::map<double, Quat> all = attitudes_of(motion, run.name);
+    if (all.size() < 2) continue;
+    const double max_gap_s =
+        5.0 * (all.rbegin()->first - all.begin()->first) / static_cast<double>(all.size() - 1);
+    for (size_t i = 0; i < run.rows(); ++i) {
+      if (const auto q = between(all, run.time_s[i], max_gap_s)) run.lab_from_body[i] = *q;
+    }
+  }
+}
+
+Diagnosis diagnose_together(MotionRecorded motion, LightRecorded light) {
+  const auto moved = [&] {
+    return diagnose(motion.nominal, motion.recordings, motion.holdouts, motion.how);
+  };
+  const Diagnosis of_motion_first = moved();
+  take_attitudes(of_motion_first, light.recordings);
+  take_attitudes(of_motion_first, light.holdouts);
+  // Who states a tilt knows it.
+  if (has_tilt(motion.nominal.model)) {
+    return joined(
+        of_motion_first,
+        diagnose_light(light.lab, light.nominal, light.recordings, light.holdouts, light.how),
+        std::nullopt);
+  }
+  Diagnosis of_light_alone = light_with_any_tilt(light);
+  std::optional<Tilt> seen = tilt_of_light(of_light_alone);
+  if (of_light_alone.verdict == Verdict::unexplained || !knows_tilt(seen)) seen.reset();
+  if (seen) motion.nominal.model.disturbances.push_back(believed_tilt(motion.nominal, *seen));
+  const Diagnosis of_both = seen ? moved() : of_motion_first;
+  // One more tilt than the light's would be another than that.
+  const bool disagree = seen && names_tilt(of_both);
+  std::optional<Tilt> tilt = disagree ? seen : tilt_of_motion(of_both);
+  if (!tilt) tilt = seen;
+  std::optional<Tilt> of_motion_alone = tilt;
+  if (tilt && seen) of_motion_alone = beside(*tilt, *seen);
+  return joined(of_both,
+                of_motion_alone ? light_believing(light, *of_motion_alone) : of_light_alone, tilt);
+}
+
+Diagnosis joined(const Diagnosis& motion, const Diagnosis& light, const std::optional<Tilt>& tilt) {
+  Diagnosis d = motion, with_light = light;
+  add_tilt(tilt, d, with_light);
+  const bool is_tilted = with_light.effects.size() > light.effects.size();
+  d.domains = {{"motion", motion.verdict, motion.confidence, motion.sentence},
+               {"light", light.verdict, light.confidence, light.sentence}};
+  for (FoundEffect& effect : d.effects) effect.table = motion.effect_table;
+  for (FoundEffect& effect : with_light.effects) effect.table = light.effect_table;
+  append(d.effects, with_light.effects);
+  const bool is_unexplained =
+      motion.verdict == Verdict::unexplained || light.verdict == Verdict::unexplained;
+  d.verdict = is_unexplained      ? Verdict::unexplained
+              : d.effects.empty() ? Verdict::consistent
+                                  : Verdict::missing_physics;
+  d.confidence = motion.confidence * light.confidence;
+  d.sentence = (is_tilted ? "The platform stands turned against its recorded attitude. Motion "
+                            "beside that: "
+                          : "Motion: ") +
+               word_of(motion.verdict) + ". " + motion.sentence +
+               " Light: " + word_of(light.verdict) + ". " + light.sentence;
+  if (d.because.empty()) d.because = light.because;
+  append(d.where.channels, light.where.channels);
+  std::ranges::stable_sort(d.where.channels, [](const auto& a, const auto& b) {
+    return a.chi2_per_sample > b.chi2_per_sample;
+  });
+  append(d.where.depends_on, light.where.depends_on);
+  d.chi2_per_sample_before = mean_of(motion.chi2_per_sample_before, motion.samples,
+                                     light.chi2_per_sample_before, light.samples);
+  d.chi2_per_sample_after = mean_of(motion.chi2_per_sample_after, motion.samples,
+                                    light.chi2_per_sample_after, light.samples);
+  d.samples = motion.samples + light.samples;
+  if (motion.holdout && light.holdout) {
+    d.holdout = both_held(*motion.holdout, *light.holdout);
+  } else if (light.holdout) {
+    d.holdout = light.holdout;
+  }
+  for (Alternative& a : d.alternatives) a.of = "motion";
+  append(d.alternatives, light.alternatives);
+  for (Alternative& a : d.alternatives) {
+    if (a.of.empty()) a.of = "light";
+  }
+  append(d.manoeuvres, light.manoeuvres);
+  append(d.priors_refined, with_light.priors_refined);
+  append(d.warnings, light.warnings);
+  append(d.series, light.series);
+  d.array = light.array;
+  d.data.rows += light.data.rows;
+  d.data.used += light.data.used;
+  for (const auto& [reason, count] : light.data.rejected) d.data.rejected[reason] += count;
+  return d;
+}
+
+}  // namespace photorque

@@ -1,0 +1,118 @@
+// Effects on the array: the light that enters its cells, its circuit and its tracker.
+#include "scenes/effects/kind.h"
+
+namespace photorque {
+
+std::vector<LightEffectKind> array_effect_kinds() {
+  using Index = LightEffectKind::Index;
+  using Numbers = std::span<const double>;
+  // Light counts T(θ)/T(0), T by Fresnel.
+  const EffectParameter refractive_index = {.key = "refractive_index",
+                                            .neutral = 1.0,
+                                            .scale = 0.7,
+                                            .lowest = 0.0,
+                                            .highest = 1.0,
+                                            .form = EffectParameter::Form::slant};
+  return {
+      // Light that enters every cell times `factor`. A scan does not see it.
+      {.name = "soiling",
+       .explanation = "dirt on the cells takes the same fraction of the light from all of them",
+       .parameters =
+           {{.key = "factor", .neutral = 1.0, .scale = 0.1, .lowest = -1.0, .highest = 0.0}},
+       .in_scans = false,
+       .act = [](LightState& state, size_t, Numbers x) { state.soiling *= 1.0 + x[0]; }},
+      {.name = "angular_response",
+       .explanation = "a glass over the cells lets less light in the more it slants",
+       .parameters = {refractive_index},
+       .in_scans = false,
+       .act = [refractive_index](
+                  LightState& state, size_t,
+                  Numbers x) { state.glass_index = value_of(refractive_index, x[0]); }},
+      // The photocurrent of a cell times `factor`. A scan does not see it.
+      {.name = "cell_degraded",
+       .explanation = "a cell turns less of its light into current than the others",
+       .index = Index::cell,
+       .parameters =
+           {{.key = "factor", .neutral = 1.0, .scale = 0.2, .lowest = -1.0, .highest = 0.0}},
+       .in_scans = false,
+       .act = [](LightState& state, size_t index,
+                 Numbers x) { state.cell_current[index] *= 1.0 + x[0]; }},
+      // The light over the rectangle of a cell times `factor`. A scan sees it.
+      {.name = "cell_shaded",
+       .explanation = "something over a cell takes a fraction of its light",
+       .index = Index::cell,
+       .parameters =
+           {{.key = "factor", .neutral = 1.0, .scale = 0.2, .lowest = -1.0, .highest = 0.0}},
+       .act = [](LightState& state, size_t index,
+                 Numbers x) { state.cell_light[index] *= 1.0 + x[0]; }},
+      // The string carries no current.
+      {.name = "string_open",
+       .explanation = "a string of cells is interrupted",
+       .index = Index::string,
+       .parameters = {},
+       .in_scans = false,
+       .in_circuit = true,
+       .act = [](LightState& state, size_t index, Numbers) { state.string_open[index] = true; }},
+      // The cells of the diode give no voltage.
+      {.name = "bypass_shorted",
+       .explanation = "a bypass diode is shorted and takes its cells away",
+       .index = Index::bypass,
+       .parameters = {},
+       .in_scans = false,
+       .in_circuit = true,
+       .act = [](LightState& state, size_t index, Numbers) { state.bypass_shorted[index] = true; }},
+      {.name = "series_resistance",
+       .explanation =
+           "a resistance in series with the array, such as a bad contact or a long cable",
+       .parameters = {{.key = "resistance_ohm", .scale = 0.2, .lowest = 0.0, .highest = 1e4}},
+       .in_scans = false,
+       .in_circuit = true,
+       .act = [](LightState& state, size_t, Numbers x) { state.series_ohm += x[0]; }},
+      // A resistance across every cell, beside the shunt that it has.
+      {.name = "shunt",
+       .explanation = "leakage across every cell beside the stated shunt",
+       .parameters = {{.key = "resistance_ohm",
+                       .scale = 0.02,
+                       .lowest = 0.0,
+                       .highest = 1e3,
+                       .form = EffectParameter::Form::reciprocal}},
+       .in_scans = false,
+       .in_circuit = true,
+       .act = [](LightState& state, size_t, Numbers x) { state.shunt_S += x[0]; }},
+      // photocurrent_per_K is added to photocurrent_slope_per_K, voltage_V_per_K to the voltage of
+      // every cell per kelvin above its reference temperature.
+      {.name = "temperature_coefficient",
+       .explanation = "the cells follow their temperature otherwise than stated",
+       .parameters =
+           {{.key = "photocurrent_per_K", .scale = 1e-3, .lowest = -0.05, .highest = 0.05},
+            {.key = "voltage_V_per_K", .scale = 1e-3, .lowest = -0.05, .highest = 0.05}},
+       .in_scans = false,
+       .in_circuit = true,
+       .act =
+           [](LightState& state, size_t, Numbers x) {
+             state.photocurrent_per_K += x[0];
+             state.voltage_V_per_K += x[1];
+           }},
+      // From one instant to another of one recording (counted from 0). At which of the maxima the
+      // tracker stands follows from every reading: as the platform turns, maxima change places and
+      // vanish.
+      {.name = "tracker_trapped",
+       .explanation = "the tracker stands on a maximum of the power that is not the highest",
+       .parameters = {{.key = "interval_s",
+                       .count = 2,
+                       .scale = 100.0,
+                       .is_strength = false,
+                       .is_fitted = false},
+                      {.key = "recording", .is_strength = false, .is_fitted = false}},
+       .in_scans = false,
+       .in_sweeps = false,
+       .in_circuit = true,
+       .scan = LightEffectKind::Scan::trapped,
+       .act =
+           [](LightState& state, size_t, Numbers x) {
+             state.trapped.push_back({x[0], x[1], static_cast<int>(x[2])});
+           }},
+  };
+}
+
+}  // namespace photorque

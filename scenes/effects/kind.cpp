@@ -1,0 +1,104 @@
+#include "scenes/effects/kind.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/constants.h"
+#include "core/numerics/root.h"
+#include "core/settings/settings.h"
+#include "photovoltaics/cell/front.h"
+
+namespace photorque {
+namespace {
+
+// Of light at 45°, by Fresnel, beyond what is lost at normal incidence.
+double slant_loss(double index) {
+  CellFront front;
+  front.index = index;
+  constexpr double any_wavelength_m = 1e-6;
+  return 1.0 - front.modifier(std::cos(0.25 * pi), any_wavelength_m);
+}
+
+constexpr double most_slanting = 2.0;
+
+double index_of(double x) {
+  const double loss = std::clamp(x, 0.0, 1.0) * slant_loss(most_slanting);
+  const auto takes_less = [&](double index) { return slant_loss(index) < loss; };
+  return bisect(1.0, most_slanting, takes_less, {50}).high;
+}
+
+}  // namespace
+
+double value_of(const EffectParameter& parameter, double x) {
+  switch (parameter.form) {
+    case EffectParameter::Form::reciprocal:
+      return x != 0.0 ? 1.0 / x : std::numeric_limits<double>::infinity();
+    case EffectParameter::Form::slant:
+      return index_of(x);
+    case EffectParameter::Form::tangent:
+      return std::atan(x);
+    case EffectParameter::Form::offset:
+      break;
+  }
+  return parameter.neutral + x;
+}
+
+double slope_of(const EffectParameter& parameter, double x) {
+  switch (parameter.form) {
+    case EffectParameter::Form::reciprocal:
+      return -1.0 / (x * x);
+    case EffectParameter::Form::slant: {
+      // Infinite at both ends: over a step.
+      constexpr double step = 0.02;
+      const double low = std::clamp(x - step, 0.0, 1.0 - 2.0 * step), high = low + 2.0 * step;
+      return (index_of(high) - index_of(low)) / (high - low);
+    }
+    case EffectParameter::Form::tangent:
+      return 1.0 / (1.0 + x * x);
+    case EffectParameter::Form::offset:
+      break;
+  }
+  return 1.0;
+}
+
+double x_of(const EffectParameter& parameter, double value) {
+  const double off = value - parameter.neutral;
+  switch (parameter.form) {
+    case EffectParameter::Form::reciprocal:
+      return std::isinf(value) ? 0.0 : 1.0 / value;
+    case EffectParameter::Form::slant:
+      return slant_loss(value) / slant_loss(most_slanting);
+    case EffectParameter::Form::tangent:
+      return std::tan(value);
+    case EffectParameter::Form::offset:
+      break;
+  }
+  return off;
+}
+
+std::string range_of(const EffectParameter& parameter) {
+  const auto end_of = [&](double x) {
+    return std::isinf(x) ? x : value_of(parameter, x) / unit_of_key(parameter.key).to_SI;
+  };
+  const auto [low, high] = std::minmax({end_of(parameter.lowest), end_of(parameter.highest)});
+  const auto shown = [](double end) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", end);
+    return std::string(text);
+  };
+  if (std::isinf(low) && std::isinf(high)) return "";
+  if (std::isinf(high)) return "at least " + shown(low);
+  if (std::isinf(low)) return "at most " + shown(high);
+  return "from " + shown(low) + " to " + shown(high);
+}
+
+std::vector<LightEffectKind> all_light_effect_kinds() {
+  std::vector<LightEffectKind> all = lamp_effect_kinds();
+  for (const auto& family : {surroundings_effect_kinds(), array_effect_kinds()}) {
+    all.insert(all.end(), family.begin(), family.end());
+  }
+  return all;
+}
+
+}  // namespace photorque

@@ -1,0 +1,73 @@
+// Effects on lamps: how much light they emit, where they stand and where they point.
+#include "scenes/effects/kind.h"
+
+namespace photorque {
+
+std::vector<LightEffectKind> lamp_effect_kinds() {
+  using Index = LightEffectKind::Index;
+  using Numbers = std::span<const double>;
+  return {
+      // factor: 0 to 1.
+      {.name = "led_derated",
+       .explanation = "an LED gives less than its stated power",
+       .index = Index::lamp,
+       .parameters =
+           {{.key = "factor", .neutral = 1.0, .scale = 0.3, .lowest = -1.0, .highest = 0.0}},
+       .is_traced = true,
+       .act = [](LightState& state, size_t index,
+                 Numbers x) { state.lamp_power[index] *= 1.0 + x[0]; }},
+      // The axis d becomes d + tan a₁ e₁ + tan a₂ e₂, e being lab x and y made perpendicular to d.
+      {.name = "led_aim",
+       .explanation = "an LED is turned away from where it is stated to look",
+       .index = Index::lamp,
+       .parameters = {{.key = "angles_deg",
+                       .count = 2,
+                       .scale = 0.03,
+                       .lowest = -0.12,
+                       .highest = 0.12,
+                       .form = EffectParameter::Form::tangent}},
+       .is_traced = true,
+       .act = [](LightState& state, size_t index,
+                 Numbers x) { state.lamp_aim[index] += Vec2(x[0], x[1]); }},
+      // The angular width of all beams times `scale`, with the same power.
+      {.name = "beam_divergence",
+       .explanation = "all beams are wider or narrower than stated",
+       .parameters =
+           {{.key = "scale", .neutral = 1.0, .scale = 0.1, .lowest = -0.7, .highest = 2.0}},
+       .is_traced = true,
+       .act = [](LightState& state, size_t, Numbers x) { state.divergence *= 1.0 + x[0]; }},
+      // All lamps displaced by offset_m, lab axes, with their axes kept.
+      {.name = "source_shift",
+       .explanation = "the lamps stand beside where they are stated to stand",
+       .parameters =
+           {{.key = "offset_m", .count = 3, .scale = 0.01, .lowest = -0.1, .highest = 0.1}},
+       .is_traced = true,
+       .act = [](LightState& state, size_t,
+                 Numbers x) { state.shift_m += Vec3(x[0], x[1], x[2]); }},
+      {.name = "source_power",
+       .explanation = "all lamps give more or less than their stated power",
+       .parameters =
+           {{.key = "factor", .neutral = 1.0, .scale = 0.1, .lowest = -0.95, .highest = 4.0}},
+       .is_traced = true,
+       .act = [](LightState& state, size_t, Numbers x) { state.power *= 1.0 + x[0]; }},
+      // Power × 1 − depth (1 − e^(−t/τ)), t since the lamps were switched on (t_s = 0).
+      {.name = "led_droop",
+       .explanation = "the lamps lose power while they warm up",
+       .parameters = {{.key = "depth", .scale = 0.1, .lowest = 0.0, .highest = 1.0},
+                      {.key = "time_constant_s",
+                       .scale = 300.0,
+                       .lowest = 1.0,
+                       .highest = 1e6,
+                       .is_strength = false,
+                       .starts = {10, 30, 100, 300, 1000, 3000, 10000}}},
+       .in_scans = false,
+       .in_sweeps = false,
+       .act =
+           [](LightState& state, size_t, Numbers x) {
+             state.droop_depth = x[0];
+             state.droop_time_s = x[1];
+           }},
+  };
+}
+
+}  // namespace photorque

@@ -1,0 +1,246 @@
+#include "scenes/effects/stated.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/text/format.h"
+#include "scenes/effects/kind.h"
+#include "sources/kind.h"
+
+namespace photorque {
+namespace {
+
+size_t index_of(const Settings& effect, const LightEffectKind& kind, const LightParts& parts) {
+  size_t count = 0;
+  switch (kind.index) {
+    case LightEffectKind::Index::none:
+      return 0;
+    case LightEffectKind::Index::lamp:
+      count = parts.lamps;
+      break;
+    case LightEffectKind::Index::cell:
+      count = parts.cells();
+      break;
+    case LightEffectKind::Index::string:
+      count = parts.strings();
+      break;
+    case LightEffectKind::Index::bypass:
+      count = parts.bypasses();
+      break;
+    case LightEffectKind::Index::frame:
+      return effect.choice_or("axes", {"lab", "body"}, 0);
+    case LightEffectKind::Index::wall: {
+      const std::string node = effect.text("node");
+      for (size_t w = 0; w < parts.walls.size(); ++w) {
+        if (parts.walls[w].node == node) return w;
+      }
+      throw effect.error("node", "\"" + node + "\"", "a node of the scene beside the receiver");
+    }
+  }
+  if (count == 0) {
+    throw effect.error("kind", "\"" + kind.name + "\"", "an effect on what the experiment has");
+  }
+  return static_cast<size_t>(effect.integer("index", 0, static_cast<int64_t>(count) - 1));
+}
+
+std::vector<double> numbers_of(const Settings& effect, const EffectParameter& parameter) {
+  if (parameter.count == 1) return {effect.number(parameter.key)};
+  std::vector<double> numbers = effect.numbers(parameter.key);
+  if (numbers.size() != parameter.count) {
+    throw effect.error(parameter.key, std::to_string(numbers.size()) + " numbers",
+                       std::to_string(parameter.count));
+  }
+  return numbers;
+}
+
+// Kinds that share a name differ in their parameters.
+bool is_meant(const LightEffectKind& kind, const Settings& effect) {
+  return std::ranges::all_of(kind.parameters,
+                             [&](const EffectParameter& p) { return effect.has(p.key); });
+}
+
+// A width, times a factor, that a lamp can have: nobody wrote what lies beyond.
+double widened(const std::string& key, double value, double factor) {
+  if (key == "exponent") return std::min(value / (factor * factor), std::max(value, 1e9));
+  constexpr double below = 1.0 - 1e-6;  // 180 deg itself are too many
+  const KeyUnit unit = unit_of_key(key);
+  const double widest_rad = unit.stem == "half_angle" ? 0.5 * pi : below * pi;
+  return std::min(value * factor, std::max(value, widest_rad / unit.to_SI));
+}
+
+// The keys of a source with all angular widths multiplied.
+void widen(SettingsNode& source, double scale) {
+  auto* table = std::get_if<SettingsNode::Table>(&source.value);
+  if (table == nullptr) return;
+  for (auto& [key, node] : *table) {
+    const std::string stem = unit_of_key(key).stem;
+    const bool is_width = stem == "fwhm" || stem == "half_angle" || stem == "halo_fwhm";
+    if ((!is_width && key != "exponent") || !node.is_number()) continue;
+    const double value = std::holds_alternative<double>(node.value)
+                             ? std::get<double>(node.value)
+                             : static_cast<double>(std::get<int64_t>(node.value));
+    node.value = widened(key, value, scale);
+  }
+}
+
+// An emitter that gives a share of its power.
+class DimmedEmitter final : public Emitter {
+ public:
+  DimmedEmitter(std::shared_ptr<const Emitter> full, double share)
+      : full_(std::move(full)), share_(share) {}
+  double power_W() const override { return share_ * full_->power_W(); }
+  void emit(const SampleBlock& samples, RayBlock& rays) const override {
+    full_->emit(samples, rays);
+  }
+  double relative_intensity(double angle_rad) const override {
+    return full_->relative_intensity(angle_rad);
+  }
+
+ private:
+  std::shared_ptr<const Emitter> full_;
+  double share_;
+};
+
+// What a trace with these effects does not show, one line for each.
+std::vector<std::string> notices_of(const Experiment& experiment,
+                                    const std::vector<Settings>& effects) {
+  std::set<std::string> traced = {"led_failed"};
+  for (const LightEffectKind& kind : all_light_effect_kinds()) {
+    if (kind.is_traced) traced.insert(kind.name);
+  }
+  std::vector<std::string> notices;
+  for (const Settings& effect : effects) {
+    const std::string kind = effect.text("kind");
+    if (traced.contains(kind)) continue;
+    notices.push_back(effect.name() + ": " + kind +
+                      " acts in diagnose alone; a trace is without it");
+  }
+  for (const Settings& effect : effects) {
+    if (effect.text("kind") != "attitude_bias" || !experiment.file.settings.has("torque_map"))
+      continue;
+    notices.push_back(effect.name() +
+                      ": attitude_bias acts at [attitude]; the attitudes of a torque map, of "
+                      "[array.tracker] and of [light] are as they are stated");
+  }
+  return notices;
+}
+
+std::vector<Beam> beams_under(const Experiment& experiment, const LightState& state) {
+  std::vector<Beam> beams;
+  const std::vector<Beam> all = beams_with_divergence(experiment, state.divergence);
+  for (size_t l = 0; l < all.size(); ++l) {
+    Beam beam = all[l];
+    const double share = state.power * state.lamp_power[l];
+    if (!(share > 0.0)) continue;
+    beam.lab_from_emitter = displaced_pose(beam, state.lamp_aim[l], state.shift_m);
+    if (share != 1.0) {
+      beam.emitter = std::make_shared<const DimmedEmitter>(beam.emitter, share);
+      if (beam.aperture) beam.aperture->exitance_W_m2 *= share;
+    }
+    beams.push_back(std::move(beam));
+  }
+  if (beams.empty()) {
+    throw InputError({experiment.file.path.string()}, "effect", "no lamp that gives light",
+                     "at least one");
+  }
+  return beams;
+}
+
+}  // namespace
+
+std::vector<Beam> beams_with_divergence(const Experiment& experiment, double scale) {
+  if (scale == 1.0) return experiment.beams;
+  const std::vector<SourceKind> kinds = all_source_kinds();
+  std::vector<Beam> beams;
+  for (const Settings& written : experiment.file.others("source")) {
+    const auto name = written.text("kind");
+    const auto kind = std::find_if(kinds.begin(), kinds.end(),
+                                   [&](const SourceKind& k) { return k.name == name; });
+    SettingsNode::Table table;
+    for (const std::string& key : written.keys()) table[key] = written.raw(key);
+    SettingsNode node{table, written.where()};
+    widen(node, scale);
+    SourceContext context;
+    context.scene_radius_m = experiment.scene.radius_m();
+    context.folder = experiment.file.path.parent_path();
+    const Settings source(std::make_shared<const SettingsNode>(std::move(node)), written.name());
+    for (Beam& beam : kind->make(source, context)) beams.push_back(std::move(beam));
+  }
+  return beams;
+}
+
+RigidTransform displaced_pose(const Beam& beam, const Vec2& aim, const Vec3& shift_m) {
+  RigidTransform pose = beam.lab_from_emitter;
+  pose.translation_m += shift_m;
+  if (aim.isZero(0.0)) return pose;
+  const Vec3 d = pose.direction(Vec3::UnitZ());
+  const auto across = [&](const Vec3& axis) {
+    const Vec3 e = axis - axis.dot(d) * d;
+    return e.norm() > 1e-9 ? Vec3(e.normalized()) : Vec3(Vec3::Zero());
+  };
+  const Vec3 turned_to = d + aim.x() * across(Vec3::UnitX()) + aim.y() * across(Vec3::UnitY());
+  pose.rotation = (Quat::FromTwoVectors(d, turned_to) * pose.rotation).normalized();
+  return pose;
+}
+
+Quat biased_attitude(const Quat& lab_from_body, const Vec2& bias_rad) {
+  const double angle = bias_rad.norm();
+  if (angle == 0.0) return lab_from_body;
+  const Vec3 axis(bias_rad.x() / angle, bias_rad.y() / angle, 0.0);
+  return Quat(Eigen::AngleAxisd(angle, axis)) * lab_from_body;
+}
+
+LightState stated_effects(const Experiment& experiment, const LightParts& parts) {
+  LightState state = parts.nominal();
+  const std::vector<LightEffectKind> kinds = all_light_effect_kinds();
+  std::vector<std::string> names = {"led_failed"};
+  for (const LightEffectKind& kind : kinds) names.push_back(kind.name);
+  for (const Settings& effect : experiment.file.others("effect")) {
+    const size_t choice = effect.choice("kind", names);
+    const bool failed = choice == 0;
+    const std::string name = failed ? "led_derated" : names[choice];
+    const LightEffectKind* meant = nullptr;
+    for (const LightEffectKind& kind : kinds) {
+      if (kind.name != name) continue;
+      if (meant == nullptr || (!failed && is_meant(kind, effect))) meant = &kind;
+    }
+    std::vector<double> x;
+    for (const EffectParameter& p : meant->parameters) {
+      if (failed) {
+        x.push_back(-1.0);
+        continue;
+      }
+      for (const double value : numbers_of(effect, p)) {
+        const double number = x_of(p, value);
+        if (!(number >= p.lowest && number <= p.highest)) {
+          throw effect.error(p.key, readable_number(value / unit_of_key(p.key).to_SI, 6),
+                             "a number of " + name + ": " + range_of(p));
+        }
+        x.push_back(number);
+      }
+    }
+    meant->act(state, index_of(effect, *meant, parts), x);
+    // What a diagnosis says beside the numbers that act.
+    for (const char* said : {"u_m", "v_m", "darkest"}) {
+      if (effect.has(said)) effect.raw(said);
+    }
+    effect.finish();
+  }
+  return state;
+}
+
+std::vector<std::string> apply_stated_effects(Experiment& experiment) {
+  const std::vector<Settings> effects = experiment.file.others("effect");
+  if (effects.empty()) return {};
+  const LightState state = stated_effects(experiment, light_parts(experiment));
+  std::vector<std::string> notices = notices_of(experiment, effects);
+  std::vector<Beam> beams = beams_under(experiment, state);
+  experiment.lab_from_body.rotation =
+      biased_attitude(experiment.lab_from_body.rotation, state.attitude_bias_rad);
+  experiment.beams = std::move(beams);
+  return notices;
+}
+
+}  // namespace photorque

@@ -1,0 +1,74 @@
+// Effects between the lamps and the cells: other light, shadows, walls, attitude, and the
+// photodiode.
+#include "scenes/effects/kind.h"
+
+namespace photorque {
+
+std::vector<LightEffectKind> surroundings_effect_kinds() {
+  using Index = LightEffectKind::Index;
+  using Numbers = std::span<const double>;
+  return {
+      // The same at every place of the receiver and at every attitude.
+      {.name = "ambient_light",
+       .explanation = "light of the room is added to that of the lamps",
+       .parameters = {{.key = "irradiance_W_m2", .scale = 20.0, .lowest = 0.0, .highest = 1e5}},
+       .act = [](LightState& state, size_t, Numbers x) { state.ambient_W_m2 += x[0]; }},
+      // A thin box, fixed in the lab or on the body; its thickness does not show. opacity 1:
+      // opaque.
+      {.name = "unmodelled_shadow",
+       .explanation =
+           "something opaque that is not in the model hides lamps from part of the receiver",
+       .index = Index::frame,
+       .parameters =
+           {{.key = "opacity", .scale = 0.5, .lowest = 0.0, .highest = 1.0},
+            {.key = "centre_m", .count = 3, .scale = 0.02, .is_strength = false, .step = 5e-4},
+            {.key = "size_m",
+             .count = 2,
+             .scale = 0.02,
+             .lowest = 1e-4,
+             .highest = 2.0,
+             .is_strength = false,
+             .step = 5e-4}},
+       .scan = LightEffectKind::Scan::shadow,
+       .act =
+           [](LightState& state, size_t frame, Numbers x) {
+             constexpr double half_thickness_m = 1e-3;
+             const Vec3 centre(x[1], x[2], x[3]), half(0.5 * x[4], 0.5 * x[5], half_thickness_m);
+             state.boxes.push_back({frame == 1, centre - half, centre + half, x[0]});
+           }},
+      // A rotation vector about lab x and y.
+      {.name = "attitude_bias",
+       .explanation = "the platform stands turned against its recorded attitude",
+       .parameters =
+           {{.key = "bias_deg", .count = 2, .scale = 0.02, .lowest = -0.3, .highest = 0.3}},
+       .is_traced = true,
+       .act = [](LightState& state, size_t,
+                 Numbers x) { state.attitude_bias_rad += Vec2(x[0], x[1]); }},
+      {.name = "interreflection",
+       .explanation = "a wall that is assumed black throws light back",
+       .index = Index::wall,
+       .parameters = {{.key = "diffuse", .scale = 0.3, .lowest = 0.0, .highest = 1.0}},
+       .act =
+           [](LightState& state, size_t index, Numbers x) {
+             state.walls.push_back({index, x[0], 0.0});
+           }},
+      {.name = "interreflection",
+       .explanation = "a wall that is assumed black mirrors light",
+       .index = Index::wall,
+       .parameters = {{.key = "specular", .scale = 0.3, .lowest = 0.0, .highest = 1.0}},
+       .act =
+           [](LightState& state, size_t index, Numbers x) {
+             state.walls.push_back({index, 0.0, x[0]});
+           }},
+      // The readings of a scan times `factor`.
+      {.name = "detector_gain",
+       .explanation = "the photodiode reads too much or too little by one factor",
+       .parameters =
+           {{.key = "factor", .neutral = 1.0, .scale = 0.1, .lowest = -0.95, .highest = 4.0}},
+       .in_sweeps = false,
+       .in_runs = false,
+       .act = [](LightState& state, size_t, Numbers x) { state.detector_gain *= 1.0 + x[0]; }},
+  };
+}
+
+}  // namespace photorque
