@@ -22,7 +22,4 @@ RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunR
 RunFile trace_page(const TraceRun& run, const PageHead& head);
 RunFile power_page(const PowerRun& run, const PageHead& head);
 
-// "baked.glb": the scene at its attitude with the irradiance on it, for any viewer of glTF.
-RunFile baked_file(const OpticalRun& run, const OpticalResult& light, const RunResult& result);
-
 }  // namespace photorque

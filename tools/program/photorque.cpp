@@ -208,11 +208,6 @@ int run(int argc, char** argv, Interruption& interruption) {
       command->add_flag("--page", line.page,
                         "Write page.html too: scene, maps and curves to look at in a browser");
     }
-    if (verb.bakes) {
-      command->add_flag("--bake", line.bake,
-                        "Write baked.glb too: the scene with the irradiance as textures and vertex "
-                        "colours, for viewers of glTF");
-    }
     if (verb.takes_shard) {
       command->add_option("--shard", line.shard,
                           "K/N: only every Nth design, from the Kth; the run that finds all "
