@@ -5,9 +5,7 @@
 #include <limits>
 
 #include "core/text/display.h"
-#include "images/browser/packed.h"
-#include "images/browser/stage_content.h"
-#include "images/drawing/colour_map.h"
+#include "images/drawing/colour.h"
 #include "images/writers/metadata.h"
 
 namespace photorque {

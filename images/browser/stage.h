@@ -8,7 +8,7 @@
 #include "core/estimate.h"
 #include "core/product.h"
 #include "core/vector.h"
-#include "images/canvas/colour.h"
+#include "images/drawing/colour.h"
 
 namespace photorque {
 

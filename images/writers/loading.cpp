@@ -1,12 +1,10 @@
-// The same functions for a program that does not link OpenImageIO, which brings two hundred
-// libraries (video, volumes, OpenGL) with it: they are loaded with the module when the first
-// picture is written or read.
+#include "images/writers/loading.h"
+
 #include <dlfcn.h>
 
 #include <filesystem>
 
 #include "core/errors.h"
-#include "images/loading/functions.h"
 
 namespace photorque {
 namespace {
@@ -62,10 +60,6 @@ void write_exr(const fs::path& path, int width, int height,
 void write_tiff(const fs::path& path, int width, int height,
                 const std::vector<ImageChannel>& channels, const ImageMetadata& metadata) {
   functions().tiff(path, width, height, channels, metadata);
-}
-
-std::string png_bytes(const Picture& picture, const ImageMetadata& metadata) {
-  return functions().png_in_memory(picture, metadata);
 }
 
 void write_png(const fs::path& path, const Picture& picture, const ImageMetadata& metadata) {

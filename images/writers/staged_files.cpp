@@ -1,4 +1,4 @@
-#include "images/publishing/staged_files.h"
+#include "images/writers/staged_files.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

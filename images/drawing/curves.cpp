@@ -1,4 +1,4 @@
-#include "images/drawing/plot_curves.h"
+#include "images/drawing/curves.h"
 
 #include <set>
 

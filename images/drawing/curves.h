@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/product.h"
-#include "images/canvas/canvas.h"
 #include "images/drawing/axis.h"
+#include "images/drawing/canvas.h"
 
 namespace photorque {
 
