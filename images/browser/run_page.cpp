@@ -19,6 +19,21 @@ Json packed_as(const char* type, std::span<const T> numbers) {
   return {{type, base64(std::as_bytes(numbers))}};
 }
 
+// The policy forbids the page to fetch anything, whatever its script would try.
+std::string document_html(const std::string& title, const Provenance& provenance,
+                          const std::string& script_policy, const std::string& body) {
+  std::string html =
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; " +
+      script_policy + "; style-src 'unsafe-inline'; img-src data: blob:\">\n";
+  html += "<title>" + xml_text(title) + "</title>\n";
+  html += "<meta name=\"generator\" content=\"" + xml_text(provenance.one_line()) + "\">\n";
+  html += "<style>\n";
+  html += page_style();
+  return html + "</style>\n</head>\n<body>\n" + body + "</body>\n</html>\n";
+}
+
 }  // namespace
 
 Json packed(std::span<const float> numbers) {
@@ -78,26 +93,25 @@ std::string script_text(const Json& json) {
 }
 
 std::string page_html(const RunPage& page, const PageLimits& limits) {
-  // The policy forbids the page to fetch anything, whatever its script would try.
-  std::string html =
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-      "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:\">\n";
-  html += "<title>" + xml_text(page.title) + ": " + xml_text(page.verb) + "</title>\n";
-  html += "<meta name=\"generator\" content=\"" + xml_text(page.provenance.one_line()) + "\">\n";
-  html += "<style>\n";
-  html += page_style();
-  html += "</style>\n</head>\n<body>\n<main id=\"page\"></main>\n";
-  html +=
+  std::string body = page.text ? "<main>\n" + page.text->before + "<div id=\"page\"></div>\n" +
+                                     page.text->after + "</main>\n"
+                               : "<main id=\"page\"></main>\n";
+  body +=
       "<noscript>This page draws itself with JavaScript, which is switched off. The same "
       "results stand in summary.json and the other files beside it.</noscript>\n";
-  html += "<script id=\"run\" type=\"application/json\">";
-  html += script_text(page_content(page, limits));
-  html += "</script>\n<script>\n";
-  html += page_script();
-  html += "</script>\n</body>\n</html>\n";
-  return html;
+  body += "<script id=\"run\" type=\"application/json\">";
+  body += script_text(page_content(page, limits));
+  body += "</script>\n<script>\n";
+  body += page_script();
+  body += "</script>\n";
+  return document_html(page.title + ": " + page.verb, page.provenance, "script-src 'unsafe-inline'",
+                       body);
+}
+
+std::string text_page_html(const std::string& title, const Provenance& provenance,
+                           const std::string& body) {
+  return document_html(title, provenance, "script-src 'none'",
+                       "<main class=\"text\">\n" + body + "</main>\n");
 }
 
 }  // namespace photorque

@@ -80,6 +80,15 @@ void draw_bar(Canvas& canvas, const BarChart::Bar& bar, const BarLayout& layout,
   canvas.text(fitted.lines.front(), {layout.note_x, middle}, fitted.style);
 }
 
+// The bars in words, for those who do not see them.
+std::string bars_in_words(const BarChart& chart) {
+  std::string words = chart.title + " (" + chart.x_label + ")";
+  for (const BarChart::Bar& bar : chart.bars) {
+    words += "; " + bar.label + ": " + number_of(bar) + (bar.note.empty() ? "" : ", " + bar.note);
+  }
+  return words;
+}
+
 }  // namespace
 
 std::string bar_chart_html(const BarChart& chart) {
@@ -96,7 +105,7 @@ std::string bar_chart_html(const BarChart& chart) {
   const double half = 0.5 * text_width(chart.x_label, style);
   const double middle = std::max(half, 0.5 * (layout.from + layout.to));
   canvas.text(chart.x_label, {middle, bottom + 18.0}, style);
-  return canvas.finish_html(chart.title);
+  return canvas.finish_html(bars_in_words(chart));
 }
 
 }  // namespace photorque

@@ -300,7 +300,7 @@ std::string Canvas::finish_file() {
 
 std::string Canvas::finish_html(const std::string& title) {
   const std::string svg = finish_file();
-  return "<img class=\"chart\" alt=\"" + xml_text(title) + "\" src=\"data:image/svg+xml;base64," +
+  return "<img class=\"drawn\" alt=\"" + xml_text(title) + "\" src=\"data:image/svg+xml;base64," +
          base64(std::as_bytes(std::span(svg))) + "\">\n";
 }
 

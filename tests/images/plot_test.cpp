@@ -274,7 +274,7 @@ TEST(PlotHtml, IsAnImageThatHoldsItself) {
   plot.title = "Rate <1 & more";
   const std::string html = plot_html(plot);
   EXPECT_THAT(html, ::testing::StartsWith(
-                        "<img class=\"chart\" alt=\"Rate &lt;1 &amp; more\" src=\"data:image/svg"));
+                        "<img class=\"drawn\" alt=\"Rate &lt;1 &amp; more\" src=\"data:image/svg"));
   EXPECT_THAT(svg_of(html), ::testing::EndsWith("</svg>\n"));
   EXPECT_EQ(html, plot_html(plot)) << "equal plots give equal bytes";
 }

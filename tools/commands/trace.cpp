@@ -2,7 +2,7 @@
 #include "tools/commands/page.h"
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
-#include "tools/pages/runs.h"
+#include "tools/pages/pages.h"
 
 namespace photorque::kinds::trace {
 namespace {

@@ -206,7 +206,9 @@ int run(int argc, char** argv, Interruption& interruption) {
     }
     if (verb.draws_page) {
       command->add_flag("--page", line.page,
-                        "Write page.html too: scene, maps and curves to look at in a browser");
+                        "Write page.html too (diagnose: into report.html): scene, maps and curves "
+                        "to look at in a "
+                        "browser");
     }
     if (verb.takes_shard) {
       command->add_option("--shard", line.shard,

@@ -1,18 +1,64 @@
-#include "diagnosis/report/light_charts.h"
+#include "tools/pages/charts.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/constants.h"
 #include "core/text/display.h"
+#include "images/drawing/canvas.h"
 
 namespace photorque {
+
+std::string spoken(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
 namespace {
+
+std::string name_of(const Alternative& alternative) {
+  if (!alternative.label.empty()) return spoken(alternative.label);
+  std::string name;
+  for (const std::string& kind : alternative.kinds) {
+    name += (name.empty() ? "" : " + ") + spoken(kind);
+  }
+  return name.empty() ? "nothing missing" : name;
+}
+
+// Beside a bar that is as long as the best one's, only the difference says something.
+std::string note_on(const Alternative& alternative, double best_log_evidence) {
+  if (!alternative.remark.empty()) return spoken(alternative.remark);
+  const double behind = best_log_evidence - alternative.log_evidence_relative;
+  std::string note = behind > 0.0 ? "−" + readable_number(behind, 3) + " to the best" : "";
+  if (alternative.holdout_chi2_per_sample) {
+    note += (note.empty() ? "" : "; ") +
+            ("χ² held out " + readable_number(*alternative.holdout_chi2_per_sample, 3));
+  }
+  return note;
+}
+
+Plot::Curve curve_through(const std::vector<double>& x, const std::vector<double>& y,
+                          Plot::Colour colour, double width) {
+  Plot::Curve curve;
+  curve.x = x;
+  curve.y = y;
+  curve.colour = colour;
+  curve.width = width;
+  return curve;
+}
+
+std::vector<Plot::Curve> readings_and_models(const ChannelSeries& channel) {
+  Plot::Curve measured = curve_through(channel.time_s, channel.measured, Plot::Colour::grey, 1.2);
+  measured.dots = true;
+  Plot::Curve before = curve_through(channel.time_s, channel.before, Plot::Colour::vermilion, 1.4);
+  before.dashed = true;
+  return {measured, before, curve_through(channel.time_s, channel.after, Plot::Colour::blue, 1.4)};
+}
 
 constexpr size_t most_bins_across = 400;
 
 // Coordinates that differ by less than a tenth of the step between neighbours are one.
-std::vector<double> distinct(std::vector<double> values) {
+std::vector<double> distinct_places(std::vector<double> values) {
   std::ranges::sort(values);
   const double span = values.back() - values.front();
   const double least = std::max(1e-9, 1e-4 * span);
@@ -25,7 +71,7 @@ std::vector<double> distinct(std::vector<double> values) {
 
 // The places of a scan, or, where they lie on no grid, as many as there are readings.
 Steps steps_of(const std::vector<double>& values, size_t readings) {
-  const std::vector<double> all = distinct(values);
+  const std::vector<double> all = distinct_places(values);
   if (all.size() == 1) return {all.front(), 0.01, 1};
   std::vector<double> gaps;
   for (size_t i = 1; i < all.size(); ++i) gaps.push_back(all[i] - all[i - 1]);
@@ -52,6 +98,100 @@ const std::vector<ScanView>& scan_views() {
 }
 
 }  // namespace
+
+Plot empirical_plot(const EmpiricalTorque& torque) {
+  Plot plot;
+  plot.name = "empirical_torque";
+  plot.title = "Empirical torque over " + spoken(torque.variable);
+  plot.x_label = spoken(torque.variable) + " [" + torque.unit + "]";
+  plot.y_label = "torque [N m]";
+  plot.levels = {0.0};
+  const std::string axes = torque.about_lab_axes ? "about lab " : "about body ";
+  constexpr std::array colours = {Plot::Colour::blue, Plot::Colour::vermilion, Plot::Colour::green};
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> values;
+    for (const Vec3& t : torque.torque_N_m) values.push_back(t[k]);
+    Plot::Curve curve = curve_through(torque.at, values, colours[static_cast<size_t>(k)], 2.0);
+    curve.label = axes + "xyz"[k];
+    for (const Vec3& s : torque.standard_error_N_m) curve.y_error.push_back(s[k]);
+    plot.curves.push_back(std::move(curve));
+  }
+  return plot;
+}
+
+BarChart misfit_chart(const Where& where) {
+  BarChart chart{"misfit",
+                 "Misfit of every channel under the nominal model",
+                 "χ² per reading under the nominal model (1 is noise)",
+                 {}};
+  for (const Where::ChannelMisfit& c : where.channels) {
+    chart.bars.push_back({c.name, c.chi2_per_sample, "", c.chi2_per_sample > 1.5});
+  }
+  return chart;
+}
+
+BarChart dependence_chart(const Where& where) {
+  BarChart chart{"dependence",
+                 "Dependence of the difference",
+                 "fraction explained by a function of this alone [%]",
+                 {}};
+  for (const Where::Dependence& d : where.depends_on) {
+    chart.bars.push_back({spoken(d.variable), 100.0 * d.strength, "", chart.bars.empty()});
+  }
+  return chart;
+}
+
+BarChart ranking_chart(const Diagnosis& d, const std::string& of) {
+  constexpr size_t max_bars = 14;
+  // Explanations that the recordings rule out would only flatten the rest.
+  constexpr double ruled_out = -50.0;
+  BarChart chart{
+      "ranking", "Log evidence of the alternatives", "log evidence over “nothing missing”", {}};
+  std::vector<std::string> chosen;
+  for (const FoundEffect& effect : d.effects) {
+    const bool is_of_light = effect.table == "effect";
+    if (of.empty() || is_of_light == (of == "light")) chosen.push_back(effect.kind);
+  }
+  std::ranges::sort(chosen);
+  const auto best = std::ranges::find(d.alternatives, of, &Alternative::of);
+  for (const Alternative& a : d.alternatives) {
+    if (a.of != of) continue;
+    if (chart.bars.size() == max_bars) break;
+    if (a.log_evidence_relative < ruled_out && !a.chosen) continue;
+    std::vector<std::string> kinds = a.kinds;
+    std::ranges::sort(kinds);
+    const bool named = d.verdict != Verdict::unexplained && kinds == chosen && a.label.empty();
+    chart.bars.push_back({name_of(a), a.log_evidence_relative,
+                          note_on(a, best->log_evidence_relative), a.chosen || named});
+  }
+  return chart;
+}
+
+Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording) {
+  Plot::Panel residuals{
+      "residual [" + channel.residual_unit + "]",
+      {curve_through(channel.time_s, channel.residual_before, Plot::Colour::vermilion, 1),
+       curve_through(channel.time_s, channel.residual_after, Plot::Colour::blue, 1)}};
+  if (channel.noise > 0.0) residuals.levels = {-2.0 * channel.noise, 2.0 * channel.noise};
+  residuals.robust_range = true;
+  Plot plot;
+  plot.name = channel.name;
+  plot.title = channel.label.empty() ? channel.name : channel.label;
+  plot.x_label = "time [s]";
+  plot.robust_range = true;
+  if (channel.measured.empty()) {
+    plot.y_label = residuals.y_label;
+    plot.curves = residuals.curves;
+    plot.levels = residuals.levels;
+  } else {
+    plot.y_label = "reading [" + channel.unit + "]";
+    plot.curves = readings_and_models(channel);
+    plot.below = {residuals};
+  }
+  for (const auto& i : recording.held_out_s) plot.shaded.push_back({i.from, i.to});
+  plot.shaded_label = "held out, never fitted";
+  return plot;
+}
 
 // "tilt 12 deg, heading 60 deg"
 std::string attitude_words(const Quat& lab_from_body) {
@@ -194,9 +334,7 @@ Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_
   return plot;
 }
 
-std::string array_drawing(const Diagnosis& d) {
-  if (!d.array) return "";
-  const DrawnArray& array = *d.array;
+std::string array_html(const DrawnArray& array) {
   double u_low = 1e300, u_high = -1e300, v_low = 1e300, v_high = -1e300;
   for (const DrawnArray::Cell& c : array.cells) {
     u_low = std::min(u_low, c.u_low);
@@ -205,37 +343,29 @@ std::string array_drawing(const Diagnosis& d) {
     v_high = std::max(v_high, c.v_high);
   }
   constexpr double width = 560.0, margin = 8.0, most_numbers = 400.0;
+  constexpr Rgb plain = rgb_from_hex(0xE6EDF5), suspect = rgb_from_hex(0xE2864A);
   const double scale = (width - 2.0 * margin) / (u_high - u_low);
-  const double height = scale * (v_high - v_low) + 2.0 * margin;
-  const auto box = [&](double a, double b, double c, double e) {
-    const auto place = [](const char* name, double value) {
-      return " " + std::string(name) + "=\"" + readable_number(value, 5) + "\"";
-    };
-    return place("x", margin + scale * (a - u_low)) + place("y", margin + scale * (v_high - e)) +
-           place("width", scale * (b - a)) + place("height", scale * (e - c));
+  const auto box_of_cell = [&](const DrawnArray::Cell& c) {
+    return PageBox{margin + scale * (c.u_low - u_low), margin + scale * (v_high - c.v_high),
+                   scale * (c.u_high - c.u_low), scale * (c.v_high - c.v_low)};
   };
-  std::string svg =
-      "<svg class=\"chart array\" role=\"img\" aria-label=\"the array\" viewBox=\"0 0 " +
-      readable_number(width, 5) + " " + readable_number(height, 5) + "\">\n";
+  Canvas canvas = Canvas::of_svg(width, scale * (v_high - v_low) + 2.0 * margin);
   for (size_t k = 0; k < array.cells.size(); ++k) {
-    const DrawnArray::Cell& c = array.cells[k];
+    const PageBox box = box_of_cell(array.cells[k]);
     const bool is_suspect = std::ranges::find(array.suspects, k) != array.suspects.end();
-    svg += std::string("<rect class=\"") + (is_suspect ? "suspect" : "cell") + "\"" +
-           box(c.u_low, c.u_high, c.v_low, c.v_high) + "/>\n";
+    canvas.fill(box, is_suspect ? suspect : plain);
+    canvas.outline(box, {ink, 0.8});
     if (static_cast<double>(array.cells.size()) > most_numbers) continue;
-    const double high = scale * (c.v_high - c.v_low), wide = scale * (c.u_high - c.u_low);
-    const double size = std::clamp(0.3 * std::min(high, wide), 6.0, 15.0);
-    svg +=
-        "<text x=\"" + readable_number(margin + scale * (0.5 * (c.u_low + c.u_high) - u_low), 5) +
-        "\" y=\"" +
-        readable_number(margin + scale * (v_high - 0.5 * (c.v_low + c.v_high)) + 0.36 * size, 5) +
-        "\" font-size=\"" + readable_number(size, 3) + "\" text-anchor=\"middle\">" +
-        std::to_string(k) + "</text>\n";
+    canvas.text(std::to_string(k), box.centre(),
+                {.size = std::clamp(0.3 * std::min(box.height, box.width), 6.0, 15.0),
+                 .align = TextAlign::centre,
+                 .level = TextLevel::middle});
   }
-  for (const DrawnArray::Cell& s : array.shadows) {
-    svg += "<rect class=\"shadow\"" + box(s.u_low, s.u_high, s.v_low, s.v_high) + "/>\n";
+  for (const DrawnArray::Cell& shadow : array.shadows) {
+    canvas.fill(box_of_cell(shadow), ink, 0.35);
+    canvas.outline(box_of_cell(shadow), {ink, 1.0, 1.0, {4.0, 3.0}});
   }
-  return svg + "</svg>\n";
+  return canvas.finish_html("the array");
 }
 
 }  // namespace photorque

@@ -1,4 +1,4 @@
-// What scans and sweeps show as plain data, for whoever draws it.
+// The charts of a diagnosis as plain data: readings, models, ranking, scans and sweeps.
 #pragma once
 
 #include <optional>
@@ -7,6 +7,29 @@
 #include "diagnosis/diagnosis.h"
 
 namespace photorque {
+
+// "magnetic_dipole" as "magnetic dipole".
+std::string spoken(std::string name);
+
+// Blue is what was found, vermilion the nominal model, grey what was measured: in every chart and
+// in the legend of the page. Colours that colour-blind readers tell apart: M. Okabe and K. Ito,
+// "Color Universal Design" (2008).
+
+// Torque without a law about the three axes, with bands of one standard error.
+Plot empirical_plot(const EmpiricalTorque& torque);
+
+// chi² per reading of every channel under the nominal model.
+BarChart misfit_chart(const Where& where);
+// What the difference is a function of.
+BarChart dependence_chart(const Where& where);
+
+// Log evidence of the best alternatives; those that the recordings rule out are left out.
+// `of`: which domain's, where motion and light were recorded together.
+BarChart ranking_chart(const Diagnosis& diagnosis, const std::string& of = {});
+
+// Readings beside both models, where the channel has them, above the residuals of both; what was
+// held out is shaded, twice the noise of a reading dotted.
+Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording);
 
 // "tilt 12 deg, heading 60 deg"
 std::string attitude_words(const Quat& lab_from_body);
@@ -53,7 +76,7 @@ std::vector<int> sweeps_of(const LightSeries& light);
 Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_found);
 
 // The array from its front as an element of a page, cells by their numbers, those that something
-// found acts on marked; empty where the diagnosis knows no array.
-std::string array_drawing(const Diagnosis& diagnosis);
+// found acts on marked.
+std::string array_html(const DrawnArray& array);
 
 }  // namespace photorque
