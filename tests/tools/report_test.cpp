@@ -8,6 +8,7 @@
 #include "tests/diagnosis/sample_diagnosis.h"
 #include "tools/pages/charts.h"
 #include "tools/pages/pages.h"
+#include "tools/sweeps/labels.h"
 #include "tools/tasks/diagnose.h"
 
 namespace photorque {
@@ -169,6 +170,13 @@ TEST(ReportCharts, RankingLeavesOutWhatIsRuledOutAndMarksTheChosen) {
   EXPECT_EQ(chart.bars[1].note, "−3.00 to the best");
   EXPECT_FALSE(chart.bars[1].highlighted);
   EXPECT_EQ(chart.bars[2].label, "nothing missing");
+}
+
+TEST(Report, WritesUnitsAsPeopleReadThem) {
+  EXPECT_EQ(unit_for_people("A_m2"), "A m²");
+  EXPECT_EQ(unit_for_people("N_m_s2"), "N m s²");
+  EXPECT_EQ(unit_for_people("N_m_s_per_T2"), "N m s/T²");
+  EXPECT_EQ(unit_for_people("m_s2"), "m/s²");
 }
 
 // Scripts find every number of diagnosis.json by its key, with all of its digits.
