@@ -12,7 +12,6 @@
 #include "core/text/display.h"
 
 namespace photorque {
-namespace {
 
 struct CairoDelete {
   void operator()(cairo_t* context) const { cairo_destroy(context); }
@@ -22,6 +21,8 @@ struct CairoDelete {
 };
 template <class T>
 using CairoOwner = std::unique_ptr<T, CairoDelete>;
+
+namespace {
 
 void check(cairo_status_t status) {
   if (status != CAIRO_STATUS_SUCCESS) {
