@@ -117,9 +117,12 @@ struct Holdout {
   int64_t samples = 0;
   // How the model predicts them with the uncertainty of its parameters; empty: it was not asked.
   std::optional<inference::Predictive> predictive = {};
-  // Of what the nominal model leaves beyond noise, the part that is explained, 0 to 1.
   double explained_fraction = 0.0;
 };
+// Of what the nominal model leaves of readings beyond noise, the part that another model explains,
+// 0 to 1; 1 where it leaves less than five standard errors of noise, 0 where the other diverges.
+double explained_fraction(double chi2_per_sample_before, double chi2_per_sample_after,
+                          int64_t samples);
 
 // An experiment that would tell apart what these data cannot.
 struct Manoeuvre {

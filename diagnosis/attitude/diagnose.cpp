@@ -76,16 +76,6 @@ void say_names_beside_the_rest(const Answer& answer, Diagnosis& d) {
   d.priors_refined = refined_priors(answer.chosen());
 }
 
-// The part of what the nominal model leaves of the held-out runs that the chosen one explains.
-double explained_fraction(const Fit& held_before, const Fit& held_after) {
-  const double before = held_before.chi2_per_sample() - 1.0,
-               after = held_after.chi2_per_sample() - 1.0;
-  if (std::isnan(before) || std::isnan(after) || std::isinf(after)) return 0.0;
-  if (std::isinf(before)) return 1.0;
-  const double noise = 5.0 * std::sqrt(2.0 / static_cast<double>(held_before.samples));
-  return before > noise ? std::clamp((before - after) / before, 0.0, 1.0) : 1.0;
-}
-
 // Numbers and curves of the nominal and the chosen model, beside what was fitted and held out.
 void say_how_well(const Fit& before, const Trial& chosen, const RecordedData& data, bool is_lost,
                   const Thresholds& limits, Diagnosis& d) {
@@ -103,7 +93,8 @@ void say_how_well(const Fit& before, const Trial& chosen, const RecordedData& da
             held_after = propagate_model(after, data.held, limits);
   d.holdout = compare_holdout(held_before, held_after, data.held);
   d.holdout->predictive = chosen.predictive;
-  d.holdout->explained_fraction = explained_fraction(held_before, held_after);
+  d.holdout->explained_fraction = explained_fraction(
+      held_before.chi2_per_sample(), held_after.chi2_per_sample(), held_before.samples);
   for (size_t run = 0; run < data.train.size(); ++run) {
     d.series.push_back(series_of(before, after, data.train[run], run));
   }

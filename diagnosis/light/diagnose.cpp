@@ -201,11 +201,8 @@ Holdout light_holdout(const LightAnswer& answer, const std::vector<FittedRun>& h
   result.rms_before = rms_of(before, answer.all, held);
   result.rms_after = rms_of(after, answer.all, held);
   result.predictive = answer.chosen().predictive;
-  const double beyond = result.chi2_per_sample_before - 1.0,
-               left = result.chi2_per_sample_after - 1.0;
-  const double noise =
-      5.0 * std::sqrt(2.0 / static_cast<double>(std::max<int64_t>(1, result.samples)));
-  result.explained_fraction = beyond > noise ? std::clamp((beyond - left) / beyond, 0.0, 1.0) : 1.0;
+  result.explained_fraction = explained_fraction(result.chi2_per_sample_before,
+                                                 result.chi2_per_sample_after, result.samples);
   return result;
 }
 

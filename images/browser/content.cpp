@@ -5,9 +5,7 @@
 #include <limits>
 
 #include "core/text/format.h"
-#include "images/browser/packed.h"
-#include "images/browser/stage_content.h"
-#include "images/drawing/colour_map.h"
+#include "images/drawing/colour.h"
 #include "images/writers/metadata.h"
 
 namespace photorque {
@@ -43,43 +41,6 @@ Json power_json(const std::vector<PowerStage>& stages) {
 Json texts_json(const std::vector<std::string>& texts) {
   Json list = Json::array();
   for (const std::string& text : texts) list.push_back(clean_text(text));
-  return list;
-}
-
-Json verdict_json(const PageVerdict& verdict) {
-  static constexpr const char* faces[] = {"good", "found", "open"};
-  return {{"face", faces[static_cast<size_t>(verdict.face)]},
-          {"words", clean_text(verdict.words)},
-          {"sentence", clean_text(verdict.sentence)}};
-}
-
-Json findings_json(const std::vector<PageFinding>& findings) {
-  Json list = Json::array();
-  for (const PageFinding& finding : findings) {
-    list.push_back({{"title", clean_text(finding.title)},
-                    {"remark", clean_text(finding.remark)},
-                    {"texts", texts_json(finding.texts)},
-                    {"from_zero", finding.from_zero},
-                    {"figures", figures_json(finding.figures)}});
-  }
-  return list;
-}
-
-Json charts_json(const std::vector<BarChart>& charts) {
-  Json list = Json::array();
-  for (const BarChart& chart : charts) {
-    Json bars = Json::array();
-    for (const BarChart::Bar& bar : chart.bars) {
-      bars.push_back({{"label", clean_text(bar.label)},
-                      {"value", json_number(bar.value)},
-                      {"note", clean_text(bar.note)},
-                      {"highlighted", bar.highlighted}});
-    }
-    list.push_back({{"name", clean_text(chart.name)},
-                    {"title", clean_text(chart.title)},
-                    {"x_label", clean_text(chart.x_label)},
-                    {"bars", std::move(bars)}});
-  }
   return list;
 }
 
@@ -299,17 +260,13 @@ Json page_content(const RunPage& page, const PageLimits& limits) {
       {"figures", figures_json(page.figures)},
       {"figures_file", clean_text(page.figures_file)},
       {"power", power_json(page.power)},
-      {"findings_title", clean_text(page.findings_title)},
-      {"findings", findings_json(page.findings)},
-      {"next_steps", texts_json(page.next_steps)},
-      {"charts", charts_json(page.charts)},
+      {"with_text", page.text.has_value()},
       {"notes", texts_json(page.notes)},
       {"maps", std::move(maps)},
       {"plots", std::move(plots)},
       {"tables", std::move(tables)},
       {"colours", {{"viridis", colours_json(viridis())}, {"cool_warm", colours_json(cool_warm())}}},
       {"provenance", std::move(provenance)}};
-  if (page.verdict) json["verdict"] = verdict_json(*page.verdict);
   if (page.stage) json["stage"] = stage_content(*page.stage, page.product, limits);
   return json;
 }

@@ -1,33 +1,115 @@
 #include "images/browser/run_page.h"
 
+#include <bit>
+#include <cmath>
 #include "core/text/format.h"
 #include "images/browser/content.h"
-#include "images/browser/packed.h"
-#include "images/browser/script.h"
 
 namespace photorque {
+namespace {
 
-std::string page_html(const RunPage& page, const PageLimits& limits) {
-  // The policy forbids the page to fetch anything, whatever its script would try.
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "pages hold little-endian numbers");
+
+template <class T>
+Json packed_as(const char* type, std::span<const T> numbers) {
+  return {{type, base64(std::as_bytes(numbers))}};
+}
+
+// The policy forbids the page to fetch anything, whatever its script would try.
+std::string document_html(const std::string& title, const Provenance& provenance,
+                          const std::string& script_policy, const std::string& body) {
   std::string html =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-      "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:\">\n";
-  html += "<title>" + xml_text(page.title) + ": " + xml_text(page.verb) + "</title>\n";
-  html += "<meta name=\"generator\" content=\"" + xml_text(page.provenance.one_line()) + "\">\n";
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; " +
+      script_policy + "; style-src 'unsafe-inline'; img-src data: blob:\">\n";
+  html += "<title>" + xml_text(title) + "</title>\n";
+  html += "<meta name=\"generator\" content=\"" + xml_text(provenance.one_line()) + "\">\n";
   html += "<style>\n";
   html += page_style();
-  html += "</style>\n</head>\n<body>\n<main id=\"page\"></main>\n";
-  html +=
+  return html + "</style>\n</head>\n<body>\n" + body + "</body>\n</html>\n";
+}
+
+}  // namespace
+
+Json packed(std::span<const float> numbers) {
+  return packed_as("f32", numbers);
+}
+
+Json packed(std::span<const double> numbers) {
+  return packed_as("f64", numbers);
+}
+
+Json packed(std::span<const uint32_t> numbers) {
+  return packed_as("u32", numbers);
+}
+
+Json packed_rounded(std::span<const double> numbers) {
+  const std::vector<float> rounded(numbers.begin(), numbers.end());
+  return packed(std::span<const float>(rounded));
+}
+
+Json packed_coarse(std::span<const double> numbers, double low, double high) {
+  constexpr double levels = 65534.0;
+  const double step = high > low ? (high - low) / levels : 1.0;
+  std::vector<uint16_t> coarse;
+  coarse.reserve(numbers.size());
+  for (const double number : numbers) {
+    const double level = std::clamp(std::round((number - low) / step), 0.0, levels);
+    coarse.push_back(std::isfinite(number) ? static_cast<uint16_t>(level) : uint16_t{65535});
+  }
+  Json json = packed_as("u16", std::span<const uint16_t>(coarse));
+  json["low"] = low;
+  json["step"] = step;
+  return json;
+}
+
+std::string script_text(const Json& json) {
+  // In JSON these stand within strings alone. U+2028 and U+2029 end lines of a script.
+  std::string text;
+  const std::string plain = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.reserve(plain.size());
+  for (size_t i = 0; i < plain.size(); ++i) {
+    const char c = plain[i];
+    if (c == '<') {
+      text += "\\u003c";
+    } else if (c == '>') {
+      text += "\\u003e";
+    } else if (c == '&') {
+      text += "\\u0026";
+    } else if (plain.compare(i, 3, "\xE2\x80\xA8") == 0 ||
+               plain.compare(i, 3, "\xE2\x80\xA9") == 0) {
+      text += plain[i + 2] == '\xA8' ? "\\u2028" : "\\u2029";
+      i += 2;
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string page_html(const RunPage& page, const PageLimits& limits) {
+  std::string body = page.text ? "<main>\n" + page.text->before + "<div id=\"page\"></div>\n" +
+                                     page.text->after + "</main>\n"
+                               : "<main id=\"page\"></main>\n";
+  body +=
       "<noscript>This page draws itself with JavaScript, which is switched off. The same "
       "results stand in summary.json and the other files beside it.</noscript>\n";
-  html += "<script id=\"run\" type=\"application/json\">";
-  html += script_text(page_content(page, limits));
-  html += "</script>\n<script>\n";
-  html += page_script();
-  html += "</script>\n</body>\n</html>\n";
-  return html;
+  body += "<script id=\"run\" type=\"application/json\">";
+  body += script_text(page_content(page, limits));
+  body += "</script>\n<script>\n";
+  body += page_script();
+  body += "</script>\n";
+  return document_html(page.title + ": " + page.verb, page.provenance, "script-src 'unsafe-inline'",
+                       body);
+}
+
+std::string text_page_html(const std::string& title, const Provenance& provenance,
+                           const std::string& body) {
+  return document_html(title, provenance, "script-src 'none'",
+                       "<main class=\"text\">\n" + body + "</main>\n");
 }
 
 }  // namespace photorque

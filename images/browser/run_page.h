@@ -39,21 +39,10 @@ struct PlotCursor {
   std::optional<std::pair<size_t, double>> only_at = {};
 };
 
-// What a run concludes, in the strongest words of the page.
-struct PageVerdict {
-  enum class Face { good, found, open };
-  Face face = Face::good;
-  std::string words;     // "Missing physics found"
-  std::string sentence;  // that says which
-};
-
-// Something that was found, with its numbers.
-struct PageFinding {
-  std::string title;   // "magnetic dipole"
-  std::string remark;  // "probability 99 %"
-  std::vector<std::string> texts = {};
-  std::vector<PageFigure> figures = {};
-  bool from_zero = true;  // how many standard errors the figures are from zero means something
+// Text that the program writes itself, as HTML: before and after what the script draws, which is
+// then the scene, maps and curves alone.
+struct ReportText {
+  std::string before, after;
 };
 
 struct RunPage {
@@ -65,11 +54,7 @@ struct RunPage {
   std::vector<PageFigure> figures = {};
   std::string figures_file = "summary.json";  // that has them too
   std::vector<PowerStage> power = {};
-  std::optional<PageVerdict> verdict = {};
-  std::string findings_title = {};
-  std::vector<PageFinding> findings = {};
-  std::vector<std::string> next_steps = {};  // what would tell more
-  std::vector<BarChart> charts = {};
+  std::optional<ReportText> text = {};
   std::vector<std::string> notes = {};
   std::optional<SceneStage> stage = {};
   std::vector<PlotCursor> cursors = {};
@@ -89,5 +74,9 @@ struct PageLimits {
 
 // Equal arguments give equal bytes. Names may hold anything: none of them becomes markup or script.
 std::string page_html(const RunPage& page, const PageLimits& limits = {});
+
+// A page of text and drawn pictures (HTML in `body`), with the same look and without a script.
+std::string text_page_html(const std::string& title, const Provenance& provenance,
+                           const std::string& body);
 
 }  // namespace photorque

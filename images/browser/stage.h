@@ -7,7 +7,7 @@
 
 #include "core/product.h"
 #include "core/transform.h"
-#include "images/canvas/colour.h"
+#include "images/drawing/colour.h"
 
 namespace photorque {
 

@@ -1,4 +1,4 @@
-#include "images/browser/stage_content.h"
+#include "images/browser/content.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,7 @@
 
 #include "core/errors.h"
 #include "core/text/format.h"
-#include "images/browser/packed.h"
-#include "images/drawing/colour_map.h"
+#include "images/drawing/colour.h"
 #include "images/writers/metadata.h"
 
 namespace photorque {

@@ -1,9 +1,8 @@
-#include "images/drawing/bar_chart.h"
+#include "images/drawing/plot.h"
 
 #include "core/text/format.h"
+#include "images/drawing/curves.h"
 #include "images/drawing/page_layout.h"
-#include "images/drawing/plot_curves.h"
-#include "images/drawing/plot_picture.h"
 
 namespace photorque {
 namespace {
@@ -81,12 +80,21 @@ void draw_bar(Canvas& canvas, const BarChart::Bar& bar, const BarLayout& layout,
   canvas.text(fitted.lines.front(), {layout.note_x, middle}, fitted.style);
 }
 
+// The bars in words, for those who do not see them.
+std::string bars_in_words(const BarChart& chart) {
+  std::string words = chart.title + " (" + chart.x_label + ")";
+  for (const BarChart::Bar& bar : chart.bars) {
+    words += "; " + bar.label + ": " + number_of(bar) + (bar.note.empty() ? "" : ", " + bar.note);
+  }
+  return words;
+}
+
 }  // namespace
 
 std::string bar_chart_html(const BarChart& chart) {
   const BarLayout layout = layout_of(chart);
   const double bottom = row_height * static_cast<double>(chart.bars.size()) + 4.0;
-  Canvas canvas = Canvas::of_html(html_chart_width, bottom + 26.0, chart.title);
+  Canvas canvas = Canvas::of_svg(html_chart_width, bottom + 26.0);
   for (size_t i = 0; i < chart.bars.size(); ++i) {
     draw_bar(canvas, chart.bars[i], layout, 4.0 + row_height * (static_cast<double>(i) + 0.5));
   }
@@ -97,7 +105,7 @@ std::string bar_chart_html(const BarChart& chart) {
   const double half = 0.5 * text_width(chart.x_label, style);
   const double middle = std::max(half, 0.5 * (layout.from + layout.to));
   canvas.text(chart.x_label, {middle, bottom + 18.0}, style);
-  return canvas.finish_svg();
+  return canvas.finish_html(bars_in_words(chart));
 }
 
 }  // namespace photorque

@@ -1,6 +1,6 @@
-#include "images/drawing/map_grid.h"
+#include "images/drawing/map.h"
 
-#include "images/drawing/ticks.h"
+#include "images/drawing/axis.h"
 
 namespace photorque {
 namespace {

@@ -1,10 +1,10 @@
-#include "images/drawing/map_picture.h"
+#include "images/drawing/map.h"
 
+#include "core/errors.h"
 #include "core/text/format.h"
-#include "images/drawing/consistency.h"
-#include "images/drawing/map_grid.h"
 #include "images/drawing/page_layout.h"
-#include "images/drawing/plot_picture.h"
+#include "images/drawing/plot.h"
+#include "images/writers/kind.h"
 
 namespace photorque {
 namespace {
@@ -125,7 +125,24 @@ void draw_hatching(Canvas& canvas, const PageBox& box) {
   });
 }
 
+void require_count(const Map& map, const std::string& what, size_t found) {
+  const size_t bins = static_cast<size_t>(map.width) * static_cast<size_t>(map.height);
+  if (found == bins) return;
+  throw InputError({}, map.name, std::to_string(found) + " " + what,
+                   std::to_string(bins) + " of them");
+}
+
 }  // namespace
+
+void require_consistent(const Map& map) {
+  if (map.width < 1 || map.height < 1) {
+    throw InputError({}, map.name, std::to_string(map.width) + " × " + std::to_string(map.height),
+                     "a map of at least one bin");
+  }
+  require_count(map, "values", map.value.size());
+  if (!map.standard_error.empty()) require_count(map, "standard errors", map.standard_error.size());
+  if (!map.weight.empty()) require_count(map, "weights", map.weight.size());
+}
 
 MapPicture map_picture(const Map& map, const Provenance& provenance) {
   require_consistent(map);
@@ -179,14 +196,16 @@ std::string map_html(const Map& map) {
   const ColourBar bar = colour_bar(scale, map.unit, bar_height);
   const double bottom =
       std::max(grid.bottom() + horizontal_axis_height(x), grid.y + bar_height + 8.0);
-  Canvas canvas = Canvas::of_html(width, std::ceil(bottom + 4.0), map.title);
+  Canvas canvas = Canvas::of_svg(width, std::ceil(bottom + 4.0));
   if (!map.smooth) draw_hatching(canvas, grid);
-  canvas.image(grid, map.width, map.height, map_pixels(map, scale, map.width, map.height));
+  const int columns = static_cast<int>(std::lround(pixels_per_point * grid.width)),
+            rows = static_cast<int>(std::lround(pixels_per_point * grid.height));
+  canvas.image(grid, columns, rows, map_pixels(map, scale, columns, rows));
   canvas.outline(grid, {ink, 0.8});
   draw_horizontal_axis(canvas, grid, x);
   draw_vertical_axis(canvas, grid, y, vertical_axis_width(y));
   draw_colour_bar(canvas, bar, {grid.right() + gap, grid.y}, bar_height);
-  return canvas.finish_svg();
+  return canvas.finish_html(map.title);
 }
 
 std::string map_caption(const Map& map) {

@@ -5,7 +5,7 @@
 namespace photorque {
 namespace {
 
-constexpr double bar_thickness = 16.0;
+constexpr double colour_bar_thickness = 16.0;
 constexpr double caption_gap = 10.0;
 constexpr Rgb grey = {0.45, 0.45, 0.45};
 constexpr Rgb alarm = {0.78, 0.1, 0.05};
@@ -125,7 +125,7 @@ void draw_page_text(Canvas& canvas, const PageText& text, double body_height) {
 }
 
 double ColourBar::width() const {
-  return std::max(bar_thickness + tick_labels_width(axis),
+  return std::max(colour_bar_thickness + tick_labels_width(axis),
                   text_width(unit_with_power(unit, axis.ticks.exponent), tick_style));
 }
 
@@ -140,7 +140,7 @@ void draw_colour_bar(Canvas& canvas, const ColourBar& bar, const PagePoint& top_
     const auto [red, green, blue] = rgb_bytes(bar.scale.map.colours[i]);
     colours.push_back(0xFF000000u | uint32_t{red} << 16 | uint32_t{green} << 8 | uint32_t{blue});
   }
-  const PageBox box{top_left.x, top_left.y, bar_thickness, height};
+  const PageBox box{top_left.x, top_left.y, colour_bar_thickness, height};
   canvas.image(box, 1, static_cast<int>(colours.size()), colours);
   canvas.outline(box, {ink, 0.8});
   TextStyle style = tick_style;

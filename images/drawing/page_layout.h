@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/provenance.h"
-#include "images/canvas/canvas.h"
 #include "images/drawing/axis.h"
-#include "images/drawing/colour_map.h"
+#include "images/drawing/canvas.h"
+#include "images/drawing/colour.h"
 
 namespace photorque {
 

@@ -2,7 +2,7 @@
 
 #include "core/errors.h"
 #include "images/drawing/page_layout.h"
-#include "images/writers/map_channels.h"
+#include "images/writers/metadata.h"
 
 namespace photorque {
 namespace {

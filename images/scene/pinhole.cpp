@@ -1,4 +1,4 @@
-#include "images/scene/pinhole.h"
+#include "images/scene/picture.h"
 
 #include <algorithm>
 #include <cmath>

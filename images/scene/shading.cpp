@@ -1,4 +1,4 @@
-#include "images/scene/shading.h"
+#include "images/scene/picture.h"
 
 namespace photorque {
 namespace {

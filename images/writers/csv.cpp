@@ -6,7 +6,7 @@
 // Numbers read back as the same doubles; NaN is an empty cell, infinities are "inf" and "-inf".
 #include "core/files.h"
 #include "core/text/format.h"
-#include "images/drawing/consistency.h"
+#include "images/drawing/map.h"
 #include "images/writers/kind.h"
 
 namespace photorque::kinds::csv {

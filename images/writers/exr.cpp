@@ -4,7 +4,7 @@
 // as "comments", all of it as JSON.
 #include "images/writers/image_file.h"
 #include "images/writers/kind.h"
-#include "images/writers/map_channels.h"
+#include "images/writers/metadata.h"
 
 namespace photorque::kinds::exr {
 namespace {

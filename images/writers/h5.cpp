@@ -7,7 +7,8 @@
 //   /plots/NAME/AXES/CURVE/x, y, y_error   axes and curves counted from 1; attribute label
 //   attributes of /        program, git_hash, seed, input_1 …, warning_1 …
 #include "core/errors.h"
-#include "images/drawing/consistency.h"
+#include "images/drawing/map.h"
+#include "images/drawing/plot.h"
 #include "images/writers/hdf5_file.h"
 #include "images/writers/kind.h"
 

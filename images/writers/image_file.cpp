@@ -65,15 +65,10 @@ void write_exr(const fs::path& path, int width, int height,
   write_file_whole(path, bytes_of(path, spec, OIIO::TypeDesc::FLOAT, interleaved.data()));
 }
 
-std::string png_bytes(const Picture& picture, const ImageMetadata& metadata) {
-  return bytes_of(
-      "memory.png",
-      spec_of(picture.width, picture.height, {"R", "G", "B"}, OIIO::TypeDesc::UINT8, metadata),
-      OIIO::TypeDesc::UINT8, picture.rgb.data());
-}
-
 void write_png(const fs::path& path, const Picture& picture, const ImageMetadata& metadata) {
-  write_file_whole(path, png_bytes(picture, metadata));
+  const OIIO::ImageSpec spec =
+      spec_of(picture.width, picture.height, {"R", "G", "B"}, OIIO::TypeDesc::UINT8, metadata);
+  write_file_whole(path, bytes_of(path, spec, OIIO::TypeDesc::UINT8, picture.rgb.data()));
 }
 
 }  // namespace photorque

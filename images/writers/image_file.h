@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "images/canvas/picture.h"
+#include "images/drawing/canvas.h"
 
 namespace photorque {
 
@@ -41,10 +41,17 @@ void write_exr(const std::filesystem::path& path, int width, int height,
 void write_tiff(const std::filesystem::path& path, int width, int height,
                 const std::vector<ImageChannel>& channels, const ImageMetadata& metadata);
 
-// The bytes of a PNG file.
-std::string png_bytes(const Picture& picture, const ImageMetadata& metadata);
-
 void write_png(const std::filesystem::path& path, const Picture& picture,
                const ImageMetadata& metadata);
+
+struct LinearPicture {
+  int width = 0, height = 0;
+  std::vector<float> rgb;  // linear in [0, 1]; row by row from the top
+};
+
+// The bytes of a PNG or JPEG with sRGB values (IEC 61966-2-1); grey ones become equal red, green
+// and blue, opacity is left out. Throws InputError for other bytes, and for more than 2^26 texels,
+// by the header and before anything is decoded.
+LinearPicture read_picture(const std::string& bytes);
 
 }  // namespace photorque

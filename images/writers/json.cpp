@@ -1,11 +1,38 @@
 // The headline figures as summary.json.
 //
-// See summary_json; a caller that knows the wall time and the number of rays writes that itself.
+// A caller that knows the wall time and the number of rays writes summary_json itself.
+#include "core/errors.h"
 #include "core/files.h"
+#include "core/text/format.h"
 #include "images/writers/kind.h"
-#include "images/writers/summary.h"
+#include "images/writers/metadata.h"
+#include "images/writers/product.h"
 
-namespace photorque::kinds::json {
+namespace photorque {
+
+std::string summary_json(const Product& product, const Provenance& provenance,
+                         const RunCost& cost) {
+  nlohmann::ordered_json summary = {{"schema", summary_schema},
+                                    {"warnings", nlohmann::ordered_json::array()}};
+  for (const std::string& warning : provenance.warnings) {
+    summary["warnings"].push_back(clean_text(warning));
+  }
+  for (const auto& [name, estimate] : product.quantities) {
+    const std::string key = clean_text(name);
+    if (summary.contains(key) || key == "provenance") {
+      throw InputError({}, name, "two results with this name", "different names");
+    }
+    summary[key] = {{"value", json_number(estimate.value)},
+                    {"standard_error", json_number(estimate.standard_error)}};
+  }
+  nlohmann::ordered_json& made_by = summary["provenance"];
+  made_by = provenance_json(provenance);
+  if (cost.rays) made_by["rays"] = *cost.rays;
+  if (cost.wall_time_s) made_by["wall_time_s"] = json_number(*cost.wall_time_s);
+  return summary.dump(2) + "\n";
+}
+
+namespace kinds::json {
 namespace {
 
 class JsonWriter final : public Writer {
@@ -26,4 +53,5 @@ WriterKind kind() {
           [] { return std::make_unique<JsonWriter>(); }};
 }
 
-}  // namespace photorque::kinds::json
+}  // namespace kinds::json
+}  // namespace photorque

@@ -1,14 +1,39 @@
-// Which formats there are.
+// How products become files, and which formats there are.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "images/writers/writer.h"
+#include "core/product.h"
+#include "core/provenance.h"
 
 namespace photorque {
+
+// One format. Writers are pure: equal arguments give equal bytes, and every file carries the
+// provenance in a form that people and programs can read.
+class Writer {
+ public:
+  virtual ~Writer() = default;
+
+  // Writes what the format can express of `product` into `folder` (made if absent), one file per
+  // item, named after it; returns the paths in order. A format that has nothing to say writes
+  // nothing. Each file appears whole or not at all. InputError when an item's sizes disagree or a
+  // file cannot be written.
+  virtual std::vector<std::filesystem::path> write(const Product& product,
+                                                   const Provenance& provenance,
+                                                   const std::filesystem::path& folder) const = 0;
+};
+
+// InputError that names the table if its columns differ in length.
+void require_consistent(const Table& table);
+
+// folder/name.extension, with everything but ASCII letters, digits, '.', '_' and '-' in `name`
+// replaced by '_': names come from users' scenes and must not leave the folder.
+std::filesystem::path file_in(const std::filesystem::path& folder, const std::string& name,
+                              const std::string& extension);
 
 // One format: "exr".
 struct WriterKind {

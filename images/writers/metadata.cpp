@@ -1,8 +1,23 @@
 #include "images/writers/metadata.h"
 
 #include "core/text/format.h"
+#include "images/drawing/map.h"
 
 namespace photorque {
+namespace {
+
+std::vector<float> top_row_first(const Map& map, const std::vector<double>& values) {
+  std::vector<float> samples;
+  samples.reserve(values.size());
+  for (int iy = map.height - 1; iy >= 0; --iy) {
+    const auto row = values.begin() + static_cast<ptrdiff_t>(iy) * map.width;
+    std::transform(row, row + map.width, std::back_inserter(samples),
+                   [](double value) { return static_cast<float>(value); });
+  }
+  return samples;
+}
+
+}  // namespace
 
 using Json = nlohmann::ordered_json;
 
@@ -40,6 +55,43 @@ std::string ascii_line(const Json& json) {
 
 Json json_number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::vector<ImageChannel> map_channels(const Map& map) {
+  require_consistent(map);
+  std::vector<float> errors(map.value.size(), 0.0F);
+  if (!map.standard_error.empty()) errors = top_row_first(map, map.standard_error);
+  return {{"value", top_row_first(map, map.value)}, {"standard_error", std::move(errors)}};
+}
+
+ImageMetadata map_metadata(const Map& map, const Provenance& provenance) {
+  std::string inputs;
+  for (const auto& [file, hash] : provenance.inputs) {
+    inputs += (inputs.empty() ? "" : " ") + file + ":" + hash;
+  }
+  return {.description = ascii_line(map_json(map, provenance)),
+          .title = clean_text(map.title),
+          .program = clean_text(provenance.program + " " + provenance.version),
+          .texts = {{"photorque:unit", clean_text(map.unit)},
+                    {"photorque:x_label", clean_text(map.x_label)},
+                    {"photorque:y_label", clean_text(map.y_label)},
+                    {"photorque:rows", "top row is the largest y"},
+                    {"photorque:version", clean_text(provenance.version)},
+                    {"photorque:git_hash", clean_text(provenance.git_hash)},
+                    {"photorque:seed", std::to_string(provenance.seed)},
+                    {"photorque:inputs", clean_text(inputs)}},
+          .numbers = {{"photorque:x_low", map.x_low},
+                      {"photorque:x_high", map.x_high},
+                      {"photorque:y_low", map.y_low},
+                      {"photorque:y_high", map.y_high}}};
+}
+
+ImageMetadata picture_metadata(const std::string& title, const Provenance& provenance) {
+  const nlohmann::ordered_json description = {{"title", clean_text(title)},
+                                              {"provenance", provenance_json(provenance)}};
+  return {.description = ascii_line(description),
+          .title = clean_text(title),
+          .program = clean_text(provenance.program + " " + provenance.version)};
 }
 
 }  // namespace photorque

@@ -1,10 +1,11 @@
-// What every file says about itself, as JSON.
+// What every file says about itself, and maps as channels of image files.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
 #include "core/product.h"
 #include "core/provenance.h"
+#include "images/writers/image_file.h"
 
 namespace photorque {
 
@@ -19,5 +20,15 @@ std::string ascii_line(const nlohmann::ordered_json& json);
 
 // A number, or null where it is not finite: JSON has no other way to say so.
 nlohmann::ordered_json json_number(double value);
+
+// "value" and "standard_error" (zeros where the map is exact), rounded to float. Image rows run
+// downwards: row 0 is the largest y. InputError if the map's sizes disagree.
+std::vector<ImageChannel> map_channels(const Map& map);
+
+// Description: map_json in one line. Texts and numbers: "photorque:unit", "photorque:x_low", …
+ImageMetadata map_metadata(const Map& map, const Provenance& provenance);
+
+// The same for a picture without a grid: description is {"title", "provenance"}.
+ImageMetadata picture_metadata(const std::string& title, const Provenance& provenance);
 
 }  // namespace photorque

@@ -2,11 +2,10 @@
 //
 // "Description" is JSON with unit, extents and provenance.
 #include "core/text/format.h"
-#include "images/drawing/map_picture.h"
-#include "images/drawing/plot_picture.h"
+#include "images/drawing/map.h"
+#include "images/drawing/plot.h"
 #include "images/writers/image_file.h"
 #include "images/writers/kind.h"
-#include "images/writers/map_channels.h"
 #include "images/writers/metadata.h"
 
 namespace photorque::kinds::png {

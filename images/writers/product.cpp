@@ -4,8 +4,8 @@
 
 #include "core/errors.h"
 #include "core/settings/settings.h"
-#include "images/publishing/staged_files.h"
 #include "images/writers/kind.h"
+#include "images/writers/staged_files.h"
 
 namespace photorque {
 namespace {
@@ -42,6 +42,14 @@ void require_distinct_files(const Product& product) {
 }
 
 }  // namespace
+
+void require_consistent(const Table& table) {
+  for (const Table::Column& column : table.columns) {
+    if (column.size() == table.columns.front().size()) continue;
+    throw InputError({}, table.name + "." + column.name, std::to_string(column.size()) + " rows",
+                     std::to_string(table.columns.front().size()) + " of them");
+  }
+}
 
 fs::path file_in(const fs::path& folder, const std::string& name, const std::string& extension) {
   std::string stem;

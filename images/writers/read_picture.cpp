@@ -1,4 +1,4 @@
-#include "images/writers/read_picture.h"
+#include "images/writers/image_file.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

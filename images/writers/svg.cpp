@@ -4,7 +4,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text/format.h"
-#include "images/drawing/plot_picture.h"
+#include "images/drawing/plot.h"
 #include "images/writers/kind.h"
 #include "images/writers/metadata.h"
 

@@ -4,7 +4,7 @@
 // extents and provenance.
 #include "images/writers/image_file.h"
 #include "images/writers/kind.h"
-#include "images/writers/map_channels.h"
+#include "images/writers/metadata.h"
 
 namespace photorque::kinds::tiff {
 namespace {

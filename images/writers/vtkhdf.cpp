@@ -7,7 +7,7 @@
 // Source of the layout: Kitware, "VTKHDF file format" (VTK documentation, release 9.1).
 #include <algorithm>
 
-#include "images/drawing/consistency.h"
+#include "images/drawing/map.h"
 #include "images/writers/hdf5_file.h"
 #include "images/writers/kind.h"
 

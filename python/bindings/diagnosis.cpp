@@ -2,13 +2,14 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "core/files.h"
 #include "python/bindings/bind.h"
 #include "python/bindings/exchange/arrays.h"
 #include "python/bindings/exchange/call.h"
 #include "python/bindings/experiment.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
-#include "tools/pages/diagnosis.h"
+#include "tools/pages/pages.h"
 #include "tools/tasks/diagnose.h"
 
 namespace photorque::python {
@@ -81,13 +82,16 @@ void bind_diagnosis(py::module_& module) {
           },
           py::arg("folder") = ".",
           "The experiment with what was found, as TOML, as it would stand in a folder.")
-      .def_property_readonly("report_html", &DiagnosisHandle::report, "A page with charts.")
+      .def_property_readonly(
+          "report_html", [](const DiagnosisHandle& run) { return report_html(run); },
+          "A page with charts.")
       .def(
           "write_page",
           [](const DiagnosisHandle& run, const std::filesystem::path& path) {
-            return write_alone(path, [&] {
-              return diagnosis_page(run, run.options, head_of(run.options, "diagnose"));
-            });
+            const py::gil_scoped_release release;
+            write_file_whole(
+                path, interactive_report_html(run, run.options, head_of(run.options, "diagnose")));
+            return path.string();
           },
           py::arg("path"),
           "Measured and simulated platform together, as one HTML page; gives its path.")
@@ -95,7 +99,7 @@ void bind_diagnosis(py::module_& module) {
           "write",
           [](const DiagnosisHandle& run, const std::filesystem::path& folder) {
             const py::gil_scoped_release release;
-            write_diagnosis(run, folder);
+            write_diagnosis(run, report_html(run), folder);
           },
           py::arg("folder"), "Writes diagnosis.json, improved.toml and report.html.");
   module.def("diagnose", &diagnose_recordings, py::arg("experiment"), py::arg("recordings"),

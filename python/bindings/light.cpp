@@ -158,15 +158,7 @@ void bind_runs(py::module_& module) {
             return write_alone(
                 path, [&] { return light_page(*self.run, self.light, self.result, self.head); });
           },
-          py::arg("path"), "The run as one HTML page to look at in a browser; gives its path.")
-      .def(
-          "write_baked",
-          [](const LightHandle& self, const std::filesystem::path& path) {
-            return write_alone(path,
-                               [&] { return baked_file(*self.run, self.light, self.result); });
-          },
-          py::arg("path"),
-          "The scene with the irradiance as textures and vertex colours (GLB); gives its path.");
+          py::arg("path"), "The run as one HTML page to look at in a browser; gives its path.");
   auto power = py::class_<PowerHandle, LightHandle, std::shared_ptr<PowerHandle>>(
       module, "Power", "A trace and what the solar array makes of it.");
   add_result(power, "power");

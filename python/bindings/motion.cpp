@@ -1,5 +1,4 @@
 // propagate(): the platform through its disturbances and in its light.
-#include "tools/pages/motion.h"
 #include "python/bindings/bind.h"
 #include "python/bindings/exchange/arrays.h"
 #include "python/bindings/exchange/call.h"
@@ -7,6 +6,7 @@
 #include "python/bindings/own/torque.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
+#include "tools/pages/pages.h"
 #include "tools/tasks/propagate.h"
 
 namespace photorque::python {

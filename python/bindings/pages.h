@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tools/pages/runs.h"
+#include "tools/pages/pages.h"
 #include "tools/runs/options.h"
 
 namespace photorque::python {

@@ -6,7 +6,7 @@
 #include "python/bindings/own/lamp.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
-#include "tools/pages/torque_map.h"
+#include "tools/pages/pages.h"
 
 namespace photorque::python {
 namespace {

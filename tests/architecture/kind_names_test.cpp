@@ -21,7 +21,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     // What `balance` measures is this very kind.
     {"attitude/studies/balance.cpp", {"static_unbalance"}},
     // A chart and a key of diagnosis.json that had this name before the kind.
-    {"diagnosis/report/charts.cpp", {"empirical_torque"}},
+    {"tools/pages/charts.cpp", {"empirical_torque"}},
     {"diagnosis/report/json.cpp", {"empirical_torque"}},
     // What motion and light share is this very kind.
     {"diagnosis/light/together.cpp", {"gravity_tilt"}},

@@ -19,7 +19,7 @@ const std::vector<std::pair<std::string, std::string>> only_place = {
     {"meshoptimizer", "scenes/gltf/file"},
     {"OpenImageIO/", "images/writers"},
     {"tiffio.h", "images/writers"},
-    {"cairo", "images/canvas"},
+    {"cairo", "images/drawing"},
     {"CLI/", "tools"},
     {"zlib.h", "attitude/recordings"},
     {"pugixml", "sources/photometry"},

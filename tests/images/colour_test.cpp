@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "images/canvas/colour.h"
-#include "images/drawing/colour_map.h"
+#include "images/drawing/colour.h"
 
 namespace photorque {
 namespace {

@@ -1,5 +1,5 @@
 // Pictures into memory, as linear light.
-#include "images/writers/read_picture.h"
+#include "images/writers/image_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

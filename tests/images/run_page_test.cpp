@@ -9,8 +9,6 @@
 
 #include "core/errors.h"
 #include "images/browser/content.h"
-#include "images/browser/packed.h"
-#include "images/browser/script.h"
 
 namespace photorque {
 namespace {

@@ -6,9 +6,11 @@
 
 #include <filesystem>
 #include <limits>
+#include <regex>
 
 #include "core/product.h"
 #include "core/provenance.h"
+#include "images/drawing/colour.h"
 
 namespace photorque {
 
@@ -64,6 +66,61 @@ inline Provenance sample_provenance() {
   provenance.inputs = {{"nominal.toml", "9f3c5a7b11223344aabbccddeeff0011"},
                        {"stasis.gltf", "77aa12ff5566778899aabbccddeeff22"}};
   return provenance;
+}
+
+// The bytes of base64 digits, by shifting bits.
+inline std::string decoded_base64(std::string_view text) {
+  static const std::string digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<uint32_t>(digits.find(c));
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>(bits >> count & 0xFFu);
+  }
+  return bytes;
+}
+
+// The SVG document in an <img> element.
+inline std::string svg_of(const std::string& img) {
+  const std::string mark = "data:image/svg+xml;base64,";
+  const size_t begin = img.find(mark) + mark.size();
+  return decoded_base64(std::string_view(img).substr(begin, img.find('"', begin) - begin));
+}
+
+// Corners of a path, in its order.
+using DrawnPath = std::vector<std::pair<double, double>>;
+
+// The paths of an SVG that are stroked or filled ("stroke", "fill") in a colour.
+inline std::vector<DrawnPath> paths_of(const std::string& svg, const std::string& how,
+                                       const Rgb& colour) {
+  static const std::regex path(R"re(<path style="([^"]*)" d="([^"]*)")re");
+  static const std::regex corner(R"([ML] (-?[0-9.]+) (-?[0-9.]+))");
+  static const std::regex shares(R"(rgb\(([0-9.]+)%,([0-9.]+)%,([0-9.]+)%\))");
+  std::vector<DrawnPath> all;
+  for (std::sregex_iterator p(svg.begin(), svg.end(), path), end; p != end; ++p) {
+    const std::string style = ";" + (*p)[1].str(), points = (*p)[2];
+    std::smatch rgb;
+    const size_t at = style.find(how + ":rgb(");
+    if (at == std::string::npos) continue;
+    const std::string paint = style.substr(at);
+    std::regex_search(paint, rgb, shares);
+    if (std::abs(std::stod(rgb[1]) - 100.0 * colour.red) > 0.01 ||
+        std::abs(std::stod(rgb[2]) - 100.0 * colour.green) > 0.01 ||
+        std::abs(std::stod(rgb[3]) - 100.0 * colour.blue) > 0.01) {
+      continue;
+    }
+    DrawnPath& corners = all.emplace_back();
+    for (std::sregex_iterator it(points.begin(), points.end(), corner); it != end; ++it) {
+      corners.emplace_back(std::stod((*it)[1]), std::stod((*it)[2]));
+    }
+  }
+  return all;
 }
 
 class FolderTest : public ::testing::Test {

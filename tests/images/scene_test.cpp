@@ -1,5 +1,4 @@
 #include "images/scene/picture.h"
-#include "images/scene/pinhole.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Results replace those of the command's last run, and nobody else's files.
-#include "images/publishing/staged_files.h"
+#include "images/writers/staged_files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,6 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "images/writers/product.h"
-#include "images/writers/summary.h"
 #include "tests/images/sample_product.h"
 
 namespace photorque {

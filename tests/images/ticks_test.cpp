@@ -4,7 +4,6 @@
 
 #include "core/text/format.h"
 #include "images/drawing/axis.h"
-#include "images/drawing/ticks.h"
 
 namespace photorque {
 namespace {

@@ -191,7 +191,7 @@ TEST_F(Writers, NameTheFormatsThatExist) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("jpeg"));
-    EXPECT_THAT(error.what(), HasSubstr("exr, tiff, png, svg, csv, json, vtkhdf, h5"));
+    EXPECT_THAT(error.what(), HasSubstr("exr, tiff, png, svg, pdf, csv, json, vtkhdf, h5"));
   }
 }
 

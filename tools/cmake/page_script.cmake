@@ -8,7 +8,7 @@ foreach(text IN ITEMS "${script}" "${style}")
   endif()
 endforeach()
 file(WRITE ${OUTPUT} "// Generated from images/browser/script by tools/cmake/page_script.cmake.
-#include \"images/browser/script.h\"
+#include \"images/browser/content.h\"
 
 namespace photorque {
 

@@ -8,7 +8,7 @@
 
 #include "tools/commands/page.h"
 #include "tools/commands/terminal.h"
-#include "tools/pages/diagnosis.h"
+#include "tools/pages/pages.h"
 
 namespace photorque::kinds::diagnose {
 namespace {
@@ -67,9 +67,9 @@ void run_diagnose(const CommandLine& line) {
   const Console console = terminal(line);
   const DiagnosisRun run = diagnose_experiment(line, line.recordings, line.holdouts, console);
   print_diagnosis(console, run.diagnosis);
-  std::vector<RunFile> more;
-  if (line.page) more.push_back(diagnosis_page(run, line, page_head(line)));
-  write_diagnosis(run, line.out_folder(), more);
+  const std::string report =
+      line.page ? interactive_report_html(run, line, page_head(line)) : report_html(run);
+  write_diagnosis(run, report, line.out_folder());
   console.line("Results in " + line.out_folder().string());
   if (!line.json) return;
   const std::string json = run.json();

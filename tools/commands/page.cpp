@@ -32,7 +32,6 @@ PageHead page_head(const CommandLine& line) {
   if (line.target_error) command += " --target-error " + show(*line.target_error);
   if (line.max_time_s) command += " --max-time " + show(*line.max_time_s);
   if (line.allow_outside) command += " --allow-outside";
-  if (line.bake) command += " --bake";
   return {line.experiment.stem().string(), line.verb, command + " --page"};
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/commands/verb.h"
-#include "tools/pages/runs.h"
+#include "tools/pages/pages.h"
 
 namespace photorque {
 

@@ -4,7 +4,7 @@
 #include "tools/commands/page.h"
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
-#include "tools/pages/runs.h"
+#include "tools/pages/pages.h"
 
 namespace photorque::kinds::power {
 namespace {
@@ -13,7 +13,6 @@ void run_power(const CommandLine& line) {
   const Console console = terminal(line);
   PowerRun run = power_of_experiment(line, console);
   if (line.page) run.result.files.push_back(power_page(run, page_head(line)));
-  if (line.bake) run.result.files.push_back(baked_file(*run.run, run.light, run.result));
   write_results(line, console, run.result);
 }
 
@@ -23,7 +22,6 @@ Verb kind() {
   Verb verb{"power", "Trace, then the solar array: current-voltage curve and maximum power point",
             run_power, true};
   verb.draws_page = true;
-  verb.bakes = true;
   return verb;
 }
 

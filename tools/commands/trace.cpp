@@ -2,7 +2,7 @@
 #include "tools/commands/page.h"
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
-#include "tools/pages/runs.h"
+#include "tools/pages/pages.h"
 
 namespace photorque::kinds::trace {
 namespace {
@@ -11,7 +11,6 @@ void run_trace(const CommandLine& line) {
   const Console console = terminal(line);
   TraceRun run = trace_experiment(line, console, !line.take_result);
   if (line.page) run.result.files.push_back(trace_page(run, page_head(line)));
-  if (line.bake) run.result.files.push_back(baked_file(*run.run, run.light, run.result));
   write_results(line, console, run.result);
 }
 
@@ -22,7 +21,6 @@ Verb kind() {
             "Irradiance on every receiver, where the power went, radiation force and torque",
             run_trace, true};
   verb.draws_page = true;
-  verb.bakes = true;
   return verb;
 }
 

@@ -30,7 +30,6 @@ struct CommandLine : RunOptions {
   std::optional<std::filesystem::path> scene;     // --scene, of a new experiment
   bool collect = false;                           // --collect, of a sweep
   bool page = false;                              // --page: also one HTML page to look at
-  bool bake = false;                              // --bake: also the lit scene as glTF
   std::string key;                                // --key, to be explained
   std::vector<std::filesystem::path> documents;   // --document, whose tables of keys are renewed
   std::optional<double> checkpoint_min;           // --checkpoint, minutes between two states
@@ -60,7 +59,6 @@ struct Verb {
   bool takes_scene = false;
   bool takes_checkpoint = false;
   bool draws_page = false;
-  bool bakes = false;
   bool takes_keys = false;  // --out FILE, --key, --document
   bool takes_experiment = true;
   bool writes = true;  // into its output folder

@@ -2,10 +2,9 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "diagnosis/report/light_charts.h"
 #include "raytrace/tracing/view.h"
-#include "tools/pages/diagnosed.h"
-#include "tools/pages/stage.h"
+#include "tools/pages/charts.h"
+#include "tools/pages/parts.h"
 
 namespace photorque {
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "diagnosis/report/charts.h"
-#include "tools/pages/diagnosed.h"
+#include "tools/pages/charts.h"
+#include "tools/pages/parts.h"
 
 namespace photorque {
 namespace {
@@ -173,6 +173,16 @@ MeanTurn mean_about(const AttitudeSeries& a, const std::vector<Vec3>& off_rad, s
   return {mean, (variance / count).cwiseMax(scatter).cwiseSqrt() / std::sqrt(count)};
 }
 
+// The slider over several recordings, the second axis of the stage; numbered from 1.
+StageAxis recording_axis(const std::vector<RecordingSeries>& recordings) {
+  StageAxis axis{"recording", "", {}};
+  for (const RecordingSeries& recording : recordings) {
+    axis.values.push_back(static_cast<double>(axis.values.size() + 1));
+    axis.names.push_back(recording.recording + (recording.is_held_out ? ", never fitted" : ""));
+  }
+  return axis;
+}
+
 class MotionStage {
  public:
   MotionStage(const std::vector<RecordingSeries>& recordings, bool found, SceneStage& stage)
@@ -316,15 +326,6 @@ class MotionStage {
 };
 
 }  // namespace
-
-StageAxis recording_axis(const std::vector<RecordingSeries>& recordings) {
-  StageAxis axis{"recording", "", {}};
-  for (const RecordingSeries& recording : recordings) {
-    axis.values.push_back(static_cast<double>(axis.values.size() + 1));
-    axis.names.push_back(recording.recording + (recording.is_held_out ? ", never fitted" : ""));
-  }
-  return axis;
-}
 
 void add_curves(const RecordingSeries& recording, const std::string& suffix,
                 const std::optional<PlotCursor>& cursor, RunPage& page) {

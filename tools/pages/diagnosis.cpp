@@ -1,19 +1,15 @@
-#include "tools/pages/diagnosis.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <set>
 
 #include "attitude/estimation/nominal_model.h"
 #include "core/text/format.h"
-#include "diagnosis/report/charts.h"
 #include "scenes/experiment/toml.h"
-#include "tools/pages/diagnosed.h"
-#include "tools/pages/platform.h"
-#include "tools/pages/stage.h"
+#include "tools/pages/charts.h"
+#include "tools/pages/parts.h"
 #include "tools/runs/attitude_run.h"
-#include "tools/sweeps/labels.h"
+#include "tools/tasks/diagnose.h"
 
 namespace photorque {
 namespace {
@@ -22,163 +18,6 @@ constexpr size_t most_recordings = 8;
 
 std::string bare_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
-}
-
-std::string spaced(std::string name) {
-  std::ranges::replace(name, '_', ' ');
-  return name;
-}
-
-std::string joined_words(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + spaced(name);
-  return text;
-}
-
-std::string percent_words(double probability) {
-  if (probability > 0.9995) return "more than 99.9 %";
-  if (probability < 0.001) return "less than 0.1 %";
-  return readable_number(100.0 * probability, 3) + " %";
-}
-
-PageVerdict verdict_of_page(const Diagnosis& d) {
-  switch (d.verdict) {
-    case Verdict::consistent:
-      return {PageVerdict::Face::good, "Consistent", d.sentence};
-    case Verdict::missing_physics:
-      return {PageVerdict::Face::found, "Missing physics found", d.sentence};
-    case Verdict::unexplained:
-      break;
-  }
-  return {PageVerdict::Face::open, "Not explained by known physics", d.sentence};
-}
-
-// Keys as they lead through diagnosis.json.
-std::vector<PageFigure> parameter_figures(const std::vector<FittedParameter>& parameters,
-                                          const std::string& where) {
-  std::vector<PageFigure> figures;
-  for (const FittedParameter& p : parameters) {
-    const AxisLabel label = label_of_figure(p.key);
-    for (size_t i = 0; i < p.value.size(); ++i) {
-      const bool many = p.value.size() > 1;
-      const std::string axis = p.value.size() == 3 ? std::string(" ") + "xyz"[i]
-                               : many              ? " " + std::to_string(i + 1)
-                                                   : "";
-      figures.push_back({where + "." + p.key + (many ? "[" + std::to_string(i) + "]" : ""),
-                         label.name + axis,
-                         label.unit,
-                         {p.value[i], i < p.sigma.size() ? p.sigma[i] : 0.0}});
-    }
-  }
-  return figures;
-}
-
-PageFinding finding_of(const FoundEffect& effect, const std::string& where) {
-  PageFinding finding{spaced(effect.kind), "probability " + percent_words(effect.probability)};
-  finding.texts.push_back(effect.explanation);
-  for (const auto& [key, text] : effect.texts) finding.texts.push_back(spaced(key) + ": " + text);
-  if (!effect.indistinguishable_from.empty()) {
-    finding.texts.push_back("These recordings cannot tell it from: " +
-                            joined_words(effect.indistinguishable_from) + ".");
-  }
-  finding.figures = parameter_figures(effect.parameters, where);
-  return finding;
-}
-
-void add_findings(const Diagnosis& d, RunPage& page) {
-  const bool acts = !d.effects.empty() || !d.empirical.empty();
-  page.findings_title = acts                   ? "What acts"
-                        : d.manoeuvres.empty() ? "After these recordings"
-                                               : "What would tell more";
-  for (size_t i = 0; i < d.effects.size(); ++i) {
-    page.findings.push_back(
-        finding_of(d.effects[i], "effects[" + std::to_string(i) + "].parameters"));
-  }
-  for (size_t i = 0; i < d.empirical.size(); ++i) {
-    const EmpiricalTorque& torque = d.empirical[i];
-    PageFinding finding{"a torque without a name", "over " + spaced(torque.variable)};
-    if (!torque.formula.empty()) finding.texts.push_back(torque.formula + ".");
-    if (!torque.looks_like.empty()) {
-      finding.texts.push_back("Commonly this is " + torque.looks_like + ".");
-    }
-    page.findings.push_back(std::move(finding));
-    page.product.plots.push_back(empirical_plot(torque));
-    page.product.plots.back().name += "_" + std::to_string(i + 1);
-  }
-  if (!d.priors_refined.empty()) {
-    page.findings.push_back({"what the nominal model left uncertain",
-                             "after these recordings",
-                             {},
-                             parameter_figures(d.priors_refined, "priors_refined"),
-                             false});
-  }
-  for (const Manoeuvre& manoeuvre : d.manoeuvres) {
-    std::string text = manoeuvre.text + ".";
-    if (!manoeuvre.separates.empty()) {
-      text += " Separates " + joined_words(manoeuvre.separates) + ".";
-    }
-    page.next_steps.push_back(std::move(text));
-  }
-}
-
-void add_figures(const Diagnosis& d, RunPage& page) {
-  page.figures_file = "diagnosis.json";
-  const auto add = [&](const char* key, const char* label, double value, bool is_headline) {
-    page.figures.push_back({key, label, "", {value, 0.0}});
-    if (is_headline) page.headlines.push_back(page.figures.back());
-  };
-  add("confidence", "confidence in the verdict", d.confidence, true);
-  add("fit.chi2_per_sample_before", "χ² per number fitted, nominal (1 is noise)",
-      d.chi2_per_sample_before, true);
-  add("fit.chi2_per_sample_after", "χ² per number fitted, with what was found",
-      d.chi2_per_sample_after, true);
-  if (!d.holdout) return;
-  add("holdout.chi2_per_sample_before", "χ² per number never fitted, nominal",
-      d.holdout->chi2_per_sample_before, true);
-  add("holdout.chi2_per_sample_after", "χ² per number never fitted, with what was found",
-      d.holdout->chi2_per_sample_after, true);
-  for (const auto* rms : {&d.holdout->rms_before, &d.holdout->rms_after}) {
-    const bool before = rms == &d.holdout->rms_before;
-    for (const auto& [channel, value] : *rms) {
-      const AxisLabel label = label_of_figure(channel);
-      page.figures.push_back(
-          {std::string("holdout.rms_") + (before ? "before." : "after.") + channel,
-           "RMS never fitted, " + label.name + (before ? ", nominal" : ", with what was found"),
-           label.unit,
-           {value, 0.0}});
-    }
-  }
-}
-
-void add_charts(const Diagnosis& d, RunPage& page) {
-  if (!d.where.channels.empty()) page.charts.push_back(misfit_chart(d.where));
-  if (!d.where.depends_on.empty()) page.charts.push_back(dependence_chart(d.where));
-  if (d.domains.empty() && !d.alternatives.empty()) page.charts.push_back(ranking_chart(d));
-  for (const DomainAnswer& domain : d.domains) {
-    page.charts.push_back(ranking_chart(d, domain.of));
-    page.charts.back().title += ", of the " + domain.of;
-  }
-}
-
-void add_notes(const Diagnosis& d, RunPage& page) {
-  if (!d.because.empty()) page.notes.push_back("Why unexplained: " + d.because + ".");
-  for (const std::string& warning : d.warnings)
-    page.notes.push_back("Check first: " + warning + ".");
-  page.notes.push_back(std::to_string(d.data.rows) + " rows were read, " +
-                       std::to_string(d.data.used) + " of them used.");
-  for (const auto& [reason, count] : d.data.rejected) {
-    if (count > 0)
-      page.notes.push_back(spaced(reason) + ": " + std::to_string(count) + " left out.");
-  }
-  for (const auto& [reason, count] : d.data.repaired) {
-    if (count > 0)
-      page.notes.push_back(spaced(reason) + ": " + std::to_string(count) + " repaired.");
-  }
-  const size_t files = shown_recordings(d, SIZE_MAX).size();
-  if (files > most_recordings) {
-    page.notes.push_back("Shown are the first " + std::to_string(most_recordings) + " of " +
-                         std::to_string(files) + " recordings or stretches; report.html has all.");
-  }
 }
 
 template <class Value>
@@ -278,18 +117,21 @@ std::vector<RecordingSeries> shown_recordings(const Diagnosis& d, size_t most) {
   return shown;
 }
 
-RunFile diagnosis_page(const DiagnosisRun& run, const RunOptions& options, const PageHead& head) {
+std::string interactive_report_html(const DiagnosisRun& run, const RunOptions& options,
+                                    const PageHead& head) {
   const Diagnosis& d = run.diagnosis;
   RunPage page;
   page.title = head.title;
   page.verb = head.verb;
   page.command = head.command;
   page.provenance = run.provenance;
-  page.verdict = verdict_of_page(d);
-  add_figures(d, page);
-  add_charts(d, page);
-  add_notes(d, page);
+  page.text = ReportText{report_findings(d, head.title), report_evidence(d)};
   const std::vector<RecordingSeries> recordings = shown_recordings(d, most_recordings);
+  if (const size_t files = shown_recordings(d, SIZE_MAX).size(); files > most_recordings) {
+    page.notes.push_back("Shown are the first " + std::to_string(most_recordings) + " of " +
+                         std::to_string(files) +
+                         " recordings or stretches; a report without --page has all.");
+  }
   const bool found = !d.effects.empty() || !d.empirical.empty() || !d.unnamed.empty();
   const std::unique_ptr<OpticalRun> optics = is_of_module(options) ? nullptr : optics_of(options);
   if (run.of_light) {
@@ -301,8 +143,7 @@ RunFile diagnosis_page(const DiagnosisRun& run, const RunOptions& options, const
                        : platform_stage(read_attitude_model(experiment.settings()).model.platform),
                 page);
   }
-  add_findings(d, page);
-  return page_file(std::move(page));
+  return page_html(page);
 }
 
 }  // namespace photorque

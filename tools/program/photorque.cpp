@@ -15,8 +15,8 @@
 #include "core/provenance.h"
 #include "core/settings/settings.h"
 #include "core/text/parse.h"
-#include "images/loading/functions.h"
-#include "images/publishing/staged_files.h"
+#include "images/writers/loading.h"
+#include "images/writers/staged_files.h"
 #include "tools/commands/verb.h"
 #include "tools/guards/interruption.h"
 #include "tools/guards/memory.h"
@@ -206,12 +206,9 @@ int run(int argc, char** argv, Interruption& interruption) {
     }
     if (verb.draws_page) {
       command->add_flag("--page", line.page,
-                        "Write page.html too: scene, maps and curves to look at in a browser");
-    }
-    if (verb.bakes) {
-      command->add_flag("--bake", line.bake,
-                        "Write baked.glb too: the scene with the irradiance as textures and vertex "
-                        "colours, for viewers of glTF");
+                        "Write page.html too (diagnose: into report.html): scene, maps and curves "
+                        "to look at in a "
+                        "browser");
     }
     if (verb.takes_shard) {
       command->add_option("--shard", line.shard,

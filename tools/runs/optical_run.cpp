@@ -9,7 +9,7 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "diagnosis/light/apply.h"
-#include "images/writers/read_picture.h"
+#include "images/writers/image_file.h"
 #include "receivers/gather/bodies/wrench.h"
 #include "scenes/effects/stated.h"
 #include "sources/profiles/beam_shape.h"

@@ -5,8 +5,8 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "images/publishing/staged_files.h"
 #include "images/writers/product.h"
+#include "images/writers/staged_files.h"
 
 namespace photorque {
 namespace {

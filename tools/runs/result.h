@@ -9,7 +9,7 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
-#include "images/writers/summary.h"
+#include "images/writers/product.h"
 
 namespace photorque {
 

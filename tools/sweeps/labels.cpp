@@ -11,13 +11,23 @@
 namespace photorque {
 namespace {
 
-constexpr std::array<std::pair<const char*, const char*>, 22> unit_texts = {
-    {{"W_m2", "W/m²"},   {"mW_cm2", "mW/cm²"},   {"N_m", "N m"},     {"mN_m", "mN m"},
-     {"uN_m", "µN m"},   {"kg_m2", "kg m²"},     {"m_s2", "m/s²"},   {"m_s", "m/s"},
-     {"rad_s", "rad/s"}, {"deg_s", "deg/s"},     {"A_m2", "A m²"},   {"W_sr", "W/sr"},
-     {"m2", "m²"},       {"cm2", "cm²"},         {"mm2", "mm²"},     {"um", "µm"},
-     {"ohm", "Ω"},       {"N_m_s", "N m s"},     {"kg_m3", "kg/m³"}, {"uT", "µT"},
-     {"us", "µs"},       {"m_per_Ah", "m/(A h)"}}};
+// Units whose parts are divided, or that have letters of their own.
+constexpr std::array<std::pair<const char*, const char*>, 15> unit_texts = {
+    {{"W_m2", "W/m²"},
+     {"mW_cm2", "mW/cm²"},
+     {"uN_m", "µN m"},
+     {"m_s2", "m/s²"},
+     {"m_s", "m/s"},
+     {"rad_s", "rad/s"},
+     {"rad_s2", "rad/s²"},
+     {"deg_s", "deg/s"},
+     {"W_sr", "W/sr"},
+     {"um", "µm"},
+     {"ohm", "Ω"},
+     {"kg_m3", "kg/m³"},
+     {"uT", "µT"},
+     {"us", "µs"},
+     {"m_per_Ah", "m/(A h)"}}};
 
 std::string spaced(std::string text) {
   std::ranges::replace(text, '_', ' ');
@@ -28,7 +38,15 @@ std::string spaced(std::string text) {
 
 std::string unit_for_people(const std::string& unit) {
   const auto at = std::ranges::find_if(unit_texts, [&](const auto& u) { return unit == u.first; });
-  return at == unit_texts.end() ? spaced(unit) : at->second;
+  if (at != unit_texts.end()) return at->second;
+  std::string text = unit.starts_with("per_") ? "1/" + unit.substr(4) : unit;
+  for (const auto& [from, to] :
+       {std::pair<std::string, std::string>{"_per_", "/"}, {"2", "²"}, {"3", "³"}}) {
+    for (size_t i = 0; (i = text.find(from, i)) != std::string::npos; i += to.size()) {
+      text.replace(i, from.size(), to);
+    }
+  }
+  return spaced(text);
 }
 
 std::string AxisLabel::with(const std::string& value) const {

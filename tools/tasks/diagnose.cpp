@@ -17,10 +17,9 @@
 #include "diagnosis/report/improved.h"
 #include "diagnosis/report/json.h"
 #include "diagnosis/report/page.h"
-#include "images/drawing/bar_chart.h"
-#include "images/drawing/map_picture.h"
-#include "images/drawing/plot_picture.h"
-#include "images/publishing/staged_files.h"
+#include "images/drawing/map.h"
+#include "images/drawing/plot.h"
+#include "images/writers/staged_files.h"
 #include "scenes/experiment/toml.h"
 #include "tools/runs/attitude_run.h"
 
@@ -250,11 +249,6 @@ std::string DiagnosisRun::improved(const fs::path& folder) const {
   return improved_experiment(seen_from(text, experiment, folder), diagnosis, fs::absolute(folder));
 }
 
-std::string DiagnosisRun::report() const {
-  return report_html(diagnosis, experiment.stem().string(), provenance,
-                     {plot_html, bar_chart_html, map_html});
-}
-
 // A recording counts once, and one that was fitted cannot judge the fit.
 void require_each_once(const std::vector<fs::path>& recordings,
                        const std::vector<fs::path>& holdouts) {
@@ -309,14 +303,12 @@ std::string first_experiment(const std::vector<fs::path>& recordings, const fs::
   return text;
 }
 
-void write_diagnosis(const DiagnosisRun& run, const fs::path& folder,
-                     const std::vector<RunFile>& more) {
-  const std::string json = run.json(), improved = run.improved(folder), report = run.report();
+void write_diagnosis(const DiagnosisRun& run, const std::string& report, const fs::path& folder) {
+  const std::string json = run.json(), improved = run.improved(folder);
   StagedFiles staged(folder);
   write_file_whole(staged.path() / "improved.toml", improved);
   write_file_whole(staged.path() / "report.html", report);
   write_file_whole(staged.path() / "diagnosis.json", json);
-  for (const RunFile& file : more) file.write(staged.path() / file.name);
   staged.publish_as("diagnose", run.provenance);
 }
 

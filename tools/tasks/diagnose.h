@@ -9,7 +9,6 @@
 #include "diagnosis/diagnosis.h"
 #include "tools/runs/console.h"
 #include "tools/runs/options.h"
-#include "tools/runs/result.h"
 
 namespace photorque {
 
@@ -23,8 +22,6 @@ struct DiagnosisRun {
   std::string json() const;
   // The experiment with what was found, as it would stand in a folder.
   std::string improved(const std::filesystem::path& folder) const;
-  // A page with charts.
-  std::string report() const;
 };
 
 // Recordings of motion, or of light and power: told apart by their headers. At least one.
@@ -38,8 +35,8 @@ DiagnosisRun diagnose_experiment(const RunOptions& options,
 std::string first_experiment(const std::vector<std::filesystem::path>& recordings,
                              const std::filesystem::path& file);
 
-// improved.toml, report.html and diagnosis.json into a folder, and what else is to stand there.
-void write_diagnosis(const DiagnosisRun& run, const std::filesystem::path& folder,
-                     const std::vector<RunFile>& more = {});
+// improved.toml, report.html with the text of `report`, and diagnosis.json into a folder.
+void write_diagnosis(const DiagnosisRun& run, const std::string& report,
+                     const std::filesystem::path& folder);
 
 }  // namespace photorque

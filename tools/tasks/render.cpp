@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "images/publishing/staged_files.h"
 #include "images/scene/picture.h"
-#include "images/scene/pinhole.h"
+#include "images/writers/staged_files.h"
 #include "raytrace/tracing/view.h"
 
 namespace photorque {

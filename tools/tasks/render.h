@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "images/canvas/picture.h"
+#include "images/drawing/canvas.h"
 #include "tools/runs/optical_run.h"
 
 namespace photorque {

@@ -365,11 +365,8 @@ Diagnosis diagnose_module(const ModuleDesign& design, const std::vector<LightRec
   held.predictive = answer.trials[chosen].predictive;
   held.rms_before["current_A"] = squares_of(fitter, answer, 0, data);
   held.rms_after["current_A"] = squares_of(fitter, answer, chosen, data);
-  const double beyond = held.chi2_per_sample_before - 1.0;
   held.explained_fraction =
-      beyond > 0.5 ? std::clamp((beyond - std::max(0.0, held.chi2_per_sample_after - 1.0)) / beyond,
-                                0.0, 1.0)
-                   : 1.0;
+      explained_fraction(held.chi2_per_sample_before, held.chi2_per_sample_after, held.samples);
   d.holdout = held;
   d.data = data.quality;
   if (answer.decision.undecided) {

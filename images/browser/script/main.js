@@ -3,7 +3,6 @@
 import { Chart } from './curves.js';
 import { read } from './data.js';
 import { element, section } from './elements.js';
-import { barChart, findings, verdict } from './findings.js';
 import { MapSection, readMap } from './maps.js';
 import { waterfall } from './power.js';
 import { StageSection } from './stage.js';
@@ -13,7 +12,6 @@ function header(run) {
   const warnings = run.provenance.warnings ?? [];
   return element('header', {},
     element('h1', {}, run.title, element('span', { class: 'verb' }, run.verb)),
-    run.verdict ? verdict(run.verdict) : null,
     run.headline ? element('p', { class: 'headline' }, run.headline) : null,
     warnings.map((text) => element('p', { class: 'warning', role: 'alert' }, element('b', {}, 'Do not trust: '), text)),
     run.headlines.length > 0 ? cards(run.headlines) : null);
@@ -33,12 +31,11 @@ function alongTheSlider(stage, charts) {
 
 function build(run) {
   const main = document.getElementById('page');
-  main.append(header(run));
+  if (!run.with_text) main.append(header(run));
   const maps = run.maps.map(readMap);
   const byName = new Map(maps.map((map) => [map.name, map]));
   const charts = run.plots.map((plot) => new Chart(plot));
   const mapSection = maps.length > 0 ? new MapSection(maps, run.colours) : null;
-  if (run.findings.length > 0 || run.next_steps.length > 0) main.append(findings(run));
   if (run.stage) {
     const stage = new StageSection(run.stage, byName, run.colours);
     stage.onmove = (at) => charts.forEach((chart) => chart.follow(at));
@@ -57,13 +54,13 @@ function build(run) {
   if (run.power.length > 1) pair.append(section('Where the power went', waterfall(run.power)));
   main.append(pair);
   if (others.length > 0) main.append(section('Curves', bodies(others)));
-  if (run.charts.length > 0) main.append(section('What the evidence says', element('div', { class: 'charts' }, run.charts.map(barChart))));
   if (run.figures.length > 0) main.append(section('Figures', ...figureTable(run.figures, run.figures_file)));
   if (run.tables.length > 0) main.append(section('Tables', ...run.tables.map(table)));
   if (run.notes.length > 0) {
     main.append(section('Notes', element('ul', {}, run.notes.map((note) => element('li', {}, note)))));
   }
-  main.append(element('footer', {}, section('What made this page', provenance(run.provenance, run.command))));
+  // Beside the text of a report, which goes on below the scene.
+  main.closest('main').append(element('footer', {}, section('What made this page', provenance(run.provenance, run.command))));
 }
 
 build(read(document));

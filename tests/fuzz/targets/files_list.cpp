@@ -1,6 +1,6 @@
 // Fuzz target: any bytes as files.json, the list of what a command's last run wrote. Whatever it
 // says, the new run's files appear and nothing outside of the folder is touched.
-#include "images/publishing/staged_files.h"
+#include "images/writers/staged_files.h"
 
 #include <fstream>
 

@@ -1,5 +1,5 @@
 // Fuzz target: any bytes as the picture of a model. picture_mutator.cpp changes chunks of PNGs.
-#include "images/writers/read_picture.h"
+#include "images/writers/image_file.h"
 
 #include <cstdint>
 

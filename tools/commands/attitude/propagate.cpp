@@ -4,7 +4,7 @@
 #include "tools/commands/page.h"
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
-#include "tools/pages/motion.h"
+#include "tools/pages/pages.h"
 
 namespace photorque::kinds::propagate {
 namespace {

@@ -1,0 +1,332 @@
+#include "images/drawing/plot.h"
+
+#include "core/errors.h"
+#include "images/drawing/page_layout.h"
+
+namespace photorque {
+namespace {
+
+constexpr double gap_between_panels = 12.0;
+constexpr double widest_legend = 170.0;
+constexpr double gap_right_of_frame = 6.0;
+constexpr Rgb grid_grey = {0.87, 0.87, 0.87};
+constexpr Rgb shade = rgb_from_hex(0xE6EDF5);
+
+struct Extent {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  void include(double value, bool log) {
+    if (!std::isfinite(value) || (log && value <= 0.0)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+// With a margin on both sides.
+AxisRange padded(const Extent& extent, bool log, double margin) {
+  if (extent.low > extent.high) return log ? AxisRange{1.0, 10.0} : AxisRange{0.0, 1.0};
+  if (log) {
+    // As of drawable(): what differs by rounding alone is one value.
+    const bool is_constant = extent.high <= (1.0 + 1e-9) * extent.low;
+    const double factor =
+        is_constant ? std::sqrt(10.0) : std::pow(extent.high / extent.low, margin);
+    return {extent.low / factor, extent.high * factor};
+  }
+  const AxisRange range = drawable({extent.low, extent.high});
+  const double room = margin * (range.high - range.low);
+  return {range.low - room, range.high + room};
+}
+
+AxisRange x_range(const std::vector<Plot::Panel>& panels, bool log) {
+  Extent extent;
+  bool markers = false;
+  for (const Plot::Panel& panel : panels) {
+    for (const Plot::Curve& curve : panel.curves) {
+      // As much room beside the outer bars as between two that stand at 1, 2, …
+      const double beside = curve.bars ? 1.0 - bar_half_width : 0.0;
+      for (const double x : curve.x) {
+        extent.include(x - beside, log);
+        extent.include(x + beside, log);
+      }
+      markers = markers || curve.markers;
+    }
+  }
+  return padded(extent, log, markers ? 0.03 : 0.0);
+}
+
+// Of what the curves show: all of it, or the central 99.6 % where the panel asks for that.
+Extent curves_extent(const Plot::Panel& panel) {
+  std::vector<double> values;
+  for (const Plot::Curve& curve : panel.curves) {
+    if (curve.bars) values.push_back(0.0);
+    for (size_t i = 0; i < curve.y.size(); ++i) {
+      const double error = curve.y_error.empty() ? 0.0 : curve.y_error[i];
+      values.insert(values.end(), {curve.y[i], curve.y[i] - error, curve.y[i] + error});
+    }
+  }
+  std::erase_if(values, [&](double v) { return !std::isfinite(v) || (panel.y_log && v <= 0.0); });
+  Extent extent;
+  if (values.empty()) return extent;
+  std::ranges::sort(values);
+  const size_t left_out = panel.robust_range ? values.size() / 500 : 0;
+  extent.include(values[left_out], panel.y_log);
+  extent.include(values[values.size() - 1 - left_out], panel.y_log);
+  return extent;
+}
+
+AxisRange y_range(const Plot::Panel& panel) {
+  const bool log = panel.y_log;
+  Extent extent = curves_extent(panel);
+  for (const double level : panel.levels) extent.include(level, log);
+  AxisRange range = padded(extent, log, 0.06);
+  // A quantity that starts at zero stands on the axis.
+  if (extent.low == 0.0 && extent.high > 0.0) range.low = 0.0;
+  return range;
+}
+
+// Of every panel: room for the tallest legend, and less of it the more panels there are.
+double usual_height(const std::vector<Plot::Panel>& panels) {
+  constexpr std::array<double, 4> usual = {330.0, 200.0, 150.0, 120.0};
+  double height = usual[std::min(panels.size(), usual.size()) - 1];
+  for (const Plot::Panel& panel : panels) {
+    height = std::max(height, legend_of(panel.curves, widest_legend).height);
+  }
+  return height;
+}
+
+// The names under bars, each in the room of its bar.
+std::vector<TextBlock> names_of(const ChartPanel& panel) {
+  if (!names_stand_under_bars(panel.curves)) return {};
+  TextStyle style = tick_style;
+  style.align = TextAlign::centre;
+  const double room = panel.frame.width / (panel.x.range.high - panel.x.range.low) - 6.0;
+  std::vector<TextBlock> names;
+  for (const Plot::Curve& curve : panel.curves) {
+    names.push_back(fitted_text(curve.label, room, style, 7.5, 5));
+  }
+  return names;
+}
+
+double names_height(const ChartPanel& panel) {
+  double height = 0.0;
+  for (const TextBlock& name : names_of(panel)) height = std::max(height, name.height() + 8.0);
+  return height;
+}
+
+void draw_names(Canvas& canvas, const ChartPanel& panel) {
+  const std::vector<TextBlock> names = names_of(panel);
+  for (size_t i = 0; i < names.size(); ++i) {
+    const double x =
+        panel.frame.x + panel.frame.width * panel.x.fraction(panel.curves[i].x.front());
+    double y = panel.frame.bottom() + 4.0 + names[i].style.size;
+    for (const std::string& line : names[i].lines) {
+      canvas.text(line, {x, y}, names[i].style);
+      y += names[i].line_height();
+    }
+  }
+}
+
+// Puts the frames `legend_width` short of the right edge.
+void place_frames(PlotLayout& layout, const PlotRoom& room, const Axis& x_axis,
+                  double legend_width) {
+  const double left = room.left + layout.axis_width;
+  const double width = room.right - legend_width - left - gap_right_of_frame;
+  double y = room.top;
+  for (ChartPanel& panel : layout.panels) {
+    panel.frame = {left, y, width, panel.frame.height};
+    panel.x = x_axis;
+    y += panel.frame.height + gap_between_panels;
+  }
+  layout.bottom = y - gap_between_panels +
+                  std::max(horizontal_axis_height(x_axis), names_height(layout.panels.back()));
+}
+
+void draw_grid(Canvas& canvas, const ChartPanel& panel) {
+  const PageBox& frame = panel.frame;
+  for (const double value : panel.x.ticks.values) {
+    const double x = frame.x + frame.width * panel.x.fraction(value);
+    canvas.line({x, frame.y}, {x, frame.bottom()}, {grid_grey, 0.7});
+  }
+  for (const double value : panel.y.ticks.values) {
+    const double y = frame.bottom() - frame.height * panel.y.fraction(value);
+    canvas.line({frame.x, y}, {frame.right(), y}, {grid_grey, 0.7});
+  }
+}
+
+// Without the grid's ink a signed quantity would hide where it is zero.
+void draw_zero_line(Canvas& canvas, const ChartPanel& panel) {
+  if (panel.y.log || panel.y.range.low >= 0.0 || panel.y.range.high <= 0.0) return;
+  const double y = panel.frame.bottom() - panel.frame.height * panel.y.fraction(0.0);
+  canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, {{0.6, 0.6, 0.6}, 0.9});
+}
+
+void draw_shaded(Canvas& canvas, const ChartPanel& panel, const Plot& plot, bool with_label) {
+  bool labelled = !with_label || plot.shaded_label.empty();
+  for (const Plot::Interval& interval : plot.shaded) {
+    const auto x_of = [&](double value) {
+      const PageBox& frame = panel.frame;
+      return std::clamp(frame.x + frame.width * panel.x.fraction(value), frame.x, frame.right());
+    };
+    const double from = x_of(interval.from), to = x_of(interval.to);
+    if (!(to > from)) continue;
+    canvas.fill(PageBox{from, panel.frame.y, to - from, panel.frame.height}, shade);
+    if (labelled || to - from < text_width(plot.shaded_label, tick_style) + 12.0) continue;
+    TextStyle style = tick_style;
+    style.align = TextAlign::right;
+    canvas.text(plot.shaded_label, {to - 6.0, panel.frame.y + 1.4 * style.size}, style);
+    labelled = true;
+  }
+}
+
+void draw_levels(Canvas& canvas, const ChartPanel& panel, const std::vector<double>& levels) {
+  for (const double level : levels) {
+    const double y = panel.frame.bottom() - panel.frame.height * panel.y.fraction(level);
+    if (!std::isfinite(y)) continue;
+    canvas.line({panel.frame.x, y}, {panel.frame.right(), y}, {ink, 0.9, 1.0, {2.0, 4.0}});
+  }
+}
+
+constexpr double page_width = 640.0;
+
+std::string caption_of(const Plot& plot) {
+  const bool any = std::ranges::any_of(panels_of(plot), [](const Plot::Panel& panel) {
+    return std::ranges::any_of(panel.curves,
+                               [](const Plot::Curve& curve) { return !curve.y_error.empty(); });
+  });
+  return any ? "Bars and bands: ±1 standard error." : "";
+}
+
+// A plot with title, caption and provenance around it.
+struct PlotPage {
+  PageText text;
+  PlotLayout layout;
+  double body_height() const { return layout.bottom - text.body_top(); }
+  double height() const { return std::ceil(text.page_height(body_height())); }
+};
+
+PlotPage page_of(const Plot& plot, const Provenance& provenance) {
+  require_consistent(plot);
+  PlotPage page;
+  page.text = page_text(plot.title, caption_of(plot), provenance, page_width);
+  page.layout = plot_layout(plot, {.left = page_margin,
+                                   .right = page_width - page_margin,
+                                   .top = std::ceil(page.text.body_top())});
+  return page;
+}
+
+void draw_page(Canvas& canvas, const Plot& plot, const PlotPage& page) {
+  draw_plot(canvas, plot, page.layout);
+  draw_page_text(canvas, page.text, page.body_height());
+}
+
+}  // namespace
+
+void require_consistent(const Plot& plot) {
+  for (const Plot::Panel& panel : panels_of(plot)) {
+    for (const Plot::Curve& curve : panel.curves) {
+      const auto require = [&](const std::string& what, size_t found) {
+        if (found == curve.x.size()) return;
+        throw InputError({}, plot.name + "." + curve.label, std::to_string(found) + " " + what,
+                         std::to_string(curve.x.size()) + " of them");
+      };
+      require("values of y", curve.y.size());
+      if (!curve.y_error.empty()) require("errors of y", curve.y_error.size());
+    }
+  }
+}
+
+std::vector<Plot::Panel> panels_of(const Plot& plot) {
+  std::vector<Plot::Panel> panels = {
+      {plot.y_label, plot.curves, plot.y_log, plot.levels, plot.robust_range}};
+  panels.insert(panels.end(), plot.below.begin(), plot.below.end());
+  return panels;
+}
+
+PlotLayout plot_layout(const Plot& plot, const PlotRoom& room) {
+  const std::vector<Plot::Panel> panels = panels_of(plot);
+  PlotLayout layout;
+  layout.axis_width = room.min_axis_width;
+  for (const Plot::Panel& panel : panels) {
+    const double wanted = layout.panels.empty() ? room.first_height : room.height_below;
+    const double height = wanted > 0.0 ? wanted : usual_height(panels);
+    ChartPanel chart{{0.0, 0.0, 0.0, height}, {}, {}, panel.curves, room.resolution};
+    chart.y = vertical_axis(y_range(panel), panel.y_log, panel.y_label, height);
+    layout.axis_width = std::max(layout.axis_width, std::ceil(vertical_axis_width(chart.y)));
+    layout.legends.push_back(legend_of(panel.curves, widest_legend));
+    layout.panels.push_back(std::move(chart));
+  }
+  const AxisRange range = x_range(panels, plot.x_log);
+  const auto place = [&](double legend_width) {
+    const double length =
+        room.right - legend_width - (room.left + layout.axis_width) - gap_right_of_frame;
+    Axis x_axis = horizontal_axis(range, plot.x_log, plot.x_label, length);
+    if (names_stand_under_bars(panels.front().curves)) x_axis.ticks = {};
+    place_frames(layout, room, x_axis, legend_width);
+  };
+  place(0.0);
+  double legend_width = 0.0;
+  for (size_t i = 0; i < layout.panels.size(); ++i) {
+    if (!free_corner(layout.panels[i], layout.legends[i])) {
+      legend_width = std::max(legend_width, layout.legends[i].width);
+    }
+  }
+  if (legend_width > 0.0) place(legend_width);
+  return layout;
+}
+
+void draw_plot(Canvas& canvas, const Plot& plot, const PlotLayout& layout) {
+  const std::vector<Plot::Panel> panels = panels_of(plot);
+  for (size_t i = 0; i < layout.panels.size(); ++i) {
+    const ChartPanel& panel = layout.panels[i];
+    draw_shaded(canvas, panel, plot, i == 0);
+    draw_grid(canvas, panel);
+    draw_zero_line(canvas, panel);
+    draw_curves(canvas, panel);
+    draw_levels(canvas, panel, panels[i].levels);
+    canvas.outline(panel.frame, {ink, 0.8});
+    draw_vertical_axis(canvas, panel.frame, panel.y, layout.axis_width);
+    if (i + 1 == layout.panels.size()) draw_horizontal_axis(canvas, panel.frame, panel.x);
+    draw_names(canvas, panel);
+    if (layout.legends[i].curves.empty()) continue;
+    const PagePoint outside{panel.frame.right() + 6.0, panel.frame.y};
+    draw_legend(canvas, panel, layout.legends[i],
+                free_corner(panel, layout.legends[i]).value_or(outside));
+  }
+}
+
+Picture plot_picture(const Plot& plot, const Provenance& provenance) {
+  const PlotPage page = page_of(plot, provenance);
+  Canvas canvas = Canvas::of_pixels(page_width, page.height(), pixels_per_point);
+  draw_page(canvas, plot, page);
+  return canvas.finish_pixels();
+}
+
+std::string plot_svg(const Plot& plot, const Provenance& provenance) {
+  const PlotPage page = page_of(plot, provenance);
+  Canvas canvas = Canvas::of_svg(page_width, page.height());
+  draw_page(canvas, plot, page);
+  return canvas.finish_file();
+}
+
+std::string plot_pdf(const Plot& plot, const Provenance& provenance, const PdfText& text) {
+  const PlotPage page = page_of(plot, provenance);
+  Canvas canvas = Canvas::of_pdf(page_width, page.height(), text);
+  draw_page(canvas, plot, page);
+  return canvas.finish_file();
+}
+
+std::string plot_html(const Plot& plot) {
+  require_consistent(plot);
+  const PlotLayout layout = plot_layout(plot, {.left = 2.0,
+                                               .right = html_chart_width,
+                                               .top = 8.0,
+                                               .min_axis_width = 64.0,
+                                               .resolution = 1.0,
+                                               .first_height = 160.0,
+                                               .height_below = 105.0});
+  Canvas canvas = Canvas::of_svg(html_chart_width, std::ceil(layout.bottom + 6.0));
+  draw_plot(canvas, plot, layout);
+  return canvas.finish_html(plot.title);
+}
+
+}  // namespace photorque

@@ -1,0 +1,73 @@
+#include "images/writers/loading.h"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+
+#include "core/errors.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* file_name = "photorque_pictures.so";
+
+[[noreturn]] void fail(const fs::path& place, const std::string& found) {
+  throw InputError({place.string()}, "", found,
+                   std::string(file_name) + " of this program, beside it or in " +
+                       PHOTORQUE_MODULE_FOLDER + " from there");
+}
+
+// Beside the program, or where it was installed to; nowhere else, whatever the environment says.
+fs::path module_path() {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
+  for (const fs::path& place : {program, program / PHOTORQUE_MODULE_FOLDER}) {
+    std::error_code unreadable;
+    if (fs::is_regular_file(place / file_name, unreadable)) return place / file_name;
+  }
+  fail(program, "no " + std::string(file_name));
+}
+
+// Never unloaded: what it throws may outlive any call.
+const PictureFunctions& load() {
+  const fs::path path = module_path();
+  void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (module == nullptr) fail(path, dlerror());
+  const auto entry = reinterpret_cast<PictureEntry*>(dlsym(module, picture_entry));
+  if (entry == nullptr) fail(path, "another library");
+  const PictureFunctions& functions = *entry();
+  if (functions.build != picture_build()) fail(path, "the module of build " + functions.build);
+  return functions;
+}
+
+const PictureFunctions& functions() {
+  static const PictureFunctions& loaded = load();
+  return loaded;
+}
+
+}  // namespace
+
+void require_pictures() {
+  module_path();
+}
+
+void write_exr(const fs::path& path, int width, int height,
+               const std::vector<ImageChannel>& channels, const ImageMetadata& metadata) {
+  functions().exr(path, width, height, channels, metadata);
+}
+
+void write_tiff(const fs::path& path, int width, int height,
+                const std::vector<ImageChannel>& channels, const ImageMetadata& metadata) {
+  functions().tiff(path, width, height, channels, metadata);
+}
+
+void write_png(const fs::path& path, const Picture& picture, const ImageMetadata& metadata) {
+  functions().png(path, picture, metadata);
+}
+
+LinearPicture read_picture(const std::string& bytes) {
+  return functions().read(bytes);
+}
+
+}  // namespace photorque

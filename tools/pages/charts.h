@@ -1,0 +1,82 @@
+// The charts of a diagnosis as plain data: readings, models, ranking, scans and sweeps.
+#pragma once
+
+#include <optional>
+
+#include "core/product.h"
+#include "diagnosis/diagnosis.h"
+
+namespace photorque {
+
+// "magnetic_dipole" as "magnetic dipole".
+std::string spoken(std::string name);
+
+// Blue is what was found, vermilion the nominal model, grey what was measured: in every chart and
+// in the legend of the page. Colours that colour-blind readers tell apart: M. Okabe and K. Ito,
+// "Color Universal Design" (2008).
+
+// Torque without a law about the three axes, with bands of one standard error.
+Plot empirical_plot(const EmpiricalTorque& torque);
+
+// chi² per reading of every channel under the nominal model.
+BarChart misfit_chart(const Where& where);
+// What the difference is a function of.
+BarChart dependence_chart(const Where& where);
+
+// Log evidence of the best alternatives; those that the recordings rule out are left out.
+// `of`: which domain's, where motion and light were recorded together.
+BarChart ranking_chart(const Diagnosis& diagnosis, const std::string& of = {});
+
+// Readings beside both models, where the channel has them, above the residuals of both; what was
+// held out is shaded, twice the noise of a reading dotted.
+Plot channel_plot(const ChannelSeries& channel, const RecordingSeries& recording);
+
+// "tilt 12 deg, heading 60 deg"
+std::string attitude_words(const Quat& lab_from_body);
+
+// The rows of a scan at one attitude.
+struct ScanGroup {
+  const RecordingSeries* recording;
+  Quat lab_from_body;
+  std::vector<size_t> rows;
+  std::string name() const { return recording->recording + ", " + attitude_words(lab_from_body); }
+};
+// Of all recordings, which must outlive them.
+std::vector<ScanGroup> scan_groups(const std::vector<RecordingSeries>& recordings);
+
+// One direction of a regular grid: where its first place is and how far apart they are.
+struct Steps {
+  double first = 0.0, step = 1.0;
+  size_t count = 1;
+  double low() const { return first - 0.5 * step; }
+  double high() const { return first + (static_cast<double>(count) - 0.5) * step; }
+  std::optional<size_t> at(double value) const;
+};
+// The places of a scan, or, where they lie on no grid, as many as there are readings.
+struct ScanGrid {
+  Steps u, v;
+};
+ScanGrid grid_of(const ScanGroup& group);
+
+// What a scan shows: readings, models, differences.
+struct ScanView {
+  const char* name;
+  const char* title;
+  bool is_difference;
+  double (*value)(const LightSeries&, size_t);
+};
+// Without the last, what is left after what was found, where nothing was.
+std::vector<ScanView> views_of_scans(bool something_was_found);
+
+Map scan_map(const ScanGroup& group, const ScanView& shown, size_t number);
+
+// The curves that a sweep holds, by their numbers.
+std::vector<int> sweeps_of(const LightSeries& light);
+// A sweep: points beside both models, and what they miss.
+Plot sweep_plot(const RecordingSeries& recording, int sweep, bool something_was_found);
+
+// The array from its front as an element of a page, cells by their numbers, those that something
+// found acts on marked.
+std::string array_html(const DrawnArray& array);
+
+}  // namespace photorque

@@ -1,0 +1,224 @@
+#include "tools/pages/parts.h"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "core/files.h"
+#include "receivers/wrench/table_product.h"
+#include "tools/sweeps/labels.h"
+#include "tools/tasks/power.h"
+#include "tools/tasks/torque_map.h"
+#include "tools/tasks/trace.h"
+
+namespace photorque {
+namespace {
+
+PageFigure figure_of(const Quantity& quantity) {
+  const AxisLabel label = label_of_figure(quantity.name);
+  return {quantity.name, label.name, label.unit, quantity.estimate};
+}
+
+// Rows "stage", "lost_to", "power_W", "lost_W": what is left after each loss.
+std::vector<PowerStage> stages_of_array(const Table& losses) {
+  std::vector<PowerStage> stages;
+  const auto& left_W = losses.column("power_W").values;
+  for (size_t i = 0; i < left_W.size(); ++i) {
+    if (i == 0) {
+      stages.push_back({losses.column("stage").texts[i], {left_W[i], 0.0}, true});
+    } else {
+      stages.push_back(
+          {losses.column("lost_to").texts[i], {losses.column("lost_W").values[i], 0.0}});
+    }
+  }
+  if (left_W.size() > 1) {
+    stages.push_back({losses.column("stage").texts.back(), {left_W.back(), 0.0}, true});
+  }
+  return stages;
+}
+
+// Instances on which light is measured.
+std::set<uint32_t> measured(const Experiment& experiment) {
+  std::set<uint32_t> instances;
+  for (const NamedReceiver& receiver : experiment.receivers) {
+    if (!receiver.flux_map) continue;
+    const auto& of = receiver.flux_map->grid().instances;
+    instances.insert(of.begin(), of.end());
+  }
+  return instances;
+}
+
+std::vector<PowerStage> stages_of_light(const OpticalRun& run, const OpticalResult& light) {
+  const PowerBalance& balance = light.power_balance;
+  const Scene& scene = run.experiment().scene;
+  const std::vector<std::string>& names = run.wrench().part_names();
+  const std::set<uint32_t> wanted = measured(run.experiment());
+  std::vector<PowerStage> stages = {{"emitted by the lamps", {balance.emitted_W, 0.0}, true}};
+  std::vector<PowerStage> losses, kept;
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    const Estimate& absorbed_W = balance.absorbed_by_instance_W[i];
+    if (!(absorbed_W.value > 0.0)) continue;
+    auto& to = wanted.contains(static_cast<uint32_t>(i)) ? kept : losses;
+    to.push_back({"absorbed by " + names[i], absorbed_W});
+  }
+  std::ranges::stable_sort(losses, std::greater{}, [](const auto& s) { return s.power_W.value; });
+  constexpr size_t single = 8;  // parts with a line of their own
+  if (losses.size() > single + 1) {
+    double rest_W = 0.0, variance = 0.0;
+    for (size_t i = single; i < losses.size(); ++i) {
+      rest_W += losses[i].power_W.value;
+      variance += losses[i].power_W.standard_error * losses[i].power_W.standard_error;
+    }
+    const std::string label =
+        "absorbed by " + std::to_string(losses.size() - single) + " other parts";
+    losses.resize(single);
+    losses.push_back({label, {rest_W, std::sqrt(variance)}});
+  }
+  stages.push_back({"passes the scene or leaves it again", balance.escaped_W});
+  stages.insert(stages.end(), losses.begin(), losses.end());
+  if (balance.truncated_W.value > 1e-9 * balance.emitted_W) {
+    stages.push_back({"no longer followed", balance.truncated_W});
+  }
+  for (PowerStage& stage : kept) stage.is_total = true;
+  if (kept.size() == 1) {
+    stages.push_back(kept.front());
+  } else {
+    // Several measured parts are no single end: they too hang from what is left.
+    for (PowerStage& stage : kept) stage.is_total = false;
+    stages.insert(stages.end(), kept.begin(), kept.end());
+  }
+  return stages;
+}
+
+// One attitude, traced.
+RunPage lit_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
+                 const PageHead& head, const std::vector<std::string>& headlines) {
+  RunPage page = page_of(result, head, headlines);
+  const Experiment& experiment = run.experiment();
+  page.headline = "Tilt " + show(stated_deg(experiment.file.attitude.tilt_rad)) + " deg, heading " +
+                  show(stated_deg(experiment.file.attitude.heading_rad)) + " deg. " +
+                  std::to_string(experiment.beams.size()) +
+                  (experiment.beams.size() == 1 ? " lamp, " : " lamps, ") +
+                  std::to_string(experiment.scene.instances.size()) + " parts.";
+  page.power = power_stages(run, light, result.product);
+  // The same as bars.
+  std::erase_if(page.product.plots, [](const Plot& plot) { return plot.name == "loss_waterfall"; });
+  page.notes = experiment.notices;
+  page.stage = stage_of(run, StageMaps::of_product);
+  page.stage->states.push_back(lit_state(run, experiment.lab_from_body, light));
+  add_light(*page.stage, run, experiment.lab_from_body, light, 1);
+  return page;
+}
+
+void add_node(SceneStage& stage, const TracedNode& node) {
+  const Experiment& experiment = node.run.experiment();
+  const bool is_first = stage.states.empty();
+  if (is_first) stage = stage_of(node.run, StageMaps::own);
+  StageState state = lit_state(node.run, node.lab_from_body, node.light);
+  for (size_t i = 0; i < experiment.receivers.size(); ++i) {
+    const auto& map = experiment.receivers[i].flux_map;
+    if (!map) continue;
+    if (is_first) stage.figures.push_back({"light on " + experiment.receivers[i].name, "W"});
+    state.figures.push_back(map->flux_map(node.light.sums[i]).incident.power_W);
+  }
+  if (node.electric_W) {
+    if (is_first) stage.figures.push_back({"electric power", "W"});
+    state.figures.push_back(*node.electric_W);
+  }
+  stage.states.push_back(std::move(state));
+  add_light(stage, node.run, node.lab_from_body, node.light, node.nodes);
+}
+
+StageAxis axis_of(const std::string& name, const std::vector<double>& angles_rad) {
+  StageAxis axis{name, "deg", {}};
+  for (const double angle_rad : angles_rad) axis.values.push_back(stated_deg(angle_rad));
+  return axis;
+}
+
+}  // namespace
+
+const Table* table_of(const Product& product, const std::string& name) {
+  const auto at = std::ranges::find(product.tables, name, &Table::name);
+  return at == product.tables.end() ? nullptr : &*at;
+}
+
+RunPage page_of(const RunResult& result, const PageHead& head,
+                const std::vector<std::string>& headlines) {
+  constexpr size_t most_headlines = 6;
+  RunPage page;
+  page.title = head.title;
+  page.verb = head.verb;
+  page.command = head.command;
+  for (const Quantity& quantity : result.product.quantities) {
+    page.figures.push_back(figure_of(quantity));
+  }
+  for (const std::string& wanted : headlines) {
+    for (const PageFigure& figure : page.figures) {
+      if (page.headlines.size() == most_headlines) break;
+      if (figure.key.starts_with(wanted)) page.headlines.push_back(figure);
+    }
+  }
+  page.product = result.product;
+  page.provenance = result.provenance;
+  page.rays = result.cost.rays;
+  return page;
+}
+
+std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult& light,
+                                     const Product& product) {
+  const Table* losses = table_of(product, "losses");
+  return losses != nullptr ? stages_of_array(*losses) : stages_of_light(run, light);
+}
+
+RunFile page_file(RunPage page) {
+  const auto shared = std::make_shared<const RunPage>(std::move(page));
+  return {
+      "page.html",
+      [shared](const std::filesystem::path& path) { write_file_whole(path, page_html(*shared)); },
+      "the run to look at, in a browser"};
+}
+
+RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
+                   const PageHead& head) {
+  const std::vector<std::string> of_trace = {"emitted_W", "power_on_", "absorbed_W", "escaped_W"};
+  const std::vector<std::string> of_power = {"array_power_W", "emitted_W", "power_on_cells_W",
+                                             "array_efficiency", "light_to_electric_efficiency"};
+  return page_file(lit_page(run, light, result, head, head.verb == "power" ? of_power : of_trace));
+}
+
+RunFile trace_page(const TraceRun& run, const PageHead& head) {
+  return light_page(*run.run, run.light, run.result, head);
+}
+
+RunFile power_page(const PowerRun& run, const PageHead& head) {
+  return light_page(*run.run, run.light, run.result, head);
+}
+
+TorqueMapStage::TorqueMapStage() : stage_(std::make_shared<SceneStage>()) {}
+
+std::function<void(const TracedNode&)> TorqueMapStage::watch() {
+  return [stage = stage_.get()](const TracedNode& node) { add_node(*stage, node); };
+}
+
+RunFile torque_map_page(const TorqueMapRun& run, TorqueMapStage stage, const PageHead& head) {
+  RunPage page = page_of(run.result, head, {"largest_", "max_"});
+  // The torque is what the map is made for: the first that is shown.
+  std::ranges::stable_partition(page.product.maps,
+                                [](const Map& map) { return map.title.starts_with("Torque"); });
+  const WrenchTable& table = run.wrenches;
+  const bool by_tilt = table.angles == WrenchTable::Angles::tilt_heading;
+  page.stage = std::move(*stage.stage_);
+  page.stage->axes = {axis_of(by_tilt ? "tilt" : "elevation", table.polar_rad),
+                      axis_of(by_tilt ? "heading" : "azimuth", table.around_rad)};
+  const std::string first = page.stage->axes[0].name + " [deg]";
+  for (const Plot& plot : run.result.product.plots) {
+    if (plot.x_label == first) page.cursors.push_back({plot.name, 0, 1.0});
+  }
+  page.headline = std::to_string(table.nodes()) +
+                  (by_tilt ? " attitudes" : " directions of light, in body axes") +
+                  "; force and torque in body axes about the centre of rotation.";
+  page.notes = run.run->experiment().notices;
+  return page_file(std::move(page));
+}
+
+}  // namespace photorque

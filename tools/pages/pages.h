@@ -1,0 +1,64 @@
+// The pages of the commands: what each of them found, with its scene.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "tools/runs/optical_run.h"
+#include "tools/runs/result.h"
+
+namespace photorque {
+
+struct DiagnosisRun;
+struct MotionRun;
+struct PowerRun;
+struct SceneStage;
+struct TorqueMapRun;
+struct TraceRun;
+struct TracedNode;
+
+// What a page says of the run beside its results.
+struct PageHead {
+  std::string title;  // the experiment's name
+  std::string verb;
+  std::string command;  // that makes it again
+};
+
+// The page of a run of that verb, trace or power.
+RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
+                   const PageHead& head);
+RunFile trace_page(const TraceRun& run, const PageHead& head);
+RunFile power_page(const PowerRun& run, const PageHead& head);
+
+// The body at every attitude or direction of light. It grows while the nodes are traced, since
+// their maps are not part of the run's result.
+class TorqueMapStage {
+ public:
+  TorqueMapStage();
+  // Valid as long as this.
+  std::function<void(const TracedNode&)> watch();
+
+ private:
+  friend RunFile torque_map_page(const TorqueMapRun&, TorqueMapStage, const PageHead&);
+  std::shared_ptr<SceneStage> stage_;
+};
+RunFile torque_map_page(const TorqueMapRun& run, TorqueMapStage stage, const PageHead& head);
+
+// The platform as it moves, played over time. Where the experiment has a scene, that scene, with
+// its light traced at some instants of the run; otherwise an ellipsoid with the platform's moments
+// of inertia.
+RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageHead& head);
+
+// report.html of a diagnosis: the finding in one sentence, what acts with its numbers and where on
+// the array, where recording and nominal model part, the ranking of the alternatives, readings
+// beside predictions with the part that was never fitted shaded, and the quality of the data. It
+// needs no script.
+std::string report_html(const DiagnosisRun& run);
+// The same page with the scene, and curves and maps to point at, in place of the drawn readings.
+// Where the experiment has a scene with lamps, that scene; for motion without one an ellipsoid with
+// the platform's moments of inertia; for curves of a module no scene at all.
+std::string interactive_report_html(const DiagnosisRun& run, const RunOptions& options,
+                                    const PageHead& head);
+
+}  // namespace photorque

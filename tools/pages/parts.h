@@ -1,0 +1,82 @@
+// What the pages of the commands are made of: figures, the scene as a stage, recordings.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "attitude/model/platform.h"
+#include "diagnosis/diagnosis.h"
+#include "images/browser/run_page.h"
+#include "images/browser/stage.h"
+#include "tools/pages/pages.h"
+
+namespace photorque {
+
+// The page of a run without its stage: figures with names and units for people, of which those
+// whose names begin with one of `headlines` stand at the top (at most six, in this order).
+RunPage page_of(const RunResult& result, const PageHead& head,
+                const std::vector<std::string>& headlines);
+
+// The table of this name; null where there is none.
+const Table* table_of(const Product& product, const std::string& name);
+
+// The way of the power through a run: of the array's table "losses" where there is one, otherwise
+// from the lamps to the parts that carry flux maps.
+std::vector<PowerStage> power_stages(const OpticalRun& run, const OpticalResult& light,
+                                     const Product& product);
+
+// "page.html", made when it is written.
+RunFile page_file(RunPage page);
+
+// Parts, lamps and camera, and the surfaces of all flux maps, in one painting of their irradiance,
+// and of torque maps, one for each axis; no states yet. With `maps` = "own" their maps come with
+// add_light(); otherwise the surfaces name those of OpticalRun::product().
+enum class StageMaps { of_product, own };
+SceneStage stage_of(const OpticalRun& run, StageMaps maps);
+
+// Force and torque of the light at an attitude, about the centre of rotation.
+StageState lit_state(const OpticalRun& run, const RigidTransform& lab_from_body,
+                     const OpticalResult& result);
+
+// One of `lights` that the stage will have: rays and, for surfaces with maps of their own, the
+// irradiance; the more lights, the fewer rays and bins.
+void add_light(SceneStage& stage, const OpticalRun& run, const RigidTransform& lab_from_body,
+               const OpticalResult& result, size_t lights);
+
+// The light at up to 12 of some attitudes of the body, evenly over them; each of them shows the
+// nearest, and the stage's remark says so.
+void light_along(SceneStage& stage, const OpticalRun& run, const std::vector<Quat>& lab_from_body);
+
+// The surface of a receiver's bins, to be painted with maps that the caller gives.
+PaintedSurface painted_receiver(const OpticalRun& run, const std::string& receiver);
+
+// The even ellipsoid whose principal moments are in the platform's proportions, half as long as
+// 1 m at its longest, and a rod along body x; camera and radius to match, and a remark that says
+// so. A platform about one axis has one moment: a disc about that axis.
+SceneStage platform_stage(const Platform& platform);
+
+// Recordings as people know them: the end of one that was held out is part of it again, names are
+// those of files and each is there once. At most `most`.
+std::vector<RecordingSeries> shown_recordings(const Diagnosis& diagnosis, size_t most);
+
+// The body as it was measured with both models beside it, its differences as arrows, over time;
+// where no attitude was recorded the rates, in body axes. `stage` has the body.
+void show_motion(const std::vector<RecordingSeries>& recordings, bool something_was_found,
+                 SceneStage stage, RunPage& page);
+
+// Scans as maps on the receiver, runs over time, sweeps at their attitudes. Without a scene curves
+// alone.
+void show_light(const std::vector<RecordingSeries>& recordings, bool something_was_found,
+                const OpticalRun* run, RunPage& page);
+
+// Readings beside both models of every channel, a plot each, whose names end in `suffix`; with the
+// line of a slider, where there is one (the plot that it names is filled in).
+void add_curves(const RecordingSeries& recording, const std::string& suffix,
+                const std::optional<PlotCursor>& cursor, RunPage& page);
+
+// The text of report.html before and after the readings, as HTML: the finding, what acts; where it
+// is seen, the ranking of the alternatives, the quality of the data.
+std::string report_findings(const Diagnosis& diagnosis, const std::string& title);
+std::string report_evidence(const Diagnosis& diagnosis);
+
+}  // namespace photorque
