@@ -1,0 +1,1 @@
+"""The command line: tools/prove SETTINGS.toml [--only-make] [--cases DIR] [--out DIR] [--set KEY=VALUE] ..."""

@@ -1,0 +1,1 @@
+"""What the instruments of a case write: noise, faults and lost rows."""

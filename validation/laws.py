@@ -1,0 +1,1 @@
+"""Every kind of disturbance once more: law, how examples are drawn, and what makes them strong."""
