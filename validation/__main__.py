@@ -1,1 +1,10 @@
-"""The command line: tools/prove SETTINGS.toml [--only-make] [--cases DIR] [--out DIR] [--set KEY=VALUE] ..."""
+"""python3 -m validation: see prove.py."""
+
+import os
+import sys
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the work is shared out by case
+
+from .prove import main  # noqa: E402
+
+sys.exit(main())
