@@ -10,6 +10,7 @@ diodes give at least -drop_V together. Strings lie in parallel.
 """
 
 import dataclasses
+import functools
 
 import numpy as np
 from scipy import constants, special
@@ -90,28 +91,30 @@ class Circuit:
 
 
 def _crossing(low, high, function):
-    """Where falling functions cross zero: Newton's method, bisection where it would leave the bracket.
-
-    `function` takes an array and returns values and slopes. A value that is not above zero at `low`, or
-    not below at `high`, gives that end."""
+    """Where falling functions of arrays cross zero, all at once (C. J. F. Ridders 1979: exponentials are
+    straightened, the bracket stays). A function not above zero at `low`, or not below at `high`, gives
+    that end."""
     low, high = np.array(low, dtype=float), np.array(high, dtype=float)
-    at_low, at_high = function(low)[0] <= 0.0, function(high)[0] >= 0.0
-    x = 0.5 * (low + high)
-    done = at_low | at_high
-    tolerance = 1e-14 * (high - low)
-    for step in range(240):
-        value, slope = function(x)
-        low, high = np.where(value > 0.0, x, low), np.where(value > 0.0, high, x)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            next_x = x - value / slope
+    f_low, f_high = function(low), function(high)
+    x = np.where(f_low <= 0.0, low, high)
+    done = (f_low <= 0.0) | (f_high >= 0.0)
+    tolerance = 1e-12 * (high - low)
+    for _ in range(100):
         middle = 0.5 * (low + high)
-        inside = (next_x >= low) & (next_x <= high) & (step % 4 != 3)
-        settled = (inside & (np.abs(next_x - x) <= tolerance)) | (high - low <= tolerance) | (value == 0.0)
-        x = np.where(done | (value == 0.0), x, np.where(inside, next_x, middle))
-        done = done | settled
+        f_middle = function(middle)
+        root = np.sqrt(np.maximum(f_middle**2 - f_low * f_high, 1e-300))
+        next_x = np.where(done, x, np.clip(middle + (middle - low) * f_middle / root, low, high))
+        f_next = function(next_x)
+        settled = (np.abs(next_x - x) <= tolerance) | (f_next == 0.0) | (high - low <= tolerance)
+        x, done = next_x, done | settled
         if done.all():
             break
-    return np.where(at_low, low, np.where(at_high, high, x))
+        # The tightest bracket that the two new points allow.
+        for point, value in ((middle, f_middle), (next_x, f_next)):
+            raises, lowers = (value > 0.0) & (point > low), (value <= 0.0) & (point < high)
+            low, f_low = np.where(raises, point, low), np.where(raises, value, f_low)
+            high, f_high = np.where(lowers, point, high), np.where(lowers, value, f_high)
+    return x
 
 
 class LitCircuit:
@@ -151,53 +154,41 @@ class LitCircuit:
         self.carrying = [s for s in range(circuit.strings) if not circuit.string_open[s]]
 
     def _cell_voltage(self, photocurrent_A, current_A):
-        """Voltage of cells and its slope; `photocurrent_A` (conditions, cells), `current_A` (conditions, n)."""
+        """Voltage of cells: `photocurrent_A` (conditions, cells), `current_A` (conditions, n)."""
         a, i0 = self.slope_V[:, None, None], self.saturation_A[:, None, None]
-        g, rs = self.conductance_S, self.circuit.cell.series_ohm
+        g = self.conductance_S
         left = photocurrent_A[:, :, None] - current_A[:, None, :] + i0
         x = left / g - a * special.wrightomega(left / (a * g) + np.log(i0 / (a * g)))
         diode = i0 * np.exp(x / a)
-        steepness = diode / a + g
-        x = x + (left - diode - g * x) / steepness  # takes away the rounding of the difference
-        return x - current_A[:, None, :] * rs + self.extra_V[:, None, None], -1.0 / steepness - rs
+        x = x + (left - diode - g * x) / (diode / a + g)  # takes away the rounding of the difference
+        return x - current_A[:, None, :] * self.circuit.cell.series_ohm + self.extra_V[:, None, None]
 
     def _string_voltage(self, string, current_A):
-        """Voltage and slope of a string at currents (conditions, n)."""
-        voltage, slope = np.zeros_like(current_A), np.zeros_like(current_A)
+        """Voltage of a string at currents (conditions, n)."""
+        voltage = np.zeros_like(current_A)
         for group in self.strings[string]:
-            v, dv = (part.sum(axis=1) for part in self._cell_voltage(group, current_A))
-            bypassed = v < -self.circuit.drop_V
-            voltage += np.where(bypassed, -self.circuit.drop_V, v)
-            slope += np.where(bypassed, 0.0, dv)
-        return voltage, slope
+            voltage += np.maximum(self._cell_voltage(group, current_A).sum(axis=1), -self.circuit.drop_V)
+        return voltage
 
-    def _ends_A(self, shape):
-        low = 0.0 if self.circuit.blocking else -FAR_A
-        return np.full(shape, low), np.broadcast_to(1.5 * self.largest_A[:, None] + 1.0, shape)
-
-    def _string_current(self, string, voltage_V):
-        """Current of a string at voltages (conditions, n), and its slope."""
-
-        def excess(current):
-            v, slope = self._string_voltage(string, current)
-            return v - voltage_V, slope
-
-        current = _crossing(*self._ends_A(voltage_V.shape), excess)
-        with np.errstate(divide="ignore"):
-            slope = 1.0 / np.minimum(self._string_voltage(string, current)[1], -1e-12)
-        return current, np.where(self.circuit.blocking & (current <= 0.0), 0.0, slope)
+    def _solve_current(self, voltage_V, voltage_at):
+        """Currents (conditions, n) at which a falling `voltage_at` meets `voltage_V`."""
+        high = np.broadcast_to(1.5 * self.largest_A[:, None] + 1.0, voltage_V.shape)
+        if self.circuit.blocking:
+            low = np.zeros_like(high)
+        else:
+            low = np.where(voltage_at(-0.3 * high) > voltage_V, -0.3 * high, -FAR_A)
+        return _crossing(low, high, lambda current: voltage_at(current) - voltage_V)
 
     def _parallel(self, voltage_V):
-        """Current of all strings at a common voltage, and its slope."""
-        parts = [self._string_current(s, voltage_V) for s in self.carrying]
-        return sum(p[0] for p in parts), sum(p[1] for p in parts)
+        """Current of all strings at a common voltage."""
+        return sum(self._solve_current(voltage_V, functools.partial(self._string_voltage, s)) for s in self.carrying)
 
     def _at(self, parameter):
         """Voltage and current at the terminals: by the current of an only string, by the voltage of several."""
         if len(self.carrying) == 1:
-            voltage, current = self._string_voltage(self.carrying[0], parameter)[0], parameter
+            voltage, current = self._string_voltage(self.carrying[0], parameter), parameter
         else:
-            voltage, current = parameter, self._parallel(parameter)[0]
+            voltage, current = parameter, self._parallel(parameter)
         return voltage - current * self.circuit.series_ohm, current
 
     def open_voltage_V(self):
@@ -205,7 +196,7 @@ class LitCircuit:
         none = np.zeros((len(self.largest_A), 1))
         if not self.carrying:
             return none[:, 0]
-        most = np.max([self._string_voltage(s, none)[0] for s in self.carrying], axis=0)
+        most = np.max([self._string_voltage(s, none) for s in self.carrying], axis=0)
         if len(self.carrying) > 1:
             most = _crossing(none, np.maximum(most, 1e-9), self._parallel)
         return np.maximum(most[:, 0], 0.0)
@@ -215,23 +206,12 @@ class LitCircuit:
         voltage = np.atleast_2d(np.asarray(voltage_V, dtype=float))
         if not self.carrying:
             return np.zeros_like(voltage)
-        rs = self.circuit.series_ohm
         if len(self.carrying) == 1:
-
-            def excess(current):
-                v, slope = self._string_voltage(self.carrying[0], current)
-                return v - current * rs - voltage, slope - rs
-
-            return _crossing(*self._ends_A(voltage.shape), excess)
-        if rs == 0.0:
-            return self._parallel(voltage)[0]
-
-        def missing(inner):
-            current, slope = self._parallel(inner)
-            return voltage + current * rs - inner, slope * rs - 1.0
-
-        inner = _crossing(np.full(voltage.shape, -60.0), np.full(voltage.shape, 120.0), missing)
-        return self._parallel(inner)[0]
+            return self._solve_current(voltage, lambda current: self._at(current)[0])
+        if self.circuit.series_ohm == 0.0:
+            return self._parallel(voltage)
+        ends = np.full(voltage.shape, -60.0), np.full(voltage.shape, 120.0)
+        return self._parallel(_crossing(*ends, lambda inner: voltage - self._at(inner)[0]))
 
     def _coarse(self):
         """Parameters of `_at` on a grid (conditions, GRID + 1) and the power there, to find maxima by."""
@@ -245,7 +225,7 @@ class LitCircuit:
         trial = self.largest_A[:, None] * np.linspace(low, 1.001, 2 * GRID)
         total = np.zeros_like(grid)
         for s in self.carrying:
-            voltage = self._string_voltage(s, trial)[0]
+            voltage = self._string_voltage(s, trial)
             for k in range(len(grid)):
                 total[k] += np.interp(grid[k], voltage[k, ::-1], trial[k, ::-1])
         return grid, (grid - total * self.circuit.series_ohm) * total

@@ -114,6 +114,7 @@ class Plate:
     z_m: float
 
 
+@functools.lru_cache
 def _gauss(count):
     """Nodes and weights of the Gauss-Legendre rule on (0, 1)."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
@@ -227,10 +228,9 @@ class _Placed:
         self.lamp = lamp
         self.centre = np.asarray(lamp.position_m) @ lab_from_body
         self.axis = np.asarray(lamp.axis) @ lab_from_body
-        helper = np.eye(3)[np.argmin(np.abs(self.axis))]
-        first = np.cross(self.axis, helper)
-        first /= np.linalg.norm(first)
-        self.across = lamp.radius_m * np.stack([first, np.cross(self.axis, first)])
+        # Two unit vectors across the axis: a column each of the Householder matrix that turns z into it.
+        away = self.axis + np.array([0.0, 0.0, math.copysign(1.0, self.axis[2])])
+        self.across = lamp.radius_m * (np.eye(3) - 2.0 * np.outer(away, away) / (away @ away))[:2]
 
     def places(self, disc):
         """Points of the aperture at places (n, 2) of the unit disc."""

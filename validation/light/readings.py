@@ -96,9 +96,9 @@ def quaternion_at(tilt_deg, heading_deg):
     return np.roll(Rotation.from_rotvec(turn).as_quat(), 1)
 
 
-def light_on_cells(world, attitude, order=7):
+def light_on_cells(world, attitude):
     """Mean irradiance [W/m²] on every cell at a rotation matrix lab from body."""
-    places = Cells(world.room.plate, world.circuit.columns, world.circuit.rows, order)
+    places = Cells(world.room.plate, world.circuit.columns, world.circuit.rows)
     return world.room.irradiance(places, attitude)
 
 
@@ -133,7 +133,8 @@ def _read_sweep(world, rows):
 
 def _read_run(world, rows):
     """Voltage and current (n, 2) of the maximum that the tracker holds."""
-    light = np.array([light_on_cells(world, m, RUN_ORDER) for m in rows.matrices()])
+    places = Cells(world.room.plate, world.circuit.columns, world.circuit.rows, RUN_ORDER)
+    light = np.array([world.room.irradiance(places, matrix) for matrix in rows.matrices()])
     t = rows.time_s
     lamps = (1.0 - world.droop_depth * (1.0 - np.exp(-t / world.droop_time_s))) * world.law(0.0, 0.0, t)
     ambient = world.room.ambient_W_m2
