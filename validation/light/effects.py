@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from ..errors import MotionError
+from .illumination import Box
 
 
 @dataclasses.dataclass(frozen=True)
@@ -126,8 +127,6 @@ def _trap(world, _, interval_s):
 
 
 def _shadow(world, _, on_body, low_m, high_m):
-    from .illumination import Box
-
     world.room.boxes.append(Box(bool(on_body), tuple(low_m), tuple(high_m)))
 
 
@@ -285,11 +284,11 @@ def _several(kind, key, full, index=None):
 
 def _shadow_recipe(draw, plate):
     """A thin box above the plate, up to 6 cm wide."""
-    on_body = bool(draw.random() < 0.5)
+    on_body = draw.chance(0.5)
     wide, high = plate.u_high_m - plate.u_low_m, plate.v_high_m - plate.v_low_m
     u = 0.5 * (plate.u_low_m + plate.u_high_m) + draw.uniform(-0.3, 0.3) * wide
     v = 0.5 * (plate.v_low_m + plate.v_high_m) + draw.uniform(-0.3, 0.3) * high
-    z, a, b = plate.z_m + draw.uniform(0.08, 0.3), *draw.uniform(0.6, 1.0, 2)
+    z, a, b = plate.z_m + draw.uniform(0.08, 0.3), draw.uniform(0.6, 1.0), draw.uniform(0.6, 1.0)
 
     def at(strength):
         half = 0.5 * min(max(0.06 * strength, 0.004), 0.06)
@@ -302,14 +301,14 @@ def _shadow_recipe(draw, plate):
 def draw_recipe(draw, world, kind, duration_s):
     """A recipe of a kind for a world; `duration_s` of its run."""
     plate, circuit = world.room.plate, world.circuit
-    sign, angle = draw.choice([-1.0, 1.0]), draw.uniform(0.0, 2.0 * math.pi)
+    sign, angle = draw.sign(), draw.uniform(0.0, 2.0 * math.pi)
     around = np.array([math.cos(angle), math.sin(angle)])
     wide, high = plate.u_high_m - plate.u_low_m, plate.v_high_m - plate.v_low_m
-    middle = np.array([0.5 * (plate.u_low_m + plate.u_high_m), 0.5 * (plate.v_low_m + plate.v_high_m)])
-    lamp, cell = int(draw.integers(len(world.room.lamps))), int(draw.integers(circuit.cells))
+    middle = (0.5 * (plate.u_low_m + plate.u_high_m), 0.5 * (plate.v_low_m + plate.v_high_m))
+    lamp, cell = draw.below(len(world.room.lamps)), draw.below(circuit.cells)
 
     def near_middle(share):
-        return [float(x) for x in middle + draw.uniform(-share, share, 2) * [wide, high]]
+        return [middle[k] + draw.uniform(-share, share) * size for k, size in enumerate((wide, high))]
 
     match kind:
         case "led_failed":
@@ -325,7 +324,7 @@ def draw_recipe(draw, world, kind, duration_s):
         case "source_power":
             return _one(kind, "factor", 1.0, 1.0 + 0.25 * sign)
         case "led_droop":
-            time_constant_s = duration_s * math.exp(draw.uniform(math.log(0.1), math.log(0.8)))
+            time_constant_s = duration_s * draw.log_uniform(0.1, 0.8)
             return _one(kind, "depth", 0.0, 0.3, time_constant_s=time_constant_s)
         case "ambient_light":
             return _one(kind, "irradiance_W_m2", 0.0, 60.0)
@@ -334,7 +333,7 @@ def draw_recipe(draw, world, kind, duration_s):
         case "attitude_bias":
             return _several(kind, "bias_deg", 3.0 * around)
         case "interreflection":
-            return _one(kind, "diffuse" if draw.random() < 0.6 else "specular", 0.0, 0.9, 0)
+            return _one(kind, "diffuse" if draw.chance(0.6) else "specular", 0.0, 0.9, 0)
         case "detector_gain":
             return _one(kind, "factor", 1.0, 1.0 + 0.2 * sign)
         case "soiling":
@@ -344,17 +343,17 @@ def draw_recipe(draw, world, kind, duration_s):
         case "cell_degraded" | "cell_shaded":
             return _one(kind, "factor", 1.0, 0.05, cell)
         case "string_open":
-            string = int(draw.integers(circuit.strings))
+            string = draw.below(circuit.strings)
             return Recipe(lambda s: Effect(kind, string), False)
         case "bypass_shorted":
-            diode = int(draw.integers(circuit.bypasses))
+            diode = draw.below(circuit.bypasses)
             return Recipe(lambda s: Effect(kind, diode), False)
         case "series_resistance":
             return _one(kind, "resistance_ohm", 0.0, 1.0)
         case "shunt":
             return Recipe(lambda s: Effect(kind, None, {"resistance_ohm": 3.0 / s}))
         case "temperature_coefficient":
-            other = draw.choice([-1.0, 1.0])
+            other = draw.sign()
             full = {"photocurrent_per_K": 0.003 * sign, "voltage_V_per_K": 0.002 * other}
             return Recipe(lambda s: Effect(kind, None, {key: s * x for key, x in full.items()}))
         case "tracker_trapped":
@@ -369,12 +368,10 @@ def draw_recipe(draw, world, kind, duration_s):
             return _one(kind, "depth", 0.0, 0.5, centre_m=near_middle(0.1), radius_m=radius)
         case "hair":
             direction, width = draw.uniform(20.0, 70.0) + (90.0 if sign > 0.0 else 0.0), draw.uniform(0.003, 0.008)
-            return _one(
-                kind, "depth", 0.0, 0.8, through_m=near_middle(0.2), direction_deg=direction, width_m=width
-            )
+            place = {"through_m": near_middle(0.2), "direction_deg": direction, "width_m": width}
+            return _one(kind, "depth", 0.0, 0.8, **place)
         case "slow_drift":
             return _one(kind, "depth", 0.0, 0.1, period_s=draw.uniform(0.5, 1.5) * duration_s, phase=angle)
         case "flicker":
-            frequency = math.exp(draw.uniform(math.log(0.01), math.log(0.4)))
-            return _one(kind, "depth", 0.0, 0.1, frequency_Hz=frequency, phase=angle)
+            return _one(kind, "depth", 0.0, 0.1, frequency_Hz=draw.log_uniform(0.01, 0.4), phase=angle)
     raise MotionError(f"no recipe for {kind}")

@@ -5,9 +5,10 @@ import json
 
 import numpy as np
 
+from ..draw import Draw
 from ..files import write_file, write_gzip
 from . import readings
-from .setting import REFERENCE_AREA_M2, REFERENCE_K, Draw
+from .setting import REFERENCE_AREA_M2, REFERENCE_K
 
 LOST_SHARE, WILD_SHARE = 0.03, 0.002  # of the rows of a dirty recording
 

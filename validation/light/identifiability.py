@@ -60,7 +60,7 @@ class Judge:
             if len(x) == 0 or best <= 1.0:
                 break
             by = np.where((x + step > high) | (x + step < low), -step, step)
-            jacobian = np.column_stack([(r - off(x + np.where(np.arange(len(x)) == k, by, 0.0))) / by[k] for k in range(len(x))])
+            jacobian = np.column_stack([(r - off(x + move)) / move.sum() for move in np.diag(by)])
             normal, slope = jacobian.T @ jacobian, jacobian.T @ r
             improved = False
             for damping in (1e-9, 1e-2, 1.0, 30.0):

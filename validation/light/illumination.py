@@ -49,11 +49,13 @@ class Beam:
         """Intensity on the axis [1/sr] of a lamp of one watt."""
         if self.profile == "cosine_power":
             return (self.exponent + 1.0) / (2.0 * math.pi)
+
+        def per_angle(angle):
+            return float(self.relative(math.cos(angle))) * math.sin(angle)
+
         edge = min(0.5 * math.pi, 3.0 * self.fwhm_rad)
-        flux = sum(
-            integrate.quad(lambda a: float(self.relative(math.cos(a))) * math.sin(a), low, high, epsabs=0.0, epsrel=1e-12)[0]
-            for low, high in ((0.0, edge), (edge, 0.5 * math.pi))
-        )
+        parts = ((0.0, edge), (edge, 0.5 * math.pi))
+        flux = sum(integrate.quad(per_angle, *part, epsabs=0.0, epsrel=1e-12)[0] for part in parts)
         return 1.0 / (2.0 * math.pi * flux)
 
 
@@ -273,29 +275,28 @@ class Room:
         bias = Rotation.from_rotvec([*self.bias_rad, 0.0]).as_matrix()
         lab_from_body = bias @ attitude
         light = np.full(len(places.average(places.points[:, 0])), self.ambient_W_m2)
+        ways = [("direct", 1.0, None)]
+        for wall in self.walls:
+            ways += [("diffuse", wall.diffuse, wall.black()), ("specular", wall.specular, wall.black())]
         for lamp in self.lamps:
-            if lamp.power_W == 0.0:
-                continue
-            light = light + lamp.power_W * self._of_lamp("direct", lamp, lab_from_body, places)
-            for wall in self.walls:
-                for part, share in (("diffuse", wall.diffuse), ("specular", wall.specular)):
-                    if share > 0.0:
-                        light = light + lamp.power_W * share * self._of_lamp(part, lamp, lab_from_body, places, wall.black())
+            for way, share, wall in ways:
+                if lamp.power_W * share > 0.0:
+                    light = light + lamp.power_W * share * self._of_lamp(way, lamp, lab_from_body, places, wall)
         return light
 
-    def _of_lamp(self, part, lamp, lab_from_body, places, wall=None):
+    def _of_lamp(self, way, lamp, lab_from_body, places, wall):
         """Light of one lamp of one watt by one way, looked up where it was computed before."""
-        glass = self.glass_index if places.has_glass and part == "direct" else None
+        glass = self.glass_index if places.has_glass and way == "direct" else None
         walls = tuple(w.black() for w in self.walls)
         shape = (lamp.position_m, lamp.axis, lamp.radius_m, lamp.beam)
-        key = (part, wall, *shape, lab_from_body.tobytes(), places.key, glass, walls, tuple(self.boxes))
+        key = (way, wall, *shape, lab_from_body.tobytes(), places.key, glass, walls, tuple(self.boxes))
         if key not in self.known:
             if len(self.known) > MOST_KNOWN:
                 self.known.clear()
             placed = _Placed(lamp, lab_from_body)
-            if part == "direct":
+            if way == "direct":
                 light = self._direct(placed, places, lab_from_body, UP, None, glass)
-            elif part == "diffuse":
+            elif way == "diffuse":
                 light = self._transfer(wall, places) @ self._on_wall(placed, wall, lab_from_body)
             else:
                 light = self._mirrored(placed, wall, places)
@@ -343,7 +344,8 @@ class Room:
         along, up = WALL_PATCHES
         width = (wall.to_m - wall.from_m) / along
         edges = wall.bottom_m + (wall.top_m - wall.bottom_m) * (np.arange(up + 1) / up) ** 2
-        heights, across = np.meshgrid(0.5 * (edges[1:] + edges[:-1]), wall.from_m + width * (np.arange(along) + 0.5), indexing="ij")
+        across = wall.from_m + width * (np.arange(along) + 0.5)
+        heights, across = np.meshgrid(0.5 * (edges[1:] + edges[:-1]), across, indexing="ij")
         centres = np.empty((along * up, 3))
         centres[:, wall.axis] = wall.at_m
         centres[:, 1 - wall.axis] = across.ravel()
@@ -353,8 +355,7 @@ class Room:
     def _on_wall(self, placed, wall, lab_from_body):
         """Irradiance per watt on every patch of a wall."""
         centres, _ = self._patches(wall)
-        plate = dataclasses.replace(self.plate)
-        patches = Points(plate, centres[:, 0], centres[:, 1])
+        patches = Points(self.plate, centres[:, 0], centres[:, 1])
         patches.points = centres
         return self._direct(placed, patches, lab_from_body, (wall.axis, wall.facing), wall, None)
 

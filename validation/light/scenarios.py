@@ -90,7 +90,7 @@ def _choose(plan, index, attempt):
         return "none", [], index, 0
     index -= plan.none
     if index < plan.pairs:
-        draw = setting.Draw(plan.seed, 7000 + index, attempt)
+        draw = setting.RoundedDraw(plan.seed, 7000 + index, attempt)
         while True:
             pair = [KINDS[draw.below(len(KINDS))] for _ in range(2)]
             if _go_together(*pair):
@@ -144,7 +144,7 @@ def _attempt(plan, index, attempt):
     """The case `index`, or None where what was drawn does not show."""
     family, kinds, number, level = _choose(plan, index, attempt)
     seed = (plan.seed, index, attempt)
-    draw = setting.Draw(*seed, 1)
+    draw = setting.RoundedDraw(*seed, 1)
     is_dirty = draw.chance(plan.dirty_share)
     world, sources, noise, recordings = setting.draw_setting(draw, kinds)
     name = f"{'+'.join(kinds) or 'nothing'}_{number + 1:02d}"
@@ -155,7 +155,7 @@ def _attempt(plan, index, attempt):
     judge = Judge(world, noise, recordings)
     durations = [rows.time_s[-1] for rows in recordings.values() if rows.kind == "run" and rows.is_first]
     for kind in kinds:
-        recipe = effects.draw_recipe(draw.generator, world, kind, durations[0] if durations else 0.0)
+        recipe = effects.draw_recipe(draw, world, kind, durations[0] if durations else 0.0)
         effect = _effect_of_gain(judge, recipe, draw.log_uniform(*GAINS.get(family, LEVELS[level])))
         if effect is None:
             return None

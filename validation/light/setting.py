@@ -5,6 +5,7 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ..draw import Draw
 from .circuit import Cell, Circuit, LitCircuit
 from .illumination import Beam, Lamp, Plate, Room, Wall
 from .readings import Noise, Rows, World, light_on_cells, quaternion_at
@@ -27,23 +28,14 @@ REFERENCE_K = 298.15
 EDGE_M = 0.005  # of the plate, which a scan leaves out
 
 
-class Draw:
-    """Random numbers, rounded as an experiment file states them."""
-
-    def __init__(self, *seed):
-        self.generator = np.random.Generator(np.random.PCG64(list(seed)))
-
-    def chance(self, probability):
-        return bool(self.generator.random() < probability)
-
-    def below(self, count):
-        return int(self.generator.integers(count))
+class RoundedDraw(Draw):
+    """Random numbers with the digits that an experiment file states."""
 
     def uniform(self, low, high, digits=15):
-        return round(float(self.generator.uniform(low, high)), digits)
+        return round(super().uniform(low, high), digits)
 
     def log_uniform(self, low, high, digits=15):
-        return round(math.exp(self.generator.uniform(math.log(low), math.log(high))), digits)
+        return round(super().log_uniform(low, high), digits)
 
 
 def _unit(vector):
@@ -187,7 +179,7 @@ def _draw_circuit(draw, kinds):
 
 def _draw_wall(draw, plate):
     """A black wall along one edge of the plate."""
-    axis, facing = draw.below(2), draw.generator.choice([-1.0, 1.0])
+    axis, facing = draw.below(2), draw.sign()
     gap = draw.uniform(0.006, 0.03, 4)
     low, high = (plate.u_low_m, plate.v_low_m), (plate.u_high_m, plate.v_high_m)
     bottom = plate.z_m - 0.005
@@ -198,7 +190,7 @@ def _draw_wall(draw, plate):
         high[1 - axis] + 0.02,
         bottom,
         bottom + draw.uniform(0.15, 0.25, 3),
-        float(facing),
+        facing,
     )
 
 
@@ -262,9 +254,9 @@ def _draw_recordings(draw, world, kinds):
     has_scan = needs_scan or draw.chance(0.4 if needs_circuit else 0.85)
     has_sweep = needs_circuit or not has_scan or draw.chance(0.35)
     attitudes = [(0.0, 0.0)]
-    if kinds & {"angular_response", "interreflection"} or draw.chance(0.4):
+    if "interreflection" in kinds or draw.chance(0.4):
         attitudes.append((draw.uniform(6.0, 20.0, 0), draw.uniform(0.0, 360.0, 0)))
-    if draw.chance(0.15):
+    if "angular_response" in kinds or draw.chance(0.15):  # glass shows at a slant alone
         attitudes.append((25.0, draw.uniform(0.0, 360.0, 0)))
     recordings = {}
     if has_scan:
