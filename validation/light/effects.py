@@ -212,7 +212,6 @@ class Rival:
     step: tuple = ()
     low: tuple = ()
     high: tuple = ()
-    is_form: tuple = ()  # numbers that change nothing at neutral, such as the time of a droop of depth 0
 
     def act(self, world, x):
         """Changes a world; of a shunt the number is the conductance, which is 0 where there is none."""
@@ -229,8 +228,8 @@ def rivals_of(world, has_scans, has_circuit, has_runs):
     circuit = world.circuit
     rivals = []
 
-    def add(kind, index=None, neutral=(), step=(), low=(), high=(), is_form=()):
-        rivals.append(Rival(kind, index, neutral, step, low, high, is_form))
+    def add(kind, index=None, neutral=(), step=(), low=(), high=()):
+        rivals.append(Rival(kind, index, neutral, step, low, high))
 
     for k in range(len(world.room.lamps)):
         add("led_derated", k, (1.0,), (-0.05,), (0.0,), (1.0,))
@@ -251,7 +250,7 @@ def rivals_of(world, has_scans, has_circuit, has_runs):
     if not has_circuit:
         return rivals
     if has_runs:
-        add("led_droop", None, (0.0, 300.0), (0.01, 20.0), (0.0, 30.0), (0.9, 3000.0), (False, True))
+        add("led_droop", None, (0.0, 300.0), (0.01, 20.0), (0.0, 30.0), (0.9, 3000.0))
     add("soiling", None, (1.0,), (-0.01,), (0.1,), (1.0,))
     add("angular_response", None, (1.0001,), (0.3,), (1.0001,), (4.0,))
     add("series_resistance", None, (0.0,), (0.02,), (0.0,), (20.0,))

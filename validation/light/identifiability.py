@@ -22,6 +22,7 @@ class Judge:
             self.parts.append((some, np.sqrt(len(rows) / count) / errors))
         self.nominal = self.whitened(world)
         self.kinds = {rows.kind for rows, _ in self.parts}
+        self.known_slopes = {}  # of rivals, at the world as it is believed
 
     def whitened(self, world):
         """All readings in units of their errors; those left out count with the ones beside them."""
@@ -40,6 +41,18 @@ class Judge:
     def rivals(self):
         return effects.rivals_of(self.world, "scan" in self.kinds, bool(self.kinds - {"scan"}), "run" in self.kinds)
 
+    def slopes(self, rival):
+        """Slopes of the readings with the rival's numbers where nothing acts, a column each."""
+        key = (rival.kind, rival.index)
+        if key not in self.known_slopes:
+            columns = []
+            for move in np.diag(rival.step):
+                world = self.world.copy()
+                rival.act(world, np.array(rival.neutral) + move)
+                columns.append((self.whitened(world) - self.nominal) / move.sum())
+            self.known_slopes[key] = np.column_stack(columns)
+        return self.known_slopes[key]
+
     def left(self, kept, rivals, target):
         """The chi² that remains of `target` when the numbers of `rivals` are fitted beside `kept`
         (Levenberg and Marquardt within the bounds)."""
@@ -47,49 +60,43 @@ class Judge:
             np.array([n for r in rivals for n in getattr(r, name)]) for name in ("neutral", "step", "low", "high")
         )
 
-        def off(at):
+        def read(at):
             world, first = kept.copy(), 0
             for rival in rivals:
                 rival.act(world, at[first : first + len(rival.neutral)])
                 first += len(rival.neutral)
-            return target - self.whitened(world)
+            return self.whitened(world)
 
-        r = off(x)
-        best = begin = r @ r
-        for _ in range(8):
+        now = read(x)
+        best = begin = float(np.sum((target - now) ** 2))
+        for iteration in range(8):
             if len(x) == 0 or best <= 1.0:
                 break
-            by = np.where((x + step > high) | (x + step < low), -step, step)
-            jacobian = np.column_stack([(r - off(x + move)) / move.sum() for move in np.diag(by)])
+            if iteration == 0 and kept is self.world and all(rival.neutral for rival in rivals):
+                jacobian = np.column_stack([self.slopes(rival) for rival in rivals])
+            else:
+                by = np.where((x + step > high) | (x + step < low), -step, step)
+                jacobian = np.column_stack([(read(x + move) - now) / move.sum() for move in np.diag(by)])
+            r = target - now
             normal, slope = jacobian.T @ jacobian, jacobian.T @ r
             improved = False
             for damping in (1e-9, 1e-2, 1.0, 30.0):
                 damped = normal + np.diag(np.diag(normal) * damping + 1e-12)
                 next_x = np.clip(x + np.linalg.solve(damped, slope), low, high)
-                trial = off(next_x)
-                if trial @ trial < best:
-                    improved = trial @ trial < 0.98 * best
-                    best, x, r = trial @ trial, next_x, trial
+                trial = read(next_x)
+                remains = float(np.sum((target - trial) ** 2))
+                if remains < best:
+                    improved = remains < 0.98 * best
+                    best, x, now = remains, next_x, trial
                     break
             # An effect that leaves most after its first steps is no rival.
             if not improved or best > max(3000.0, 0.3 * begin):
                 break
-        return float(best)
+        return best
 
     def left_by_all(self, target):
         """What remains of `target` beside all numbers of the catalogue together, to first order."""
-        columns = []
-        for rival in self.rivals():
-            is_form = rival.is_form or (False,) * len(rival.neutral)
-            for k, by in enumerate(rival.step):
-                if is_form[k]:
-                    continue
-                x = list(rival.neutral)
-                x[k] += by
-                world = self.world.copy()
-                rival.act(world, x)
-                columns.append((self.whitened(world) - self.nominal) / by)
-        columns = np.column_stack(columns)
+        columns = np.column_stack([self.slopes(rival) for rival in self.rivals() if rival.neutral])
         scale = np.linalg.norm(columns, axis=0)
         columns = columns[:, scale > 0.0] / scale[scale > 0.0]
         off = target - self.nominal
