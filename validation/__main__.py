@@ -1,0 +1,10 @@
+"""python3 -m validation: see prove.py."""
+
+import os
+import sys
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the work is shared out by case
+
+from .prove import main  # noqa: E402
+
+sys.exit(main())

@@ -1,0 +1,148 @@
+"""How strong the effects of a case are: fitted to what its readings can show of each."""
+
+import dataclasses
+import itertools
+import math
+
+import numpy as np
+
+from .errors import MotionError
+from .information import Information, competing_kinds, creep_rad_s, with_effects
+from .laws import KINDS
+from .motion import Motion
+from .vectors import length
+
+WITHIN_NOISE = 12.0  # of chi²
+LINEAR_GAIN = 5e4  # up to which the strength is fitted to its own motion
+ROUNDS = 3
+
+
+@dataclasses.dataclass
+class Strengths:
+    """What chi² of the first run gains by knowing each effect, with all numbers of the case's other effects free; of a
+    law outside the catalogue, with those of the whole catalogue free. `doubles`: sets of kinds that leave within the
+    noise what one or two of the effects do."""
+
+    gains: list
+    doubles: list
+
+    @property
+    def least(self):
+        return min(self.gains, default=0.0)
+
+
+def _others(information, case, without):
+    """Columns of what else acts: its numbers, or its change where these enter otherwise."""
+    others = []
+    for i, effect in enumerate(case.world.effects):
+        if i in without:
+            continue
+        columns = information.columns_of(effect.kind)
+        others.append(columns if columns.shape[1] else information.changes[i][:, np.newaxis])
+    return others
+
+
+def _gains(information, case, against_catalogue):
+    gains = []
+    for i, effect in enumerate(case.world.effects):
+        others = _others(information, case, {i})
+        if KINDS[effect.kind].is_outside and against_catalogue:
+            others += [information.columns_of(kind) for kind in information.competitors()]
+        gains.append(information.gain(information.changes[i], others))
+    return gains
+
+
+def _doubles(information, case, factors):
+    """Kinds that could pass for one of the effects, or for two of them at once. `factors`: by how much each effect is
+    to be stronger yet."""
+    names = [e.kind for e in case.world.effects if not KINDS[e.kind].is_outside]
+    doubles = []
+    swaps = [(i,) for i in range(len(names))] + list(itertools.combinations(range(len(names)), 2))
+    for out in swaps:
+        change = sum(factors[i] * information.changes[i] for i in out)
+        others = _others(information, case, set(out))
+        for kind in information.competitors():
+            if kind in names:
+                continue
+            if information.gain(change, [*others, information.columns_of(kind)]) < WITHIN_NOISE:
+                doubles.append([kind] + [name for i, name in enumerate(names) if i not in out])
+    return doubles
+
+
+def stays_physical(case):
+    """Whether the platform of both runs is a body, stays upright where it stands on something, and turns no faster
+    than instruments can follow."""
+    motion = Motion([case.world], creep_rad_s(case.world))
+    moments = np.linalg.eigvalsh(motion.platforms.inertia[..., 0])
+    if not (moments[0] > 0.0 and moments[2] <= moments[0] + moments[1]):
+        return False
+    for run in case.runs:
+        readings = motion.read([run.start], run.commands, np.arange(0.0, run.duration_s, 0.5), 1e-6)
+        rate, up = length(readings.rate_rad_s).max(), readings.attitude[:, 0]
+        upright = 1.0 - 2.0 * (up[1] ** 2 + up[2] ** 2)
+        # Between two readings of the camera no turn may be missed.
+        if rate > 4.0 or rate * case.sensors.camera_every / case.sensors.rate_Hz > 0.8:
+            return False
+        if case.topology != "free" and upright.min() < math.cos(math.radians(60.0)):
+            return False
+    return True
+
+
+def _extrapolation(case, index, by, loosened):
+    """By how much effect `index` can be made stronger where chi² is to gain `by` times more, taken back until the
+    motion stays physical."""
+    effect = case.world.effects[index]
+    if not effect.numbers or not math.isfinite(by):
+        return 1.0
+    kind = KINDS[effect.kind]
+    room = 10.0 if kind.max_factor >= 30.0 else 1.0  # a torque may be ten times what is common; an angle has a limit
+    factor = min(math.sqrt(by), max(1.0, room * kind.max_factor * loosened))
+    while factor > 1.05:
+        effects = list(case.world.effects)
+        effects[index] = effect.scaled(factor)
+        try:
+            if stays_physical(with_effects(case, effects)):
+                return factor
+        except MotionError:
+            pass
+        factor = 1.0 + 0.5 * (factor - 1.0)
+    return 1.0
+
+
+def fit_strengths(case, wanted, loosened):
+    """(case, Strengths): the effects scaled until each gains about what is `wanted` of it, as far as its kind allows
+    `loosened` times over. More than 5e4 is extrapolated from there in proportion to the squared strength."""
+    count = len(case.world.effects)
+    if count == 0:
+        return case, Strengths([], [])
+    reached, beyond = np.ones(count), np.ones(count)  # times what was drawn; the fraction that the catalogue leaves
+    acting = [e.kind for e in case.world.effects]
+    for round_number in range(ROUNDS + 1):
+        final = round_number == ROUNDS
+        whole = final or round_number == 1
+        kinds = dict.fromkeys(acting + (competing_kinds(case) if whole else []))
+        information = Information(case, list(kinds))
+        gains = np.array(_gains(information, case, False))
+        if whole:
+            strong = np.array(_gains(information, case, True))
+            beyond = strong / np.maximum(gains, 1e-300)
+        factors = np.ones(count)
+        for i, effect in enumerate(case.world.effects):
+            if effect.numbers and gains[i] * beyond[i] > 0.0:
+                by = math.sqrt(min(wanted[i], LINEAR_GAIN) / (gains[i] * beyond[i]))
+                largest = KINDS[effect.kind].max_factor * loosened
+                factors[i] = min(max(by, 1e-5 / reached[i]), largest / reached[i])
+        if final or (whole and np.all(np.abs(factors - 1.0) < 0.1)):
+            factors = np.ones(count)
+            for i in range(count):
+                if wanted[i] > LINEAR_GAIN and strong[i] > 0.0:
+                    factors[i] = _extrapolation(case, i, wanted[i] / strong[i], loosened / reached[i])
+            strengths = Strengths(list(strong * factors**2), _doubles(information, case, factors))
+            return _scaled(case, factors), strengths
+        case = _scaled(case, factors)
+        reached *= factors
+    raise AssertionError("unreachable")
+
+
+def _scaled(case, factors):
+    return with_effects(case, [e.scaled(float(f)) for e, f in zip(case.world.effects, factors, strict=True)])
