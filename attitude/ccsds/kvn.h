@@ -1,7 +1,7 @@
 // CCSDS messages in keyword-value notation (KVN): blocks of assignments, comments and data lines.
 //
 // Everything is kept as text in its order, so that a message written back says the same in every
-// digit; what it means is the business of aem.h and acm.h.
+// digit; what it means is the business of aem.h.
 // Source: CCSDS 504.0-B-2 (2024), section 7.
 #pragma once
 

@@ -16,7 +16,7 @@ void run_serve(const CommandLine& line) {
 
 Verb kind() {
   return {"serve",
-          "The platform in real time: measurements out, commands in, over UDP or shared memory",
+          "The platform in real time: measurements out, commands in, over UDP",
           run_serve};
 }
 

@@ -1,39 +1,18 @@
 #include "tools/realtime/settings.h"
 
-#include <algorithm>
-#include <cctype>
 #include <limits>
 
 #include "attitude/propagation/run.h"
 #include "tools/realtime/photorque_serve.h"
 
 namespace photorque {
-namespace {
-
-// A name of shared memory is one component of a path.
-std::string read_memory_name(const Settings& settings) {
-  std::string name = settings.text_or("shared_memory", "photorque");
-  const auto allowed = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
-  };
-  if (name.empty() || name.size() > 200 || name[0] == '.' || !std::ranges::all_of(name, allowed)) {
-    throw settings.error("shared_memory", "\"" + name + "\"",
-                         "letters, digits, _, - and ., at most 200");
-  }
-  return name;
-}
-
-}  // namespace
-
 ServeSettings read_serve(const Settings& root) {
   const Settings s = own_table(root, "serve", false);
   ServeSettings serve;
   serve.mode = static_cast<ServeSettings::Mode>(s.choice_or("mode", {"paced", "lockstep"}, 0));
   serve.rate_Hz = s.number_or("rate_Hz", serve.rate_Hz, {0.1, 1e5});
-  serve.by_shared_memory = s.choice_or("transport", {"udp", "shared_memory"}, 0) == 1;
   serve.address = s.text_or("address", serve.address);
   serve.port = static_cast<int>(s.integer_or("port", PHOTORQUE_PORT, 0, 65535));
-  serve.shared_memory = read_memory_name(s);
   serve.wait_for_client = s.flag_or("wait_for_client", true);
   serve.client_timeout_s = s.number_or("client_timeout_s", serve.client_timeout_s, {1e-3, 1e6});
   serve.max_torque_N_m = s.number_or("max_torque_N_m", serve.max_torque_N_m, Range::positive());

@@ -16,10 +16,8 @@ struct ServeSettings {
   };
   Mode mode = Mode::paced;
   double rate_Hz = 160.0;
-  bool by_shared_memory = false;
   std::string address = "127.0.0.1";
   int port = 0;
-  std::string shared_memory = "photorque";
   bool wait_for_client = true;  // before the first tick
   double client_timeout_s = 60.0;
   double max_torque_N_m = 1.0;
@@ -32,9 +30,8 @@ struct ServeSettings {
   LinkSettings to_client, from_client;
 };
 
-// Reads [serve], which may be absent: mode ("paced", "lockstep"), rate_Hz (160), transport ("udp",
-// "shared_memory"), address ("127.0.0.1"), port (4160; 0: any), shared_memory ("photorque"),
-// wait_for_client (true), client_timeout_s (60), max_torque_N_m (1), hold_s (none), deadline_s (a
+// Reads [serve], which may be absent: mode ("paced", "lockstep"), rate_Hz (160), address ("127.0.0.1"),
+// port (4160; 0: any), wait_for_client (true), client_timeout_s (60), max_torque_N_m (1), hold_s (none), deadline_s (a
 // step), on_miss ("catch_up", "slip", "stop"), spin_s (50e-6), realtime_priority (0),
 // send_truth (false), and the links [serve.to_client] and [serve.from_client].
 ServeSettings read_serve(const Settings& root);

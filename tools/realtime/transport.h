@@ -1,4 +1,4 @@
-// The two ways in and out: UDP and POSIX shared memory.
+// The way in and out: UDP.
 #pragma once
 
 #include <array>
@@ -31,9 +31,5 @@ struct Transport {
 // it looks again and again instead of sleeping. InputError (key serve.address) where that cannot
 // be.
 Transport udp_transport(const std::string& address, int port, int64_t spin_ns);
-
-// Makes /dev/shm/NAME anew, for this user alone, and removes it when the last copy goes.
-// InputError (key serve.shared_memory) where that cannot be.
-Transport shared_memory_transport(const std::string& name, int64_t spin_ns);
 
 }  // namespace photorque

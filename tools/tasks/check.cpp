@@ -226,8 +226,7 @@ class Checker {
     attempt([&] { say_propagation(read_propagation(settings)); });
     attempt([&] {
       const ServeSettings serve = read_serve(settings);
-      add("serve", show(serve.rate_Hz) + " Hz " +
-                       (serve.by_shared_memory ? "in shared memory" : "at " + serve.address));
+      add("serve", show(serve.rate_Hz) + " Hz at " + serve.address);
     });
     add("fmu", "a unit for co-simulation by FMI 3.0");
     if (settings.has("supply_trade")) {

@@ -18,7 +18,6 @@ constexpr double s_to_ns = 1e9;
 
 Transport open_transport(const ServeSettings& serve) {
   const auto spin_ns = static_cast<int64_t>(s_to_ns * serve.spin_s);
-  if (serve.by_shared_memory) return shared_memory_transport(serve.shared_memory, spin_ns);
   return udp_transport(serve.address, serve.port, spin_ns);
 }
 
@@ -40,7 +39,7 @@ void print_serving(const Console& console, const ServeSettings& serve, const std
   const bool lockstep = serve.mode == ServeSettings::Mode::lockstep;
   console.line("serving at " + where + ", " + show(serve.rate_Hz) + " Hz" +
                (lockstep ? ", in lockstep" : ""));
-  if (!serve.by_shared_memory && !serve.address.starts_with("127.")) {
+  if (!serve.address.starts_with("127.")) {
     console.line("  whoever reaches this address commands the platform: packets carry no secret");
   }
 }
