@@ -40,16 +40,6 @@ void learn(const D& domain, const std::vector<typename D::Run>& runs, const type
   if (again.log_evidence > trial.log_evidence) trial = std::move(again);
 }
 
-// Second chances for trials fitted to the same runs, from where the best of them ended.
-template <Domain D>
-void learn_from_best(const D& domain, const std::vector<typename D::Run>& runs, int threads,
-                     std::vector<typename D::Trial>& trials) {
-  const typename D::Trial best =
-      *std::min_element(trials.begin(), trials.end(),
-                        [](const auto& a, const auto& b) { return a.fit.chi2 < b.fit.chi2; });
-  parallel_for(trials.size(), threads, [&](size_t i) { learn(domain, runs, best, trials[i]); });
-}
-
 // The leaders' fits are carried on until they converge: what only goes on where its parent's fit
 // stopped would seem to gain by the candidate that it adds. For the same reason they, and the
 // parents, have a second chance from where the best of them ended.

@@ -116,15 +116,6 @@ Mat3 HeliocentricOrbit::ecliptic_from_plane() const {
       .toRotationMatrix();
 }
 
-std::array<Vec3, 2> HeliocentricOrbit::position_and_velocity(double time_s) const {
-  const InPlane now = in_plane(time_s);
-  const Mat3 axes = ecliptic_from_plane();
-  const auto in_space = [&](const std::array<Lanes, 2>& v) {
-    return Vec3(axes * Vec3(v[0][0], v[1][0], 0.0));
-  };
-  return {in_space(now.position_au), in_space(now.velocity_au_s)};
-}
-
 HeliocentricOrbit orbit_of_earth(double since_J2000_s) {
   // Mean longitude and anomaly of the Sun; the longitude counts from the equinox of date, which
   // moves by 1.397 degrees a century against that of J2000.

@@ -21,8 +21,6 @@ struct HeliocentricOrbit {
   double perihelion_rad = 0.0;    // its argument, from the node
   double mean_anomaly_rad = 0.0;  // at time 0
 
-  // From the Sun to the spacecraft [au], and its velocity [au/s], ecliptic axes.
-  std::array<Vec3, 2> position_and_velocity(double time_s) const;
   // The same at eight instants, in axes of the orbit's plane: x to the perihelion, y along the
   // motion there.
   struct InPlane {

@@ -20,11 +20,8 @@ struct Thresholds {
     // Neighbours that make a mean: structure longer than this shows in the means, white noise does
     // not.
     size_t neighbours = 20;
-    // Second differences of a channel, to measure its noise at all: 20 % of error at this number.
+    // Differences of a channel, to measure its noise at all: 20 % of error at this number.
     size_t min_differences = 50;
-    // The median of n second differences of white noise scatters by this over √n of itself: found
-    // by drawing them, because neighbours are correlated (1.39 at n = 50, 1.41 at 400).
-    double difference_scatter = 1.4;
     // A noise level is corrected only where it is off by more than this fraction, which no decision
     // feels, and by more than so many standard errors: six channels are asked.
     double min_correction = 0.05, correction_sigma = 5.0;
@@ -35,8 +32,6 @@ struct Thresholds {
     double min_mixture_gain = 16.0;
     // Frequencies of a spectrum whose median measures the gyro's noise, at the least.
     size_t min_frequencies = 16;
-    // Standard errors by which the camera's clock must run away from the gyro's, to be said.
-    double clock_sigma = 5.0;
     // Standard deviations of noise from what its neighbours say, for a reading to be dropped. White
     // noise reaches it in one of five million readings (drawn).
     double outlier_sigma = 9.0;
@@ -97,9 +92,8 @@ struct Thresholds {
     double min_scan_gain = 14.0;
     // Of a candidate scored on all recordings, those held out among them, beyond one a parameter.
     double min_joint_gain = 14.0;
-    // Of two candidates together over the better of the two alone; and, to rank pairs, what each
-    // parameter costs: χ² of 95 % for one is 3.8.
-    double min_pair_gain = 16.0, cost_per_parameter = 4.0;
+    // To rank subsets, what each parameter costs: χ² of 95 % for one is 3.8.
+    double cost_per_parameter = 4.0;
     // Power of a line in the spectrum of what is left, noise having 1 in each of nine channels: a
     // sum of nine exponentials exceeds it once in 600,000 frequencies.
     double min_line_power = 30.0;

@@ -1,6 +1,5 @@
 """The client of `serve` in Python: over UDP, in lockstep, against the program."""
 
-import os
 import re
 import struct
 import subprocess

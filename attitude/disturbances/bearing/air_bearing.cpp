@@ -47,10 +47,6 @@ double load_capacity_as_published_N(const SphericalSocket& socket, double inlet_
          (inlet_Pa * (1.0 - sine) + ambient_Pa * (sine - std::cos(rim)));
 }
 
-double load_capacity_high_pressure_as_published_N(const SphericalSocket& socket, double inlet_Pa) {
-  return load_capacity_as_published_N(socket, inlet_Pa, 0.0);
-}
-
 FilmDrag film_drag(const SphericalSocket& socket, double viscosity_Pa_s) {
   const double rim = socket.half_angle_rad, recess = socket.recess_half_angle_rad;
   const double sin_cubed = integral_sin_cubed(rim) - integral_sin_cubed(recess);
@@ -59,14 +55,6 @@ FilmDrag film_drag(const SphericalSocket& socket, double viscosity_Pa_s) {
   const double scale =
       2.0 * pi * viscosity_Pa_s * radius2_m2 * radius2_m2 / socket.gap_m * socket.sheared_fraction;
   return {scale * sin_cubed, scale * (area - 0.5 * sin_cubed)};
-}
-
-double couette_curvature_factor(double radius_m, double gap_m) {
-  const double outer3 = cube(radius_m + gap_m);
-  // (R + h)³ − R³ without cancellation.
-  const double difference =
-      gap_m * (3.0 * radius_m * radius_m + 3.0 * radius_m * gap_m + gap_m * gap_m);
-  return 3.0 * gap_m * outer3 / (radius_m * difference);
 }
 
 double spring_gap_m(double rated_gap_m, double rated_load_N, double stiffness_N_m, double load_N) {

@@ -28,8 +28,6 @@ double load_capacity_N(const SphericalSocket& socket, double inlet_Pa, double am
 // half angles of 90 to 30 deg at 5 bar. For comparison with the paper alone.
 double load_capacity_as_published_N(const SphericalSocket& socket, double inlet_Pa,
                                     double ambient_Pa);
-// Eq. 8 as printed: eq. 7 for ambient pressure ≪ inlet pressure.
-double load_capacity_high_pressure_as_published_N(const SphericalSocket& socket, double inlet_Pa);
 
 // The drag torque about the centre is −D ω with D = axial s sᵀ + transverse (1 − s sᵀ), s the
 // socket's axis. Both > 0.
@@ -40,12 +38,8 @@ struct FilmDrag {
 
 // Couette flow across the film (eq. 14–17): D = μ R⁴/h ∫ (1 − n nᵀ) dΩ over the film. Its axial
 // part is the closed form of eq. 17; the transverse part is the same integral for a tilting ball.
-// Relative error of order h/R; see couette_curvature_factor().
+// Relative error 2 h/R, of the curvature.
 FilmDrag film_drag(const SphericalSocket& socket, double viscosity_Pa_s);
-
-// Torque between concentric spheres R and R + h (eq. 9, exact) over that of the plane film (eq.
-// 15): 3 h (R + h)³ / (R ((R + h)³ − R³)), which is 1 + 2 h/R + …
-double couette_curvature_factor(double radius_m, double gap_m);
 
 // The paper's load-dependent gap: a spring of the catalogue's stiffness about the rated point [m].
 // Real films are much softer than that towards small loads: see air_film.h. At least 0.

@@ -59,18 +59,6 @@ void require_feed(const SphericalSocket& socket, const OrificeFeed& feed, const 
   }
 }
 
-double feeding_number_1_m2(const PorousPad& pad, double gap_m) {
-  return 12.0 * pad.permeability_per_thickness_m / (gap_m * gap_m * gap_m);
-}
-
-// e^{−x} I_ν(x) for ν = 0, 1: the plain function overflows for the thin films of strong feeding.
-double scaled_bessel_i(int order, double x) {
-  if (x < 500.0) return std::cyl_bessel_i(order, x) * std::exp(-x);
-  const double m = 4.0 * order * order;  // Hankel's expansion
-  return (1.0 - (m - 1.0) / (8.0 * x) + (m - 1.0) * (m - 9.0) / (128.0 * x * x)) /
-         std::sqrt(2.0 * pi * x);
-}
-
 }  // namespace
 
 FilmState orifice_fed_film(const SphericalSocket& socket, const OrificeFeed& feed,
@@ -105,31 +93,6 @@ double gap_under_load_m(const SphericalSocket& socket, const OrificeFeed& feed, 
     throw NumericalError("air film: the load is too small for any film thinner than 1 % of R");
   }
   return crossing(0.0, widest_m, spare_N);
-}
-
-double porous_pad_pressure_Pa(const PorousPad& pad, double gap_m, double supply_Pa,
-                              const FilmAir& air, double r_m) {
-  const double lambda_1_m = std::sqrt(feeding_number_1_m2(pad, gap_m));
-  const double x = lambda_1_m * r_m, rim = lambda_1_m * pad.radius_m;
-  const double fraction = scaled_bessel_i(0, x) / scaled_bessel_i(0, rim) * std::exp(x - rim);
-  const double supply2_Pa2 = supply_Pa * supply_Pa;
-  return std::sqrt(supply2_Pa2 - (supply2_Pa2 - air.pressure_Pa * air.pressure_Pa) * fraction);
-}
-
-FilmState porous_pad_film(const PorousPad& pad, double gap_m, double supply_Pa,
-                          const FilmAir& air) {
-  const auto gauge_on_ring = [&](double r_m) {
-    return 2.0 * pi * r_m *
-           (porous_pad_pressure_Pa(pad, gap_m, supply_Pa, air, r_m) - air.pressure_Pa);
-  };
-  const double load_N = integrate(gauss_8, gauge_on_ring, 0.0, pad.radius_m, film_panels);
-  const double lambda_1_m = std::sqrt(feeding_number_1_m2(pad, gap_m));
-  const double rim = lambda_1_m * pad.radius_m;
-  const double flow_kg_s = 2.0 * pi * rim * gap_m * gap_m * gap_m /
-                           (24.0 * air.viscosity_Pa_s * gas_constant_J_kg_K * air.temperature_K) *
-                           (supply_Pa * supply_Pa - air.pressure_Pa * air.pressure_Pa) *
-                           scaled_bessel_i(1, rim) / scaled_bessel_i(0, rim);
-  return {load_N, flow_kg_s, porous_pad_pressure_Pa(pad, gap_m, supply_Pa, air, 0.0)};
 }
 
 }  // namespace photorque

@@ -2,12 +2,11 @@
 //
 // The closed forms of air_bearing.h need a gap. A catalogue quotes it at one load; at another load
 // the film settles where the flow that the restrictor lets through equals the flow that the film
-// lets out. Both models are isothermal, laminar, and of uniform gap.
+// lets out. The model is isothermal, laminar, and of uniform gap.
 //
 // Source: Reynolds' equation for p² (Hamrock, Schmid, Jacobson, Fundamentals of Fluid Film
 // Lubrication, 2nd ed., ch. 7 and 16), nozzle flow (White, Fluid Mechanics, 7th ed.,
-// eq. 9.44–9.46), Darcy's law. Compared with measured loads and flows of a porous pad in
-// tests/attitude/air_film_test.cpp: load within 17 %, permeability taken from one flow.
+// eq. 9.44–9.46).
 #pragma once
 
 #include "attitude/disturbances/bearing/air_bearing.h"
@@ -45,18 +44,5 @@ FilmState orifice_fed_film(const SphericalSocket& socket, const OrificeFeed& fee
 // a hundredth of the radius.
 double gap_under_load_m(const SphericalSocket& socket, const OrificeFeed& feed, const FilmAir& air,
                         double load_N);
-
-// A flat round pad of porous material of uniform thickness, fed from behind.
-struct PorousPad {
-  double radius_m = 0.0;
-  // Darcy permeability over the thickness of the material [m]; sets the flow.
-  double permeability_per_thickness_m = 0.0;
-};
-
-FilmState porous_pad_film(const PorousPad& pad, double gap_m, double supply_Pa, const FilmAir& air);
-
-// Absolute pressure in the pad's film at the radius r ≤ R [Pa].
-double porous_pad_pressure_Pa(const PorousPad& pad, double gap_m, double supply_Pa,
-                              const FilmAir& air, double r_m);
 
 }  // namespace photorque

@@ -60,10 +60,4 @@ std::vector<VibrationTone> tones_of_spectrum(std::span<const SpectrumPoint> spec
   return all;
 }
 
-Vec3 mean_square_m2_s4(std::span<const VibrationTone> tones) {
-  Vec3 sum = Vec3::Zero();
-  for (const VibrationTone& tone : tones) sum += 0.5 * tone.amplitude_lab_m_s2.cwiseAbs2();
-  return sum;
-}
-
 }  // namespace photorque

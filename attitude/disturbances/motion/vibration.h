@@ -31,7 +31,4 @@ struct SpectrumPoint {
 std::vector<VibrationTone> tones_of_spectrum(std::span<const SpectrumPoint> spectrum, int tones,
                                              uint64_t seed);
 
-// Mean square of the acceleration, per axis [m²/s⁴].
-Vec3 mean_square_m2_s4(std::span<const VibrationTone> tones);
-
 }  // namespace photorque
