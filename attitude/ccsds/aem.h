@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "attitude/ccsds/kvn.h"
-#include "attitude/model/state.h"
+#include "attitude/model/platform.h"
 
 namespace photorque {
 

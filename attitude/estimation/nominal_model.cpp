@@ -2,7 +2,7 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/estimation/starts.h"
-#include "attitude/model/bound_states.h"
+#include "attitude/model/disturbance.h"
 
 namespace photorque {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/observation/block_instants.h"
+#include "attitude/observation/blocks.h"
 #include "attitude/observation/expected_readings.h"
 #include "attitude/observation/whitening.h"
 #include "attitude/propagation/sampling.h"

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "attitude/disturbances/kind.h"
-#include "attitude/propagation/place.h"
 #include "attitude/propagation/run.h"
 #include "attitude/propagation/sampling.h"
 #include "attitude/propagation/time_history.h"

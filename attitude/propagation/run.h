@@ -1,12 +1,14 @@
 // `propagate`: from an experiment file to a propagated platform, its recording and its plots.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "attitude/model/dynamics.h"
 #include "attitude/propagation/companion.h"
 #include "attitude/propagation/live.h"
 #include "attitude/propagation/propagator.h"
@@ -90,5 +92,16 @@ PropagationResult propagate(const PropagationRun& run,
                             const std::function<void(double)>& progress = {},
                             const Companion* companion = nullptr,
                             const Checkpoints& checkpoints = {});
+
+// Where a platform that slides is.
+
+// Reads initial_position_m[2] and initial_velocity_m_s[2] of [propagate], both zero by default;
+// nothing of a platform that does not slide.
+void read_initial_place(const Settings& settings, const AttitudeModel& model,
+                        PlatformState& initial);
+
+// Place (x, y) and velocity in a state vector; none where the platform does not slide.
+std::optional<std::array<double, 4>> place_of(const Dynamics& dynamics,
+                                              const std::vector<double>& y);
 
 }  // namespace photorque

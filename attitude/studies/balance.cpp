@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "attitude/estimation/nominal_model.h"
-#include "attitude/noise/discrepancy.h"
+#include "attitude/estimation/segments.h"
+#include "attitude/observation/discrepancy.h"
 #include "attitude/propagation/run.h"
-#include "attitude/stretches/segments.h"
 #include "core/errors.h"
 #include "core/text/display.h"
 

@@ -2,7 +2,7 @@
 #include <set>
 
 #include "attitude/estimation/nominal_model.h"
-#include "attitude/noise/discrepancy.h"
+#include "attitude/observation/discrepancy.h"
 #include "diagnosis/attitude/answer.h"
 #include "diagnosis/attitude/holdout.h"
 

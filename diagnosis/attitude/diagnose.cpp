@@ -7,7 +7,7 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/estimation/conventions.h"
-#include "attitude/estimation/noise.h"
+#include "attitude/estimation/fit.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/answer.h"
 #include "diagnosis/attitude/bodies.h"

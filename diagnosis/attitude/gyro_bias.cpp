@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "attitude/noise/bias_history.h"
+#include "attitude/observation/bias_history.h"
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/sentences.h"
 

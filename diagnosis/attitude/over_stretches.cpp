@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "attitude/estimation/nominal_model.h"
-#include "attitude/noise/discrepancy.h"
+#include "attitude/observation/discrepancy.h"
 #include "core/parallel.h"
 #include "diagnosis/attitude/answer.h"
 #include "diagnosis/attitude/holdout.h"

@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "attitude/estimation/conventions.h"
-#include "attitude/noise/reading_level.h"
-#include "attitude/readings/angle_sequence.h"
-#include "attitude/readings/columns.h"
-#include "attitude/stretches/segments.h"
+#include "attitude/estimation/segments.h"
+#include "attitude/observation/noise_levels.h"
+#include "attitude/recordings/channels.h"
+#include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/holdout.h"
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "attitude/estimation/noise.h"
-#include "attitude/noise/heavy_tails.h"
-#include "attitude/noise/search.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/observation/heavy_tails.h"
+#include "attitude/observation/noise_search.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/gyro_bias.h"
 #include "diagnosis/attitude/holdout.h"

@@ -8,7 +8,7 @@ namespace photorque {
 
 // The nominal model fitted. Readings that stand out are dropped on the way, and unless the
 // experiment wants it as stated, the noise of `data` becomes what the readings show
-// (attitude/noise/search.h), after a drift of the gyro was taken out
+// (attitude/observation/noise_search.h), after a drift of the gyro was taken out
 // (gyro_bias.h); what was found is told in data.instruments. A model that cannot be propagated has
 // infinite χ², and the noise stays as stated.
 Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data);

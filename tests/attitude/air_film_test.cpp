@@ -1,4 +1,4 @@
-#include "attitude/disturbances/bearing/air_film.h"
+#include "attitude/disturbances/bearing/air_bearing.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "attitude/estimation/nominal_model.h"
-#include "attitude/noise/bias_history.h"
-#include "attitude/noise/kinematics.h"
+#include "attitude/observation/bias_history.h"
+#include "attitude/observation/kinematics.h"
 #include "tests/diagnosis/noisy_recording.h"
 
 namespace photorque {

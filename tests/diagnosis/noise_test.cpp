@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "attitude/estimation/nominal_model.h"
-#include "attitude/noise/search.h"
+#include "attitude/observation/noise_search.h"
 #include "attitude/observation/whitening.h"
 #include "core/errors.h"
 #include "tests/diagnosis/noisy_recording.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "attitude/propagation/error_bound.h"
+#include "attitude/propagation/sensitivity.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/display.h"

@@ -2,7 +2,7 @@
 //
 // dipole_A_m2[3]: body axes; or one [[disturbance.loop]] per current loop of current_loop.h
 // (current_A, turns, area_m2[3] or corners_m), summed. Remanent steel and loops look the same.
-#include "attitude/disturbances/fields/current_loop.h"
+#include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::magnetic_dipole {

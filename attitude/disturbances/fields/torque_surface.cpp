@@ -10,6 +10,7 @@
 #include "core/text/columns.h"
 
 namespace photorque {
+
 namespace {
 
 struct Cubic {

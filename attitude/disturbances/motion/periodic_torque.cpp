@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "attitude/disturbances/kind.h"
-#include "attitude/disturbances/sinusoid.h"
+#include "attitude/disturbances/motion/vibration.h"
 
 namespace photorque::kinds::periodic_torque {
 namespace {

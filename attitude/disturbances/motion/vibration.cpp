@@ -8,6 +8,7 @@
 #include "core/numerics/random.h"
 
 namespace photorque {
+
 namespace {
 
 // ∫ of the piecewise linear density from the first point to f.

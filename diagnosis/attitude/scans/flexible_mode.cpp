@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/noise.h"
+#include "attitude/estimation/fit.h"
 #include "diagnosis/attitude/scans/parts.h"
 #include "diagnosis/attitude/scans/ringing.h"
 
