@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque::inference {
 
@@ -25,5 +25,14 @@ Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds:
 // Indices of residuals of one channel that stand out from what their neighbours lead to: by the
 // noise, and far more than most readings do.
 std::vector<size_t> outliers(const std::vector<double>& residuals, const Thresholds::Noise& limits);
+
+// Whether differences lie above zero, whatever their distribution.
+
+// Wilcoxon's signed-rank statistic (F. Wilcoxon, Biometrics Bulletin 1 (1945) 80) in its standard
+// errors: Σ of the ranks of the sizes of those above zero, less its mean n (n + 1)/4, over
+// √(n (n + 1) (2n + 1)/24). Of differences that lie about zero symmetrically it is standard normal,
+// to a few per cent from n = 20 on. Zeros are left out; equal sizes share the mean of their ranks.
+// 0 where nothing is left.
+double signed_rank_sigma(const std::vector<double>& differences);
 
 }  // namespace photorque::inference

@@ -7,7 +7,7 @@
 #include "attitude/estimation/forward_model.h"
 #include "attitude/observation/blocks.h"
 #include "core/errors.h"
-#include "inference/estimator/bounds.h"
+#include "inference/estimator/parameter.h"
 
 namespace photorque {
 

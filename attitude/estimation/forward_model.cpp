@@ -6,7 +6,7 @@
 #include "attitude/model/disturbance.h"
 #include "attitude/observation/prediction.h"
 #include "core/errors.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

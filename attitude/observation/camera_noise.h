@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "attitude/observation/kinematics.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

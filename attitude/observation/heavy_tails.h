@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "attitude/observation/prediction.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

@@ -6,7 +6,7 @@
 
 #include "attitude/observation/kinematics.h"
 #include "attitude/observation/observation.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

@@ -6,7 +6,7 @@
 
 #include "attitude/observation/observation.h"
 #include "attitude/propagation/propagator.h"
-#include "inference/estimator/normal_sums.h"
+#include "inference/estimator/arrow_matrix.h"
 #include "inference/estimator/parameter.h"
 
 namespace photorque {

@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "diagnosis/attitude/answer.h"
 #include "diagnosis/attitude/holdout.h"
-#include "inference/signed_ranks.h"
+#include "inference/whiteness.h"
 
 namespace photorque {
 namespace {

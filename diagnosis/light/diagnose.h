@@ -14,7 +14,7 @@
 #include "diagnosis/light/model/lab.h"
 #include "diagnosis/light/recordings/recording.h"
 #include "diagnosis/light/trials/candidate.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

@@ -17,7 +17,7 @@
 #include "core/constants.h"
 #include "core/numerics/random.h"
 #include "inference/estimator/fit.h"
-#include "inference/estimator/residual_model.h"
+#include "inference/estimator/forward_model.h"
 #include "tools/benchmarks/nist_strd.h"
 
 namespace photorque {

@@ -1,22 +1,210 @@
 #include "tools/fmi/pack.h"
 
 #include <dlfcn.h>
-
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 
+#include "attitude/recordings/text_lines.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/numbers.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/experiment/toml_reader.h"
 #include "scenes/experiment/toml_writer.h"
-#include "tools/fmi/archive.h"
-#include "tools/fmi/description.h"
 #include "tools/fmi/standard.h"
 #include "tools/runs/attitude_run.h"
 
 namespace photorque {
+
+namespace {
+
+std::string escaped_attribute(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return safe;
+}
+
+// Attributes in the order in which they are given.
+struct Element {
+  std::string text;
+  explicit Element(const std::string& name) : text("<" + name) {}
+  Element& set(const std::string& name, const std::string& value) {
+    text += " " + name + "=\"" + escaped_attribute(value) + "\"";
+    return *this;
+  }
+  Element& set(const std::string& name, double value) { return set(name, shortest(value)); }
+  std::string line(const std::string& indent) const { return indent + text + "/>\n"; }
+};
+
+constexpr const char* unit_definitions = R"(  <UnitDefinitions>
+    <Unit name="s"><BaseUnit s="1"/></Unit>
+    <Unit name="rad"><BaseUnit rad="1"/><DisplayUnit name="deg" factor="57.29577951308232"/></Unit>
+    <Unit name="rad/s"><BaseUnit s="-1" rad="1"/><DisplayUnit name="deg/s" factor="57.29577951308232"/></Unit>
+    <Unit name="N.m"><BaseUnit kg="1" m="2" s="-2"/></Unit>
+    <Unit name="A"><BaseUnit A="1"/></Unit>
+    <Unit name="W"><BaseUnit kg="1" m="2" s="-3"/></Unit>
+  </UnitDefinitions>
+)";
+
+constexpr const char* log_categories = R"(  <LogCategories>
+    <Category name="logEvents" description="what the run says"/>
+    <Category name="logStatusDiscard" description="values that were refused"/>
+    <Category name="logStatusError" description="what went wrong"/>
+  </LogCategories>
+)";
+
+std::string variable_line(const UnitVariable& variable, const UnitDescription& unit) {
+  using Kind = UnitVariable::Kind;
+  Element element(variable.kind == Kind::flag ? "Boolean" : "Float64");
+  element.set("name", variable.name).set("valueReference", std::to_string(variable.reference));
+  element.set("description", variable.meaning);
+  if (variable.kind == Kind::time) {
+    element.set("causality", "independent").set("variability", "continuous");
+  } else if (variable.kind == Kind::input) {
+    element.set("causality", "input").set("variability", "continuous");
+  } else {
+    element.set("causality", "output");
+    element.set("variability", variable.kind == Kind::flag ? "discrete" : "continuous");
+    element.set("initial", "calculated");
+  }
+  if (!variable.unit.empty()) element.set("unit", variable.unit);
+  if (variable.kind == Kind::input) {
+    element.set("min", -unit.max_torque_N_m).set("max", unit.max_torque_N_m).set("start", 0.0);
+  }
+  return element.line("    ");
+}
+
+// Nothing that comes out at a tick depends on what goes in at it.
+std::string structure_lines(const UnitDescription& unit) {
+  std::string lines;
+  for (const char* name : {"Output", "InitialUnknown"}) {
+    for (const UnitVariable& variable : unit.variables) {
+      if (variable.kind != UnitVariable::Kind::output &&
+          variable.kind != UnitVariable::Kind::flag) {
+        continue;
+      }
+      lines += Element(name)
+                   .set("valueReference", std::to_string(variable.reference))
+                   .set("dependencies", "")
+                   .line("    ");
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::string model_description(const UnitDescription& unit, const std::string& name,
+                              const std::string& token, const std::string& tool) {
+  const std::string yes = "true";
+  Element root("fmiModelDescription");
+  root.set("fmiVersion", "3.0").set("modelName", name).set("instantiationToken", token);
+  root.set("description", "A free-floating platform under its disturbances and its light");
+  root.set("generationTool", tool).set("variableNamingConvention", "flat");
+  Element kind("CoSimulation");
+  kind.set("modelIdentifier", "photorque").set("canGetAndSetFMUState", yes);
+  kind.set("canSerializeFMUState", yes).set("canHandleVariableCommunicationStepSize", yes);
+  kind.set("fixedInternalStepSize", 1.0 / unit.rate_Hz);
+  Element experiment("DefaultExperiment");
+  experiment.set("startTime", unit.start_s).set("stopTime", unit.stop_s);
+  experiment.set("stepSize", 1.0 / unit.rate_Hz);
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + root.text + ">\n";
+  text += kind.line("  ") + unit_definitions + log_categories + experiment.line("  ");
+  text += "  <ModelVariables>\n";
+  for (const UnitVariable& variable : unit.variables) text += variable_line(variable, unit);
+  text += "  </ModelVariables>\n  <ModelStructure>\n" + structure_lines(unit);
+  return text + "  </ModelStructure>\n</fmiModelDescription>\n";
+}
+
+namespace {
+
+void put16(std::string& to, uint32_t value) {
+  to += static_cast<char>(value & 0xff);
+  to += static_cast<char>((value >> 8) & 0xff);
+}
+
+void put32(std::string& to, uint64_t value) {
+  put16(to, static_cast<uint32_t>(value & 0xffff));
+  put16(to, static_cast<uint32_t>((value >> 16) & 0xffff));
+}
+
+constexpr uint32_t version = 20, deflated = 8, first_day = 0x21;  // 1 January 1980
+
+// What the local header and the directory have in common: version to size of the name.
+std::string common(const std::string& checksum, size_t packed, size_t size, size_t name) {
+  std::string head;
+  put16(head, version);
+  put16(head, 1u << 11);  // names are UTF-8
+  put16(head, deflated);
+  put16(head, 0);
+  put16(head, first_day);
+  head += checksum;
+  put32(head, packed);
+  put32(head, size);
+  put16(head, static_cast<uint32_t>(name));
+  put16(head, 0);
+  return head;
+}
+
+}  // namespace
+
+std::string zip_archive(const std::vector<std::pair<std::string, std::string>>& files) {
+  constexpr size_t most_files = 0xffff, gzip_head = 10, gzip_tail = 8;
+  constexpr uint64_t largest = 0xffffffff;
+  std::string archive, directory;
+  for (const auto& [name, bytes] : files) {
+    // The gzip format is the same stream between a head and the checksum.
+    const std::string packed = gzip(bytes);
+    const std::string checksum = packed.substr(packed.size() - gzip_tail, 4);
+    const size_t size = packed.size() - gzip_head - gzip_tail;
+    const std::string head = common(checksum, size, bytes.size(), name.size());
+    put32(directory, 0x02014b50);
+    put16(directory, version | (3u << 8));  // made on Unix
+    directory += head;
+    put16(directory, 0);
+    put16(directory, 0);
+    put16(directory, 0);
+    put32(directory, 0100644ull << 16);
+    put32(directory, archive.size());
+    directory += name;
+    put32(archive, 0x04034b50);
+    archive += head + name;
+    archive.append(packed, gzip_head, size);
+    if (bytes.size() > largest || archive.size() > largest || files.size() > most_files) {
+      throw InputError({name}, "", "files beyond 4 GiB or 65535", "less for one archive");
+    }
+  }
+  const size_t begin = archive.size();
+  archive += directory;
+  put32(archive, 0x06054b50);
+  put32(archive, 0);
+  put16(archive, static_cast<uint32_t>(files.size()));
+  put16(archive, static_cast<uint32_t>(files.size()));
+  put32(archive, directory.size());
+  put32(archive, begin);
+  put16(archive, 0);
+  return archive;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/errors.h"
-#include "tools/realtime/settings.h"
+#include "tools/realtime/session.h"
 #include "tools/runs/attitude_run.h"
 #include "tools/tasks/propagate.h"
 

@@ -1,7 +1,7 @@
 // [serve].
 #include "tools/keys/tables.h"
 #include "tools/realtime/photorque_serve.h"
-#include "tools/realtime/settings.h"
+#include "tools/realtime/session.h"
 
 namespace photorque {
 namespace {

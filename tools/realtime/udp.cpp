@@ -1,19 +1,20 @@
 // Packets over UDP: one socket, never blocking.
+#include "tools/realtime/udp.h"
+
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <memory>
 
 #include "core/errors.h"
 #include "tools/realtime/clock.h"
-#include "tools/realtime/transport.h"
 
 namespace photorque {
+
 namespace {
 
 // A file descriptor that is closed with its last owner.

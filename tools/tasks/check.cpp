@@ -16,7 +16,7 @@
 #include "scenes/experiment/toml_reader.h"
 #include "tools/coupling/couple.h"
 #include "tools/keys/registry.h"
-#include "tools/realtime/settings.h"
+#include "tools/realtime/session.h"
 #include "tools/runs/array_power.h"
 #include "tools/runs/attitude_run.h"
 #include "tools/supply/task.h"

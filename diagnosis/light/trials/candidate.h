@@ -7,7 +7,7 @@
 #include "diagnosis/light/effects/kind.h"
 #include "diagnosis/light/model/run.h"
 #include "diagnosis/light/trials/prior.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/scans/scan.h"
+#include "diagnosis/attitude/effects/scan.h"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -10,21 +10,21 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
+#include "diagnosis/attitude/effects/flexible_mode.h"
 #include "diagnosis/attitude/effects/screen.h"
-#include "diagnosis/attitude/scans/flexible_mode.h"
-#include "diagnosis/attitude/scans/parts.h"
 
 namespace photorque {
+
 namespace {
 
-double end_s(const std::vector<Observation>& runs) {
+double last_reading_s(const std::vector<Observation>& runs) {
   double end = 0.0;
   for (const Observation& seen : runs) end = std::max(end, seen.time_s.back());
   return end;
 }
 
 // Power at even frequencies from 0, each channel's noise alone making 1.
-struct Spectrum {
+struct ResidualSpectrum {
   double step_Hz = 0.0;
   std::vector<double> power;
 };
@@ -32,7 +32,8 @@ struct Spectrum {
 // Adds the power of one channel of a run; NaN where it was not read. Readings are filed in bins of
 // a quarter of a block, which moves their phases by less than 0.4 rad. Beyond half of the rate at
 // which the channel was read there are mirror images only.
-void add_power(const std::vector<double>& white, const Observation& seen, Spectrum& spectrum) {
+void add_power(const std::vector<double>& white, const Observation& seen,
+               ResidualSpectrum& spectrum) {
   const size_t bins = 2 * spectrum.power.size();
   const double bin_s = 1.0 / (spectrum.step_Hz * static_cast<double>(bins));
   std::vector<double> binned(bins, 0.0);
@@ -57,7 +58,7 @@ void add_power(const std::vector<double>& white, const Observation& seen, Spectr
 
 // All channels of one run. The gyro counts in body axes and, turned, in lab axes: what shakes from
 // outside has its one frequency there, while a platform that turns sees it split.
-void add_power(const Prediction& prediction, const Observation& seen, Spectrum& spectrum) {
+void add_power(const Prediction& prediction, const Observation& seen, ResidualSpectrum& spectrum) {
   std::array<std::vector<double>, 9> channels;
   for (size_t i = 0; i < prediction.residual.size(); ++i) {
     const WhiteRow& white = prediction.residual[i];
@@ -81,7 +82,7 @@ std::vector<Start> instant_starts(const Candidate& c, const Trial& parent,
                                   const std::vector<Observation>& runs,
                                   const Thresholds::Scoring& limits) {
   constexpr size_t count = 30;
-  const double last_s = end_s(runs), first_s = runs.front().time_s.front();
+  const double last_s = last_reading_s(runs), first_s = runs.front().time_s.front();
   const std::string& strength = strength_of(c);
   std::vector<ScoreGroup> groups;
   for (size_t i = 1; i < count; ++i) {
@@ -210,8 +211,8 @@ std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observa
   constexpr double bins_a_block = 4.0;
   const double bins = 4.0 * bins_a_block * span_s(runs) / interval_s;
   const size_t size = std::bit_ceil(static_cast<size_t>(bins));
-  Spectrum spectrum{bins_a_block / (interval_s * static_cast<double>(size)),
-                    std::vector<double>(size / 2, 0.0)};
+  ResidualSpectrum spectrum{bins_a_block / (interval_s * static_cast<double>(size)),
+                            std::vector<double>(size / 2, 0.0)};
   PredictionOptions options;
   options.keep_residuals = true;
   for (size_t run = 0; run < runs.size(); ++run) {

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/findings/manoeuvre.h"
+#include "diagnosis/attitude/manoeuvre.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 
 namespace photorque {
+
 namespace {
 
 using StartChange = std::function<void(PlatformState&)>;

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/findings/locate.h"
+#include "diagnosis/attitude/locate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include "core/constants.h"
 
 namespace photorque {
+
 namespace {
 
 constexpr double median_of_chi2_of_one = 0.454936;  // the square of a standard normal number

@@ -1,10 +1,11 @@
-#include "inference/estimator/bounds.h"
+#include "inference/estimator/parameter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace photorque::inference {
+
 namespace {
 
 enum class Place { free, on_lowest, on_highest };

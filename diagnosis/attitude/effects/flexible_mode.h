@@ -3,6 +3,7 @@
 #pragma once
 
 #include "attitude/observation/prediction.h"
+#include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/effects/screen.h"
 
 namespace photorque {
@@ -20,5 +21,14 @@ struct PropagatedRun {
 // answers alike, which stands for projecting out what the fit could still take up.
 Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
                        const std::vector<Vec3>& axes, double frequency_Hz, double damping);
+
+// Starts for an appendage that swings: its frequency and axis.
+
+// The most promising flexible modes to add to `fit`, at most three. `start` is the disturbance with
+// its expected strength, `slow_runs` averages of the runs, as good for what is slow.
+std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
+                                        const std::vector<Observation>& runs,
+                                        const std::vector<Observation>& slow_runs,
+                                        const Thresholds::Scoring& limits);
 
 }  // namespace photorque
