@@ -153,20 +153,19 @@ bool Propagator::advance() {
   return true;
 }
 
-void Propagator::drive(double battery_current_A, const ContinuedTorque& light_body,
-                       double charge_drawn_C) {
-  drive_ = {battery_current_A, light_body, charge_drawn_C};
-  drive_is_new_ = true;
+void Propagator::exchange(const Exchange& now) {
+  exchange_ = now;
+  exchange_is_new_ = true;
 }
 
-// What was driven last holds over the schedule's own. The polynomial goes on: a current moves the
-// charge alone, and the light is continuous but for the error of its continuation.
+// What was exchanged last holds over the schedule's own. The polynomial goes on: a current moves
+// the charge alone, and the light is continuous but for the error of its continuation.
 void Propagator::take_over() {
-  if (!drive_) return;
-  held_.battery_current_A = drive_->battery_current_A;
-  held_.light_body = drive_->light_body;
-  if (drive_is_new_) step_.set_component(component::charge, drive_->charge_drawn_C);
-  drive_is_new_ = false;
+  if (!exchange_) return;
+  held_.battery_current_A = exchange_->battery_current_A;
+  held_.light_body = exchange_->light_body;
+  if (exchange_is_new_) step_.set_component(component::charge, exchange_->charge_drawn_C);
+  exchange_is_new_ = false;
 }
 
 // Gives up early on motions that would need more steps than allowed.
@@ -185,7 +184,7 @@ void Propagator::take_step() {
   check_pace();
   const double start_s = step_.start_s();
   double stop_s = next_jump_ < jumps_.size() ? jumps_[next_jump_].time_s : end_s_;
-  if (stop_s_ > start_s) stop_s = std::min(stop_s, stop_s_);
+  if (exchange_ && exchange_->next_s > start_s) stop_s = std::min(stop_s, exchange_->next_s);
   // A free body's phase shows every bit of its iterations after a day; torques hide them.
   const bool is_free = dynamics_.model().disturbances.empty();
   const double settled = (is_free ? 1e-10 : 1e-6) * options_.tolerance;
@@ -375,7 +374,7 @@ void Propagator::keep(Snapshot& snapshot) {
   snapshot.fixed(event_values_);
   snapshot.expect(jumps_.size());
   snapshot.at_most(next_jump_, jumps_.size());
-  snapshot(held_, stop_s_, drive_, drive_is_new_);
+  snapshot(held_, exchange_, exchange_is_new_);
   snapshot(h_s_, ceiling_s_, is_ceiling_of_state_, is_stiff_, held_back_);
   snapshot(step_end_s_, has_step_, ended_by_event_, statistics_);
 }

@@ -1,5 +1,5 @@
 // photorque serve: the platform in real time beside hardware and programs.
-#include "tools/realtime/run/serve.h"
+#include "tools/tasks/serve.h"
 
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"

@@ -5,11 +5,12 @@
 #include <cstdio>
 #include <fstream>
 
-#include "attitude/propagation/sensitivity.h"
+#include "attitude/propagation/recorded.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/provenance.h"
+#include "core/snapshots/snapshot.h"
 #include "core/text/display.h"
 #include "core/text/numbers.h"
 #include "tools/coupling/report.h"
@@ -310,23 +311,15 @@ class KeptState {
   std::optional<double> table_tilt_rad() const {
     return kept_ ? std::optional(kept_->table_tilt_rad) : std::nullopt;
   }
-  // For one run, the first of which goes on.
-  Checkpoints of_run(double table_tilt_rad) {
-    if (file_ == nullptr) return {};
-    Checkpoints checkpoints;
-    if (kept_) {
-      console_.line("goes on from " + file_->path().string());
-      checkpoints.from = std::move(kept_->state);
-      kept_.reset();
-    }
-    checkpoints.due = [this] { return file_->due(); };
-    checkpoints.keep = [this, table_tilt_rad](double time_s, const std::string& state) {
-      write(table_tilt_rad, time_s, state);
-    };
-    return checkpoints;
+  // The state that was kept, once: the first run goes on from it.
+  std::optional<std::string> take() {
+    if (!kept_) return {};
+    console_.line("goes on from " + file_->path().string());
+    std::string state = std::move(kept_->state);
+    kept_.reset();
+    return state;
   }
-
- private:
+  bool due() const { return file_ != nullptr && file_->due(); }
   // Hours of work do not end because of a disk that is full for a while.
   void write(double table_tilt_rad, double time_s, const std::string& state) const {
     try {
@@ -336,11 +329,40 @@ class KeptState {
     }
   }
 
+ private:
   const Console& console_;
   CheckpointFile* file_;
   std::string identity_;
   std::optional<CheckpointFile::Kept> kept_;
 };
+
+// One run: the motion, and beside it light and power, where there are any.
+PropagationResult step_through(const PropagationRun& run, const Console& console,
+                               CoupledRun* beside, double table_tilt_rad, KeptState& kept) {
+  RecordedRun recorded(run, console.progress("propagating"),
+                       beside != nullptr ? &beside->power() : nullptr);
+  const auto keep = [&](Snapshot& snapshot) {
+    recorded.keep(snapshot);
+    if (beside != nullptr) beside->keep(snapshot);
+  };
+  if (const std::optional<std::string> state = kept.take()) {
+    Snapshot snapshot(*state);
+    keep(snapshot);
+    if (!snapshot.is_whole()) {
+      throw InputError({}, "", "a state that does not fit the run", "one of an equal run");
+    }
+  }
+  if (beside != nullptr && !beside->has_begun()) beside->begin(recorded.motion());
+  while (recorded.advance()) {
+    if (beside != nullptr) beside->follow(recorded.motion());
+    recorded.record();
+    if (!kept.due()) continue;
+    Snapshot snapshot;
+    keep(snapshot);
+    kept.write(table_tilt_rad, recorded.motion().step_end_s(), snapshot.bytes());
+  }
+  return recorded.result();
+}
 
 // One run in light that is known up to a tilt; at it the run stops.
 void attempt(CoupledResult& result, const Console& console, const ExperimentFile& file,
@@ -366,9 +388,7 @@ void attempt(CoupledResult& result, const Console& console, const ExperimentFile
         std::make_unique<CoupledRun>(*result.light, result.table, outputs, std::move(supply),
                                      settings, run, run.model.platform.battery_voltage_V);
   }
-  const Companion companion = result.beside ? result.beside->companion() : Companion{};
-  result.motion = propagate(run, console.progress("propagating"),
-                            result.beside ? &companion : nullptr, kept.of_run(table_tilt_rad));
+  result.motion = step_through(run, console, result.beside.get(), table_tilt_rad, kept);
   if (result.table && !hits_tilt_limit(result.motion)) {
     result.attitude_error_rad = attitude_error_rad(run, *result.table, outputs.size());
   }
@@ -390,7 +410,7 @@ CoupledResult propagate_in_light(const RunOptions& options, const Console& conso
   const LightSettings settings = has_light(file) ? read_light(file) : LightSettings{};
   if (!has_light(file) || settings.mode == LightSettings::Mode::off) {
     KeptState kept(console, checkpoint, identity);
-    result.motion = propagate(run, console.progress("propagating"), nullptr, kept.of_run(0.0));
+    result.motion = step_through(run, console, nullptr, 0.0, kept);
     console.done();
     return result;
   }

@@ -53,9 +53,9 @@ uint64_t run_number() {
 
 }  // namespace
 
-Session::Session(const ServeSettings& settings, Transport transport, uint64_t seed, double start_s)
+Session::Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed, double start_s)
     : settings_(settings),
-      transport_(std::move(transport)),
+      socket_(std::move(socket)),
       start_s_(start_s),
       run_(run_number()),
       gate_(run_, settings.max_torque_N_m,
@@ -105,7 +105,7 @@ void Session::meet_client() {
   while ((settings_.wait_for_client || !is_paced()) && !gate_.client()) {
     take_in(give_up_ns);
     if (monotonic_ns() > give_up_ns) {
-      throw NumericalError("no client came to " + transport_.where + " within " +
+      throw NumericalError("no client came to " + socket_.where + " within " +
                            shortest(settings_.client_timeout_s) + " s (serve.client_timeout_s)");
     }
   }
@@ -158,7 +158,7 @@ void Session::send(const photorque_measurement_packet& packet, uint32_t flags) {
   last_sent_.header.sent_ns = static_cast<uint64_t>(monotonic_ns());
   photorque_seal(&last_sent_.header, PHOTORQUE_MEASUREMENT, sizeof last_sent_);
   if (!gate_.client()) return;
-  transport_.send(last_sent_, *gate_.client());
+  socket_.send(last_sent_, *gate_.client());
   ++sent_;
 }
 
@@ -176,14 +176,14 @@ void Session::await_answer() {
                            shortest(settings_.client_timeout_s) + " s (serve.client_timeout_s)");
     }
     if (now_ns >= until_ns && !answered_ && gate_.client()) {
-      transport_.send(last_sent_, *gate_.client());
+      socket_.send(last_sent_, *gate_.client());
     }
   }
 }
 
 // Takes one packet in, waiting for it until `until_ns`; whether one was there.
 bool Session::take_in(int64_t until_ns) {
-  const std::optional<ReceivedBytes> got = transport_.receive(until_ns);
+  const std::optional<ReceivedBytes> got = socket_.receive(until_ns);
   if (!got) return false;
   const std::span<const std::byte> bytes(got->bytes.data(), std::min(got->size, got->bytes.size()));
   const std::optional<ClientPacket> packet = gate_.admit(bytes, got->sender, monotonic_ns());

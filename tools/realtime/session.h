@@ -47,7 +47,7 @@ ServeSettings read_serve(const Settings& root);
 class Session {
  public:
   // `seed` of the simulated links; `start_s` is the run's initial time.
-  Session(const ServeSettings& settings, Transport transport, uint64_t seed, double start_s);
+  Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed, double start_s);
 
   // The run's LiveCommander. In order, at tick k:
   //   paced: waits until start + k steps, taking in what comes meanwhile; sends the measurement;
@@ -78,7 +78,7 @@ class Session {
   photorque_measurement_packet packet_of(const LiveRow& row) const;
 
   ServeSettings settings_;
-  Transport transport_;
+  UdpSocket socket_;
   double start_s_;
   uint64_t run_;
   Gate gate_;

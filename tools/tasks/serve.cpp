@@ -1,4 +1,4 @@
-#include "tools/realtime/run/serve.h"
+#include "tools/tasks/serve.h"
 
 #include <sched.h>
 #include <sys/mman.h>
@@ -15,11 +15,6 @@ namespace photorque {
 namespace {
 
 constexpr double s_to_ns = 1e9;
-
-Transport open_transport(const ServeSettings& serve) {
-  const auto spin_ns = static_cast<int64_t>(s_to_ns * serve.spin_s);
-  return udp_transport(serve.address, serve.port, spin_ns);
-}
 
 // Before all programs of ordinary priority, and with memory that is never paged out.
 void take_priority(const Console& console, int priority) {
@@ -78,11 +73,11 @@ RunResult serve_experiment(const RunOptions& options, const Console& console) {
   std::shared_ptr<Session> session;
   const auto prepare = [&](const Settings& root, PropagationRun& run) {
     serve = read_serve(root);
-    Transport transport = open_transport(serve);
-    print_serving(console, serve, transport.where);
+    UdpSocket socket(serve.address, serve.port, static_cast<int64_t>(s_to_ns * serve.spin_s));
+    print_serving(console, serve, socket.where());
     run.output_rate_Hz = run.options.tick_rate_Hz = serve.rate_Hz;
     run.model.schedule = {};
-    session = std::make_shared<Session>(serve, std::move(transport), run.seed, run.initial.time_s);
+    session = std::make_shared<Session>(serve, std::move(socket), run.seed, run.initial.time_s);
     run.commander = [session](const LiveRow& row) { return session->tick(row); };
     take_priority(console, serve.realtime_priority);
   };
