@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "attitude/estimation/free_inertia.h"
-#include "attitude/recordings/channels.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 

@@ -6,9 +6,12 @@
 #include "attitude/estimation/hypothesis.h"
 #include "attitude/observation/prediction.h"
 #include "inference/estimator/fit.h"
+#include "inference/estimator/thresholds.h"
 #include "inference/whiteness.h"
 
 namespace photorque {
+
+struct NominalModel;  // attitude/propagation/run.h
 
 struct Fit : inference::Fit {
   Hypothesis best;
@@ -60,5 +63,18 @@ int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds
 // fit cannot be propagated.
 std::vector<Observation> averaged_about(const Fit& fit, const std::vector<Observation>& runs,
                                         size_t blocks);
+
+// The nominal model of the platform, ready to be fitted.
+
+// Every parameter with a sigma is free about its nominal value; gyro biases are free for each run.
+// The runs start from what was seen at their beginning.
+Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs);
+
+// Appends a disturbance: its own states begin at rest in every run. Returns its index.
+size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance);
+
+// The nominal model fitted to the runs, over windows that grow.
+Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs,
+                const Thresholds& limits = {});
 
 }  // namespace photorque

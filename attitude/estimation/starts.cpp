@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "attitude/estimation/hypothesis.h"
-#include "attitude/recordings/channels.h"
+#include "attitude/recordings/columns.h"
 #include "core/constants.h"
 
 namespace photorque {

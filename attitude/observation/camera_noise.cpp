@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/observation/whitening.h"
+#include "attitude/observation/prediction.h"
 #include "core/numerics/simplex.h"
 
 namespace photorque {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "attitude/observation/whitening.h"
+#include "attitude/observation/prediction.h"
 
 namespace photorque {
 

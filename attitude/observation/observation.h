@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "attitude/model/platform.h"
-#include "attitude/recordings/channels.h"
+#include "attitude/recordings/columns.h"
 #include "attitude/recordings/recording.h"
 #include "attitude/recordings/sensors.h"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/fit.h"
 #include "attitude/estimation/segments.h"
-#include "attitude/observation/discrepancy.h"
+#include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
 #include "core/errors.h"
 #include "core/text/display.h"

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <set>
 
-#include "attitude/estimation/nominal_model.h"
-#include "attitude/observation/discrepancy.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/observation/noise_levels.h"
+#include "attitude/propagation/run.h"
 #include "diagnosis/attitude/account.h"
 #include "diagnosis/attitude/domain.h"
 #include "diagnosis/attitude/holdout.h"

@@ -12,11 +12,9 @@
 #include "attitude/observation/heavy_tails.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/observation/noise_search.h"
-#include "attitude/recordings/channels.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/holdout.h"
-#include "diagnosis/attitude/sentences.h"
 
 namespace photorque {
 

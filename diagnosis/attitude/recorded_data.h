@@ -1,11 +1,23 @@
 // The recordings of a diagnosis, made ready: what is fitted, what is held out, what was wrong.
 #pragma once
 
-#include "attitude/estimation/nominal_model.h"
+#include <cstdio>
+#include <string>
+
+#include "attitude/estimation/fit.h"
 #include "attitude/observation/observation.h"
+#include "attitude/propagation/run.h"
 #include "diagnosis/attitude/diagnose.h"
 
 namespace photorque {
+
+// A sentence with numbers in it, as printf writes it; at most 499 characters.
+template <typename... Values>
+std::string written(const char* format, Values... values) {
+  char text[500];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
 
 struct RecordedData {
   std::vector<Observation> train, held;

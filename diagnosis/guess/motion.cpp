@@ -5,7 +5,6 @@
 #include "attitude/estimation/free_inertia.h"
 #include "attitude/estimation/segments.h"
 #include "attitude/observation/noise_levels.h"
-#include "attitude/recordings/channels.h"
 #include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/errors.h"

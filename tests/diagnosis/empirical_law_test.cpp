@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
 #include "diagnosis/attitude/account.h"
 #include "diagnosis/attitude/effects/scan.h"

@@ -8,7 +8,8 @@
 #include <map>
 #include <random>
 
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/propagation/run.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/effects/screen.h"

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "attitude/estimation/segments.h"
-#include "attitude/observation/discrepancy.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
 #include "attitude/propagation/sampling.h"

@@ -8,7 +8,7 @@
 
 #include "attitude/estimation/conventions.h"
 #include "attitude/estimation/segments.h"
-#include "attitude/recordings/channels.h"
+#include "attitude/recordings/columns.h"
 #include "scenes/experiment/toml_reader.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 

@@ -12,8 +12,9 @@
 #endif
 
 #include "attitude/disturbances/kind.h"
+#include "attitude/estimation/fit.h"
 #include "attitude/estimation/forward_model.h"
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "core/numerics/random.h"
 #include "inference/estimator/fit.h"

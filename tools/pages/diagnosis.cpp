@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <set>
 
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/propagation/run.h"
 #include "core/text/display.h"
 #include "diagnosis/report/charts.h"
 #include "scenes/experiment/toml_reader.h"

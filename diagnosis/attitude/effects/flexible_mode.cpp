@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "attitude/estimation/fit.h"
-#include "attitude/observation/whitening.h"
+#include "attitude/observation/prediction.h"
 #include "core/constants.h"
 #include "diagnosis/attitude/effects/scan.h"
 

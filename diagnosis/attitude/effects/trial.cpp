@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
 #include "diagnosis/attitude/effects/judge.h"
 
