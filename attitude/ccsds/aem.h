@@ -1,7 +1,8 @@
-// CCSDS messages in keyword-value notation (KVN): blocks of assignments, comments and data lines.
+// CCSDS attitude ephemeris messages (AEM), and the keyword-value notation (KVN) that they are
+// written in: blocks of assignments, comments and data lines.
 //
 // Everything is kept as text in its order, so that a message written back says the same in every
-// digit; what it means is the business of aem.h.
+// digit; what it means is read by AttitudeEphemeris.
 // Source: CCSDS 504.0-B-2 (2024), section 7.
 #pragma once
 
@@ -45,12 +46,10 @@ void write_kvn(const std::filesystem::path& path, const KvnItem& message);
 std::vector<double> kvn_numbers(const std::vector<std::string_view>& words, size_t first,
                                 const std::filesystem::path& path, int line);
 
-// CCSDS attitude ephemeris messages (AEM), version 1, keyword-value notation.
-//
-// Source: CCSDS 504.0-B-1 (2008), section 4. An attitude from frame A to frame B as a quaternion is
-// the Hamilton quaternion that rotates vectors of B into A: with A the lab and B the body, that is
-// lab_from_body. Checked against the two GMAT files that hold the same attitude as quaternions and
-// as Euler angles.
+// An attitude ephemeris message, version 1. Source: CCSDS 504.0-B-1 (2008), section 4. An attitude
+// from frame A to frame B as a quaternion is the Hamilton quaternion that rotates vectors of B into
+// A: with A the lab and B the body, that is lab_from_body. Checked against the two GMAT files that
+// hold the same attitude as quaternions and as Euler angles.
 
 struct AttitudeEphemeris {
   struct Row {

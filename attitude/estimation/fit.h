@@ -41,7 +41,7 @@ std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observati
 
 // The noise of the readings: levels that are not as stated, readings that stand out.
 
-// The channels of whitened residuals (readings/channels.h) without gaps, by run.
+// The channels of whitened residuals (recordings/columns.h) without gaps, by run.
 std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals);
 
 // The structure that a fit leaves; huge where it cannot be propagated.

@@ -19,7 +19,7 @@ struct Segments {
   int64_t long_gaps = 0;  // at which the recording was cut
   int64_t too_short = 0;  // stretches with too few readings for a start of their own: left out
   std::optional<AngleConvention> angles;  // how roll, pitch and yaw were read
-  std::vector<std::string> lawless;       // why parts of stretches are left out (law_breaks.h)
+  std::vector<std::string> lawless;       // why parts of stretches are left out (lawful_stretch())
 };
 
 // `max_blocks`: of all stretches together. InputError as observe() (observation.h), and where every

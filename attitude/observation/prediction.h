@@ -68,7 +68,7 @@ double reading_interval_s(const Observation& seen, int channel);
 
 // What a model predicts for an observation, beside what was seen.
 
-// The residuals of a block by channel (readings/channels.h): attitude about lab x, y, z, gyro x, y,
+// The residuals of a block by channel (recordings/columns.h): attitude about lab x, y, z, gyro x, y,
 // z, scalars; NaN where nothing was measured.
 using WhiteRow = Eigen::Matrix<double, channel_count, 1>;
 

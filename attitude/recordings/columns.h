@@ -1,4 +1,4 @@
-// Roll, pitch and yaw: three turns about body x, y and z, in one of six sequences.
+// What a recording may hold of a motion: angles in one of six sequences, channels, columns.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 
 namespace photorque {
 
+// Roll, pitch and yaw are three turns about body x, y and z.
 // The axes in the order of the turns about axes that move with the body: "zyx" is yaw, then pitch,
 // then roll, q = Rz(yaw) Ry(pitch) Rx(roll), which is the usual one; the same as turns about fixed
 // axes in the reverse order.
@@ -42,7 +43,7 @@ enum class Scalar {
   rate_magnitude,  // |ω| [rad/s]
   tilt,            // angle between body z and lab z, in [0, π]
   heading,         // of body x in the horizontal plane, from lab x towards y; whole turns count
-  roll,            // the three of "zyx" (angle_sequence.h)
+  roll,            // the three of "zyx" (angle_sequences)
   pitch,
   yaw,
   accelerometer_x,  // specific force [m/s²] and magnetic field [T], body axes
@@ -91,7 +92,7 @@ double scalar_difference(Scalar scalar, double measured, double predicted);
 // Which columns of a recording say what of the motion, for the machine at hand.
 //
 //   attitude: q_w, q_x, q_y, q_z; or roll_rad, pitch_rad, yaw_rad in the sequence that the
-//     recording states (angle_sequence.h), "zyx" where it states none; of a platform that turns
+//     recording states (angle_sequences), "zyx" where it states none; of a platform that turns
 //     about one axis one of angle_rad, roll_rad, pitch_rad, yaw_rad, heading_rad, which may pass
 //     whole turns;
 //   rates: gyro_x_rad_s, gyro_y_rad_s, gyro_z_rad_s, any of them; about one axis also rate_rad_s;
