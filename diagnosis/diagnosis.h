@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/transform.h"
-#include "inference/estimator/predictive.h"
+#include "inference/estimator/evidence.h"
 
 namespace photorque {
 

@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "inference/estimator/predictive.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/evidence.h"
+#include "inference/estimator/thresholds.h"
 #include "inference/subsets.h"
 
 namespace photorque::inference {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "inference/extend.h"
 #include "inference/subsets.h"
+#include "inference/trials.h"
 
 namespace photorque::inference {
 

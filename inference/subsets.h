@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque::inference {
 

@@ -115,7 +115,7 @@ class Weighing {
     return held;
   }
 
-  // As learn_from_best(), but for what came to nothing before: it would again.
+  // A second chance from where the best ended, but for what came to nothing before: it would again.
   void learn() {
     const Trial best =
         std::min_element(leaders_.begin(), leaders_.end(), [](const Leader& a, const Leader& b) {

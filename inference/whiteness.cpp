@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace photorque::inference {
+
 namespace {
 
 double median(std::vector<double> values) {
@@ -27,26 +28,16 @@ double expected(const std::vector<double>& r, size_t n) {
   return median(says);
 }
 
-void add_second_differences(const std::vector<double>& r, std::vector<double>& sizes) {
-  for (size_t i = 1; i + 1 < r.size(); ++i) {
-    sizes.push_back(std::abs(r[i - 1] - 2.0 * r[i] + r[i + 1]));
-  }
-}
-
 }  // namespace
 
 Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds::Noise& limits) {
   Whiteness result;
   const size_t channels = runs.empty() ? 0 : runs.front().size();
-  result.noise_ratio.assign(channels, 1.0);
-  result.readings.assign(channels, 0);
   double sum = 0.0;
   int64_t means = 0;
   for (size_t k = 0; k < channels; ++k) {
-    std::vector<double> differences;
     for (const ChannelResiduals& run : runs) {
       const std::vector<double>& r = run[k];
-      add_second_differences(r, differences);
       for (size_t i = 0; i + limits.neighbours <= r.size(); i += limits.neighbours) {
         double mean = 0.0;
         for (size_t j = i; j < i + limits.neighbours; ++j) mean += r[j];
@@ -54,26 +45,12 @@ Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds:
         ++means;
       }
     }
-    if (differences.size() < limits.min_differences) continue;
-    result.readings[k] = static_cast<int64_t>(differences.size());
-    // The median of |x| is 0.6745 σ, and second differences have six times the variance.
-    result.noise_ratio[k] = median(std::move(differences)) / (0.67449 * std::sqrt(6.0));
   }
   if (means == 0) return result;
   const double variance = 2.0 / static_cast<double>(means);
   result.slow_chi2_per_mean = sum / static_cast<double>(means);
   result.excess_sigma = (result.slow_chi2_per_mean - 1.0) / std::sqrt(variance);
   return result;
-}
-
-std::optional<double> noise_correction(const Whiteness& found, size_t channel,
-                                       const Thresholds::Noise& limits) {
-  const double ratio = found.noise_ratio[channel];
-  const double readings = static_cast<double>(std::max<int64_t>(found.readings[channel], 1));
-  const double scatter = limits.difference_scatter / std::sqrt(readings);
-  const double allowed = std::max(limits.min_correction, limits.correction_sigma * scatter);
-  if (!(std::abs(ratio - 1.0) > allowed) || !(ratio > 0.0)) return std::nullopt;
-  return ratio;
 }
 
 std::vector<size_t> outliers(const std::vector<double>& residuals,
@@ -90,6 +67,24 @@ std::vector<size_t> outliers(const std::vector<double>& residuals,
     if (off[n] > limits.outlier_sigma * scatter) found.push_back(n);
   }
   return found;
+}
+
+double signed_rank_sigma(const std::vector<double>& differences) {
+  std::vector<double> x;
+  for (const double d : differences) {
+    if (d != 0.0 && !std::isnan(d)) x.push_back(d);
+  }
+  if (x.empty()) return 0.0;
+  std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  double above = 0.0;
+  for (size_t first = 0, last = 0; first < x.size(); first = last) {
+    last = first;
+    while (last < x.size() && std::abs(x[last]) == std::abs(x[first])) ++last;
+    const double rank = 0.5 * static_cast<double>(first + 1 + last);
+    for (size_t i = first; i < last; ++i) above += x[i] > 0.0 ? rank : 0.0;
+  }
+  const auto n = static_cast<double>(x.size());
+  return (above - n * (n + 1.0) / 4.0) / std::sqrt(n * (n + 1.0) * (2.0 * n + 1.0) / 24.0);
 }
 
 }  // namespace photorque::inference

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque::inference {
 
@@ -13,11 +13,6 @@ namespace photorque::inference {
 using ChannelResiduals = std::vector<std::vector<double>>;
 
 struct Whiteness {
-  // Of each channel: the standard deviation from the second differences of neighbours, which is the
-  // noise itself, over that which was assumed (1 where there are too few readings); and the number
-  // of differences that it comes from.
-  std::vector<double> noise_ratio;
-  std::vector<int64_t> readings;
   // χ² of the means of some neighbours over their number: 1 for white noise, much more where
   // structure is left. `excess_sigma` is its distance from 1 in standard errors.
   double slow_chi2_per_mean = 1.0;
@@ -27,12 +22,17 @@ struct Whiteness {
 // Of several runs with the same channels.
 Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds::Noise& limits);
 
-// By what the noise of a channel must be multiplied; none where it is as stated within its scatter.
-std::optional<double> noise_correction(const Whiteness& found, size_t channel,
-                                       const Thresholds::Noise& limits);
-
 // Indices of residuals of one channel that stand out from what their neighbours lead to: by the
 // noise, and far more than most readings do.
 std::vector<size_t> outliers(const std::vector<double>& residuals, const Thresholds::Noise& limits);
+
+// Whether differences lie above zero, whatever their distribution.
+
+// Wilcoxon's signed-rank statistic (F. Wilcoxon, Biometrics Bulletin 1 (1945) 80) in its standard
+// errors: Σ of the ranks of the sizes of those above zero, less its mean n (n + 1)/4, over
+// √(n (n + 1) (2n + 1)/24). Of differences that lie about zero symmetrically it is standard normal,
+// to a few per cent from n = 20 on. Zeros are left out; equal sizes share the mean of their ranks.
+// 0 where nothing is left.
+double signed_rank_sigma(const std::vector<double>& differences);
 
 }  // namespace photorque::inference

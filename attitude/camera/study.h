@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "attitude/camera/accuracy.h"
+#include "attitude/camera/pose.h"
 #include "core/product.h"
 
 namespace photorque {

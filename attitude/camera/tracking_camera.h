@@ -2,7 +2,7 @@
 //
 // Pinhole model (R. Hartley, A. Zisserman, Multiple View Geometry, 2nd ed., eq. 6.2) with the
 // lens's distortion. What calibration leaves of it is `distortion_error`, or calibration_error() of
-// attitude/camera/accuracy.h, other for every marker. Camera axes: z along the optical axis, image
+// attitude/camera/pose.h, other for every marker. Camera axes: z along the optical axis, image
 // x (columns) along camera x, image y (rows) along camera y, the origin of the image in its middle.
 #pragma once
 

@@ -1,19 +1,55 @@
-// CCSDS attitude ephemeris messages (AEM), version 1, keyword-value notation.
+// CCSDS attitude ephemeris messages (AEM), and the keyword-value notation (KVN) that they are
+// written in: blocks of assignments, comments and data lines.
 //
-// Source: CCSDS 504.0-B-1 (2008), section 4. An attitude from frame A to frame B as a quaternion is
-// the Hamilton quaternion that rotates vectors of B into A: with A the lab and B the body, that is
-// lab_from_body. Checked against the two GMAT files that hold the same attitude as quaternions and
-// as Euler angles.
+// Everything is kept as text in its order, so that a message written back says the same in every
+// digit; what it means is read by AttitudeEphemeris.
+// Source: CCSDS 504.0-B-2 (2024), section 7.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "attitude/ccsds/kvn.h"
-#include "attitude/model/state.h"
+#include "attitude/model/platform.h"
 
 namespace photorque {
+
+struct KvnItem {
+  enum class Kind { comment, assignment, data, block };
+  Kind kind = Kind::block;
+  std::string key;             // of an assignment; name of a block: "META"
+  std::string value;           // of an assignment; text of a comment; a data line
+  std::string unit;            // of an assignment, without brackets; empty: none
+  std::vector<KvnItem> items;  // of a block
+  int line = 0;                // in the file; not compared
+
+  bool operator==(const KvnItem& other) const;
+
+  // The value of the first assignment of `name` in this block, or null.
+  const std::string* find(std::string_view name) const;
+};
+
+KvnItem kvn_comment(const std::string& text);
+KvnItem kvn_assignment(const std::string& key, const std::string& value,
+                       const std::string& unit = "");
+KvnItem kvn_data(const std::string& line);
+KvnItem kvn_block(const std::string& name);
+
+// The message as one nameless block. InputError for blocks that do not close and lines that are
+// none of the kinds.
+KvnItem read_kvn(const std::filesystem::path& path);
+std::string kvn_text(const KvnItem& message);
+void write_kvn(const std::filesystem::path& path, const KvnItem& message);
+
+// All words from index `first` on as numbers; InputError (at `path`, `line`) when one is none.
+std::vector<double> kvn_numbers(const std::vector<std::string_view>& words, size_t first,
+                                const std::filesystem::path& path, int line);
+
+// An attitude ephemeris message, version 1. Source: CCSDS 504.0-B-1 (2008), section 4. An attitude
+// from frame A to frame B as a quaternion is the Hamilton quaternion that rotates vectors of B into
+// A: with A the lab and B the body, that is lab_from_body. Checked against the two GMAT files that
+// hold the same attitude as quaternions and as Euler angles.
 
 struct AttitudeEphemeris {
   struct Row {

@@ -117,10 +117,4 @@ double GeomagneticModel::dipole_equatorial_field_T() const {
   return Vec3(g_nT_[index(1, 0)], g_nT_[index(1, 1)], h_nT_[index(1, 1)]).norm() * 1e-9;
 }
 
-double dipole_field_T(double radius_m, double magnetic_colatitude_rad, double equatorial_field_T) {
-  const double c = std::cos(magnetic_colatitude_rad);
-  return equatorial_field_T * std::pow(reference_radius_m / radius_m, 3) *
-         std::sqrt(1.0 + 3.0 * c * c);
-}
-
 }  // namespace photorque

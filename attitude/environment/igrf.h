@@ -54,11 +54,8 @@ class GeomagneticModel {
   std::array<double, count> h_nT_{};
 };
 
-// Magnitude of a centred dipole's field, eq. 25: B0 (R⊕/r)³ √(1 + 3 cos²θ), θ from the magnetic
-// pole. B0 = 3.12e-5 T is the paper's eq. 24; today's IGRF dipole gives 2.97e-5 T. Good to about 30
-// % at the ground, better than 10 % above 5000 km.
+// Field of a centred dipole at its equator, as the paper takes it (eq. 24); the dipole of IGRF-14
+// at 2025.0 gives 2.97e-5 T.
 inline constexpr double dipole_equatorial_field_T = 3.12e-5;
-double dipole_field_T(double radius_m, double magnetic_colatitude_rad,
-                      double equatorial_field_T = dipole_equatorial_field_T);
 
 }  // namespace photorque

@@ -21,8 +21,6 @@ struct HeliocentricOrbit {
   double perihelion_rad = 0.0;    // its argument, from the node
   double mean_anomaly_rad = 0.0;  // at time 0
 
-  // From the Sun to the spacecraft [au], and its velocity [au/s], ecliptic axes.
-  std::array<Vec3, 2> position_and_velocity(double time_s) const;
   // The same at eight instants, in axes of the orbit's plane: x to the perihelion, y along the
   // motion there.
   struct InPlane {
@@ -79,5 +77,18 @@ struct Pointing {
 //     Earth; pointing = { axis ("z"), right_ascension_deg, declination_deg, roll_deg (0) }, by
 //     default lab axes are equatorial.
 SunPath read_sun(const Settings& settings);
+
+// How much of the Sun is seen past a sphere.
+
+// Fraction of a luminous disc that is not covered by an opaque one, in [0, 1]: angular radii of
+// both and the angle between their centres [rad]. The discs are flat: for sources of a few degrees
+// and more the true solid angles differ by per cents.
+double uncovered_fraction(double source_radius_rad, double cover_radius_rad, double separation_rad);
+
+// Fraction of the Sun that a satellite sees past a planet of radius `planet_radius_m` at the
+// origin: 1 in full light, 0 in the umbra. Positions in one frame, from the planet's centre [m];
+// the satellite outside the planet.
+double sunlit_fraction(const Vec3& satellite_m, const Vec3& sun_m, double planet_radius_m,
+                       double sun_radius_m = 6.957e8);
 
 }  // namespace photorque

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "attitude/estimation/free_inertia.h"
-#include "attitude/readings/angle_sequence.h"
-#include "attitude/readings/columns.h"
+#include "attitude/recordings/columns.h"
 #include "core/constants.h"
 
 namespace photorque {

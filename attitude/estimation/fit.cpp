@@ -1,7 +1,17 @@
 #include "attitude/estimation/fit.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "attitude/disturbances/kind.h"
 #include "attitude/estimation/forward_model.h"
-#include "inference/estimator/bounds.h"
+#include "attitude/estimation/starts.h"
+#include "attitude/model/disturbance.h"
+#include "attitude/observation/blocks.h"
+#include "attitude/propagation/run.h"
+#include "core/errors.h"
+#include "inference/estimator/parameter.h"
 
 namespace photorque {
 
@@ -37,6 +47,223 @@ std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observati
     all.push_back(predict(dynamics, fit.best.runs[run].initial, runs[run], {}, options));
   }
   return all;
+}
+
+std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals) {
+  std::vector<inference::ChannelResiduals> runs;
+  for (const Prediction& p : residuals) {
+    inference::ChannelResiduals channels(static_cast<size_t>(channel_count));
+    for (const WhiteRow& row : p.residual) {
+      for (size_t k = 0; k < channels.size(); ++k) {
+        const double white = row[static_cast<Eigen::Index>(k)];
+        if (std::isfinite(white)) channels[k].push_back(white);
+      }
+    }
+    runs.push_back(std::move(channels));
+  }
+  return runs;
+}
+
+double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
+                    const Thresholds::Noise& limits) {
+  try {
+    return inference::whiteness(channels_of(residuals_of(fit, runs)), limits).excess_sigma;
+  } catch (const NumericalError&) {
+    return limits.excess_unknown;
+  }
+}
+
+int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
+                      std::vector<Observation>& runs) {
+  int64_t dropped = 0;
+  const std::vector<inference::ChannelResiduals> all = channels_of(residuals);
+  for (size_t run = 0; run < runs.size(); ++run) {
+    for (Eigen::Index k = 0; k < channel_count; ++k) {
+      // Neighbours are the next that were read: gaps and empty cells lie in between.
+      std::vector<size_t> rows;
+      for (size_t i = 0; i < residuals[run].residual.size(); ++i) {
+        if (std::isfinite(residuals[run].residual[i][k])) rows.push_back(i);
+      }
+      for (const size_t n : inference::outliers(all[run][static_cast<size_t>(k)], limits)) {
+        // An attitude is right or wrong as a whole.
+        if (k >= 3 || runs[run].attitude_rows[rows[n]] > 0.0) ++dropped;
+        if (k < 3) runs[run].attitude_rows[rows[n]] = 0.0;
+        if (k >= 3 && k < vector_channels) runs[run].gyro_rows[rows[n]][k - 3] = 0.0;
+        if (k < vector_channels) continue;
+        runs[run].scalar[static_cast<size_t>(k - vector_channels)].rows[rows[n]] = 0.0;
+      }
+    }
+  }
+  return dropped;
+}
+
+namespace {
+
+// Residuals of neighbours on their way to one.
+struct Neighbours {
+  size_t first = 0, last = 0;
+  double time_sum_s = 0.0;
+  Vec3 attitude_sum = Vec3::Zero(), gyro_sum = Vec3::Zero();
+  double attitude_rows = 0.0;
+  Vec3 gyro_rows = Vec3::Zero();
+  std::array<double, scalar_count> scalar_sum = {}, scalar_rows = {};
+
+  void add(const Observation& from, const Prediction& propagated, size_t i) {
+    if (last == first) first = i;
+    last = i + 1;
+    time_sum_s += from.time_s[i];
+    const WhiteRow& off = propagated.off[i];
+    const double rows = from.attitude_rows[i];
+    if (rows > 0.0) {
+      attitude_sum += rows * off.head<3>();
+      attitude_rows += rows;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double read = from.gyro_rows[i][k];
+      if (!(read > 0.0)) continue;
+      gyro_sum[k] += read * off[3 + k];
+      gyro_rows[k] += read;
+    }
+    for (int s = 0; s < scalar_count; ++s) {
+      const double read = from.rows_of(i, vector_channels + s);
+      if (!(read > 0.0)) continue;
+      scalar_sum[static_cast<size_t>(s)] += read * off[vector_channels + s];
+      scalar_rows[static_cast<size_t>(s)] += read;
+    }
+  }
+
+  size_t middle(const Observation& from) const {
+    const double mean_s = time_sum_s / static_cast<double>(last - first);
+    size_t best = first;
+    for (size_t i = first; i < last; ++i) {
+      if (std::abs(from.time_s[i] - mean_s) < std::abs(from.time_s[best] - mean_s)) best = i;
+    }
+    return best;
+  }
+
+  void append_to(Observation& to, const Observation& from, const Prediction& propagated) const {
+    const size_t m = middle(from);
+    to.time_s.push_back(from.time_s[m]);
+    // Residuals hold no curvature: what there is, is that of the middle one.
+    if (!from.spread.empty()) {
+      to.spread.push_back(from.spread[m]);
+      to.spread.back().gyro_moved_rad_s.setZero();
+    }
+    Quat attitude(NAN, NAN, NAN, NAN);
+    if (attitude_rows > 0.0) {
+      const Vec3 turn = propagated.camera_offset_lab_rad[m] + attitude_sum / attitude_rows;
+      attitude = propagated.states[m].lab_from_body;
+      if (const double angle = turn.norm(); angle > 0.0) {
+        attitude = (Quat(Eigen::AngleAxisd(angle, turn / angle)) * attitude).normalized();
+      }
+    }
+    to.attitude.push_back(attitude);
+    to.attitude_rows.push_back(attitude_rows);
+    Vec3 rate = Vec3::Constant(NAN);
+    for (int k = 0; k < 3; ++k) {
+      if (gyro_rows[k] > 0.0) rate[k] = propagated.gyro_rad_s[m][k] + gyro_sum[k] / gyro_rows[k];
+    }
+    to.gyro_rad_s.push_back(rate);
+    to.gyro_rows.push_back(gyro_rows);
+    for (size_t s = 0; s < from.scalar.size(); ++s) {
+      if (from.scalar[s].rows.empty()) continue;
+      const double mean = scalar_rows[s] > 0.0 ? scalar_sum[s] / scalar_rows[s] : NAN;
+      to.scalar[s].value.push_back(propagated.scalars[m][static_cast<Eigen::Index>(s)] + mean);
+      to.scalar[s].rows.push_back(scalar_rows[s]);
+    }
+  }
+};
+
+Observation averaged_run(const Prediction& propagated, const Observation& seen, size_t blocks) {
+  Observation result = without_blocks(seen);
+  const double block_s = seen.duration_s() / static_cast<double>(blocks);
+  // Half a reading of slack, so that rounding of the times does not make uneven blocks.
+  const double slack_s = 0.5 * seen.duration_s() / static_cast<double>(seen.blocks());
+  Neighbours block;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (block.last > block.first && seen.time_s[i] > seen.time_s[block.first] + block_s - slack_s) {
+      block.append_to(result, seen, propagated);
+      block = {};
+    }
+    block.add(seen, propagated, i);
+  }
+  block.append_to(result, seen, propagated);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Observation> averaged_about(const Fit& fit, const std::vector<Observation>& runs,
+                                        size_t blocks) {
+  const std::vector<Prediction> propagated = residuals_of(fit, runs);
+  std::vector<Observation> result;
+  for (size_t run = 0; run < runs.size(); ++run) {
+    result.push_back(runs[run].blocks() <= blocks
+                         ? runs[run]
+                         : averaged_run(propagated[run], runs[run], blocks));
+  }
+  return result;
+}
+
+namespace {
+
+// The least that physics allows of a key, as the kind's own file says.
+double lowest_of(const DisturbanceKind* kind, const std::string& key) {
+  if (kind == nullptr) return -inference::infinity;
+  if (kind->screening.least_sum) return kind->screening.least_sum->lowest;
+  for (const Parametrisation& p : kind->screening.parametrisations) {
+    for (const EffectKey& k : p.keys) {
+      if (k.key == key && k.lowest > -EffectKey::unbounded) return k.lowest;
+    }
+  }
+  return -inference::infinity;
+}
+
+}  // namespace
+
+Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs) {
+  Hypothesis h;
+  h.model = nominal.model;
+  std::vector<double> own;
+  for (size_t d = 0; d < h.model.disturbances.size(); ++d) {
+    const Disturbance& disturbance = h.model.disturbances[d];
+    const DisturbanceKind* kind = find_kind(disturbance.kind);
+    const bool per_run = disturbance.per_recording;
+    for (size_t p = 0; p < disturbance.parameters.size(); ++p) {
+      const Parameter& parameter = disturbance.parameters[p];
+      if (!(parameter.sigma > 0.0)) continue;
+      Free f{d, static_cast<int>(p), parameter.value, parameter.sigma, per_run};
+      f.per_recording = per_run;
+      // What physics forbids of an effect it forbids of a belief, wherever it starts.
+      if (parameter.value >= lowest_of(kind, parameter.key)) {
+        f.lowest = lowest_of(kind, parameter.key);
+      }
+      h.free.push_back(f);
+      if (per_run) own.push_back(parameter.value);
+    }
+  }
+  for (const Observation& seen : runs) h.runs.push_back({first_state(h.model, seen), own});
+  return h;
+}
+
+size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance) {
+  hypothesis.model.disturbances.push_back(disturbance);
+  for (RunStart& run : hypothesis.runs) {
+    for (const ExtraState& state : disturbance.states) {
+      run.initial.extra.push_back(state.initial +
+                                  bound_axis(disturbance, state).dot(run.initial.rate_body_rad_s));
+    }
+  }
+  return hypothesis.model.disturbances.size() - 1;
+}
+
+Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs,
+                const Thresholds& limits) {
+  FitSettings settings;
+  settings.windows = limits.fitting.first_windows;
+  Hypothesis start = nominal_hypothesis(nominal, runs);
+  choose_starts(start, runs);
+  return fit(start, runs, settings);
 }
 
 }  // namespace photorque

@@ -6,8 +6,12 @@
 #include "attitude/estimation/hypothesis.h"
 #include "attitude/observation/prediction.h"
 #include "inference/estimator/fit.h"
+#include "inference/estimator/thresholds.h"
+#include "inference/whiteness.h"
 
 namespace photorque {
+
+struct NominalModel;  // attitude/propagation/run.h
 
 struct Fit : inference::Fit {
   Hypothesis best;
@@ -34,5 +38,43 @@ inference::SumsOfRuns sums_at(const Hypothesis& at, const std::vector<Observatio
 
 // All whitened residuals of a fit, by run. NumericalError where it cannot be propagated.
 std::vector<Prediction> residuals_of(const Fit& fit, const std::vector<Observation>& runs);
+
+// The noise of the readings: levels that are not as stated, readings that stand out.
+
+// The channels of whitened residuals (recordings/columns.h) without gaps, by run.
+std::vector<inference::ChannelResiduals> channels_of(const std::vector<Prediction>& residuals);
+
+// The structure that a fit leaves; huge where it cannot be propagated.
+double excess_sigma(const Fit& fit, const std::vector<Observation>& runs,
+                    const Thresholds::Noise& limits);
+
+// Drops readings that stand out from what their neighbours' residuals lead to. Returns their
+// number.
+int64_t drop_outliers(const std::vector<Prediction>& residuals, const Thresholds::Noise& limits,
+                      std::vector<Observation>& runs);
+
+// Fewer blocks for the search: means of what is left of a fit, not of the readings.
+
+// The runs in some `blocks` blocks each. A block stands for its neighbours at the time of the
+// middle one: there the fit's prediction and the mean of the neighbours' residuals make a reading.
+// Means of the readings themselves would hold the motion's curvature within a block, which looks
+// like a late camera or a turned gyro; a mean residual does not, however fast the platform tumbles.
+// As good as the runs for changes of the fit that are slow against a block. NumericalError when the
+// fit cannot be propagated.
+std::vector<Observation> averaged_about(const Fit& fit, const std::vector<Observation>& runs,
+                                        size_t blocks);
+
+// The nominal model of the platform, ready to be fitted.
+
+// Every parameter with a sigma is free about its nominal value; gyro biases are free for each run.
+// The runs start from what was seen at their beginning.
+Hypothesis nominal_hypothesis(const NominalModel& nominal, const std::vector<Observation>& runs);
+
+// Appends a disturbance: its own states begin at rest in every run. Returns its index.
+size_t add_disturbance(Hypothesis& hypothesis, const Disturbance& disturbance);
+
+// The nominal model fitted to the runs, over windows that grow.
+Fit fit_nominal(const NominalModel& nominal, const std::vector<Observation>& runs,
+                const Thresholds& limits = {});
 
 }  // namespace photorque

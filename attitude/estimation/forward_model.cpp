@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/model/bound_states.h"
+#include "attitude/model/disturbance.h"
 #include "attitude/observation/prediction.h"
 #include "core/errors.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 namespace {

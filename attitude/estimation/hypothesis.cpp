@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "attitude/estimation/first_line.h"
-
 namespace photorque {
 
 AttitudeModel Hypothesis::model_of(size_t run, const Observation& seen) const {

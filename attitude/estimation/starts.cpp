@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "attitude/estimation/first_line.h"
-#include "attitude/readings/angle_sequence.h"
+#include "attitude/estimation/hypothesis.h"
+#include "attitude/recordings/columns.h"
 #include "core/constants.h"
 
 namespace photorque {

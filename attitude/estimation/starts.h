@@ -9,7 +9,7 @@ namespace photorque {
 
 // A tilt does not say whereto the body leans, the magnitude of a rate not about which axis it
 // turns, and fits from the wrong one end in other minima. Runs that are read by scalars
-// (readings/channels.h) and not by an attitude begin where, of leans and axes all around, the fit
+// (recordings/columns.h) and not by an attitude begin where, of leans and axes all around, the fit
 // of their own first blocks ends best. Other runs keep the start that they have.
 void choose_starts(Hypothesis& hypothesis, const std::vector<Observation>& runs);
 

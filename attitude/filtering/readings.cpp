@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/readings/columns.h"
+#include "attitude/recordings/columns.h"
 #include "core/errors.h"
 
 namespace photorque {

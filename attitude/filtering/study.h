@@ -30,8 +30,8 @@ EstimateStudy read_estimate(const Settings& root);
 
 // InputError where an instrument of the model has no noise: a filter weighs by it.
 void require_noise(const Sensors& sensors);
-// The instruments with the noise that a recording shows (attitude/noise/reading_level.h) where the
-// experiment states none, and a line about each that was found.
+// The instruments with the noise that a recording shows (attitude/observation/noise_levels.h) where
+// the experiment states none, and a line about each that was found.
 struct RecordingNoise {
   Sensors sensors;
   std::vector<std::string> found;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "attitude/model/bound_states.h"
 #include "core/errors.h"
 
 namespace photorque {
+
 namespace {
 
 // The key under which the user wrote `key`: the same quantity, perhaps in another unit.

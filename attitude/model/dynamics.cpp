@@ -2,11 +2,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
-#include "attitude/model/bound_states.h"
+#include "attitude/model/disturbance.h"
 #include "core/errors.h"
 
 namespace photorque {
+
 namespace {
 
 // q' = ½ q ⊗ (0, ω).
@@ -429,6 +431,89 @@ void Dynamics::reading_derivatives(const Lanes& time_s,
   for (int i = 0; i < 3; ++i) put(now.inertial_rate_body_rad_s[i] + now.gyro_error_rad_s[i]);
   for (int i = 0; i < 3; ++i) put(now.camera_error_rad[i]);
   put(now.camera_delay_s);
+}
+
+// What every disturbance does at one state, and the disturbance that carries what slides.
+
+namespace {
+
+Dynamics::Instants instants_at(const AttitudeModel& model, const PlatformState& state) {
+  const Dynamics dynamics(model);
+  std::vector<Lanes> y;
+  for (const double x : to_vector(state)) y.emplace_back(x);
+  std::array<ZeroOrderHold, Lanes::count> held;
+  held.fill(model.schedule.at(state.time_s));
+  return dynamics.at(state.time_s, held, y.data());
+}
+
+std::vector<Vec3> vectors_of_first_lane(const std::vector<Vec3Of<Lanes>>& all) {
+  std::vector<Vec3> vectors;
+  for (const Vec3Of<Lanes>& v : all) vectors.emplace_back(v[0][0], v[1][0], v[2][0]);
+  return vectors;
+}
+
+}  // namespace
+
+std::vector<Vec3> disturbance_torques_body_N_m(const AttitudeModel& model,
+                                               const PlatformState& state) {
+  return vectors_of_first_lane(instants_at(model, state).torque_body_N_m);
+}
+
+std::vector<Vec3> disturbance_forces_lab_N(const AttitudeModel& model, const PlatformState& state) {
+  return vectors_of_first_lane(instants_at(model, state).force_lab_N);
+}
+
+namespace {
+
+struct NoLaw final : LawOf<NoLaw> {
+  template <class T>
+  void apply(const ParametersAndStates<T>&, EvaluationContext<T>&) const {}
+};
+
+}  // namespace
+
+Disturbance translation() {
+  // Deviations of a decimetre matter as much as those of a radian.
+  constexpr double scale = 0.1;
+  const auto state = [](const char* name) { return ExtraState{name, 0.0, scale}; };
+  Disturbance d = make_disturbance<NoLaw>({}, Stage::torque,
+                                          {state("position_x_m"), state("position_y_m"),
+                                           state("velocity_x_m_s"), state("velocity_y_m_s")});
+  d.kind = translation_kind;
+  return d;
+}
+
+bool depends_on_attitude(const AttitudeModel& model) {
+  const Dynamics dynamics(model);
+  const bool about_axis = model.platform.turns_about_one_axis();
+  // Some attitudes that no symmetry joins, and rates to go with them.
+  std::vector<Lanes> y(static_cast<size_t>(dynamics.size()), Lanes(0.0));
+  std::vector<Lanes> turned = y;
+  for (int lane = 0; lane < Lanes::count; ++lane) {
+    const double n = lane + 1.0;
+    const Vec3 axis = about_axis ? model.platform.axis
+                                 : Vec3(std::sin(n), std::cos(1.7 * n), std::sin(2.3 * n + 0.4));
+    const std::vector<double> state = to_vector(dynamics.initial_state(0.3 * n * axis));
+    for (size_t c = component::rate; c < y.size(); ++c) y[c].set(lane, state[c]);
+    const Vec3 other = about_axis ? axis : Vec3(std::cos(n), 0.3, std::sin(3.1 * n));
+    const Quat q(Eigen::AngleAxisd(0.7 * n, axis.normalized()));
+    const Quat r = q * Quat(Eigen::AngleAxisd(1.1, other.normalized()));
+    const double from[] = {q.w(), q.x(), q.y(), q.z()}, to[] = {r.w(), r.x(), r.y(), r.z()};
+    for (size_t c = 0; c < 4; ++c) y[c].set(lane, from[c]);
+    for (size_t c = 0; c < y.size(); ++c) turned[c].set(lane, c < 4 ? to[c] : y[c][lane]);
+  }
+  std::vector<Lanes> here(y.size(), Lanes(0.0)), there = here;
+  const ZeroOrderHold held =
+      model.schedule.held.empty() ? ZeroOrderHold{} : model.schedule.held.back();
+  dynamics.rates(Lanes(0.0), held, y.data(), here.data());
+  dynamics.rates(Lanes(0.0), held, turned.data(), there.data());
+  for (size_t c = component::rate; c < y.size(); ++c) {
+    for (int lane = 0; lane < Lanes::count; ++lane) {
+      const double a = here[c][lane], b = there[c][lane];
+      if (std::abs(a - b) > 1e-9 * (std::abs(a) + std::abs(b))) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace photorque

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "attitude/model/disturbance.h"
+#include "attitude/model/platform.h"
 #include "attitude/model/schedule.h"
-#include "attitude/model/state.h"
 
 namespace photorque {
 

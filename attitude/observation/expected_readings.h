@@ -12,7 +12,7 @@ namespace photorque {
 
 // Accelerometer and magnetometer, in the order of their scalars.
 using FieldRow = Eigen::Matrix<double, first_place - first_field, 1>;
-// By channel (readings/channels.h) and variable.
+// By channel (recordings/columns.h) and variable.
 using SlopeRows = Eigen::Matrix<double, channel_count, Eigen::Dynamic, Eigen::RowMajor>;
 
 // What a model says of a block, or of one of its instants.

@@ -4,9 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "attitude/observation/block_instants.h"
-#include "attitude/observation/block_means.h"
-#include "attitude/readings/columns.h"
+#include "attitude/observation/blocks.h"
+#include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
 

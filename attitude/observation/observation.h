@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "attitude/model/platform.h"
-#include "attitude/readings/channels.h"
+#include "attitude/recordings/columns.h"
 #include "attitude/recordings/recording.h"
 #include "attitude/recordings/sensors.h"
 
@@ -31,7 +31,7 @@ struct NoiseLevels {
   } camera_colour, gyro_colour;
   std::array<double, scalar_count> scalar = {};  // white; in SI
 
-  // Of a channel (readings/channels.h).
+  // Of a channel (recordings/columns.h).
   ChannelNoise of(int channel) const;
   void set(int channel, const ChannelNoise& noise);
 };

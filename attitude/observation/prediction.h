@@ -1,4 +1,4 @@
-// What a model predicts for an observation, beside what was seen.
+// Readings with correlated noise turned into independent ones of unit variance.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,12 +6,69 @@
 
 #include "attitude/observation/observation.h"
 #include "attitude/propagation/propagator.h"
-#include "inference/estimator/normal_sums.h"
+#include "inference/estimator/arrow_matrix.h"
 #include "inference/estimator/parameter.h"
 
 namespace photorque {
 
-// The residuals of a block by channel (readings/channels.h): attitude about lab x, y, z, gyro x, y,
+// Of one channel, block after block in order of time: what the blocks before lead to expect is
+// subtracted, and the rest divided by its standard deviation. Noise is white, plus a part whose
+// correlation falls off as exp(−t/τ) (an AR(1) process, sampled whenever there is a reading), as
+// ChannelNoise says. A block is the mean of its readings: its variance and its correlation with
+// others are those of such means in closed form, so that averages are whitened as exactly as
+// readings. The recursion is that of the Kalman filter (Anderson & Moore, Optimal Filtering, 1979,
+// section 5.3), linear in the readings, so that predictions and their derivatives go the same way.
+class Whitening {
+ public:
+  // `width`: how many numbers go through at once: a residual and its slopes.
+  Whitening(const Observation& seen, int channel, Eigen::Index width);
+
+  // The next block of `rows` readings at `time_s`: a row of residual and slopes in the channel's
+  // unit becomes independent of all before, in units of its standard deviation.
+  template <typename Row>
+  void apply(double time_s, double rows, Row&& row) {
+    if (!coloured_) {
+      row *= std::sqrt(rows) / level_;
+      return;
+    }
+    const Gain now = gain(time_s, rows);
+    expected_ *= now.decay;
+    row = row * now.scale - expected_;
+    expected_ += now.gain * row;
+    row *= now.weight;
+  }
+
+ private:
+  // By what the expectation shrinks since the last block; by what a block is multiplied so that all
+  // share one correlated process; what the expectation learns of the difference; one over the
+  // standard deviation of that.
+  struct Gain {
+    double decay, scale, gain, weight;
+  };
+  Gain gain(double time_s, double rows);
+
+  bool coloured_ = false;
+  double level_;
+  double white_variance_ = 0.0, coloured_variance_ = 0.0, time_s_ = 0.0;
+  double interval_s_ = 0.0;  // between the readings of a block
+  double last_s_ = 0.0, variance_ = 0.0;
+  Eigen::RowVectorXd expected_;
+};
+
+// The mean of n readings `steps` = interval/τ apart, of a process whose correlation is exp(−t/τ)
+// and whose variance is one. The covariance of two means that do not overlap is reach² exp(−t/τ), t
+// between their middles.
+struct MeanOfCorrelated {
+  double variance = 1.0, reach = 1.0;
+};
+MeanOfCorrelated mean_of_correlated(double n, double steps);
+
+// Between the readings of a channel within a block [s]; 0 where it has none.
+double reading_interval_s(const Observation& seen, int channel);
+
+// What a model predicts for an observation, beside what was seen.
+
+// The residuals of a block by channel (recordings/columns.h): attitude about lab x, y, z, gyro x, y,
 // z, scalars; NaN where nothing was measured.
 using WhiteRow = Eigen::Matrix<double, channel_count, 1>;
 

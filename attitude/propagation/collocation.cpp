@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/propagation/settling.h"
+#include "attitude/propagation/stage_system.h"
 #include "core/snapshot.h"
 
 namespace photorque {

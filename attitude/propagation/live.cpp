@@ -57,7 +57,7 @@ Quat LiveInstruments::seen(const PlatformState& now) {
 }
 
 LiveRow LiveInstruments::read(double time_s, std::span<const double> y, const ZeroOrderHold& held,
-                              const std::optional<CompanionPower>& power) {
+                              const std::optional<PowerState>& power) {
   const std::vector<Lanes> lanes(y.begin(), y.end());
   std::array<ZeroOrderHold, Lanes::count> each;
   each.fill(held);

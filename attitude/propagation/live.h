@@ -7,7 +7,8 @@
 #include <optional>
 #include <span>
 
-#include "attitude/propagation/companion.h"
+#include "attitude/propagation/power_history.h"
+#include "attitude/propagation/propagator.h"
 #include "attitude/recordings/sensors.h"
 
 namespace photorque {
@@ -42,9 +43,10 @@ class LiveInstruments {
 
   // After every step of the motion: what the camera saw within it.
   void follow(const Propagator& motion);
-  // At the ticks, in order. `held` is what was commanded before; `power` of a companion.
+  // At the ticks, in order. `held` is what was commanded before; `power` is that of a power system
+  // beside the motion.
   LiveRow read(double time_s, std::span<const double> y, const ZeroOrderHold& held,
-               const std::optional<CompanionPower>& power);
+               const std::optional<PowerState>& power);
 
  private:
   double tick_s(size_t index) const;

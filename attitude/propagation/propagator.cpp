@@ -1,5 +1,7 @@
 #include "attitude/propagation/propagator.h"
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -151,20 +153,19 @@ bool Propagator::advance() {
   return true;
 }
 
-void Propagator::drive(double battery_current_A, const ContinuedTorque& light_body,
-                       double charge_drawn_C) {
-  drive_ = {battery_current_A, light_body, charge_drawn_C};
-  drive_is_new_ = true;
+void Propagator::exchange(const Exchange& now) {
+  exchange_ = now;
+  exchange_is_new_ = true;
 }
 
-// What was driven last holds over the schedule's own. The polynomial goes on: a current moves the
-// charge alone, and the light is continuous but for the error of its continuation.
+// What was exchanged last holds over the schedule's own. The polynomial goes on: a current moves
+// the charge alone, and the light is continuous but for the error of its continuation.
 void Propagator::take_over() {
-  if (!drive_) return;
-  held_.battery_current_A = drive_->battery_current_A;
-  held_.light_body = drive_->light_body;
-  if (drive_is_new_) step_.set_component(component::charge, drive_->charge_drawn_C);
-  drive_is_new_ = false;
+  if (!exchange_) return;
+  held_.battery_current_A = exchange_->battery_current_A;
+  held_.light_body = exchange_->light_body;
+  if (exchange_is_new_) step_.set_component(component::charge, exchange_->charge_drawn_C);
+  exchange_is_new_ = false;
 }
 
 // Gives up early on motions that would need more steps than allowed.
@@ -183,7 +184,7 @@ void Propagator::take_step() {
   check_pace();
   const double start_s = step_.start_s();
   double stop_s = next_jump_ < jumps_.size() ? jumps_[next_jump_].time_s : end_s_;
-  if (stop_s_ > start_s) stop_s = std::min(stop_s, stop_s_);
+  if (exchange_ && exchange_->next_s > start_s) stop_s = std::min(stop_s, exchange_->next_s);
   // A free body's phase shows every bit of its iterations after a day; torques hide them.
   const bool is_free = dynamics_.model().disturbances.empty();
   const double settled = (is_free ? 1e-10 : 1e-6) * options_.tolerance;
@@ -373,7 +374,7 @@ void Propagator::keep(Snapshot& snapshot) {
   snapshot.fixed(event_values_);
   snapshot.expect(jumps_.size());
   snapshot.at_most(next_jump_, jumps_.size());
-  snapshot(held_, stop_s_, drive_, drive_is_new_);
+  snapshot(held_, exchange_, exchange_is_new_);
   snapshot(h_s_, ceiling_s_, is_ceiling_of_state_, is_stiff_, held_back_);
   snapshot(step_end_s_, has_step_, ended_by_event_, statistics_);
 }
@@ -411,6 +412,40 @@ Trajectory propagate(const Dynamics& dynamics, const PlatformState& initial,
   trajectory.events = propagator.events();
   trajectory.statistics = propagator.statistics();
   return trajectory;
+}
+
+double attitude_error_bound_rad(const Dynamics& dynamics, const PlatformState& initial,
+                                double end_s, double torque_N_m, const PropagationOptions& options,
+                                size_t intervals) {
+  const auto tangents = static_cast<size_t>(dynamics.size() - 1);
+  std::vector<Variable> variables;
+  for (size_t k = 0; k < tangents; ++k) variables.push_back({static_cast<int>(k), 0, -1});
+  std::vector<double> times_s;
+  const double step_s = (end_s - initial.time_s) / static_cast<double>(intervals);
+  for (size_t i = 0; i <= intervals; ++i) {
+    times_s.push_back(initial.time_s + static_cast<double>(i) * step_s);
+  }
+  const Trajectory trajectory = propagate(dynamics, initial, times_s, options, variables);
+  const auto n = static_cast<Eigen::Index>(tangents);
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto transition = [&](size_t i) {
+    return Matrix(
+        Eigen::Map<const Matrix>(trajectory.derivatives.data() + i * tangents * tangents, n, n));
+  };
+  const size_t last = trajectory.states.size() - 1;
+  const Matrix to_end = transition(last);
+  const Mat3 inverse_inertia = dynamics.model().platform.inertia_kg_m2.inverse();
+  double integral = 0.0;
+  for (size_t i = 0; i <= last; ++i) {
+    // ∂end/∂state(s) = ∂end/∂start (∂state(s)/∂start)⁻¹; rows of the attitude, columns of the rate.
+    const Eigen::FullPivLU<Matrix> lu(transition(i).transpose());
+    if (!lu.isInvertible()) return std::numeric_limits<double>::quiet_NaN();
+    const Matrix from_here = lu.solve(to_end.topRows(3).transpose()).transpose();
+    const Mat3 by_torque = from_here.middleCols(3, 3) * inverse_inertia;
+    const double size = by_torque.jacobiSvd().singularValues()[0];
+    integral += (i == 0 || i == last ? 0.5 : 1.0) * size * step_s;
+  }
+  return torque_N_m * integral;
 }
 
 }  // namespace photorque

@@ -66,11 +66,16 @@ class Propagator {
              const PropagationOptions& options = {}, std::vector<Variable> variables = {},
              std::vector<EventFunction> events = {});
 
-  // A simulation beside the motion (the power system) exchanges with it at instants of its choice:
-  // a step ends exactly there, if that is later than step_end_s(), and drive() says what holds from
-  // the end of the last step on, the charge drawn until then included.
-  void stop_at(double time_s) { stop_s_ = time_s; }
-  void drive(double battery_current_A, const ContinuedTorque& light_body, double charge_drawn_C);
+  // Between two steps a simulation beside the motion (the power system) states what holds from the
+  // end of the last step on, the charge drawn until then included, and the time of its next
+  // exchange, at which a step then ends exactly.
+  struct Exchange {
+    double battery_current_A = 0.0;
+    ContinuedTorque light_body;
+    double charge_drawn_C = 0.0;
+    double next_s = std::numeric_limits<double>::infinity();
+  };
+  void exchange(const Exchange& now);
 
   // Who says at every tick, the first at the initial time, what holds until the next; the model's
   // schedule is not asked then. Called by advance() with the state at the tick.
@@ -138,14 +143,8 @@ class Propagator {
   std::vector<Jump> jumps_;           // by time
   size_t next_jump_ = 0;
   ZeroOrderHold held_;
-  double stop_s_ = std::numeric_limits<double>::infinity();  // where a step ends besides
-  struct Drive {
-    double battery_current_A = 0.0;
-    ContinuedTorque light_body;
-    double charge_drawn_C = 0.0;
-  };
-  std::optional<Drive> drive_;
-  bool drive_is_new_ = false;
+  std::optional<Exchange> exchange_;
+  bool exchange_is_new_ = false;
   Commander commander_;
   double h_s_ = 0.0;  // length to try next
   // Just below the last length that failed; rises slowly, so that it is tried again some day.
@@ -175,5 +174,14 @@ Trajectory propagate(const Dynamics& dynamics, const PlatformState& initial,
                      std::span<const double> times_s, const PropagationOptions& options = {},
                      const std::vector<Variable>& variables = {},
                      const std::vector<EventFunction>& events = {});
+
+// Bound of the attitude's error [rad] at `end_s` when a torque of at most `torque_N_m` in any
+// direction, changing with time as it likes, acts besides what `dynamics` knows: ∫
+// |∂attitude(end)/∂rate(s) I⁻¹| ds times the torque, by the exact derivatives along the trajectory,
+// at `intervals` even steps. To first order in the torque. Nothing that happens at the bearing's
+// stop is known to it. NaN where the derivatives say nothing.
+double attitude_error_bound_rad(const Dynamics& dynamics, const PlatformState& initial,
+                                double end_s, double torque_N_m,
+                                const PropagationOptions& options = {}, size_t intervals = 400);
 
 }  // namespace photorque

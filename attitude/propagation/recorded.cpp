@@ -1,10 +1,9 @@
+#include "attitude/propagation/recorded.h"
+
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <optional>
 
 #include "attitude/disturbances/kind.h"
-#include "attitude/propagation/place.h"
 #include "attitude/propagation/run.h"
 #include "attitude/propagation/sampling.h"
 #include "attitude/propagation/time_history.h"
@@ -14,11 +13,11 @@
 namespace photorque {
 namespace {
 
-std::vector<EventFunction> events_of(const Dynamics& dynamics, bool has_companion) {
+std::vector<EventFunction> events_of(const Dynamics& dynamics, bool has_power_system) {
   const Platform& platform = dynamics.model().platform;
   std::vector<EventFunction> events;
   if (platform.tilt_limit_rad) events.push_back(tilt_event(*platform.tilt_limit_rad));
-  if (platform.battery_capacity_C && !has_companion) {
+  if (platform.battery_capacity_C && !has_power_system) {
     events.push_back(battery_empty_event(*platform.battery_capacity_C));
     // The platform turns on without power.
     events.back().ends_run = false;
@@ -46,15 +45,30 @@ double camera_delay_s(const Dynamics& dynamics, const PlatformState& state) {
   return dynamics.at(state.time_s, {}, y.data()).camera_delay_s[0];
 }
 
-// The times at which a run is looked at: its rows and, for a camera with latency, what it sees in
-// them. In order; of two equal times what is seen comes first. What lies before the start is looked
-// at there, `before_s` too late.
-struct Look {
-  double time_s;
-  bool is_row;
-  double before_s = 0.0;
-};
-std::vector<Look> looks(const PropagationRun& run, double delay_s) {
+// Reads the instruments at a tick and asks the run's commander.
+Propagator::Commander live_commander(const PropagationRun& run, const Propagator& propagator,
+                                     LiveInstruments& instruments, const PowerHistory* beside) {
+  return [&run, &propagator, &instruments, beside](double time_s, std::span<const double> y) {
+    std::optional<PowerState> power;
+    if (beside != nullptr) power = beside->at(std::min(time_s, beside->known_until_s()));
+    return run.commander(instruments.read(time_s, y, propagator.held(), power));
+  };
+}
+
+Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
+  return {v[0][lane], v[1][lane], v[2][lane]};
+}
+
+// Every how many rows of the recording the history has one, so that with the last row, which it
+// always has, it is no longer than `history_rows` (2 at least).
+size_t thinning(size_t rows, size_t history_rows) {
+  if (rows <= history_rows) return 1;
+  return (rows - 1 + history_rows - 2) / (history_rows - 1);
+}
+
+}  // namespace
+
+std::vector<RecordedRun::Look> RecordedRun::looks(const PropagationRun& run, double delay_s) {
   const Seen seen{run};
   std::vector<Look> all;
   size_t next_seen = 0;
@@ -71,74 +85,9 @@ std::vector<Look> looks(const PropagationRun& run, double delay_s) {
   return all;
 }
 
-// Reads the instruments at a tick and asks the run's commander.
-Propagator::Commander live_commander(const PropagationRun& run, const Propagator& propagator,
-                                     LiveInstruments& instruments, const Companion* companion) {
-  return [&run, &propagator, &instruments, companion](double time_s, std::span<const double> y) {
-    std::optional<CompanionPower> power;
-    if (companion != nullptr) {
-      power = companion->at(std::min(time_s, companion->known_until_s()));
-    }
-    return run.commander(instruments.read(time_s, y, propagator.held(), power));
-  };
-}
-
-Vec3 in_lane(const Vec3Of<Lanes>& v, int lane) {
-  return {v[0][lane], v[1][lane], v[2][lane]};
-}
-
-// A run on its way: the motion, what runs beside it, and what is recorded of both.
-class RecordedRun {
- public:
-  RecordedRun(const PropagationRun& run, const Companion* companion,
-              std::function<void(double)> progress);
-  RecordedRun(const RecordedRun&) = delete;
-  RecordedRun& operator=(const RecordedRun&) = delete;
-
-  // To its end, from where it is.
-  void go_on(const Checkpoints& checkpoints);
-  // InputError when `state` is not what an equal run had.
-  void restore(const std::string& state);
-  PropagationResult result();
-
- private:
-  void keep(Snapshot& snapshot);
-  void take_in(const Samples& samples);
-  void hand_on();
-  void record(const Samples& samples);
-  void record(const Look& look, const std::vector<double>& y, const PlatformState& state,
-              const Dynamics::Instants& now, int lane);
-  void follow_companion() {
-    if (companion_ != nullptr) companion_->follow(propagator_);
-  }
-
-  const Companion* companion_;
-  std::function<void(double)> progress_;
-  Dynamics dynamics_;
-  double delay_s_;
-  std::vector<Look> times_;
-  size_t rows_, thinning_;
-  Recorder recorder_;
-  TimeHistory history_;
-  Propagator propagator_;
-  Sampler sampler_;
-  std::optional<LiveInstruments> instruments_;
-  std::vector<PlatformState> states_;
-  std::deque<Quat> on_the_way_;  // seen by the camera, not yet reported
-  std::deque<Samples> waiting_;  // until the companion knows what it did
-  bool has_begun_ = false;
-};
-
-// Every how many rows of the recording the history has one, so that with the last row, which it
-// always has, it is no longer than `history_rows` (2 at least).
-size_t thinning(size_t rows, size_t history_rows) {
-  if (rows <= history_rows) return 1;
-  return (rows - 1 + history_rows - 2) / (history_rows - 1);
-}
-
-RecordedRun::RecordedRun(const PropagationRun& run, const Companion* companion,
-                         std::function<void(double)> progress)
-    : companion_(companion),
+RecordedRun::RecordedRun(const PropagationRun& run, std::function<void(double)> progress,
+                         const PowerHistory* beside)
+    : beside_(beside),
       progress_(std::move(progress)),
       dynamics_(run.model),
       delay_s_(camera_delay_s(dynamics_, run.initial)),
@@ -148,45 +97,25 @@ RecordedRun::RecordedRun(const PropagationRun& run, const Companion* companion,
       recorder_(run.sensors, run.seed),
       history_(dynamics_),
       propagator_(dynamics_, run.initial, run.initial.time_s + run.duration_s, run.options, {},
-                  events_of(dynamics_, companion != nullptr)),
+                  events_of(dynamics_, beside != nullptr)),
       sampler_(
           propagator_, times_.size(), [this](size_t i) { return times_[i].time_s; },
           [this](const Samples& samples) { take_in(samples); }) {
   if (!run.commander) return;
   instruments_.emplace(dynamics_, run.initial, run.output_rate_Hz, delay_s_, run.sensors, run.seed);
-  propagator_.follow_commander(live_commander(run, propagator_, *instruments_, companion));
+  propagator_.follow_commander(live_commander(run, propagator_, *instruments_, beside));
 }
 
-void RecordedRun::go_on(const Checkpoints& checkpoints) {
-  if (!has_begun_) follow_companion();
-  has_begun_ = true;
-  while (propagator_.advance()) {
-    follow_companion();
-    if (instruments_) instruments_->follow(propagator_);
-    hand_on();
-    sampler_.follow();
-    if (checkpoints.due && checkpoints.due()) {
-      Snapshot snapshot;
-      keep(snapshot);
-      checkpoints.keep(propagator_.step_end_s(), snapshot.bytes());
-    }
-  }
-  sampler_.finish();
-  for (const Samples& samples : waiting_) record(samples);
-}
-
-void RecordedRun::restore(const std::string& state) {
-  Snapshot snapshot(state);
-  keep(snapshot);
-  if (!snapshot.is_whole()) {
-    throw InputError({}, "", "a state that does not fit the run", "one of an equal run");
-  }
+void RecordedRun::record() {
+  if (instruments_) instruments_->follow(propagator_);
+  hand_on();
+  sampler_.follow();
 }
 
 void RecordedRun::keep(Snapshot& snapshot) {
   const auto components = static_cast<size_t>(dynamics_.size());
   snapshot.expect(components);
-  snapshot(has_begun_, propagator_, sampler_, recorder_, history_);
+  snapshot(propagator_, sampler_, recorder_, history_);
   snapshot.each(states_, [&](PlatformState& state) {
     snapshot(state.time_s, state.lab_from_body, state.rate_body_rad_s, state.charge_drawn_C);
     state.extra.resize(components - component::extra);
@@ -195,12 +124,11 @@ void RecordedRun::keep(Snapshot& snapshot) {
   snapshot.each(on_the_way_, [&](Quat& seen) { snapshot(seen); });
   snapshot.each(waiting_,
                 [&](Samples& samples) { samples.keep(snapshot, components, times_.size()); });
-  if (companion_ != nullptr) companion_->keep(snapshot);
 }
 
-// With a companion states are handed on when it knows what it did until then.
+// Beside a power system states are handed on when its own is known until then.
 void RecordedRun::take_in(const Samples& samples) {
-  if (companion_ == nullptr) return record(samples);
+  if (beside_ == nullptr) return record(samples);
   waiting_.push_back(samples);
   hand_on();
 }
@@ -208,15 +136,15 @@ void RecordedRun::take_in(const Samples& samples) {
 void RecordedRun::hand_on() {
   for (; !waiting_.empty(); waiting_.pop_front()) {
     const Samples& first = waiting_.front();
-    if (first.time_s[first.count - 1] > companion_->known_until_s()) return;
+    if (first.time_s[first.count - 1] > beside_->known_until_s()) return;
     record(first);
   }
 }
 
 void RecordedRun::record(const Samples& samples) {
   Dynamics::Instants now = dynamics_.at(samples.time_s, samples.held, samples.y.data());
-  for (int i = 0; companion_ != nullptr && i < samples.count; ++i) {
-    const CompanionPower power = companion_->at(samples.time_s[i]);
+  for (int i = 0; beside_ != nullptr && i < samples.count; ++i) {
+    const PowerState power = beside_->at(samples.time_s[i]);
     now.battery_current_A.set(i, power.battery_current_A);
     now.array_power_W.set(i, power.array_power_W);
   }
@@ -224,7 +152,7 @@ void RecordedRun::record(const Samples& samples) {
   for (int i = 0; i < samples.count; ++i) {
     for (size_t c = 0; c < y.size(); ++c) y[c] = samples.y[c][i];
     PlatformState state = to_state(samples.time_s[i], y);
-    if (companion_ != nullptr) state.charge_drawn_C = companion_->at(state.time_s).charge_drawn_C;
+    if (beside_ != nullptr) state.charge_drawn_C = beside_->at(state.time_s).charge_drawn_C;
     record(times_[samples.first + static_cast<size_t>(i)], y, state, now, i);
   }
   if (progress_) progress_(static_cast<double>(states_.size()) / static_cast<double>(rows_));
@@ -257,6 +185,9 @@ void RecordedRun::record(const Look& look, const std::vector<double>& y, const P
 }
 
 PropagationResult RecordedRun::result() {
+  sampler_.finish();
+  for (const Samples& samples : waiting_) record(samples);
+  waiting_.clear();
   PropagationResult result;
   result.recording = recorder_.finish();
   result.states = std::move(states_);
@@ -266,13 +197,10 @@ PropagationResult RecordedRun::result() {
   return result;
 }
 
-}  // namespace
-
-PropagationResult propagate(const PropagationRun& run, const std::function<void(double)>& progress,
-                            const Companion* companion, const Checkpoints& checkpoints) {
-  RecordedRun recorded(run, companion, progress);
-  if (checkpoints.from) recorded.restore(*checkpoints.from);
-  recorded.go_on(checkpoints);
+PropagationResult propagate(const PropagationRun& run,
+                            const std::function<void(double)>& progress) {
+  RecordedRun recorded(run, progress);
+  while (recorded.advance()) recorded.record();
   return recorded.result();
 }
 

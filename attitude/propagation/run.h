@@ -1,13 +1,14 @@
 // `propagate`: from an experiment file to a propagated platform, its recording and its plots.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "attitude/propagation/companion.h"
+#include "attitude/model/dynamics.h"
 #include "attitude/propagation/live.h"
 #include "attitude/propagation/propagator.h"
 #include "attitude/recordings/recording.h"
@@ -72,23 +73,19 @@ struct PropagationResult {
   Propagator::Statistics statistics;
 };
 
-// What lets a run that takes long be broken off and gone on with, its results the same to the last
-// bit. Runs with a commander have none.
-struct Checkpoints {
-  // What `keep` was given by an equal run, to go on from there.
-  std::optional<std::string> from = {};
-  // Asked after every step of the motion; where it says so `keep` gets the state, in bytes.
-  std::function<bool()> due = {};
-  std::function<void(double time_s, const std::string& state)> keep = {};
-};
-
 // Propagates the run. It ends early at the bearing's stop (Platform::tilt_limit_rad). `progress` is
-// called now and then with the fraction of the duration that is done. With a companion, battery
-// current and array power are the companion's, which also says when the battery is empty.
-// InputError where checkpoints.from does not fit the run.
+// called now and then with the fraction of the duration that is done. What runs beside the motion
+// needs the loop in plain view: RecordedRun (recorded.h).
 PropagationResult propagate(const PropagationRun& run,
-                            const std::function<void(double)>& progress = {},
-                            const Companion* companion = nullptr,
-                            const Checkpoints& checkpoints = {});
+                            const std::function<void(double)>& progress = {});
+
+// Reads initial_position_m[2] and initial_velocity_m_s[2] of [propagate], both zero by default;
+// nothing of a platform that does not slide.
+void read_initial_place(const Settings& settings, const AttitudeModel& model,
+                        PlatformState& initial);
+
+// Place (x, y) and velocity in a state vector; none where the platform does not slide.
+std::optional<std::array<double, 4>> place_of(const Dynamics& dynamics,
+                                              const std::vector<double>& y);
 
 }  // namespace photorque

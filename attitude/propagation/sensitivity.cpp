@@ -1,12 +1,15 @@
 #include "attitude/propagation/sensitivity.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "attitude/model/bound_states.h"
-#include "attitude/propagation/settling.h"
+#include "attitude/model/disturbance.h"
+#include "attitude/propagation/stage_system.h"
 
 namespace photorque {
+
 namespace {
 
 constexpr int max_sweeps = 100;

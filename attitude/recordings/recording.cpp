@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <sstream>
 
 #include "attitude/recordings/cleaning.h"
-#include "attitude/recordings/lamp_current.h"
 #include "attitude/recordings/text_lines.h"
-#include "attitude/recordings/wheel_speeds.h"
 #include "core/files.h"
+#include "core/numerics/steady_stretches.h"
 #include "core/text/parse.h"
 
 namespace photorque {
+
 namespace {
 
 // The contract's channels. A header may name them in another unit of the same kind.
@@ -379,6 +380,86 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
     text += '\n';
   }
   write_file_whole(path, path.extension() == ".gz" ? gzip(text) : text);
+}
+
+// What the reader of recordings met, for people.
+
+std::string RecordingReport::text() const {
+  std::ostringstream out;
+  out << rows_read << " rows read, " << rows_kept << " kept, every " << median_interval_s << " s";
+  const auto say = [&](int64_t count, const char* what) {
+    if (count > 0) out << "\n" << count << " " << what;
+  };
+  if (jitter_s > 1e-3 * median_interval_s) out << " with a jitter of " << jitter_s << " s";
+  say(malformed_rows, "rows with a wrong number of cells left out");
+  say(rows_without_time, "rows without a time left out");
+  say(repeated_times, "rows that repeat a time left out");
+  say(backward_times, "rows out of order left out");
+  say(static_cast<int64_t>(gaps.size()), "gaps");
+  say(empty_cells, "empty cells");
+  say(unreadable_cells, "cells that hold no number");
+  say(bad_quaternions, "quaternions that are not of unit norm left out");
+  say(flipped_quaternions, "sign flips of the quaternion undone");
+  for (const auto& [channel, count] : outliers) {
+    out << "\n" << count << " outliers in " << channel << " left out";
+  }
+  for (const std::string& column : absent_columns) {
+    out << "\nthe column " << column << ", which [recording] names, is not in it";
+  }
+  return out.str();
+}
+
+LampCurrent::LampCurrent(const Channel* channel) {
+  if (channel == nullptr) return;
+  double before_A = NAN;
+  for (const double read_A : channel->values) {
+    if (!std::isnan(read_A)) before_A = std::max(0.0, read_A);
+    if (!std::isnan(before_A)) held_A_.push_back(before_A);
+  }
+  missing_ = channel->values.size() - held_A_.size();
+  if (held_A_.empty()) return;
+  const double noise_A = 0.01 * *std::ranges::max_element(held_A_);
+  hold_means(held_A_, noise_A);
+  is_lit_ = noise_A > 0.0;
+}
+
+void LampCurrent::hold(size_t row, ZeroOrderHold& held) const {
+  if (!is_lit_) return;
+  held.led_current_A = held_A_[row < missing_ ? 0 : row - missing_];
+  held.lamps_as_stated = 0.0;
+}
+
+std::vector<WheelSpeeds> wheel_speeds(const Recording& recording) {
+  const Channel* wheel[3] = {recording.find("wheel_x_rad_s"), recording.find("wheel_y_rad_s"),
+                             recording.find("wheel_z_rad_s")};
+  std::vector<WheelSpeeds> knots;
+  if (wheel[0] == nullptr && wheel[1] == nullptr && wheel[2] == nullptr) return knots;
+  constexpr size_t most_knots = 400;
+  const size_t rows = recording.rows();
+  const size_t together = (rows + most_knots - 1) / most_knots;
+  for (size_t first = 0; first < rows; first += together) {
+    const size_t last = std::min(rows, first + together);
+    WheelSpeeds knot;
+    for (size_t i = first; i < last; ++i) knot.from_s += recording.time_s[i];
+    knot.from_s /= static_cast<double>(last - first);
+    for (int k = 0; k < 3; ++k) {
+      double sum = 0.0, count = 0.0;
+      for (size_t i = first; wheel[k] != nullptr && i < last; ++i) {
+        if (std::isnan(wheel[k]->values[i])) continue;
+        sum += wheel[k]->values[i];
+        count += 1.0;
+      }
+      // A block without a reading goes on as the one before it.
+      const double before = knots.empty() ? 0.0 : knots.back().speed_rad_s[k];
+      knot.speed_rad_s[k] = count > 0.0 ? sum / count : before;
+    }
+    knots.push_back(knot);
+  }
+  for (size_t i = 0; i + 1 < knots.size(); ++i) {
+    knots[i].acceleration_rad_s2 =
+        (knots[i + 1].speed_rad_s - knots[i].speed_rad_s) / (knots[i + 1].from_s - knots[i].from_s);
+  }
+  return knots;
 }
 
 }  // namespace photorque

@@ -101,4 +101,28 @@ Schedule read_command_file(const std::filesystem::path& path);
 void write_recording(const std::filesystem::path& path, const Recording& recording,
                      const std::vector<std::string>& preamble = {});
 
+// The recorded current of a laboratory's lamps, as a schedule holds it.
+
+// What changes by less than a hundredth of the largest is noise, of which the mean is held: each
+// change begins a step of the propagation.
+class LampCurrent {
+ public:
+  // Of `led_current_A`; null: the recording has none.
+  explicit LampCurrent(const Channel* channel);
+
+  // Before the first reading as at it. Does nothing where no lamp shines.
+  void hold(size_t row, ZeroOrderHold& held) const;
+
+ private:
+  std::vector<double> held_A_;
+  size_t missing_ = 0;  // rows before the first reading
+  bool is_lit_ = false;
+};
+
+// The measured speeds of wheels, as a schedule holds them.
+
+// Straight lines between means over neighbouring rows, so many that what lies between is straight,
+// and no more: each begins a step of the propagation. Of `wheel_x_rad_s` …; empty without any.
+std::vector<WheelSpeeds> wheel_speeds(const Recording& recording);
+
 }  // namespace photorque

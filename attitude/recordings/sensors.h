@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "attitude/camera/accuracy.h"
+#include "attitude/camera/pose.h"
 #include "attitude/disturbances/kind.h"
 #include "attitude/model/dynamics.h"
 #include "attitude/recordings/recording.h"

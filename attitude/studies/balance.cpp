@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/nominal_model.h"
-#include "attitude/noise/discrepancy.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/estimation/segments.h"
+#include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
-#include "attitude/stretches/segments.h"
 #include "core/errors.h"
 #include "core/text/format.h"
 

@@ -12,7 +12,7 @@
 #include "attitude/propagation/run.h"
 #include "attitude/recordings/recording.h"
 #include "diagnosis/diagnosis.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "attitude/estimation/averaging.h"
-#include "attitude/estimation/noise.h"
+#include "attitude/estimation/fit.h"
 #include "core/parallel.h"
 #include "diagnosis/attitude/effects/screen.h"
 #include "diagnosis/attitude/holdout.h"

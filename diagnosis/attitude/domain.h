@@ -2,8 +2,8 @@
 // observations, candidates are effects of the catalogue and empirical laws.
 #pragma once
 
+#include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/effects/trial.h"
-#include "diagnosis/attitude/scans/scan.h"
 #include "inference/domain.h"
 
 namespace photorque {

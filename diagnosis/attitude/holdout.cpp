@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/noise.h"
+#include "attitude/estimation/fit.h"
 #include "attitude/estimation/starts.h"
 #include "core/constants.h"
 #include "core/errors.h"

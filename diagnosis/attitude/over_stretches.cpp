@@ -3,12 +3,13 @@
 #include <cstdio>
 #include <numeric>
 
-#include "attitude/estimation/nominal_model.h"
-#include "attitude/noise/discrepancy.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/observation/noise_levels.h"
+#include "attitude/propagation/run.h"
 #include "core/parallel.h"
 #include "diagnosis/attitude/answer.h"
 #include "diagnosis/attitude/holdout.h"
-#include "inference/signed_ranks.h"
+#include "inference/whiteness.h"
 
 namespace photorque {
 namespace {

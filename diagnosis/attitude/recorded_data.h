@@ -1,10 +1,23 @@
 // The recordings of a diagnosis, made ready: what is fitted, what is held out, what was wrong.
 #pragma once
 
+#include <cstdio>
+#include <string>
+
+#include "attitude/estimation/fit.h"
 #include "attitude/observation/observation.h"
+#include "attitude/propagation/run.h"
 #include "diagnosis/attitude/diagnose.h"
 
 namespace photorque {
+
+// A sentence with numbers in it, as printf writes it; at most 499 characters.
+template <typename... Values>
+std::string written(const char* format, Values... values) {
+  char text[500];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
 
 struct RecordedData {
   std::vector<Observation> train, held;
@@ -21,5 +34,24 @@ RecordedData read_data(const NominalModel& nominal, const std::vector<NamedRecor
 // What the files held.
 DataQuality quality_of(const std::vector<NamedRecording>& recordings,
                        const std::vector<NamedRecording>& holdouts, const RecordedData& data);
+
+// What is known of the readings before anything is explained: the nominal fit, outliers, the noise.
+
+// The nominal model fitted. Readings that stand out are dropped on the way, and unless the
+// experiment wants it as stated, the noise of `data` becomes what the readings show
+// (attitude/observation/noise_search.h), after a drift of the gyro was taken out
+// (take_out_bias_drift()); what was found is told in data.instruments. A model that cannot be
+// propagated has infinite χ², and the noise stays as stated.
+Fit settle(const NominalModel& nominal, const Thresholds& limits, RecordedData& data);
+
+// Where the nominal model left the noise open, it is found about a model that comes near the
+// readings. Returns whether it changed.
+bool settle_again(const Fit& explained, const Thresholds& limits, RecordedData& data);
+
+// A gyro whose bias drifts within a recording.
+
+// Takes the drift out of the gyro's readings, their mean left as it is, and says so among the
+// instruments. Nothing happens where a constant bias does for each recording.
+void take_out_bias_drift(RecordedData& data);
 
 }  // namespace photorque

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/averaging.h"
-#include "attitude/estimation/noise.h"
+#include "attitude/estimation/fit.h"
 #include "core/constants.h"
 #include "core/errors.h"
 

@@ -3,10 +3,9 @@
 #include <cstdio>
 
 #include "attitude/estimation/free_inertia.h"
-#include "attitude/noise/reading_level.h"
-#include "attitude/readings/angle_sequence.h"
-#include "attitude/readings/columns.h"
-#include "attitude/stretches/segments.h"
+#include "attitude/estimation/segments.h"
+#include "attitude/observation/noise_levels.h"
+#include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/guess/guess.h"

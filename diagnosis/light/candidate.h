@@ -6,7 +6,7 @@
 
 #include "diagnosis/light/beliefs.h"
 #include "diagnosis/light/model/run.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 #include "scenes/effects/kind.h"
 
 namespace photorque {

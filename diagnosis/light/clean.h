@@ -2,7 +2,7 @@
 #pragma once
 
 #include "diagnosis/light/model/run.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

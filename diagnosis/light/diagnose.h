@@ -14,7 +14,7 @@
 #include "diagnosis/light/candidate.h"
 #include "diagnosis/light/model/lab.h"
 #include "diagnosis/light/model/recording.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

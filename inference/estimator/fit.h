@@ -96,7 +96,6 @@ struct Fit {
   Covariance covariance() const { return covariance_of(hessian.dense()); }
   // Of the shared parameters alone, whatever the runs' own may be.
   Covariance shared() const;
-  Eigen::MatrixXd shared_covariance() const { return shared().matrix; }
   // The same where priors hold every parameter: always finite, whatever the data determine.
   Eigen::MatrixXd shared_posterior() const;
 

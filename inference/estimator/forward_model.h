@@ -2,11 +2,13 @@
 //
 // A forward model says what recordings ("runs") would read if its parameters were θ. The estimator
 // never sees a recording; of every run it asks for sums over the residuals, whitened by their noise
-// (normal_sums.h), and of the whole for the parameters' priors. A point θ is a vector of
+// (NormalSums), and of the whole for the parameters' priors. A point θ is a vector of
 // coordinates that the model alone understands: a parameter may live on a manifold, as an attitude
 // does, whose four quaternion components move along three directions. What the estimator adds to a
 // point is a step, in the order of Parameters, through stepped().
 #pragma once
+
+#include <functional>
 
 #include "inference/estimator/arrow_matrix.h"
 #include "inference/estimator/parameter.h"
@@ -49,5 +51,38 @@ struct Evaluation {
 };
 
 Evaluation evaluate(const ForwardModel& model, const Eigen::VectorXd& at, const Request& request);
+
+// Forward models whose residuals are a plain function of their parameters' values.
+
+// Whitened residuals r = (measured − predicted)/noise of a run and, where `slopes` is not null,
+// their slopes J = ∂(predicted/noise)/∂θ, a column for each parameter. `values`: the run's own
+// parameters, then the shared ones. Residuals that are not finite count as infinitely bad.
+using ResidualFunction = std::function<void(const Eigen::VectorXd& values, Eigen::Index run,
+                                            Eigen::VectorXd& residuals, Eigen::MatrixXd* slopes)>;
+
+// A point is the vector of all values, in the order of Parameters.
+class ResidualModel final : public ForwardModel {
+ public:
+  ResidualModel(Parameters parameters, ResidualFunction residuals);
+  // One run, all parameters shared.
+  ResidualModel(std::vector<Parameter> parameters, ResidualFunction residuals);
+
+  // The values that the parameters were given with.
+  Eigen::VectorXd start() const;
+
+  Parameters parameters(const Eigen::VectorXd& at) const override;
+  NormalSums sums(const Eigen::VectorXd& at, Eigen::Index run,
+                  const Request& request) const override;
+  Eigen::VectorXd stepped(const Eigen::VectorXd& at, const Eigen::VectorXd& step) const override;
+
+ private:
+  Parameters parameters_;
+  ResidualFunction residuals_;
+};
+
+// Slopes by central differences of `step` (absolute: parameters are logarithms, or of order one);
+// good to step² times the third derivative, and to 1e-16/step.
+ResidualFunction with_differences(
+    std::function<Eigen::VectorXd(const Eigen::VectorXd& values)> residuals, double step = 1e-5);
 
 }  // namespace photorque::inference

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "inference/estimator/arrow_matrix.h"
+
 namespace photorque::inference {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -44,5 +46,14 @@ struct Parameters {
     return of_run[static_cast<size_t>(i / per_run())][static_cast<size_t>(i % per_run())];
   }
 };
+
+// The way back to the bounds of parameters that were fitted without them.
+
+// The step δ from the optimum `at` to within the bounds of all parameters by which χ² grows least:
+// min δᵀ H δ with lowest ≤ θ + δ ≤ highest, H the information there, positive definite. What is
+// correlated moves along: to bring one of several numbers back whose sum alone is ill known, all of
+// them move. Zero where nothing is beyond a bound. By an active set (Nocedal & Wright, Numerical
+// Optimization, 2nd ed. 2006, section 16.5).
+Eigen::VectorXd step_to_bounds(const ArrowMatrix& information, const Parameters& at);
 
 }  // namespace photorque::inference

@@ -55,22 +55,4 @@ Projected project_out(const SumsOfRuns& sums, Eigen::Index fitted) {
   return result;
 }
 
-Eigen::MatrixXd pair_gains(const Projected& all, const std::vector<Eigen::Index>& begin) {
-  const auto count = static_cast<Eigen::Index>(begin.size()) - 1;
-  const auto append = [&](Eigen::Index group, std::vector<Eigen::Index>& to) {
-    const auto g = static_cast<size_t>(group);
-    for (Eigen::Index p = begin[g]; p < begin[g + 1]; ++p) to.push_back(p);
-  };
-  Eigen::MatrixXd gains = Eigen::MatrixXd::Zero(count, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (Eigen::Index j = i; j < count; ++j) {
-      std::vector<Eigen::Index> both;
-      append(i, both);
-      if (j != i) append(j, both);
-      gains(i, j) = gains(j, i) = all.score(both).gain;
-    }
-  }
-  return gains;
-}
-
 }  // namespace photorque::inference

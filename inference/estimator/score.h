@@ -43,8 +43,4 @@ Projected project_out(const NormalSums& sums, Eigen::Index fitted);
 // The same for several runs: the first `fitted`, all that are the runs' own among them.
 Projected project_out(const SumsOfRuns& sums, Eigen::Index fitted);
 
-// The gains of every two groups of parameters together, on the diagonal of each alone. Group k is
-// [begin[k], begin[k + 1]); the last of `begin` is the end.
-Eigen::MatrixXd pair_gains(const Projected& all, const std::vector<Eigen::Index>& begin);
-
 }  // namespace photorque::inference

@@ -11,7 +11,7 @@
 
 #include "core/product.h"
 #include "inference/estimator/fit.h"
-#include "inference/estimator/residual_model.h"
+#include "inference/estimator/forward_model.h"
 #include "photovoltaics/fit/fit.h"
 
 namespace photorque {

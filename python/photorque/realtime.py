@@ -1,4 +1,4 @@
-"""A client of `photorque serve`: measurements in, commands out, over UDP or shared memory.
+"""A client of `photorque serve`: measurements in, commands out, over UDP.
 
 Needs the standard library alone; the file may be used without the rest of the package. The layout is
 that of photorque_serve.h.
@@ -10,8 +10,6 @@ that of photorque_serve.h.
 In lockstep every measurement with `wants_answer` has to be answered by one command.
 """
 
-import mmap
-import os
 import socket
 import struct
 import time
@@ -19,7 +17,6 @@ import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Protocol
 
 MAGIC = 0x51525450
 VERSION = 1
@@ -88,12 +85,6 @@ def unseal(packet: bytes) -> tuple[int, Measurement] | None:
         refused=v[26], sequence=sequence, sent_ns=sent_ns)
 
 
-class _Way(Protocol):
-    def send(self, packet: bytes) -> None: ...
-    def receive(self, timeout_s: float) -> bytes | None: ...
-    def close(self) -> None: ...
-
-
 class _Udp:
     def __init__(self, address: str, port: int) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -116,60 +107,16 @@ class _Udp:
         self.socket.close()
 
 
-class _SharedMemory:
-    """The block of photorque_serve.h: magic and version, then lock and packet of either side."""
-
-    _measurement = 8
-    _command = 8 + 8 + _SIZE
-
-    def __init__(self, name: str) -> None:
-        descriptor = os.open("/dev/shm/" + name, os.O_RDWR)
-        try:
-            self.memory = mmap.mmap(descriptor, self._command + 8 + _HEADER.size + _COMMAND.size)
-        finally:
-            os.close(descriptor)
-        self.seen = 0
-
-    def _lock(self, at: int) -> int:
-        lock: int = struct.unpack_from("<Q", self.memory, at)[0]
-        return lock
-
-    def send(self, packet: bytes) -> None:
-        before = self._lock(self._command) & ~1
-        struct.pack_into("<Q", self.memory, self._command, before + 1)
-        self.memory[self._command + 8:self._command + 8 + len(packet)] = packet
-        struct.pack_into("<Q", self.memory, self._command, before + 2)
-
-    def receive(self, timeout_s: float) -> bytes | None:
-        end = time.monotonic() + timeout_s
-        while True:
-            lock = self._lock(self._measurement)
-            if lock != self.seen and lock % 2 == 0:
-                packet = self.memory[self._measurement + 8:self._measurement + 8 + _SIZE]
-                if self._lock(self._measurement) == lock:
-                    self.seen = lock
-                    return packet
-            if time.monotonic() > end:
-                return None
-            time.sleep(20e-6)
-
-    def close(self) -> None:
-        self.memory.close()
-
-
 class Client:
-    """Connects to a run; with `shared_memory` (a name) that way instead of UDP."""
+    """Connects to a run."""
 
     def __init__(
         self,
         address: str = "127.0.0.1",
         port: int = 4160,
-        shared_memory: str | None = None,
         timeout_s: float = 10.0,
     ) -> None:
-        self._way: _Way | None = (
-            _SharedMemory(shared_memory) if shared_memory else _Udp(address, port)
-        )
+        self._way: _Udp | None = _Udp(address, port)
         self._timeout_s = timeout_s
         self._sequence = 0
         self._run = 0
@@ -177,7 +124,7 @@ class Client:
         self._last_sequence = 0
         self._last_command: bytes | None = None
 
-    def _open(self) -> _Way:
+    def _open(self) -> _Udp:
         if self._way is None:
             raise ValueError("the client is closed")
         return self._way

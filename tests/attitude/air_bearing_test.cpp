@@ -82,14 +82,6 @@ TEST(AirBearing, PublishedLoadIsTwiceTheProjectedGaugeLoad) {
   EXPECT_NEAR(ratio(90.0), 2.7, 0.05);
 }
 
-// Eq. 8 is eq. 7 when the ambient pressure is negligible.
-TEST(AirBearing, PublishedHighPressureFormIsTheLimitOfThePublishedOne) {
-  const SphericalSocket socket{0.03, 0.8, 5e-6};
-  EXPECT_NEAR(load_capacity_high_pressure_as_published_N(socket, 1e9) /
-                  load_capacity_as_published_N(socket, 1e9, bar),
-              1.0, 1e-3);
-}
-
 // A published Fluent study of a socket of 80 mm diameter at 1 bar gauge with one central and
 // twelve outer holes: 279 N (T. Ahmet, Numerical analysis of a low-cost spherical air bearing for
 // CubeSat ADCS testing). One hole and a linear fall must carry less, and more than half of that.
@@ -130,9 +122,7 @@ TEST(AirBearing, WholeSphereDragsAsConcentricSpheresDo) {
   EXPECT_NEAR(drag.axial_N_m_s / drag.transverse_N_m_s, 1.0, 1e-12);
   const double inner3 = std::pow(R, 3), outer3 = std::pow(R + h, 3);
   const double exact = 8 * pi * mu * inner3 * outer3 / (outer3 - inner3);
-  EXPECT_NEAR(drag.axial_N_m_s * couette_curvature_factor(R, h) / exact, 1.0, 1e-12);
-  EXPECT_GT(couette_curvature_factor(R, h), 1.0);
-  EXPECT_NEAR(couette_curvature_factor(R, 1e-6), 1.0, 1e-4);
+  EXPECT_NEAR(exact / drag.axial_N_m_s, 1.0 + 2.0 * h / R, 2.0 * h * h / (R * R));
 }
 
 TEST(AirBearing, GroovesTakeTheirShareOfTheDrag) {

@@ -6,7 +6,6 @@
 #include <map>
 #include <sstream>
 
-#include "attitude/ccsds/acm.h"
 #include "attitude/ccsds/aem.h"
 #include "attitude/environment/epoch.h"
 #include "core/errors.h"
@@ -73,7 +72,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 class SharedMessage : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(File, SharedMessage,
                          testing::Values("AEMExample01.txt", "CCSDS_BasicQuatFile.aem",
-                                         "CCSDS_BasicEulerFile.aem", "ACMExample05.txt"),
+                                         "CCSDS_BasicEulerFile.aem"),
                          [](const auto& name) {
                            return std::filesystem::path(name.param).stem().string();
                          });
@@ -82,15 +81,9 @@ TEST_P(SharedMessage, SaysTheSameWhenWrittenBack) {
   PHOTORQUE_NEEDS_THIRD_PARTY("ccsds");
   const std::filesystem::path path = shared_message(GetParam());
   const TemporaryFile copy;
-  if (std::string(GetParam()).starts_with("ACM")) {
-    const AttitudeComprehensive acm = read_acm(path);
-    write_acm(copy.path(), acm);
-    EXPECT_EQ(read_acm(copy.path()).message, acm.message);
-  } else {
-    const AttitudeEphemeris aem = read_aem(path);
-    write_aem(copy.path(), aem);
-    EXPECT_EQ(read_aem(copy.path()), aem);
-  }
+  const AttitudeEphemeris aem = read_aem(path);
+  write_aem(copy.path(), aem);
+  EXPECT_EQ(read_aem(copy.path()), aem);
   EXPECT_EQ(said(copy.path()), said(path));
 }
 
@@ -178,22 +171,6 @@ TEST(Aem, WrongMessagesAreRefused) {
   EXPECT_THROW(read_aem(long_quaternion.path()).segments.front().attitudes(), InputError);
 }
 
-TEST(Acm, NumbersOfTheSharedFile) {
-  PHOTORQUE_NEEDS_THIRD_PARTY("ccsds");
-  const auto path = shared_message("ACMExample05.txt");
-  const AttitudeComprehensive acm = read_acm(path);
-  ASSERT_EQ(acm.attitudes.size(), 5u);
-  EXPECT_EQ(acm.attitudes[0].time_s[1], 0.25);
-  EXPECT_NEAR(acm.attitudes[0].quaternions()[1].x(), 0.73529, 1e-5);
-  EXPECT_NEAR(acm.attitudes[0].quaternions()[1].w(), 0.181158, 1e-5);
-  EXPECT_EQ(acm.attitudes[1].euler_sequence, "XYZ");
-  EXPECT_EQ(acm.attitudes[3].values[0].size(), 13u);
-  EXPECT_EQ(acm.wet_mass_kg, 1916.0);
-  EXPECT_EQ((*acm.inertia_kg_m2)(0, 2), -25.7);
-  EXPECT_EQ((*acm.inertia_kg_m2)(2, 2), 1490.0);
-}
-
-// Days by the calendar; day of the year 60 of a leap year is 29 February.
 // A name and a value, and a block, among the rows: a row of no words was looked into.
 TEST(Aem, DataThatAreNoRowsAreRefused) {
   const std::string before =
@@ -209,16 +186,7 @@ TEST(Aem, DataThatAreNoRowsAreRefused) {
   }
 }
 
-TEST(Acm, CountsOfStatesThatNoRowHasAreRefused) {
-  for (const char* count : {"-1", "1e300", "4.5", "0", "1000000000000000000000"}) {
-    const TemporaryFile file(
-        std::string("CCSDS_ACM_VERS = 2.0\nATT_START\nREF_FRAME_A = LAB\nREF_FRAME_B = SC\n"
-                    "ATT_TYPE = QUATERNION\nNUMBER_STATES = ") +
-        count + "\n0.0 0 0 0 1\nATT_STOP\n");
-    EXPECT_THROW(read_acm(file.path()), InputError) << count;
-  }
-}
-
+// Day of the year 60 of a leap year is 29 February.
 TEST(CalendarTimes, CountDaysAsTheCalendarDoes) {
   const auto at = [](const char* text) { return *parse_epoch(text); };
   EXPECT_EQ(at("1970-01-01T00:00:00").day, 0);

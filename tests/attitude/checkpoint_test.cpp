@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "attitude/propagation/run.h"
+#include "attitude/propagation/recorded.h"
 #include "core/errors.h"
 #include "scenes/experiment/toml.h"
 #include "tests/attitude/settings_bench.h"
@@ -118,25 +118,25 @@ TEST(Propagation, AShortHistoryEndsWithTheRun) {
   }
 }
 
-struct BrokenOff {};
-
 // As a run that is killed again and again, every time after the given number of steps.
 PropagationResult in_pieces(const PropagationRun& run, int steps, int& pieces) {
   std::string state;
   for (pieces = 1;; ++pieces) {
-    int left = steps;
-    Checkpoints checkpoints;
-    if (!state.empty()) checkpoints.from = state;
-    checkpoints.due = [&] { return --left <= 0; };
-    checkpoints.keep = [&](double, const std::string& bytes) {
-      state = bytes;
-      throw BrokenOff();
-    };
-    try {
-      return propagate(run, {}, nullptr, checkpoints);
-    } catch (const BrokenOff&) {
-      // Goes on below.
+    RecordedRun recorded(run, {});
+    if (!state.empty()) {
+      Snapshot kept(state);
+      recorded.keep(kept);
+      EXPECT_TRUE(kept.is_whole());
     }
+    int taken = 0;
+    while (taken < steps && recorded.advance()) {
+      recorded.record();
+      ++taken;
+    }
+    if (taken < steps) return recorded.result();
+    Snapshot snapshot;
+    recorded.keep(snapshot);
+    state = snapshot.bytes();
   }
 }
 
@@ -202,15 +202,17 @@ TEST(Checkpoint, RunsHoldWhatTheirTestsAreAbout) {
 }
 
 TEST(Checkpoint, StatesOfOtherRunsAreRefused) {
-  std::string state;
-  Checkpoints checkpoints;
-  checkpoints.due = [] { return true; };
-  checkpoints.keep = [&](double, const std::string& bytes) { state = bytes; };
-  propagate(run_of(sliding), {}, nullptr, checkpoints);
+  const PropagationRun slides = run_of(sliding), swings = run_of(pendulum);
+  RecordedRun kept(slides, {});
+  while (kept.advance()) kept.record();
+  Snapshot snapshot;
+  kept.keep(snapshot);
+  const std::string state = snapshot.bytes();
   for (const std::string& bytes : {state, state.substr(0, state.size() / 2), std::string("x")}) {
-    Checkpoints from;
-    from.from = bytes;
-    EXPECT_THROW(propagate(run_of(pendulum), {}, nullptr, from), InputError);
+    RecordedRun other(swings, {});
+    Snapshot from(bytes);
+    other.keep(from);
+    EXPECT_FALSE(from.is_whole());
   }
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "attitude/disturbances/fields/coil_cage.h"
-#include "attitude/disturbances/fields/current_loop.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/settings_bench.h"

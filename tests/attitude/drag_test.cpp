@@ -5,7 +5,6 @@
 
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/bearing/air_bearing.h"
-#include "attitude/disturbances/bearing/air_film.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"

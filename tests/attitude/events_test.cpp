@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "attitude/environment/eclipse.h"
+#include "attitude/environment/sun.h"
 #include "attitude/propagation/propagator.h"
 #include "core/errors.h"
 #include "tests/attitude/disturbance_bench.h"

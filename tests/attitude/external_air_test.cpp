@@ -84,7 +84,7 @@ TEST(ExternalAir, SphereHasTheQuotedMomentCoefficients) {
   const double eq21 = 2.93 * std::sqrt(air.viscosity_Pa_s * air.density_kg_m3) * std::pow(R, 4) *
                       std::pow(rate, 1.5);
   EXPECT_NEAR(torque_N_m(ball, rate) / eq21, 1.0, 1e-12);
-  ball.moment_coefficient = sphere_moment_654;
+  ball.moment_coefficient = 3.27;
   const double reynolds = rate * R * R / air.kinematic_viscosity_m2_s();
   const double quoted =
       6.54 / std::sqrt(reynolds) * 0.5 * air.density_kg_m3 * rate * rate * std::pow(R, 5);
@@ -127,14 +127,10 @@ TEST(ExternalAir, BluntPartsAgreeFarFromTheAxis) {
   EXPECT_DOUBLE_EQ(torque_N_m(face, 1.0), torque_N_m(upright, 1.0));
 }
 
-// The printed forms carry a stray viscosity: the disc is off by √ρ, the plate by μ.
-TEST(ExternalAir, PublishedFormsDifferByTheMisprintedViscosity) {
+// The printed form carries a stray viscosity: it is off by √ρ.
+TEST(ExternalAir, PublishedFormDiffersByTheMisprintedViscosity) {
   const double ratio = disc_torque_as_published(disc(0.3), air, 1.0) / torque_N_m(disc(0.3), 1.0);
   EXPECT_NEAR(ratio, std::sqrt(air.density_kg_m3), 5e-3);  // 1.94 for π·0.6159 = 1.935
-  const AirPart plate{
-      .shape = AirShape::plate, .faces = 1, .length_m = 0.3, .area_m2 = 0.09, .distance_m = 0.2};
-  EXPECT_NEAR(plate_torque_as_published(plate, air, 1.0) / torque_N_m(plate, 1.0),
-              air.viscosity_Pa_s, 1e-12);
 }
 
 TEST(ExternalAir, FlagsWhereALawEnds) {
@@ -142,32 +138,6 @@ TEST(ExternalAir, FlagsWhereALawEnds) {
   EXPECT_NEAR(air_flow(disc(0.25), air, one_rpm_rad_s).reynolds, 434.7, 0.5);
   EXPECT_FALSE(air_flow(disc(0.25), air, 100.0).laminar_law_holds());
   EXPECT_FALSE(air_flow(disc(0.05), air, one_rpm_rad_s).laminar_law_holds());
-}
-
-TEST(ExternalAir, ExposedShareWeighsBySpeed) {
-  EXPECT_DOUBLE_EQ(exposed_fraction(0.0), 1.0);
-  EXPECT_NEAR(exposed_fraction(pi / 2), 0.5, 1e-15);
-  EXPECT_NEAR(exposed_fraction(pi), 0.0, 1e-15);
-  EXPECT_GT(exposed_fraction(0.5), 0.95);  // what lies near the pole hardly moves
-  EXPECT_DOUBLE_EQ(exposed_fraction_as_published(pi / 2), 0.5);
-}
-
-TEST(ExternalAir, TopologiesAssembleAsThePaperDraws) {
-  const AirPart plate{
-      .shape = AirShape::plate, .length_m = 0.2, .area_m2 = 0.04, .distance_m = 0.3};
-  const AirPart cylinder{
-      .shape = AirShape::radial_cylinder, .radius_m = 0.02, .length_m = 0.2, .inner_m = 0.1};
-  const AirPart sphere{.shape = AirShape::sphere, .radius_m = 0.1};
-  const double p = torque_N_m(plate, 1.0), c = torque_N_m(cylinder, 1.0),
-               s = torque_N_m(sphere, 1.0);
-  const auto sum = [&](Topology topology) {
-    return air_coefficients(parts_of_topology(topology, plate, cylinder, sphere, 4, 0.7), air)
-        .torque_N_m(1.0);
-  };
-  EXPECT_NEAR(sum(Topology::dumbbell), 2 * p + 2 * c + s, 1e-18);
-  EXPECT_NEAR(sum(Topology::tabletop), p + 4 * c, 1e-18);
-  EXPECT_NEAR(sum(Topology::hollow), 0.7 * s, 1e-18);
-  EXPECT_EQ(sum(Topology::free), 0.0);
 }
 
 TEST(ExternalAir, TableSharesSumToOne) {

@@ -2,12 +2,10 @@
 // Neumann's integral in 30 digits, and published values.
 #include <cmath>
 
-#include "attitude/disturbances/fields/current_loop.h"
-#include "attitude/supply/cable.h"
-#include "attitude/supply/coil_link.h"
-#include "attitude/supply/eddy_sphere.h"
-#include "attitude/supply/filaments.h"
-#include "attitude/supply/microwave.h"
+#include "attitude/disturbances/fields/coil_cage.h"
+#include "attitude/studies/cable.h"
+#include "attitude/studies/coil_link.h"
+#include "attitude/studies/microwave.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/quadrature.h"

@@ -73,18 +73,6 @@ TEST(SagCompliance, TabletopTorquePeaksAtFortyFiveDegrees) {
   EXPECT_NEAR(peak / (0.5 * moment * g * g), 1.0, 1e-6);
 }
 
-// What is wrong with the printed forms: a length, and for the tabletop 48/40 besides.
-TEST(SagCompliance, PublishedTabletopLacksALength) {
-  const CounterbalanceBeams beams{0.25, 3.2, 300.0, 4};
-  const double ours = sag_torque_N_m(beams, 0.4, g),
-               printed = sag_torque_as_published(beams, 0.4, g);
-  EXPECT_NEAR(ours / printed, 0.25 * 48.0 / 40.0, 1e-12);
-  const DumbbellArms arms{Vec3::UnitX(), 0.6, 2.5, 0.0, 900.0};
-  // Massless beams: 2 M²l³/3 · (sin − ½ sin 2θ) against M²l²/2 · (sin 2θ − 2 sin θ).
-  EXPECT_NEAR(sag_torque_N_m(arms, 0.4, g) / sag_torque_as_published(arms, 0.4, g),
-              -0.6 * (2.0 / 3.0) / 1.0, 1e-12);
-}
-
 TEST(Battery, LithiumFollowsFaraday) {
   EXPECT_NEAR(lithium_kg_C * 3600 * 1e3, 0.2589, 5e-5);  // g/Ah
   EXPECT_NEAR(lithium_as_published_kg_C * 3600 * 1e3, 0.3, 1e-12);
@@ -100,16 +88,10 @@ TEST(Battery, ReproducesThePaper) {
   EXPECT_NEAR(exact_m.x() / shift_m.x(), 0.2589 / 0.3, 2e-4);
 }
 
-TEST(Battery, OpposedCellsCancelInPlaceButNotInInertia) {
+TEST(Battery, OpposedCellsCancel) {
   const std::vector<BatteryCell> cells = {{{0.1, 0, 0}, {0.03, 0, 0}, 0.5},
                                           {{-0.1, 0, 0}, {-0.03, 0, 0}, 0.5}};
   EXPECT_EQ(com_shift_m_C(cells, 7.0).norm(), 0.0);
-  // Two point masses of dm/2 moving from 85 to 115 mm.
-  const double change_m2 = 0.115 * 0.115 - 0.085 * 0.085;
-  const Mat3 inertia = inertia_change_kg_m2_C(cells);
-  EXPECT_NEAR(inertia(1, 1) / (lithium_kg_C * change_m2), 1.0, 1e-12);
-  EXPECT_NEAR(inertia(2, 2) / (lithium_kg_C * change_m2), 1.0, 1e-12);
-  EXPECT_NEAR(inertia(0, 0), 0.0, 1e-22);
 }
 
 // Section III.B: 25 W over 24 h are 600 Wh, not the 360 Wh printed, which are 15 W.
@@ -131,7 +113,6 @@ MovingMass usual_mass() {
 TEST(MovingMasses, ReproduceThePaper) {
   EXPECT_NEAR(com_resolution_m(usual_mass(), 7.0), 1.79e-7, 0.005e-7);
   EXPECT_NEAR(horizontal_rounding_torque_N_m(usual_mass(), 0.0, g), 1.23e-5, 0.005e-5);
-  EXPECT_NEAR(vertical_rounding_torque_N_m(usual_mass(), pi / 2, g), 1.23e-5, 0.005e-5);
   EXPECT_NEAR(horizontal_rounding_torque_N_m(usual_mass(), pi / 2, g), 0.0, 1e-20);
 }
 

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "attitude/camera/accuracy.h"
+#include "attitude/camera/pose.h"
 #include "attitude/recordings/sensors.h"
 #include "core/constants.h"
 #include "core/transform.h"

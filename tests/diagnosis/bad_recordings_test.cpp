@@ -3,8 +3,8 @@
 
 #include <fstream>
 
+#include "attitude/estimation/segments.h"
 #include "attitude/observation/observation.h"
-#include "attitude/stretches/segments.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"
 

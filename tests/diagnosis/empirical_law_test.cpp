@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/fit.h"
 #include "attitude/propagation/run.h"
-#include "diagnosis/attitude/findings/account.h"
-#include "diagnosis/attitude/findings/empirical_torque.h"
-#include "diagnosis/attitude/scans/scan.h"
+#include "diagnosis/attitude/account.h"
+#include "diagnosis/attitude/effects/scan.h"
+#include "diagnosis/attitude/empirical_torque.h"
 #include "diagnosis/report/improved.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/rigid_body_recording.h"

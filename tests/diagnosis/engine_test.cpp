@@ -8,11 +8,12 @@
 #include <map>
 #include <random>
 
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/propagation/run.h"
 #include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/effects/screen.h"
 #include "diagnosis/attitude/effects/trial.h"
-#include "diagnosis/attitude/scans/scan.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 
 namespace photorque {

@@ -2,9 +2,10 @@
 // of an instrument, is named for it.
 #include <gtest/gtest.h>
 
-#include "attitude/estimation/nominal_model.h"
-#include "attitude/noise/bias_history.h"
-#include "attitude/noise/kinematics.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/observation/bias_history.h"
+#include "attitude/observation/kinematics.h"
+#include "attitude/propagation/run.h"
 #include "tests/diagnosis/noisy_recording.h"
 
 namespace photorque {

@@ -5,8 +5,7 @@
 #include <functional>
 #include <random>
 
-#include "attitude/noise/deviations.h"
-#include "attitude/noise/heavy_tails.h"
+#include "attitude/observation/heavy_tails.h"
 
 namespace photorque {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "attitude/studies/budget.h"
-#include "diagnosis/attitude/effects/catalogue.h"
+#include "diagnosis/attitude/effects/trial.h"
 #include "tests/attitude/disturbance_bench.h"
 #include "tests/kinds/kind_table.h"
 

@@ -1,4 +1,4 @@
-#include "diagnosis/attitude/findings/known_together.h"
+#include "diagnosis/attitude/account.h"
 
 #include <gtest/gtest.h>
 

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <random>
 
-#include "attitude/noise/discrepancy.h"
-#include "attitude/noise/reading_level.h"
+#include "attitude/estimation/segments.h"
+#include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
 #include "attitude/propagation/sampling.h"
-#include "attitude/readings/columns.h"
-#include "attitude/stretches/segments.h"
+#include "attitude/recordings/columns.h"
 #include "core/constants.h"
 #include "core/errors.h"
 #include "diagnosis/attitude/diagnose.h"

@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "attitude/camera/accuracy.h"
+#include "attitude/camera/pose.h"
 #include "attitude/model/dynamics.h"
 #include "tests/attitude/disturbance_bench.h"
 #include "tests/diagnosis/noisy_recording.h"

@@ -1,9 +1,10 @@
 // The noise of the instruments is found from the readings, whatever torque acts.
 #include <gtest/gtest.h>
 
-#include "attitude/estimation/nominal_model.h"
-#include "attitude/noise/search.h"
-#include "attitude/observation/whitening.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/observation/noise_search.h"
+#include "attitude/observation/prediction.h"
+#include "attitude/propagation/run.h"
 #include "core/errors.h"
 #include "tests/diagnosis/noisy_recording.h"
 

@@ -1,6 +1,6 @@
 // What a swinging appendage does to a platform that turns about one axis, against the step response
 // of a damped oscillator as every textbook has it.
-#include "diagnosis/attitude/scans/ringing.h"
+#include "diagnosis/attitude/effects/flexible_mode.h"
 
 #include <gtest/gtest.h>
 

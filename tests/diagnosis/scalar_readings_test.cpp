@@ -7,9 +7,8 @@
 #include <random>
 
 #include "attitude/estimation/conventions.h"
-#include "attitude/readings/angle_sequence.h"
-#include "attitude/readings/channels.h"
-#include "attitude/stretches/segments.h"
+#include "attitude/estimation/segments.h"
+#include "attitude/recordings/columns.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 

@@ -1,6 +1,6 @@
 // The cheapest way back to bounds against every way there is: of a quadratic form under bounds the
 // least stands where some parameters are on a bound and the slope by all others is zero.
-#include "inference/estimator/bounds.h"
+#include "inference/estimator/parameter.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "inference/estimator/fit.h"
-#include "inference/estimator/residual_model.h"
+#include "inference/estimator/forward_model.h"
 
 namespace photorque::inference {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "inference/estimator/fit.h"
-#include "inference/estimator/residual_model.h"
+#include "inference/estimator/forward_model.h"
 
 namespace photorque::inference {
 

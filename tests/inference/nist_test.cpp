@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "inference/estimator/fit.h"
-#include "inference/estimator/residual_model.h"
+#include "inference/estimator/forward_model.h"
 #include "tools/benchmarks/nist_strd.h"
 
 namespace photorque::inference {

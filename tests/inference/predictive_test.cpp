@@ -1,5 +1,5 @@
 // What a fit expects to leave of runs that it never saw, against draws of straight lines.
-#include "inference/estimator/predictive.h"
+#include "inference/estimator/evidence.h"
 
 #include <gtest/gtest.h>
 

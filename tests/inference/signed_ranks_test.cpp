@@ -1,4 +1,4 @@
-#include "inference/signed_ranks.h"
+#include "inference/whiteness.h"
 
 #include <gtest/gtest.h>
 

@@ -18,19 +18,10 @@ std::vector<double> white(uint64_t seed, size_t count, double size = 1.0) {
   return r;
 }
 
-TEST(Whiteness, MeasuresTheNoiseBesideWhatIsSlow) {
+TEST(Whiteness, ShowsWhatIsSlow) {
   std::vector<double> r = white(1, 4000, 2.0);
   for (size_t i = 0; i < r.size(); ++i) r[i] += 50.0 * std::sin(0.002 * static_cast<double>(i));
-  const Thresholds::Noise limits;
-  const Whiteness found = whiteness({{white(2, 4000), r}}, limits);
-  const double scatter = limits.difference_scatter / std::sqrt(4000.0);
-  EXPECT_NEAR(found.noise_ratio[0], 1.0, 4.0 * scatter);
-  EXPECT_NEAR(found.noise_ratio[1], 2.0, 2.0 * 4.0 * scatter);
-  EXPECT_GT(found.excess_sigma, 100.0);
-  EXPECT_FALSE(noise_correction(found, 0, limits).has_value());
-  EXPECT_EQ(noise_correction(found, 1, limits), found.noise_ratio[1]);
-  // Too few to tell.
-  EXPECT_EQ(whiteness({{white(3, 40, 5.0)}}, limits).noise_ratio[0], 1.0);
+  EXPECT_GT(whiteness({{white(2, 4000), r}}, {}).excess_sigma, 100.0);
 }
 
 // The excess of white noise has mean 0 and variance 1: means of neighbours are standard normals
@@ -45,21 +36,6 @@ TEST(Whiteness, ExcessOfWhiteNoiseIsAStandardNormal) {
   }
   EXPECT_NEAR(sum / seeds, 0.0, 4.0 / std::sqrt(seeds));
   EXPECT_NEAR(squares / seeds, 1.0, 4.0 * std::sqrt(2.5 / seeds));
-}
-
-// The number that thresholds.h gives as drawn.
-TEST(Whiteness, MedianOfSecondDifferencesScattersAsStated) {
-  constexpr int seeds = 1000;
-  constexpr size_t count = 402;
-  double sum = 0.0, squares = 0.0;
-  for (uint64_t seed = 0; seed < seeds; ++seed) {
-    const double ratio = whiteness({{white(seed, count)}}, {}).noise_ratio[0];
-    sum += ratio;
-    squares += ratio * ratio;
-  }
-  const double mean = sum / seeds, sigma = std::sqrt(squares / seeds - mean * mean);
-  const double stated = Thresholds::Noise{}.difference_scatter / std::sqrt(count - 2.0);
-  EXPECT_NEAR(sigma, stated, 4.0 * stated / std::sqrt(2.0 * seeds));
 }
 
 TEST(Whiteness, OutliersAreWhatNeighboursDoNotExpect) {

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "attitude/studies/budget.h"
-#include "diagnosis/attitude/effects/catalogue.h"
+#include "diagnosis/attitude/effects/trial.h"
 #include "images/writers/product.h"
 #include "receivers/kind.h"
 #include "sources/kind.h"

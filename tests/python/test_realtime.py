@@ -1,6 +1,5 @@
-"""The client of `serve` in Python: over UDP and shared memory, in lockstep, against the program."""
+"""The client of `serve` in Python: over UDP, in lockstep, against the program."""
 
-import os
 import re
 import struct
 import subprocess
@@ -60,13 +59,6 @@ class Lockstep(FolderTest):
             "propagate.output_rate_Hz=160", "--set",
             f'propagate.commands="{self.folder / "s" / "commands.csv"}"')
         self.assertEqual(content(files["recording.csv"]), content(again["recording.csv"]))
-
-    def test_shared_memory_gives_the_same_bits(self):
-        name = f"photorque_python_{os.getpid()}"
-        _, by_udp = self.served("u")
-        _, by_memory = self.served("m", "--set", 'serve.transport="shared_memory"', "--set",
-                                   f'serve.shared_memory="{name}"', shared_memory=name)
-        self.assertEqual(content(by_udp["recording.csv"]), content(by_memory["recording.csv"]))
 
 
 class Packets(unittest.TestCase):

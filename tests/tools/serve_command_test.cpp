@@ -1,8 +1,5 @@
 // `serve` as its clients meet it: what it sends, when commands act, and that a run in lockstep is
 // the one that `propagate` computes.
-#include <fcntl.h>
-#include <sys/file.h>
-
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -310,48 +307,6 @@ TEST_F(Paced, KeepsTheClockAndTellsItsDeadlines) {
   EXPECT_EQ(content(files("s").at("recording.csv")), content(files("p").at("recording.csv")));
 }
 
-TEST_F(Paced, SharesMemory) {
-  const std::string experiment = write("p.toml", served_platform);
-  const std::string name = "photorque_test_" + std::to_string(::getpid());
-  const Outcome got =
-      run("serve " + experiment +
-          " --set serve.transport=\\\"shared_memory\\\" --set serve.shared_memory=\\\"" + name +
-          "\\\" --set serve.wait_for_client=false --set propagate.duration_s=0.2 --out " + at("s"));
-  EXPECT_EQ(got.status, 0) << got.err;
-  EXPECT_THAT(got.out, HasSubstr("serving at /dev/shm/" + name));
-  EXPECT_FALSE(std::filesystem::exists("/dev/shm/" + name));
-}
-
-// What a killed run left is replaced; what no run made, or what one still serves, is not.
-TEST_F(Paced, TakesNoNameInSharedMemoryThatIsAnothers) {
-  const std::string experiment = write("p.toml", served_platform);
-  const std::string name = "photorque_taken_" + std::to_string(::getpid());
-  const std::filesystem::path file = "/dev/shm/" + name;
-  const std::string command =
-      "serve " + experiment +
-      " --set serve.transport=\\\"shared_memory\\\" --set serve.shared_memory=\\\"" + name +
-      "\\\" --set serve.wait_for_client=false --set propagate.duration_s=0.05 --out " + at("s");
-  std::ofstream(file) << "precious";
-  const Outcome others = run(command);
-  EXPECT_EQ(others.status, 2);
-  EXPECT_THAT(others.err, HasSubstr("which no run of serve made"));
-  EXPECT_EQ(file_text(file), "precious");
-  std::filesystem::remove(file);
-
-  photorque_shared_memory left{};
-  left.magic = PHOTORQUE_MAGIC;
-  std::ofstream(file).write(reinterpret_cast<const char*>(&left), sizeof left);
-  const int held = ::open(file.c_str(), O_RDWR);
-  ASSERT_EQ(::flock(held, LOCK_EX), 0);
-  const Outcome served = run(command);
-  EXPECT_EQ(served.status, 2);
-  EXPECT_THAT(served.err, HasSubstr("which another run serves"));
-  EXPECT_TRUE(std::filesystem::exists(file));
-  ::close(held);
-  EXPECT_EQ(run(command).status, 0);
-  EXPECT_FALSE(std::filesystem::exists(file));
-}
-
 // Twenty thousand packets of nonsense while the run goes on: none acts, refused ones are counted.
 // (A million at the door itself: realtime_test.cpp.)
 TEST_F(Paced, IsNotMovedByNonsense) {
@@ -384,7 +339,6 @@ TEST_F(Paced, WrongInputIsOneLineAndExitTwo) {
       {"serve.address=\\\"localhost\\\"", "expected an IPv4 address"},
       {"serve.address=\\\"192.0.2.1\\\"", "expected an address of this machine"},
       {"serve.port=70000", "serve.port"},
-      {"serve.shared_memory=\\\"../x\\\"", "letters, digits"},
       {"serve.to_client.loss=1.5", "serve.to_client.loss"},
       {"serve.to_client.trace=\\\"none.csv\\\"", "a file beside"},
       {"serve.rate=100", "perhaps \"rate_Hz\""},

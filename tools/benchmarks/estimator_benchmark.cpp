@@ -12,12 +12,13 @@
 #endif
 
 #include "attitude/disturbances/kind.h"
+#include "attitude/estimation/fit.h"
 #include "attitude/estimation/forward_model.h"
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/propagation/run.h"
 #include "core/constants.h"
 #include "core/numerics/random.h"
 #include "inference/estimator/fit.h"
-#include "inference/estimator/residual_model.h"
+#include "inference/estimator/forward_model.h"
 #include "tools/benchmarks/nist_strd.h"
 
 namespace photorque {

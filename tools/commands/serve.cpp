@@ -1,5 +1,5 @@
 // photorque serve: the platform in real time beside hardware and programs.
-#include "tools/realtime/run/serve.h"
+#include "tools/tasks/serve.h"
 
 #include "tools/commands/results.h"
 #include "tools/commands/terminal.h"
@@ -16,7 +16,7 @@ void run_serve(const CommandLine& line) {
 
 Verb kind() {
   return {"serve",
-          "The platform in real time: measurements out, commands in, over UDP or shared memory",
+          "The platform in real time: measurements out, commands in, over UDP",
           run_serve};
 }
 

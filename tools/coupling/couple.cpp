@@ -3,15 +3,89 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 
-#include "attitude/propagation/error_bound.h"
+#include "attitude/propagation/recorded.h"
 #include "core/constants.h"
 #include "core/errors.h"
+#include "core/files.h"
+#include "core/provenance.h"
+#include "core/snapshot.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
 #include "tools/coupling/report.h"
 
 namespace photorque {
+
+namespace {
+
+constexpr const char* checkpoint_format = "photorque checkpoint 1";
+constexpr uint64_t largest_checkpoint_bytes = 1ull << 36;
+
+// The text up to the next end of a line, which `text` then begins behind.
+std::string next_line(const std::string& text, size_t& at) {
+  const size_t end = text.find('\n', at);
+  if (end == std::string::npos) return {};
+  std::string line = text.substr(at, end - at);
+  at = end + 1;
+  return line;
+}
+
+std::string hash_of_run(const std::string& identity, const std::string& tilt) {
+  return content_hash(identity + tilt);
+}
+
+}  // namespace
+
+CheckpointFile::CheckpointFile(std::filesystem::path path, double every_s)
+    : path_(std::move(path)),
+      every_(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+          std::chrono::duration<double>(every_s))) {
+  wait();
+}
+
+void CheckpointFile::wait() {
+  next_ = std::chrono::steady_clock::now() + every_;
+}
+
+std::optional<CheckpointFile::Kept> CheckpointFile::read(const std::string& identity) {
+  std::error_code none;
+  if (!std::filesystem::exists(path_, none)) return {};
+  std::string all = read_file(path_, largest_checkpoint_bytes);
+  const auto refuse = [&](const char* found) {
+    throw InputError({path_.string()}, "", found,
+                     "a checkpoint of this run (another --out, or none there, begins anew)");
+  };
+  size_t at = 0;
+  if (next_line(all, at) != checkpoint_format) refuse("another file");
+  const std::string tilt = next_line(all, at);
+  const std::optional<double> tilt_rad = number_in(tilt);
+  if (next_line(all, at) != hash_of_run(identity, tilt)) {
+    refuse("a checkpoint of another program, experiment, seed or input file");
+  }
+  const std::string hash = next_line(all, at);
+  all.erase(0, at);
+  if (!tilt_rad || content_hash(all) != hash) refuse("a damaged checkpoint");
+  return Kept{*tilt_rad, std::move(all)};
+}
+
+void CheckpointFile::write(const std::string& identity, double table_tilt_rad,
+                           const std::string& state) {
+  const std::string tilt = shortest(table_tilt_rad);
+  const std::string head = std::string(checkpoint_format) + "\n" + tilt + "\n" +
+                           hash_of_run(identity, tilt) + "\n" + content_hash(state) + "\n";
+  // Not at once again if this fails.
+  wait();
+  write_file_whole(path_, [&](const std::filesystem::path& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    for (const std::string* part : {&head, &state}) {
+      out.write(part->data(), static_cast<std::streamsize>(part->size()));
+    }
+    out.close();
+    if (!out) throw InputError({path_.string()}, "", "a write that failed", "space and permission");
+  });
+  wait();
+}
 
 void require_light_once(const ExperimentFile& file) {
   const bool has_array = !file.others("array").empty();
@@ -237,23 +311,15 @@ class KeptState {
   std::optional<double> table_tilt_rad() const {
     return kept_ ? std::optional(kept_->table_tilt_rad) : std::nullopt;
   }
-  // For one run, the first of which goes on.
-  Checkpoints of_run(double table_tilt_rad) {
-    if (file_ == nullptr) return {};
-    Checkpoints checkpoints;
-    if (kept_) {
-      console_.line("goes on from " + file_->path().string());
-      checkpoints.from = std::move(kept_->state);
-      kept_.reset();
-    }
-    checkpoints.due = [this] { return file_->due(); };
-    checkpoints.keep = [this, table_tilt_rad](double time_s, const std::string& state) {
-      write(table_tilt_rad, time_s, state);
-    };
-    return checkpoints;
+  // The state that was kept, once: the first run goes on from it.
+  std::optional<std::string> take() {
+    if (!kept_) return {};
+    console_.line("goes on from " + file_->path().string());
+    std::string state = std::move(kept_->state);
+    kept_.reset();
+    return state;
   }
-
- private:
+  bool due() const { return file_ != nullptr && file_->due(); }
   // Hours of work do not end because of a disk that is full for a while.
   void write(double table_tilt_rad, double time_s, const std::string& state) const {
     try {
@@ -263,11 +329,40 @@ class KeptState {
     }
   }
 
+ private:
   const Console& console_;
   CheckpointFile* file_;
   std::string identity_;
   std::optional<CheckpointFile::Kept> kept_;
 };
+
+// One run: the motion, and beside it light and power, where there are any.
+PropagationResult step_through(const PropagationRun& run, const Console& console,
+                               CoupledRun* beside, double table_tilt_rad, KeptState& kept) {
+  RecordedRun recorded(run, console.progress("propagating"),
+                       beside != nullptr ? &beside->power() : nullptr);
+  const auto keep = [&](Snapshot& snapshot) {
+    recorded.keep(snapshot);
+    if (beside != nullptr) beside->keep(snapshot);
+  };
+  if (const std::optional<std::string> state = kept.take()) {
+    Snapshot snapshot(*state);
+    keep(snapshot);
+    if (!snapshot.is_whole()) {
+      throw InputError({}, "", "a state that does not fit the run", "one of an equal run");
+    }
+  }
+  if (beside != nullptr && !beside->has_begun()) beside->begin(recorded.motion());
+  while (recorded.advance()) {
+    if (beside != nullptr) beside->follow(recorded.motion());
+    recorded.record();
+    if (!kept.due()) continue;
+    Snapshot snapshot;
+    keep(snapshot);
+    kept.write(table_tilt_rad, recorded.motion().step_end_s(), snapshot.bytes());
+  }
+  return recorded.result();
+}
 
 // One run in light that is known up to a tilt; at it the run stops.
 void attempt(CoupledResult& result, const Console& console, const ExperimentFile& file,
@@ -293,9 +388,7 @@ void attempt(CoupledResult& result, const Console& console, const ExperimentFile
         std::make_unique<CoupledRun>(*result.light, result.table, outputs, std::move(supply),
                                      settings, run, run.model.platform.battery_voltage_V);
   }
-  const Companion companion = result.beside ? result.beside->companion() : Companion{};
-  result.motion = propagate(run, console.progress("propagating"),
-                            result.beside ? &companion : nullptr, kept.of_run(table_tilt_rad));
+  result.motion = step_through(run, console, result.beside.get(), table_tilt_rad, kept);
   if (result.table && !hits_tilt_limit(result.motion)) {
     result.attitude_error_rad = attitude_error_rad(run, *result.table, outputs.size());
   }
@@ -317,7 +410,7 @@ CoupledResult propagate_in_light(const RunOptions& options, const Console& conso
   const LightSettings settings = has_light(file) ? read_light(file) : LightSettings{};
   if (!has_light(file) || settings.mode == LightSettings::Mode::off) {
     KeptState kept(console, checkpoint, identity);
-    result.motion = propagate(run, console.progress("propagating"), nullptr, kept.of_run(0.0));
+    result.motion = step_through(run, console, nullptr, 0.0, kept);
     console.done();
     return result;
   }

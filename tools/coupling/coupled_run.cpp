@@ -55,7 +55,8 @@ CoupledRun::CoupledRun(const LightModel& light, std::shared_ptr<const RotationTa
       start_s_(run.initial.time_s),
       end_s_(run.initial.time_s + run.duration_s),
       battery_voltage_V_(battery_voltage_V),
-      start_charge_C_(run.initial.charge_drawn_C) {
+      start_charge_C_(run.initial.charge_drawn_C),
+      power_(run.initial.time_s, run.initial.charge_drawn_C) {
   for (const GroupOutput& group : outputs_) {
     has_sun_ = has_sun_ || group.group.is_sun;
     if (group.group.position > 0) continue;  // the same lamps as at the first
@@ -107,7 +108,6 @@ void CoupledRun::plan(double from_s) {
 
 void CoupledRun::begin(Propagator& motion) {
   begun_ = true;
-  known_until_s_ = start_s_;
   const std::vector<Lanes> y = at_one_instant(motion, start_s_);
   const double illumination =
       has_sun_ ? motion.dynamics().at(start_s_, {}, y.data()).illumination[0] : 1.0;
@@ -122,13 +122,11 @@ void CoupledRun::begin(Propagator& motion) {
     PowerSupply trial = *supply_;
     trial.step(start_s_, 1e-3, light_of(now));
     current_A = -trial.state().battery_W / battery_voltage_V_;
-    power_time_s_ = {start_s_};
-    power_ = {{current_A, trial.state().array_W, start_charge_C_}};
+    power_.add(start_s_, {current_A, trial.state().array_W, start_charge_C_});
     is_lit_ = true;
   }
   plan(start_s_);
-  motion.stop_at(segment_end_s_);
-  motion.drive(current_A, held_, start_charge_C_);
+  motion.exchange({current_A, held_, start_charge_C_, segment_end_s_});
 }
 
 // Attitude and light at the instants of the power system that the last step of the motion passed.
@@ -248,9 +246,8 @@ void CoupledRun::run_supply() {
     row.load_W += h * state.load_W;
     row.voltage_V += h * state.voltage_V;
     row.battery_current_A += h * -state.battery_W / battery_voltage_V_;
-    power_time_s_.push_back(instant.from_s + h);
     const double current_A = -state.battery_W / battery_voltage_V_;
-    power_.push_back({current_A, state.array_W, charge_C(*supply_)});
+    power_.add(instant.from_s + h, {current_A, state.array_W, charge_C(*supply_)});
     double emitted_W = 0.0, full_W = 0.0;
     for (const GroupOutput& group : outputs_) {
       emitted_W += group.group.emitted_W * group.at(instant.middle_s());
@@ -314,27 +311,19 @@ void CoupledRun::exchange(Propagator& motion) {
   double current_A = 0.0, drawn_C = y[component::charge][0];
   if (supply_ && !instants_.empty()) {
     run_supply();
-    current_A = power_.back().battery_current_A;
+    current_A = power_.last().battery_current_A;
     max_correction_C_ =
-        std::max(max_correction_C_, std::abs(power_.back().charge_drawn_C - drawn_C));
-    drawn_C = power_.back().charge_drawn_C;
+        std::max(max_correction_C_, std::abs(power_.last().charge_drawn_C - drawn_C));
+    drawn_C = power_.last().charge_drawn_C;
   }
-  known_until_s_ = now_s;
-  motion.drive(current_A, held_, drawn_C);
-  if (motion.ended()) return;
-  plan(now_s);
-  motion.stop_at(segment_end_s_);
-}
-
-Companion CoupledRun::companion() {
-  return {[this](Propagator& motion) { follow(motion); },
-          [this](double time_s) { return at(time_s); }, [this] { return known_until_s_; },
-          [this](Snapshot& snapshot) { keep(snapshot); }};
+  power_.know_until(now_s);
+  if (!motion.ended()) plan(now_s);
+  motion.exchange({current_A, held_, drawn_C, segment_end_s_});
 }
 
 void CoupledRun::keep(Snapshot& snapshot) {
   const size_t channels = light_.groups().size() * light_.channels_per_group();
-  snapshot(max_correction_C_, begun_, segment_from_s_, segment_end_s_, known_until_s_);
+  snapshot(max_correction_C_, begun_, segment_from_s_, segment_end_s_);
   snapshot(max_light_W_, last_light_W_, last_light_s_, is_lit_, held_, continuation_, emitted_);
   if (supply_) snapshot(*supply_);
   snapshot.each(instants_, [&](Instant& instant) {
@@ -350,14 +339,11 @@ void CoupledRun::keep(Snapshot& snapshot) {
     snapshot.fixed(traced.channels);
   });
   snapshot(traces_);
-  snapshot(power_time_s_, rows_);
-  power_.resize(power_time_s_.size());
-  snapshot.fixed(power_);
+  snapshot(power_, rows_);
   snapshot.each(events_, [&](Event& event) { snapshot(event.name, event.time_s, event.rising); });
 }
 
 void CoupledRun::follow(Propagator& motion) {
-  if (!begun_) return begin(motion);
   collect(motion);
   if (motion.step_end_s() >= segment_end_s_ || motion.ended()) exchange(motion);
 }
@@ -365,20 +351,6 @@ void CoupledRun::follow(Propagator& motion) {
 double CoupledRun::charge_C(const PowerSupply& supply) const {
   if (!supply.design().battery) return start_charge_C_;
   return (supply.design().battery->capacity_J - supply.stored_J()) / battery_voltage_V_;
-}
-
-CompanionPower CoupledRun::at(double time_s) const {
-  if (power_.empty()) return {.charge_drawn_C = start_charge_C_};
-  const auto after = std::ranges::lower_bound(power_time_s_, time_s);
-  const auto found = static_cast<size_t>(after - power_time_s_.begin());
-  const size_t i = std::min(found, power_.size() - 1);
-  CompanionPower power = power_[i];
-  if (i > 0) {
-    const double part = (time_s - power_time_s_[i - 1]) / (power_time_s_[i] - power_time_s_[i - 1]);
-    power.charge_drawn_C =
-        std::lerp(power_[i - 1].charge_drawn_C, power.charge_drawn_C, std::clamp(part, 0.0, 1.0));
-  }
-  return power;
 }
 
 }  // namespace photorque

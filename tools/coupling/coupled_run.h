@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "attitude/propagation/power_history.h"
 #include "attitude/propagation/run.h"
 #include "photovoltaics/supply/supply.h"
 #include "tools/coupling/light_model.h"
@@ -57,9 +58,15 @@ class CoupledRun {
              std::vector<GroupOutput> outputs, std::optional<PowerSupply> supply,
              const LightSettings& settings, const PropagationRun& run, double battery_voltage_V);
 
-  // To run it beside the motion; refers to this object.
-  Companion companion();
+  // Before the first step of the motion, unless the run goes on from a snapshot.
+  void begin(Propagator& motion);
+  bool has_begun() const { return begun_; }
+  // After every step of the motion: what it passed, and at the end of a segment the exchange.
+  void follow(Propagator& motion);
+  void keep(Snapshot& snapshot);
 
+  // What battery and array did so far.
+  const PowerHistory& power() const { return power_; }
   const std::vector<PowerRow>& rows() const { return rows_; }
   const std::optional<PowerSupply>& supply() const { return supply_; }
   // Of light and lamps; those of the battery are the supply's.
@@ -83,10 +90,6 @@ class CoupledRun {
     double illumination = 1.0;
     double middle_s() const { return from_s + 0.5 * length_s; }
   };
-  void follow(Propagator& motion);
-  void keep(Snapshot& snapshot);
-  CompanionPower at(double time_s) const;
-  void begin(Propagator& motion);
   void add_trace(double time_s, std::vector<double> channels);
   void plan(double from_s);
   void collect(Propagator& motion);
@@ -107,7 +110,7 @@ class CoupledRun {
   double step_s_, start_s_, end_s_, battery_voltage_V_;
   double start_charge_C_ = 0.0, max_correction_C_ = 0.0;
   bool begun_ = false, has_sun_ = false;
-  double segment_from_s_ = 0.0, segment_end_s_ = 0.0, known_until_s_ = 0.0;
+  double segment_from_s_ = 0.0, segment_end_s_ = 0.0;
   double max_light_W_ = 0.0, last_light_W_ = 0.0, last_light_s_ = 0.0;
   bool is_lit_ = true;
   std::vector<double> switches_s_;
@@ -116,8 +119,7 @@ class CoupledRun {
   std::vector<Traced> traced_;  // the last three
   size_t traces_ = 0;
   ContinuedTorque held_;
-  std::vector<double> power_time_s_;  // the ends of the power system's steps
-  std::vector<CompanionPower> power_;
+  PowerHistory power_;
   std::vector<PowerRow> rows_;
   std::vector<Event> events_;
   ContinuationError continuation_;

@@ -1,24 +1,168 @@
 #include "tools/fmi/pack.h"
 
 #include <dlfcn.h>
+#include <minizip/zip.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <memory>
+#include <pugixml.hpp>
+#include <sstream>
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text/parse.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/experiment/toml.h"
 #include "tools/fmi/archive.h"
 #include "tools/fmi/description.h"
 #include "tools/fmi/standard.h"
+#include "tools/fmi/unit.h"
 #include "tools/runs/attitude_run.h"
 
 namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
+
+void set_attribute(pugi::xml_node element, const char* name, const std::string& value) {
+  element.append_attribute(name).set_value(value.c_str());
+}
+
+// Shortest text that reads back as the same number.
+void set_attribute(pugi::xml_node element, const char* name, double value) {
+  set_attribute(element, name, shortest(value));
+}
+
+constexpr std::string_view unit_definitions = R"(<UnitDefinitions>
+  <Unit name="s"><BaseUnit s="1"/></Unit>
+  <Unit name="rad"><BaseUnit rad="1"/><DisplayUnit name="deg" factor="57.29577951308232"/></Unit>
+  <Unit name="rad/s"><BaseUnit s="-1" rad="1"/><DisplayUnit name="deg/s" factor="57.29577951308232"/></Unit>
+  <Unit name="N.m"><BaseUnit kg="1" m="2" s="-2"/></Unit>
+  <Unit name="A"><BaseUnit A="1"/></Unit>
+  <Unit name="W"><BaseUnit kg="1" m="2" s="-3"/></Unit>
+</UnitDefinitions>)";
+
+constexpr std::string_view log_categories = R"(<LogCategories>
+  <Category name="logEvents" description="what the run says"/>
+  <Category name="logStatusDiscard" description="values that were refused"/>
+  <Category name="logStatusError" description="what went wrong"/>
+</LogCategories>)";
+
+void append_variable(pugi::xml_node variables, const UnitVariable& variable,
+                     const UnitDescription& unit) {
+  using Kind = UnitVariable::Kind;
+  const bool is_flag = variable.kind == Kind::flag;
+  pugi::xml_node element = variables.append_child(is_flag ? "Boolean" : "Float64");
+  set_attribute(element, "name", variable.name);
+  set_attribute(element, "valueReference", std::to_string(variable.reference));
+  set_attribute(element, "description", variable.meaning);
+  if (variable.kind == Kind::time) {
+    set_attribute(element, "causality", "independent");
+    set_attribute(element, "variability", "continuous");
+  } else if (variable.kind == Kind::input) {
+    set_attribute(element, "causality", "input");
+    set_attribute(element, "variability", "continuous");
+  } else {
+    set_attribute(element, "causality", "output");
+    set_attribute(element, "variability", is_flag ? "discrete" : "continuous");
+    set_attribute(element, "initial", "calculated");
+  }
+  if (!variable.unit.empty()) set_attribute(element, "unit", variable.unit);
+  if (variable.kind == Kind::input) {
+    set_attribute(element, "min", -unit.max_torque_N_m);
+    set_attribute(element, "max", unit.max_torque_N_m);
+    set_attribute(element, "start", 0.0);
+  }
+}
+
+// Outputs at a tick depend on no input at that tick.
+void append_structure(pugi::xml_node root, const UnitDescription& unit) {
+  pugi::xml_node structure = root.append_child("ModelStructure");
+  for (const char* name : {"Output", "InitialUnknown"}) {
+    for (const UnitVariable& variable : unit.variables) {
+      if (variable.kind != UnitVariable::Kind::output &&
+          variable.kind != UnitVariable::Kind::flag) {
+        continue;
+      }
+      pugi::xml_node element = structure.append_child(name);
+      set_attribute(element, "valueReference", std::to_string(variable.reference));
+      set_attribute(element, "dependencies", "");
+    }
+  }
+}
+
+// modelDescription.xml: `name` of the model, `token` that a unit is instantiated with, `tool` that
+// made it.
+std::string model_description(const UnitDescription& unit, const std::string& name,
+                              const std::string& token, const std::string& tool) {
+  pugi::xml_document document;
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  set_attribute(declaration, "version", "1.0");
+  set_attribute(declaration, "encoding", "UTF-8");
+  pugi::xml_node root = document.append_child("fmiModelDescription");
+  set_attribute(root, "fmiVersion", "3.0");
+  set_attribute(root, "modelName", name);
+  set_attribute(root, "instantiationToken", token);
+  set_attribute(root, "description",
+                "A free-floating platform under its disturbances and its light");
+  set_attribute(root, "generationTool", tool);
+  set_attribute(root, "variableNamingConvention", "flat");
+  pugi::xml_node kind = root.append_child("CoSimulation");
+  set_attribute(kind, "modelIdentifier", "photorque");
+  set_attribute(kind, "canGetAndSetFMUState", "true");
+  set_attribute(kind, "canSerializeFMUState", "true");
+  set_attribute(kind, "canHandleVariableCommunicationStepSize", "true");
+  set_attribute(kind, "fixedInternalStepSize", 1.0 / unit.rate_Hz);
+  root.append_buffer(unit_definitions.data(), unit_definitions.size());
+  root.append_buffer(log_categories.data(), log_categories.size());
+  pugi::xml_node experiment = root.append_child("DefaultExperiment");
+  set_attribute(experiment, "startTime", unit.start_s);
+  set_attribute(experiment, "stopTime", unit.stop_s);
+  set_attribute(experiment, "stepSize", 1.0 / unit.rate_Hz);
+  pugi::xml_node variables = root.append_child("ModelVariables");
+  for (const UnitVariable& variable : unit.variables) append_variable(variables, variable, unit);
+  append_structure(root, unit);
+  std::ostringstream text;
+  document.save(text, "  ", pugi::format_indent, pugi::encoding_utf8);
+  return text.str();
+}
+
+// Writes a ZIP archive of files (name with '/', bytes) in this order. All have one date, so that
+// equal files give equal bytes.
+void write_archive(const fs::path& path,
+                   const std::vector<std::pair<std::string, std::string>>& files) {
+  constexpr uLong first_day = 0x21UL << 16;  // 1 January 1980 at midnight, as MS-DOS writes it
+  constexpr uLong made_on_unix = (3UL << 8) | 20, names_are_utf8 = 1UL << 11;
+  constexpr uLong regular_file = 0100644UL << 16;
+  constexpr size_t largest_plain = 0xffffffff;  // beyond: the ZIP64 format
+  zipFile archive = zipOpen64(path.c_str(), APPEND_STATUS_CREATE);
+  bool is_written = archive != nullptr;
+  for (const auto& [name, bytes] : files) {
+    if (!is_written) break;
+    zip_fileinfo about{};
+    about.dosDate = first_day;
+    about.external_fa = regular_file;
+    is_written =
+        zipOpenNewFileInZip4_64(archive, name.c_str(), &about, nullptr, 0, nullptr, 0, nullptr,
+                                Z_DEFLATED, Z_DEFAULT_COMPRESSION, 0, -MAX_WBITS, DEF_MEM_LEVEL,
+                                Z_DEFAULT_STRATEGY, nullptr, 0, made_on_unix, names_are_utf8,
+                                bytes.size() >= largest_plain ? 1 : 0) == ZIP_OK;
+    // The size of one write is an unsigned int.
+    constexpr size_t at_once = size_t{1} << 30;
+    for (size_t done = 0; is_written && done < bytes.size(); done += at_once) {
+      const size_t size = std::min(at_once, bytes.size() - done);
+      is_written =
+          zipWriteInFileInZip(archive, bytes.data() + done, static_cast<unsigned>(size)) == ZIP_OK;
+    }
+    is_written = is_written && zipCloseFileInZip(archive) == ZIP_OK;
+  }
+  if (archive != nullptr) is_written = zipClose(archive, nullptr) == ZIP_OK && is_written;
+  if (!is_written) {
+    throw InputError({path.string()}, "", "an archive that cannot be written", "space for it");
+  }
+}
 
 // Beside the program, or where it was installed to.
 fs::path unit_library() {
@@ -177,7 +321,9 @@ RunResult pack_unit(const RunOptions& options, const Console& console) {
                    model_description(unit, name, token, tool));
   try_unit(console, staging.path / "binaries" / "x86_64-linux" / "photorque.so", token, resources,
            1.0 / unit.rate_Hz);
-  const std::string archive = zip_archive(files_below(staging.path));
+  const fs::path packed = staging.path / "unit.fmu";
+  write_archive(packed, files_below(staging.path));
+  const std::string archive = read_file(packed);
   result.files.push_back({name + ".fmu",
                           [archive](const fs::path& path) { write_file_whole(path, archive); },
                           "for importers of FMI 3.0"});

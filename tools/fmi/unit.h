@@ -1,7 +1,9 @@
-// The platform as a co-simulation unit: a run of `propagate` that waits at every tick.
+// What goes into a co-simulation unit and what comes out: names, units, places.
 #pragma once
 
+#include <array>
 #include <condition_variable>
+#include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -9,10 +11,43 @@
 #include <thread>
 #include <vector>
 
-#include "tools/fmi/variables.h"
+#include "attitude/propagation/live.h"
+#include "attitude/recordings/sensors.h"
 #include "tools/runs/options.h"
 
 namespace photorque {
+
+struct UnitVariable {
+  enum class Kind { time, input, output, flag };
+  uint32_t reference = 0;  // the standard's handle
+  std::string name;        // as the columns of recording.csv and time_history.csv
+  Kind kind = Kind::output;
+  std::string unit;  // of modelDescription.xml; empty: a pure number
+  std::string meaning;
+};
+
+// References of the standard; outputs follow in the order of UnitOutputs::values.
+constexpr uint32_t time_reference = 0, first_input_reference = 1, first_output_reference = 10;
+
+// All of them, but those of instruments that the platform lacks.
+std::vector<UnitVariable> unit_variables(const Sensors& sensors);
+
+// The outputs at a tick. Readings that come less often than ticks are held in between.
+class UnitOutputs {
+ public:
+  static constexpr size_t numbers = 17, flags = 2;
+
+  void take(const LiveRow& row);
+  // By reference; null where there is no such output.
+  const double* number(uint32_t reference) const;
+  const bool* flag(uint32_t reference) const;
+
+ private:
+  std::array<double, numbers> numbers_{};
+  std::array<bool, flags> flags_{};
+};
+
+// The platform as a co-simulation unit: a run of `propagate` that waits at every tick.
 
 // What an experiment says of itself as a unit.
 struct UnitDescription {

@@ -1,7 +1,7 @@
 // [serve].
 #include "tools/keys/tables.h"
 #include "tools/realtime/photorque_serve.h"
-#include "tools/realtime/settings.h"
+#include "tools/realtime/session.h"
 
 namespace photorque {
 namespace {
@@ -41,12 +41,9 @@ Key serve_table() {
            "what the ticks follow"),
        Key::number_or("rate_Hz", usual.rate_Hz, {0.1, 1e5},
                       "ticks; also the rows of `recording.csv`"),
-       Key::choice_or("transport", words({"udp", "shared_memory"}), 0, "how packets go"),
        Key::text_or("address", usual.address, "where UDP listens, IPv4"),
        Key::integer_or("port", PHOTORQUE_PORT, 0, 65535,
                        "of UDP; 0: any that is free, which the first line says"),
-       Key::text_or("shared_memory", "photorque",
-                    "the file in `/dev/shm`: letters, digits, `_ - .`"),
        Key::flag_or("wait_for_client", true, "before the first tick"),
        Key::number_or("client_timeout_s", usual.client_timeout_s, {1e-3, 1e6},
                       "for the first hello and, in lockstep, for every answer; then the run ends "

@@ -1,5 +1,5 @@
 // [supply_trade].
-#include "attitude/supply/cable.h"
+#include "attitude/studies/cable.h"
 #include "core/constants.h"
 #include "tools/keys/tables.h"
 #include "tools/supply/options.h"

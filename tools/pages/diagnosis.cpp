@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <set>
 
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/propagation/run.h"
 #include "core/text/format.h"
 #include "scenes/experiment/toml.h"
 #include "tools/pages/charts.h"

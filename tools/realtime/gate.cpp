@@ -12,7 +12,6 @@ static_assert(std::endian::native == std::endian::little);
 static_assert(sizeof(photorque_header) == 48);
 static_assert(sizeof(photorque_command_packet) == 72);
 static_assert(sizeof(photorque_measurement_packet) == 256);
-static_assert(sizeof(photorque_shared_memory) == 352);
 
 Gate::Gate(uint64_t run, double max_torque_N_m, int64_t takeover_ns)
     : run_(run), max_torque_N_m_(max_torque_N_m), takeover_ns_(takeover_ns) {}

@@ -27,10 +27,6 @@ std::vector<double> read_trace(const Settings& settings, const std::filesystem::
 
 }  // namespace
 
-bool LinkSettings::is_perfect() const {
-  return delay_s == 0.0 && jitter_s == 0.0 && loss == 0.0 && burst_begin == 0.0 && trace_s.empty();
-}
-
 LinkSettings read_link(const Settings& settings, const std::filesystem::path& folder) {
   LinkSettings link;
   constexpr Range up_to_an_hour = {0.0, 3600.0};

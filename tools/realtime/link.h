@@ -29,8 +29,6 @@ struct LinkSettings {
   bool reorder = true;  // a packet may overtake another; else it waits for those before it
   // Measured delays, taken in turn instead of the above; negative: the packet was lost.
   std::vector<double> trace_s;
-
-  bool is_perfect() const;
 };
 
 // Reads a table with delay_s, jitter_s, jitter ("exponential", "uniform", "gaussian"), loss,

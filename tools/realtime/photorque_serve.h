@@ -1,8 +1,7 @@
 /* What `photorque serve` and its clients send each other: version 1. C99 and C++; no library
  * needed.
  *
- * Over UDP one packet is one structure; in shared memory both stand in photorque_shared_memory.
- * Every number is little-endian, every double IEEE 754; there is no padding. Times t are those of
+ * One UDP packet is one structure. Every number is little-endian, every double IEEE 754; there is no padding. Times t are those of
  * the simulation; *_ns are nanoseconds of the sender's CLOCK_MONOTONIC. Lab: x east, y north, z up.
  * Quaternions are w, x, y, z (Hamilton) and turn body vectors into the lab. docs/realtime.md says
  * when what is sent. Fill a command, then photorque_seal() it last. */
@@ -68,17 +67,6 @@ typedef struct {
   uint32_t flags;             /* enum photorque_flag */
   uint32_t refused;           /* packets of anybody that were refused so far */
 } photorque_measurement_packet;
-
-/* /dev/shm/NAME. A lock is odd while its packet is being written and rises by two with every
- * packet: read the lock, the packet, the lock again, until both are equal and even. */
-typedef struct {
-  uint32_t magic;
-  uint32_t version;
-  uint64_t measurement_lock; /* written by the server */
-  photorque_measurement_packet measurement;
-  uint64_t command_lock; /* written by the client: hello, command and goodbye alike */
-  photorque_command_packet command;
-} photorque_shared_memory;
 
 /* NOLINTEND(modernize-use-using) */
 

@@ -1,16 +1,41 @@
 #include "tools/realtime/session.h"
 
 #include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "attitude/propagation/run.h"
 #include "core/errors.h"
 #include "core/numerics/random.h"
 #include "core/text/parse.h"
+#include "tools/realtime/photorque_serve.h"
 
 namespace photorque {
+
+ServeSettings read_serve(const Settings& root) {
+  const Settings s = own_table(root, "serve", false);
+  ServeSettings serve;
+  serve.mode = static_cast<ServeSettings::Mode>(s.choice_or("mode", {"paced", "lockstep"}, 0));
+  serve.rate_Hz = s.number_or("rate_Hz", serve.rate_Hz, {0.1, 1e5});
+  serve.address = s.text_or("address", serve.address);
+  serve.port = static_cast<int>(s.integer_or("port", PHOTORQUE_PORT, 0, 65535));
+  serve.wait_for_client = s.flag_or("wait_for_client", true);
+  serve.client_timeout_s = s.number_or("client_timeout_s", serve.client_timeout_s, {1e-3, 1e6});
+  serve.max_torque_N_m = s.number_or("max_torque_N_m", serve.max_torque_N_m, Range::positive());
+  serve.hold_s = s.number_or("hold_s", std::numeric_limits<double>::infinity(), Range::positive());
+  serve.deadline_s = s.number_or("deadline_s", 1.0 / serve.rate_Hz, Range::positive());
+  serve.on_miss = static_cast<OnMiss>(s.choice_or("on_miss", {"catch_up", "slip", "stop"}, 0));
+  serve.spin_s = s.number_or("spin_s", serve.spin_s, {0.0, 1.0});
+  serve.realtime_priority = static_cast<int>(s.integer_or("realtime_priority", 0, 0, 99));
+  serve.send_truth = s.flag_or("send_truth", false);
+  const auto folder = std::filesystem::path(root.where().file).parent_path();
+  if (s.has("to_client")) serve.to_client = read_link(s.table("to_client"), folder);
+  if (s.has("from_client")) serve.from_client = read_link(s.table("from_client"), folder);
+  s.finish();
+  return serve;
+}
+
 namespace {
 
 enum LinkStream : uint64_t { stream_to_client = 0x70, stream_from_client };
@@ -28,9 +53,9 @@ uint64_t run_number() {
 
 }  // namespace
 
-Session::Session(const ServeSettings& settings, Transport transport, uint64_t seed, double start_s)
+Session::Session(const ServeSettings& settings, UdpSocket socket, uint64_t seed, double start_s)
     : settings_(settings),
-      transport_(std::move(transport)),
+      socket_(std::move(socket)),
       start_s_(start_s),
       run_(run_number()),
       gate_(run_, settings.max_torque_N_m,
@@ -80,7 +105,7 @@ void Session::meet_client() {
   while ((settings_.wait_for_client || !is_paced()) && !gate_.client()) {
     take_in(give_up_ns);
     if (monotonic_ns() > give_up_ns) {
-      throw NumericalError("no client came to " + transport_.where + " within " +
+      throw NumericalError("no client came to " + socket_.where + " within " +
                            shortest(settings_.client_timeout_s) + " s (serve.client_timeout_s)");
     }
   }
@@ -133,7 +158,7 @@ void Session::send(const photorque_measurement_packet& packet, uint32_t flags) {
   last_sent_.header.sent_ns = static_cast<uint64_t>(monotonic_ns());
   photorque_seal(&last_sent_.header, PHOTORQUE_MEASUREMENT, sizeof last_sent_);
   if (!gate_.client()) return;
-  transport_.send(last_sent_, *gate_.client());
+  socket_.send(last_sent_, *gate_.client());
   ++sent_;
 }
 
@@ -151,14 +176,14 @@ void Session::await_answer() {
                            shortest(settings_.client_timeout_s) + " s (serve.client_timeout_s)");
     }
     if (now_ns >= until_ns && !answered_ && gate_.client()) {
-      transport_.send(last_sent_, *gate_.client());
+      socket_.send(last_sent_, *gate_.client());
     }
   }
 }
 
 // Takes one packet in, waiting for it until `until_ns`; whether one was there.
 bool Session::take_in(int64_t until_ns) {
-  const std::optional<ReceivedBytes> got = transport_.receive(until_ns);
+  const std::optional<ReceivedBytes> got = socket_.receive(until_ns);
   if (!got) return false;
   const std::span<const std::byte> bytes(got->bytes.data(), std::min(got->size, got->bytes.size()));
   const std::optional<ClientPacket> packet = gate_.admit(bytes, got->sender, monotonic_ns());

@@ -1,19 +1,20 @@
 // Packets over UDP: one socket, never blocking.
+#include "tools/realtime/udp.h"
+
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <memory>
 
 #include "core/errors.h"
 #include "tools/realtime/clock.h"
-#include "tools/realtime/transport.h"
 
 namespace photorque {
+
 namespace {
 
 // A file descriptor that is closed with its last owner.
@@ -58,18 +59,9 @@ void sleep_for_packet(int socket, int64_t longest_ns) {
   ::ppoll(&wanted, 1, &timeout, nullptr);
 }
 
-std::optional<ReceivedBytes> receive_until(int socket, int64_t until_ns, int64_t spin_ns) {
-  for (;;) {
-    if (std::optional<ReceivedBytes> got = receive_now(socket)) return got;
-    const int64_t left_ns = until_ns - monotonic_ns();
-    if (left_ns <= 0) return {};
-    if (left_ns > spin_ns) sleep_for_packet(socket, left_ns - spin_ns);
-  }
-}
-
 }  // namespace
 
-Transport udp_transport(const std::string& address, int port, int64_t spin_ns) {
+UdpSocket::UdpSocket(const std::string& address, int port, int64_t spin_ns) : spin_ns_(spin_ns) {
   const auto fail = [&](const std::string& found, const std::string& expected) {
     return InputError({}, "serve.address", found, expected);
   };
@@ -81,24 +73,29 @@ Transport udp_transport(const std::string& address, int port, int64_t spin_ns) {
   }
   const int raw = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (raw < 0) throw fail(std::strerror(errno), "a UDP socket");
-  const std::shared_ptr<const int> socket = owned(raw);
+  socket_ = owned(raw);
   if (::bind(raw, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) {
     throw fail(address + ":" + std::to_string(port) + ", " + std::strerror(errno),
                "an address of this machine and a port that is free");
   }
   socklen_t size = sizeof own;
   ::getsockname(raw, reinterpret_cast<sockaddr*>(&own), &size);
-  Transport transport;
-  transport.where = address + ":" + std::to_string(ntohs(own.sin_port));
-  transport.send = [socket](const photorque_measurement_packet& packet, uint64_t client) {
-    const sockaddr_in to = address_of(client);
-    ::sendto(*socket, &packet, sizeof packet, MSG_DONTWAIT | MSG_NOSIGNAL,
-             reinterpret_cast<const sockaddr*>(&to), sizeof to);
-  };
-  transport.receive = [socket, spin_ns](int64_t until_ns) {
-    return receive_until(*socket, until_ns, spin_ns);
-  };
-  return transport;
+  where_ = address + ":" + std::to_string(ntohs(own.sin_port));
+}
+
+void UdpSocket::send(const photorque_measurement_packet& packet, uint64_t client) const {
+  const sockaddr_in to = address_of(client);
+  ::sendto(*socket_, &packet, sizeof packet, MSG_DONTWAIT | MSG_NOSIGNAL,
+           reinterpret_cast<const sockaddr*>(&to), sizeof to);
+}
+
+std::optional<ReceivedBytes> UdpSocket::receive(int64_t until_ns) const {
+  for (;;) {
+    if (std::optional<ReceivedBytes> got = receive_now(*socket_)) return got;
+    const int64_t left_ns = until_ns - monotonic_ns();
+    if (left_ns <= 0) return {};
+    if (left_ns > spin_ns_) sleep_for_packet(*socket_, left_ns - spin_ns_);
+  }
 }
 
 }  // namespace photorque

@@ -3,9 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "attitude/supply/coil_link.h"
-#include "attitude/supply/eddy_sphere.h"
-#include "attitude/supply/microwave.h"
+#include "attitude/studies/coil_link.h"
+#include "attitude/studies/microwave.h"
 #include "core/constants.h"
 #include "core/text/parse.h"
 #include "core/transform.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "attitude/disturbances/mass/battery.h"
-#include "attitude/supply/cable.h"
+#include "attitude/studies/cable.h"
 #include "core/text/format.h"
 #include "core/text/parse.h"
 #include "tools/supply/options.h"

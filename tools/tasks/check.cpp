@@ -16,7 +16,7 @@
 #include "scenes/experiment/toml.h"
 #include "tools/coupling/couple.h"
 #include "tools/keys/registry.h"
-#include "tools/realtime/settings.h"
+#include "tools/realtime/session.h"
 #include "tools/runs/array_power.h"
 #include "tools/runs/attitude_run.h"
 #include "tools/supply/task.h"
@@ -224,8 +224,7 @@ class Checker {
     attempt([&] { say_propagation(read_propagation(settings)); });
     attempt([&] {
       const ServeSettings serve = read_serve(settings);
-      add("serve", show(serve.rate_Hz) + " Hz " +
-                       (serve.by_shared_memory ? "in shared memory" : "at " + serve.address));
+      add("serve", show(serve.rate_Hz) + " Hz at " + serve.address);
     });
     add("fmu", "a unit for co-simulation by FMI 3.0");
     if (settings.has("supply_trade")) {

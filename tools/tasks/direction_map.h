@@ -1,7 +1,7 @@
 // torque-map over directions of light: the table of a body in sunlight.
 #pragma once
 
-#include "tools/coupling/checkpoint_file.h"
+#include "tools/coupling/couple.h"
 #include "tools/tasks/torque_map.h"
 
 namespace photorque {

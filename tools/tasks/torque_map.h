@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/wrench.h"
-#include "tools/coupling/checkpoint_file.h"
+#include "tools/coupling/couple.h"
 #include "tools/runs/optical_run.h"
 
 namespace photorque {

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <sstream>
 
+#include "attitude/estimation/segments.h"
 #include "attitude/filtering/report.h"
 #include "attitude/propagation/run.h"
-#include "attitude/stretches/segments.h"
 #include "core/errors.h"
 #include "tools/runs/camera_sight.h"
 

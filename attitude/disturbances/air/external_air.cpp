@@ -79,13 +79,6 @@ double disc_torque_as_published(const AirPart& disc, const Air& air, double rate
          std::sqrt(air.viscosity_Pa_s * std::pow(rate_rad_s, 3));
 }
 
-double plate_torque_as_published(const AirPart& plate, const Air& air, double rate_rad_s) {
-  const double reynolds = air_flow(plate, air, rate_rad_s).reynolds;
-  return plate.count * blasius_mean / (2.0 * std::sqrt(reynolds)) * air.density_kg_m3 *
-         air.viscosity_Pa_s * rate_rad_s * rate_rad_s * std::pow(plate.distance_m, 3) *
-         plate.area_m2;
-}
-
 AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s) {
   const double per_m2 = rate_rad_s / air.kinematic_viscosity_m2_s();
   const double outermost_m = part.shape == AirShape::radial_cylinder
@@ -104,37 +97,6 @@ AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s) {
       return {per_m2 * outermost_m * 2.0 * part.radius_m, cylinder_transition, smallest_for_wake};
     case AirShape::blunt_face:  // sharp edges fix the separation: no drag crisis
       return {per_m2 * outermost_m * std::sqrt(part.area_m2), 1e9, smallest_for_wake};
-  }
-  return {};
-}
-
-double exposed_fraction(double socket_half_angle_rad) {
-  const double s = std::sin(0.5 * socket_half_angle_rad);
-  return 1.0 - s * s * s * s * (3.0 - 2.0 * s * s);
-}
-
-double exposed_fraction_as_published(double socket_half_angle_rad) {
-  return socket_half_angle_rad / pi;
-}
-
-std::vector<AirPart> parts_of_topology(Topology topology, AirPart plate, AirPart cylinder,
-                                       AirPart sphere, int cylinders,
-                                       double sphere_exposed_fraction) {
-  switch (topology) {
-    case Topology::dumbbell:
-      plate.count *= 2.0;
-      cylinder.count *= 2.0;
-      return {plate, cylinder, sphere};
-    case Topology::tabletop:
-      cylinder.count *= cylinders;
-      return {plate, cylinder};
-    case Topology::hollow:
-      sphere.count *= sphere_exposed_fraction;
-      return {sphere};
-    case Topology::free:
-    case Topology::one_axis:
-    case Topology::planar:
-      break;
   }
   return {};
 }

@@ -50,10 +50,8 @@ struct Air {
   double kinematic_viscosity_m2_s() const { return viscosity_Pa_s / density_kg_m3; }
 };
 
-// Howarth's coefficient as the paper prints it (eq. 21), and the one that follows from the moment
-// coefficient 6.54/√Re that is also quoted for the laminar sphere.
+// Howarth's coefficient as the paper prints it (eq. 21).
 inline constexpr double sphere_moment_howarth = 2.93;
-inline constexpr double sphere_moment_654 = 3.27;
 
 // Torque = friction · ω^1.5 + form · ω².
 struct AirCoefficients {
@@ -67,10 +65,9 @@ struct AirCoefficients {
 AirCoefficients air_coefficients(const AirPart& part, const Air& air);
 AirCoefficients air_coefficients(const std::vector<AirPart>& parts, const Air& air);
 
-// Eq. 18 and 20 as printed, with the symbol μ read as the dynamic viscosity, for comparison alone.
-// Neither is a torque by its units.
+// Eq. 18 as printed, with the symbol μ read as the dynamic viscosity, for comparison alone. It is
+// no torque by its units.
 double disc_torque_as_published(const AirPart& disc, const Air& air, double rate_rad_s);
-double plate_torque_as_published(const AirPart& plate, const Air& air, double rate_rad_s);
 
 // Whether the laws' assumptions hold at a rate.
 struct AirFlow {
@@ -82,19 +79,6 @@ struct AirFlow {
   }
 };
 AirFlow air_flow(const AirPart& part, const Air& air, double rate_rad_s);
-
-// Fraction of the torque on a whole sphere that a ball feels which sits in a socket up to the polar
-// angle θ_S, if the shear is taken proportional to the surface's speed: 1 − ∫₀^θS sin³ / (4/3).
-double exposed_fraction(double socket_half_angle_rad);
-// θ_S / π, as the paper's figure of the hollow platform prints: the fraction of the socket.
-double exposed_fraction_as_published(double socket_half_angle_rad);
-
-// The paper's decomposition of a platform. Dumbbell: two plates, two cylinders, one sphere.
-// Tabletop: one plate, `cylinders` cylinders. Hollow: the exposed fraction of one sphere. The
-// counts of the given parts are multiplied by these. A free body has no decomposition: empty.
-std::vector<AirPart> parts_of_topology(Topology topology, AirPart plate, AirPart cylinder,
-                                       AirPart sphere, int cylinders,
-                                       double sphere_exposed_fraction);
 
 // The parts of an experiment: `[[disturbance.part]]` or the like. Keys: name, shape, count,
 //   disc: radius_m, faces; plate: length_m, area_m2, distance_m, faces;

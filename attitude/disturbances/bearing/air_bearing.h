@@ -28,8 +28,6 @@ double load_capacity_N(const SphericalSocket& socket, double inlet_Pa, double am
 // half angles of 90 to 30 deg at 5 bar. For comparison with the paper alone.
 double load_capacity_as_published_N(const SphericalSocket& socket, double inlet_Pa,
                                     double ambient_Pa);
-// Eq. 8 as printed: eq. 7 for ambient pressure ≪ inlet pressure.
-double load_capacity_high_pressure_as_published_N(const SphericalSocket& socket, double inlet_Pa);
 
 // The drag torque about the centre is −D ω with D = axial s sᵀ + transverse (1 − s sᵀ), s the
 // socket's axis. Both > 0.
@@ -40,15 +38,53 @@ struct FilmDrag {
 
 // Couette flow across the film (eq. 14–17): D = μ R⁴/h ∫ (1 − n nᵀ) dΩ over the film. Its axial
 // part is the closed form of eq. 17; the transverse part is the same integral for a tilting ball.
-// Relative error of order h/R; see couette_curvature_factor().
+// Relative error 2 h/R, of the curvature.
 FilmDrag film_drag(const SphericalSocket& socket, double viscosity_Pa_s);
 
-// Torque between concentric spheres R and R + h (eq. 9, exact) over that of the plane film (eq.
-// 15): 3 h (R + h)³ / (R ((R + h)³ − R³)), which is 1 + 2 h/R + …
-double couette_curvature_factor(double radius_m, double gap_m);
-
 // The paper's load-dependent gap: a spring of the catalogue's stiffness about the rated point [m].
-// Real films are much softer than that towards small loads: see air_film.h. At least 0.
+// Real films are much softer than that towards small loads: see gap_under_load_m(). At least 0.
 double spring_gap_m(double rated_gap_m, double rated_load_N, double stiffness_N_m, double load_N);
+
+// How thick the air film is: supply, restrictor and compressible film in balance.
+//
+// The closed forms above need a gap. A catalogue quotes it at one load; at another load
+// the film settles where the flow that the restrictor lets through equals the flow that the film
+// lets out. The model is isothermal, laminar, and of uniform gap.
+//
+// Source: Reynolds' equation for p² (Hamrock, Schmid, Jacobson, Fundamentals of Fluid Film
+// Lubrication, 2nd ed., ch. 7 and 16), nozzle flow (White, Fluid Mechanics, 7th ed.,
+// eq. 9.44–9.46).
+
+// Air where it leaves the bearing.
+struct FilmAir {
+  double pressure_Pa = 101325.0;
+  double temperature_K = 293.15;
+  double viscosity_Pa_s = 1.813e-5;
+};
+
+// A load and what it takes.
+struct FilmState {
+  double load_N = 0.0;
+  double flow_kg_s = 0.0;
+  double inlet_Pa = 0.0;  // absolute, behind the restrictor
+};
+
+// A socket fed through small holes into its recess (θ_r > 0).
+struct OrificeFeed {
+  double supply_Pa = 0.0;              // absolute, above ambient
+  double hole_area_m2 = 0.0;           // of all holes
+  double discharge_coefficient = 0.8;  // of sharp-edged holes
+};
+
+// The film at the socket's gap. NumericalError unless θ_r > 0 and the supply exceeds the ambient
+// pressure. Accuracy of the balance 1e-10.
+FilmState orifice_fed_film(const SphericalSocket& socket, const OrificeFeed& feed,
+                           const FilmAir& air);
+
+// The gap at which the film carries `load_N` [m]; the socket's own gap is not used. NumericalError
+// for a load at or above what the full supply pressure can carry, or too small for any gap up to
+// a hundredth of the radius.
+double gap_under_load_m(const SphericalSocket& socket, const OrificeFeed& feed, const FilmAir& air,
+                        double load_N);
 
 }  // namespace photorque

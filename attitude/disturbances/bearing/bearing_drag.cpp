@@ -6,9 +6,8 @@
 // (1)} of air_bearing.h, whose gap holds at the platform's own weight unless it also has
 //   rated_load_N, stiffness_N_m: gap_m is the rated gap of a spring (the paper's model), or
 //   supply_Pa (absolute), hole_area_mm2, discharge_coefficient (0.8): gap_m is found from the
-//   balance of air_film.h and must not be given.
+//   balance of air_bearing.h and must not be given.
 #include "attitude/disturbances/bearing/air_bearing.h"
-#include "attitude/disturbances/bearing/air_film.h"
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::bearing_drag {

@@ -1,8 +1,8 @@
 // A dipole in the ambient field: T = m × B_B (eq. 26–28).
 //
-// dipole_A_m2[3]: body axes; or one [[disturbance.loop]] per current loop of current_loop.h
+// dipole_A_m2[3]: body axes; or one [[disturbance.loop]] per current loop of coil_cage.h
 // (current_A, turns, area_m2[3] or corners_m), summed. Remanent steel and loops look the same.
-#include "attitude/disturbances/fields/current_loop.h"
+#include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
 
 namespace photorque::kinds::magnetic_dipole {

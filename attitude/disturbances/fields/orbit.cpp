@@ -12,7 +12,8 @@
 
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
-#include "attitude/environment/eclipse.h"
+#include "attitude/environment/sun.h"
+#include "core/constants.h"
 
 namespace photorque::kinds::orbit {
 namespace {

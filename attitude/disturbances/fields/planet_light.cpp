@@ -11,7 +11,7 @@
 // The planet's night side reflects nothing, so that an eclipse shows by itself; infrared stays.
 
 #include "attitude/disturbances/fields/coil_cage.h"
-#include "attitude/disturbances/fields/surface_lookup.h"
+#include "attitude/disturbances/fields/torque_surface.h"
 #include "attitude/disturbances/kind.h"
 #include "attitude/environment/planet_light.h"
 #include "core/constants.h"

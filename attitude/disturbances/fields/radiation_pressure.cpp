@@ -15,7 +15,7 @@
 // irradiance already (docs/physics.md).
 #include <array>
 
-#include "attitude/disturbances/fields/surface_lookup.h"
+#include "attitude/disturbances/fields/torque_surface.h"
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 

@@ -10,6 +10,7 @@
 #include "core/text/parse.h"
 
 namespace photorque {
+
 namespace {
 
 struct Cubic {

@@ -33,11 +33,6 @@ struct BatteryCell {
 Vec3 com_shift_m_C(std::span<const BatteryCell> cells, double platform_mass_kg,
                    double lithium_per_charge_kg_C = lithium_kg_C);
 
-// Change of the inertia about the centre of rotation per charge drawn [kg m²/C]; this one does not
-// cancel in symmetric pairs.
-Mat3 inertia_change_kg_m2_C(std::span<const BatteryCell> cells,
-                            double lithium_per_charge_kg_C = lithium_kg_C);
-
 // What the platform consumes over an experiment.
 struct LoadPhase {
   double duration_s = 0.0;

@@ -24,10 +24,6 @@ double horizontal_rounding_torque_N_m(const MovingMass& mass, double tilt_rad,
   return 0.5 * mass.pitch_m() * mass.mass_kg * gravity_m_s2 * std::cos(tilt_rad);
 }
 
-double vertical_rounding_torque_N_m(const MovingMass& mass, double tilt_rad, double gravity_m_s2) {
-  return 0.5 * mass.pitch_m() * mass.mass_kg * gravity_m_s2 * std::sin(tilt_rad);
-}
-
 std::vector<MovingMass> eight_masses(const MovingMass& pattern) {
   std::vector<MovingMass> masses(8, pattern);
   for (size_t i = 0; i < masses.size(); ++i) {

@@ -27,10 +27,9 @@ struct MovingMass {
 // Resolution of the centre of mass along one axis [m]: half a step, ½ Δφ/2π · lead · m_m/m_tot.
 double com_resolution_m(const MovingMass& mass, double platform_mass_kg);
 
-// Eq. 1: torque of half a step on an axis that is horizontal (∝ cos θ) or vertical (∝ sin θ) at
-// zero tilt, at a tilt across it [N m].
+// Eq. 1: torque of half a step on an axis that is horizontal at zero tilt, at a tilt across it [N
+// m].
 double horizontal_rounding_torque_N_m(const MovingMass& mass, double tilt_rad, double gravity_m_s2);
-double vertical_rounding_torque_N_m(const MovingMass& mass, double tilt_rad, double gravity_m_s2);
 
 // Eight equal masses as the paper's platform has them: two along each horizontal axis and four
 // along the vertical one.

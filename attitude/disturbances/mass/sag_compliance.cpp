@@ -49,18 +49,4 @@ double sag_torque_N_m(const CounterbalanceBeams& beams, double tilt_rad, double 
   return gravity_m_s2 * gravity_m_s2 * sagging_moment_kg_s2(beams) * 0.5 * std::sin(2.0 * tilt_rad);
 }
 
-double sag_torque_as_published(const DumbbellArms& arms, double tilt_rad, double gravity_m_s2) {
-  const double M = arms.end_mass_kg, m = arms.beam_mass_kg;
-  return gravity_m_s2 * gravity_m_s2 * arms.length_m * arms.length_m *
-         (std::sin(2.0 * tilt_rad) - 2.0 * std::sin(tilt_rad)) *
-         (12.0 * M * M + 8.0 * M * m + m * m) / (24.0 * arms.bending_stiffness_N_m2);
-}
-
-double sag_torque_as_published(const CounterbalanceBeams& beams, double tilt_rad,
-                               double gravity_m_s2) {
-  return gravity_m_s2 * gravity_m_s2 * beams.length_m * beams.length_m * beams.total_mass_kg *
-         beams.total_mass_kg * std::sin(2.0 * tilt_rad) /
-         (48.0 * beams.bending_stiffness_N_m2 * beams.count);
-}
-
 }  // namespace photorque

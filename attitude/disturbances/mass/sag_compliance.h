@@ -39,10 +39,4 @@ Mat3 sag_compliance_s2(const CounterbalanceBeams& beams, double platform_mass_kg
 double sag_torque_N_m(const DumbbellArms& arms, double tilt_rad, double gravity_m_s2);
 double sag_torque_N_m(const CounterbalanceBeams& beams, double tilt_rad, double gravity_m_s2);
 
-// Eq. 2 and 3 as printed, signs included. Their unit is N: one length is missing. For comparison
-// with the paper alone.
-double sag_torque_as_published(const DumbbellArms& arms, double tilt_rad, double gravity_m_s2);
-double sag_torque_as_published(const CounterbalanceBeams& beams, double tilt_rad,
-                               double gravity_m_s2);
-
 }  // namespace photorque

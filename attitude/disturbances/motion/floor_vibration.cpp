@@ -11,7 +11,6 @@
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/motion/vibration.h"
-#include "attitude/disturbances/sinusoid.h"
 #include "attitude/environment/time_series.h"
 
 namespace photorque::kinds::floor_vibration {

@@ -3,7 +3,7 @@
 // torque_N_m[3], frequency_Hz, phase [rad] (or phase_deg; default 0).
 
 #include "attitude/disturbances/kind.h"
-#include "attitude/disturbances/sinusoid.h"
+#include "attitude/disturbances/motion/vibration.h"
 
 namespace photorque::kinds::periodic_torque {
 namespace {

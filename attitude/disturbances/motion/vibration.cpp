@@ -8,6 +8,7 @@
 #include "core/numerics/random.h"
 
 namespace photorque {
+
 namespace {
 
 // ∫ of the piecewise linear density from the first point to f.
@@ -58,12 +59,6 @@ std::vector<VibrationTone> tones_of_spectrum(std::span<const SpectrumPoint> spec
     all.push_back(tone);
   }
   return all;
-}
-
-Vec3 mean_square_m2_s4(std::span<const VibrationTone> tones) {
-  Vec3 sum = Vec3::Zero();
-  for (const VibrationTone& tone : tones) sum += 0.5 * tone.amplitude_lab_m_s2.cwiseAbs2();
-  return sum;
 }
 
 }  // namespace photorque

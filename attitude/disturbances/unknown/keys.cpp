@@ -11,11 +11,11 @@ struct VariableKeys {
   double reference_SI;  // where its powers are 1
   double least_power;
 };
-constexpr VariableKeys variables[] = {{"tilt", "deg", 0.1, 1.0},
-                                      {"rate", "rad_s", 0.1, 1.0},
-                                      {"time", "s", 100.0, 0.0},
-                                      {"charge", "Ah", 3600.0, 1.0},
-                                      {"command", "N_m", 1e-4, 1.0}};
+constexpr VariableKeys shape_variables[] = {{"tilt", "deg", 0.1, 1.0},
+                                            {"rate", "rad_s", 0.1, 1.0},
+                                            {"time", "s", 100.0, 0.0},
+                                            {"charge", "Ah", 3600.0, 1.0},
+                                            {"command", "N_m", 1e-4, 1.0}};
 constexpr double most_order = 200.0;
 
 void add_keys_of(const VariableKeys& variable, std::vector<Key>& keys) {
@@ -54,7 +54,7 @@ std::vector<Key> empirical_shape_keys() {
       Key::numbers("heading_orders", {1.0, most_order},
                    "whole, rising: cos nψ, sin nψ of the heading for each n")
           .optional()};
-  for (const VariableKeys& variable : variables) add_keys_of(variable, keys);
+  for (const VariableKeys& variable : shape_variables) add_keys_of(variable, keys);
   return joined(
       {keys,
        {Key::uncertain("time_constant_s", Range::positive(), "exp(−t/τ); *or*").optional(),

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "attitude/estimation/nominal_model.h"
+#include "attitude/estimation/fit.h"
+#include "attitude/propagation/run.h"
 
 namespace photorque {
 namespace {

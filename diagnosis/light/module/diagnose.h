@@ -7,7 +7,7 @@
 
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/light/module/design.h"
-#include "inference/limits/thresholds.h"
+#include "inference/estimator/thresholds.h"
 
 namespace photorque {
 

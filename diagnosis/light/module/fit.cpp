@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "inference/estimator/evidence.h"
-#include "inference/estimator/residual_model.h"
+#include "inference/estimator/forward_model.h"
 
 namespace photorque {
 namespace {

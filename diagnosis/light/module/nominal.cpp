@@ -8,7 +8,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "inference/estimator/fit.h"
-#include "inference/estimator/residual_model.h"
+#include "inference/estimator/forward_model.h"
 
 namespace photorque {
 namespace {

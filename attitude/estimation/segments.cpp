@@ -1,0 +1,379 @@
+#include "attitude/estimation/segments.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "attitude/recordings/columns.h"
+#include "core/errors.h"
+#include "core/text/format.h"
+
+namespace photorque {
+
+namespace {
+
+// Start and rate of an axis are two numbers, its torque one more: fewer readings say nothing of it.
+constexpr size_t least_of_stretch = 6;
+
+// Gaps over which nothing can be propagated with profit: longer than a quarter of all the time that
+// was read, and than a hundred intervals. A clock that jumps makes such a gap.
+double long_gap_s(const Recording& recording) {
+  const RecordingReport& report = recording.report;
+  double read_s = recording.time_s.back() - recording.time_s.front();
+  std::vector<double> gaps_s;
+  for (const RecordingReport::Gap& gap : report.gaps) gaps_s.push_back(gap.to_s - gap.from_s);
+  std::sort(gaps_s.begin(), gaps_s.end());
+  // The longest first: whether it is long is asked of what was read without it.
+  double longest_s = std::numeric_limits<double>::infinity();
+  while (!gaps_s.empty()) {
+    const double gap_s = gaps_s.back();
+    if (gap_s < 0.25 * (read_s - gap_s) || gap_s < 100.0 * report.median_interval_s) break;
+    longest_s = gap_s;
+    read_s -= gap_s;
+    gaps_s.pop_back();
+  }
+  return longest_s;
+}
+
+double median_of(std::vector<double> sizes) {
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
+}
+
+// The size of most of these. Between the steps of an encoder nothing changes but by rounding: of
+// such readings, of those that do change.
+double usual_of(const std::vector<double>& sizes) {
+  constexpr double rounding = 1e-6, fewest_steps = 0.005;
+  const double usual = median_of(sizes), least = rounding * std::ranges::max(sizes);
+  if (usual > least) return usual;
+  std::vector<double> steps;
+  for (const double size : sizes) {
+    if (size > least) steps.push_back(size);
+  }
+  const double fewest = std::max(10.0, fewest_steps * static_cast<double>(sizes.size()));
+  return static_cast<double>(steps.size()) < fewest ? usual : median_of(steps);
+}
+
+// Of each the largest of the medians over so many about it, before them and after them.
+std::vector<double> usual_nearby(const std::vector<double>& sizes) {
+  constexpr size_t many = 32;
+  const size_t stretches = std::max<size_t>(1, sizes.size() / many);
+  std::vector<double> medians;
+  for (size_t s = 0; s < stretches; ++s) {
+    const auto first = sizes.begin() + static_cast<std::ptrdiff_t>(s * many);
+    medians.push_back(median_of({first, s + 1 < stretches ? first + many : sizes.end()}));
+  }
+  std::vector<double> usual;
+  for (size_t i = 0; i < sizes.size(); ++i) {
+    const size_t at = std::min(i / many, stretches - 1);
+    usual.push_back(std::max(
+        {medians[at == 0 ? 0 : at - 1], medians[at], medians[std::min(at + 1, stretches - 1)]}));
+  }
+  return usual;
+}
+
+// Rows at which the angle about the one axis, or the path of what slides, has a kink that its own
+// readings do not know: a firing that nobody noted, a wall. Noise and torques make those nearby
+// alike; what has decayed later says nothing of the beginning.
+std::vector<char> kinks_of(const Observation& rows, const Platform& platform) {
+  std::vector<char> kinks(rows.blocks(), 0);
+  const bool slides = platform.slides();
+  if (slides && !(rows.has(Scalar::position_x) && rows.has(Scalar::position_y))) return kinks;
+  if (!slides && (!platform.turns_about_one_axis() || !rows.sees_some_attitude())) return kinks;
+  struct Change {
+    size_t row;
+    double rate;  // rad/s or m/s
+  };
+  std::vector<Change> changes;
+  const auto moved = [&](size_t from, size_t to) -> Vec3 {
+    if (!slides) {
+      return platform.axis * platform.axis.dot(rotation_vector(rows.attitude[to] *
+                                                               rows.attitude[from].conjugate()));
+    }
+    Vec3 by = Vec3::Zero();
+    for (int k = 0; k < 2; ++k) {
+      const std::vector<double>& x =
+          rows.scalar[static_cast<size_t>(Scalar::position_x) + static_cast<size_t>(k)].value;
+      by[k] = x[to] - x[from];
+    }
+    return by;
+  };
+  const auto is_read = [&](size_t i) {
+    if (!slides) return rows.attitude_rows[i] > 0.0;
+    return rows.rows_of(i, vector_channels + static_cast<int>(Scalar::position_x)) > 0.0 &&
+           rows.rows_of(i, vector_channels + static_cast<int>(Scalar::position_y)) > 0.0;
+  };
+  for (size_t i = 1; i + 1 < rows.blocks(); ++i) {
+    if (!is_read(i - 1) || !is_read(i) || !is_read(i + 1)) continue;
+    const Vec3 before = moved(i - 1, i) / (rows.time_s[i] - rows.time_s[i - 1]),
+               after = moved(i, i + 1) / (rows.time_s[i + 1] - rows.time_s[i]);
+    changes.push_back({i, (after - before).norm()});
+  }
+  if (changes.empty()) return kinks;
+  std::vector<double> sizes;
+  for (const Change& change : changes) sizes.push_back(change.rate);
+  const double usual = usual_of(sizes);
+  const std::vector<double> nearby = usual_nearby(sizes);
+  // Of a Gaussian, 12 of these medians are 8 standard deviations.
+  constexpr double medians = 12.0;
+  for (size_t i = 0; i < changes.size(); ++i) {
+    kinks[changes[i].row] = changes[i].rate > medians * std::max(usual, nearby[i]) ? 1 : 0;
+  }
+  return kinks;
+}
+
+Segments cut(const Recording& recording, const std::string& name, const Platform& platform,
+             size_t max_blocks) {
+  const Observation rows = observe(recording, name, platform, std::numeric_limits<size_t>::max());
+  const MotionColumns columns(recording, platform, name);
+  const double gap_s = long_gap_s(recording);
+  const std::vector<char> kinks = kinks_of(rows, platform);
+  Segments result;
+  const double share = static_cast<double>(max_blocks) / static_cast<double>(rows.blocks());
+  size_t first = 0;
+  const auto close = [&](size_t end) {
+    size_t last = end;
+    if (platform.turns_about_one_axis() && !platform.slides() && rows.has_gyro) {
+      LawfulStretch lawful = lawful_stretch(rows, platform.axis, first, last);
+      first = lawful.first;
+      last = lawful.last;
+      if (!lawful.left_out.empty()) result.lawless.push_back(std::move(lawful.left_out));
+    }
+    if (last > first && rows.readings(first, last) >= least_of_stretch) {
+      const auto blocks = static_cast<size_t>(share * static_cast<double>(last - first));
+      result.all.push_back(rows.part(first, last).averaged(std::max(least_of_stretch, blocks)));
+    } else {
+      result.too_short += last > first ? 1 : 0;
+    }
+    first = end;
+  };
+  for (size_t i = 0; i < rows.blocks(); ++i) {
+    if (i > 0 && recording.time_s[i] - recording.time_s[i - 1] >= gap_s) {
+      ++result.long_gaps;
+      close(i);
+    }
+    if (!columns.has_event(i) && kinks[i] == 0) continue;
+    (columns.has_event(i) ? result.events : result.kinks) += 1;
+    close(i);
+    first = i + 1;
+  }
+  close(rows.blocks());
+  if (result.all.empty()) {
+    throw InputError({name, 0}, "t_s",
+                     "no stretch between events and gaps with as many as " +
+                         std::to_string(least_of_stretch) + " readings",
+                     "a recording with longer ones");
+  }
+  return result;
+}
+
+// Its angles as they are meant.
+Recording read_as(const AngleConvention& angles, Recording recording) {
+  recording.angle_sequence = angles.sequence;
+  for (Channel& channel : recording.channels) {
+    if (channel.name != "roll_rad" && channel.name != "pitch_rad" && channel.name != "yaw_rad") {
+      continue;
+    }
+    for (double& angle : channel.values) angle *= angles.factor;
+  }
+  return recording;
+}
+
+}  // namespace
+
+void refuse_jump_of_clock(const Recording& recording, const std::string& name) {
+  constexpr double longest_gap = 10.0;
+  double gaps_s = 0.0, longest_s = 0.0;
+  RecordingReport::Gap longest;
+  for (const RecordingReport::Gap& gap : recording.report.gaps) {
+    const double gap_s = gap.to_s - gap.from_s;
+    gaps_s += gap_s;
+    if (gap_s > longest_s) longest = gap;
+    longest_s = std::max(longest_s, gap_s);
+  }
+  if (recording.rows() < 2) return;
+  const double recorded_s = recording.time_s.back() - recording.time_s.front() - gaps_s;
+  if (!(longest_s > longest_gap * recorded_s)) return;
+  char found[160];
+  std::snprintf(found, sizeof found,
+                "nothing from t_s = %.10g to %.10g, of a recording of %.4g s in all",
+                longest.from_s, longest.to_s, recorded_s);
+  throw InputError({name, 0}, "t_s", found,
+                   "a clock that does not jump; of several stretches a file each");
+}
+
+Segments observe_segments(const Recording& recording, const std::string& name,
+                          const Platform& platform, size_t max_blocks) {
+  const std::optional<AngleConvention> angles = convention_of_angles(recording, platform, name);
+  const bool as_usual = !angles || angles->text.empty();
+  Segments result =
+      cut(as_usual ? recording : read_as(*angles, recording), name, platform, max_blocks);
+  if (angles) result.angles = *angles;
+  return result;
+}
+
+namespace {
+
+// The rates about the axis that were read, each the median of five neighbours: a count that was
+// lost halves a reading or two.
+struct AxisRates {
+  std::vector<size_t> row;
+  std::vector<double> time_s, rate_rad_s;
+};
+
+AxisRates rates_about(const Observation& rows, int axis, size_t first, size_t last) {
+  AxisRates read;
+  for (size_t i = first; i < last; ++i) {
+    if (!(rows.gyro_rows[i][axis] > 0.0)) continue;
+    read.row.push_back(i);
+    read.time_s.push_back(rows.time_s[i]);
+    read.rate_rad_s.push_back(rows.gyro_rad_s[i][axis]);
+  }
+  const std::vector<double> raw = read.rate_rad_s;
+  for (size_t i = 2; i + 2 < raw.size(); ++i) {
+    std::array<double, 5> near = {raw[i - 2], raw[i - 1], raw[i], raw[i + 1], raw[i + 2]};
+    std::nth_element(near.begin(), near.begin() + 2, near.end());
+    read.rate_rad_s[i] = near[2];
+  }
+  return read;
+}
+
+// A straight line through the rates [first, last).
+struct Line {
+  double slope_rad_s2 = 0.0, error_rad_s2 = 0.0, least_rad_s = 0.0, most_rad_s = 0.0;
+
+  bool keeps_away_from_zero() const {
+    const double far = std::max(std::abs(least_rad_s), std::abs(most_rad_s));
+    return least_rad_s * most_rad_s > 0.0 &&
+           std::min(std::abs(least_rad_s), std::abs(most_rad_s)) > 0.05 * far;
+  }
+};
+
+Line line_through(const AxisRates& read, size_t first, size_t last) {
+  const auto count = static_cast<double>(last - first);
+  double mean_s = 0.0, mean_rad_s = 0.0;
+  Line line;
+  line.least_rad_s = line.most_rad_s = read.rate_rad_s[first];
+  for (size_t i = first; i < last; ++i) {
+    mean_s += read.time_s[i] / count;
+    mean_rad_s += read.rate_rad_s[i] / count;
+    line.least_rad_s = std::min(line.least_rad_s, read.rate_rad_s[i]);
+    line.most_rad_s = std::max(line.most_rad_s, read.rate_rad_s[i]);
+  }
+  double spread_s2 = 0.0, product = 0.0, square = 0.0;
+  for (size_t i = first; i < last; ++i) {
+    const double t = read.time_s[i] - mean_s, w = read.rate_rad_s[i] - mean_rad_s;
+    spread_s2 += t * t;
+    product += t * w;
+    square += w * w;
+  }
+  line.slope_rad_s2 = product / spread_s2;
+  const double rest = std::max(0.0, square - line.slope_rad_s2 * product) / (count - 2.0);
+  line.error_rad_s2 = std::sqrt(rest / spread_s2);
+  return line;
+}
+
+struct Break {
+  size_t at = 0;  // index into AxisRates
+  double before_rad_s2 = 0.0, after_rad_s2 = 0.0, error_rad_s2 = 0.0;
+
+  double change_rad_s2() const { return std::abs(after_rad_s2 - before_rad_s2); }
+  double larger_rad_s2() const { return std::max(std::abs(before_rad_s2), std::abs(after_rad_s2)); }
+  double standard_errors() const { return change_rad_s2() / error_rad_s2; }
+};
+
+// The slopes of `window` readings on either side of every reading where the rate goes on as before;
+// of long windows at every 48th part of one, or long recordings would take the square of their
+// time.
+std::vector<Break> changes_of(const AxisRates& read, size_t window) {
+  std::vector<Break> changes;
+  const size_t step = std::max<size_t>(1, window / 48);
+  for (size_t i = window; i + window <= read.row.size(); i += step) {
+    const Line before = line_through(read, i - window, i),
+               after = line_through(read, i, i + window);
+    const bool goes_on = before.keeps_away_from_zero() && after.keeps_away_from_zero() &&
+                         before.most_rad_s * after.most_rad_s > 0.0;
+    if (!goes_on) continue;
+    changes.push_back({i, before.slope_rad_s2, after.slope_rad_s2,
+                       std::hypot(before.error_rad_s2, after.error_rad_s2)});
+  }
+  return changes;
+}
+
+// Of changes that stand out from all the others (a law that swings has them everywhere) the most
+// significant of its neighbours each.
+std::vector<Break> breaks_of(const AxisRates& read, size_t window) {
+  constexpr double least_standard_errors = 10.0, least_share = 0.5, least_medians = 8.0;
+  const std::vector<Break> changes = changes_of(read, window);
+  if (changes.empty()) return {};
+  std::vector<double> sizes_rad_s2;
+  for (const Break& b : changes) sizes_rad_s2.push_back(b.change_rad_s2());
+  const auto middle = sizes_rad_s2.begin() + static_cast<std::ptrdiff_t>(sizes_rad_s2.size() / 2);
+  std::nth_element(sizes_rad_s2.begin(), middle, sizes_rad_s2.end());
+  const double median_rad_s2 = *middle;
+  std::vector<Break> breaks;
+  for (const Break& found : changes) {
+    if (found.change_rad_s2() < least_share * found.larger_rad_s2() ||
+        found.change_rad_s2() < least_medians * median_rad_s2 ||
+        !(found.standard_errors() >= least_standard_errors)) {  // of equal readings 0/0
+      continue;
+    }
+    if (breaks.empty() || found.at - breaks.back().at > window) {
+      breaks.push_back(found);
+    } else if (found.standard_errors() > breaks.back().standard_errors()) {
+      breaks.back() = found;
+    }
+  }
+  return breaks;
+}
+
+bool is_commanded(const Schedule& schedule) {
+  return std::any_of(schedule.held.begin(), schedule.held.end(),
+                     [](const ZeroOrderHold& held) { return held != ZeroOrderHold{}; });
+}
+
+}  // namespace
+
+LawfulStretch lawful_stretch(const Observation& rows, const Vec3& axis, size_t first, size_t last) {
+  LawfulStretch whole = {first, last, ""};
+  if (is_commanded(rows.schedule)) return whole;
+  int along = 0;
+  axis.cwiseAbs().maxCoeff(&along);
+  const AxisRates read = rates_about(rows, along, first, last);
+  std::vector<Break> breaks;
+  // A long window sees a weak torque; the shortest that sees one tells best where it ends.
+  for (size_t window = 12; breaks.empty() && 8 * window <= read.row.size(); window *= 2) {
+    breaks = breaks_of(read, window);
+  }
+  if (breaks.empty()) return whole;
+  LawfulStretch longest = {first, first, ""};
+  size_t begin = first;
+  const Break* since = nullptr;
+  const auto close = [&](size_t end, const Break* until) {
+    if (end - begin > longest.last - longest.first) {
+      longest = {begin, end, ""};
+      const Break& edge = since != nullptr ? *since : *until;
+      longest.left_out = "the rate changes its slope at once at " +
+                         readable_number(read.time_s[edge.at], 4) + " s, from " +
+                         readable_number(edge.before_rad_s2, 3) + " to " +
+                         readable_number(edge.after_rad_s2, 3) + " rad/s²: something else acts ";
+      longest.left_out += since != nullptr && until != nullptr ? "before and after"
+                          : since != nullptr                   ? "before"
+                                                               : "after";
+    }
+  };
+  constexpr size_t passing = 3;  // rows in which the law changes: the median of five blurs it
+  for (const Break& found : breaks) {
+    const size_t at = read.row[found.at];
+    close(at > first + passing ? at - passing : first, &found);
+    begin = std::min(last, at + passing);
+    since = &found;
+  }
+  close(last, nullptr);
+  return longest;
+}
+
+}  // namespace photorque

@@ -1,0 +1,52 @@
+// A recording as stretches of undisturbed motion: it is cut where something hit the platform and
+// where nothing was read for long.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "attitude/estimation/conventions.h"
+#include "attitude/observation/observation.h"
+
+namespace photorque {
+
+struct Segments {
+  std::vector<Observation> all;
+  int64_t events = 0;     // rows in which something hit the platform: left out
+  int64_t kinks = 0;      // rows at which an angle changes its rate at once: left out as well
+  int64_t long_gaps = 0;  // at which the recording was cut
+  int64_t too_short = 0;  // stretches with too few readings for a start of their own: left out
+  std::optional<AngleConvention> angles;  // how roll, pitch and yaw were read
+  std::vector<std::string> lawless;       // why parts of stretches are left out (lawful_stretch())
+};
+
+// `max_blocks`: of all stretches together. InputError as observe() (observation.h), and where every
+// stretch is too short.
+Segments observe_segments(const Recording& recording, const std::string& name,
+                          const Platform& platform, size_t max_blocks = 6000);
+
+// Refuses a gap more than ten times as long as all that was recorded (InputError with its
+// instants): a clock that was set while it recorded, or two recordings in one. No search for what
+// acts over such a span ends.
+void refuse_jump_of_clock(const Recording& recording, const std::string& name);
+
+// Where a machine that turns about one axis ceases to follow one law: the drive that spun it up is
+// released, a hand brakes it.
+
+// Rows [first, last) in which the rate follows one law.
+struct LawfulStretch {
+  size_t first = 0, last = 0;
+  std::string left_out;  // why the rest is left out; empty: nothing is
+};
+
+// The longest part of the rows [first, last) between breaks. A torque that depends on angle and
+// rate cannot change its rate's slope at once while both go on as before; such a break is told by
+// straight lines through the rates on both sides, over 12 rows and more, whose slopes differ by
+// half of the larger one, by ten standard errors and by eight times what is usual in the recording.
+// A rate that vanishes or changes its sign is no break (dry friction does that), and where commands
+// or measured wheels act none is looked for.
+LawfulStretch lawful_stretch(const Observation& rows, const Vec3& axis, size_t first, size_t last);
+
+}  // namespace photorque

@@ -1,0 +1,412 @@
+#include "attitude/observation/blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace photorque {
+
+namespace {
+
+// How fast a scalar says that it turns: an angle from one reading to the next, a rate as it is.
+double fastest_of_scalar(const ScalarReadings& read, Measures measures,
+                         const std::vector<double>& time_s) {
+  if (measures != Measures::angle && measures != Measures::rate) return 0.0;
+  const bool is_angle = measures == Measures::angle;
+  double fastest = 0.0;
+  size_t before = time_s.size();
+  for (size_t i = 0; i < read.rows.size(); ++i) {
+    if (!(read.rows[i] > 0.0)) continue;
+    if (!is_angle) fastest = std::max(fastest, read.value[i]);
+    if (is_angle && before < i) {
+      fastest = std::max(
+          fastest, std::abs(read.value[i] - read.value[before]) / (time_s[i] - time_s[before]));
+    }
+    before = i;
+  }
+  return fastest;
+}
+
+// At how many instants each block is looked at, by what would be left of the motion's curvature
+// against the noise of its means: of a motion that oscillates as fast as any is seen to turn.
+size_t instants_needed(const Observation& seen, double fastest_rad_s) {
+  constexpr double of_noise = 0.05;
+  // Of means, what one instant leaves of second order, two of fourth: that of even times, for rates
+  // and for attitudes, is within this.
+  constexpr double second = 0.5, fourth = 0.1;
+  size_t needed = 1;
+  for (size_t block = 0; block < seen.spread.size(); ++block) {
+    const double turn_rad2 = std::pow(fastest_rad_s * seen.spread[block].readings_s, 2);
+    for (int channel = 0; channel < channel_count; ++channel) {
+      const double rows = seen.rows_of(block, channel);
+      if (!(rows > 0.0)) continue;
+      double size = 1.0;
+      const Measures measures = channel_traits(channel).measures;
+      if (measures == Measures::rate) size = fastest_rad_s;
+      if (measures != Measures::rate && measures != Measures::angle) {
+        size = std::abs(seen.scalar[static_cast<size_t>(channel - vector_channels)].value[block]);
+      }
+      const double allowed = of_noise * seen.noise.of(channel).level / std::sqrt(rows);
+      if (fourth * turn_rad2 * turn_rad2 * size > allowed) return 3;
+      if (second * turn_rad2 * size > allowed) needed = 2;
+    }
+  }
+  return needed;
+}
+
+}  // namespace
+
+double fastest_rad_s(const Observation& seen) {
+  double fastest = 0.1;
+  for (int s = 0; s < scalar_count; ++s) {
+    fastest = std::max(
+        fastest, fastest_of_scalar(seen.scalar[static_cast<size_t>(s)],
+                                   channel_traits(vector_channels + s).measures, seen.time_s));
+  }
+  // A gyro that reads all three axes tells better than differences of attitudes do.
+  Vec3 read = Vec3::Zero();
+  if (seen.has_gyro) {
+    for (const Vec3& rows : seen.gyro_rows) read = read.cwiseMax(rows);
+  }
+  const bool whole_gyro = read.minCoeff() > 0.0;
+  size_t before = seen.blocks();
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (seen.has_gyro) {
+      double square = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        if (seen.gyro_rows[i][k] > 0.0) square += seen.gyro_rad_s[i][k] * seen.gyro_rad_s[i][k];
+      }
+      fastest = std::max(fastest, std::sqrt(square));
+    }
+    if (!whole_gyro && seen.attitude_rows[i] > 0.0) {
+      if (before < i) {
+        const Quat turn = seen.attitude[before].conjugate() * seen.attitude[i];
+        fastest = std::max(fastest,
+                           rotation_vector(turn).norm() / (seen.time_s[i] - seen.time_s[before]));
+      }
+      before = i;
+    }
+  }
+  return fastest;
+}
+
+BlockInstants::BlockInstants(const Observation& seen, double fastest_rad_s)
+    : seen_(seen), per_block_(instants_needed(seen, fastest_rad_s)) {
+  for (size_t block = 0; per_block_ > 1 && block < seen.blocks(); ++block) {
+    if (rule_of(block).reach_s > widest_reach_s(block)) per_block_ = 3;
+  }
+  for (size_t block = 0; per_block_ > 1 && block < seen.blocks(); ++block) {
+    rules_.push_back(rule_of(block));
+  }
+}
+
+double BlockInstants::gyro_weight(size_t block, size_t which) const {
+  const double since = since_s(block, which);
+  if (since == 0.0) return weight(block, which);
+  // As much more on one side as less on the other.
+  const double tilt = 0.5 * seen_.spread[block].gyro_offset_s / std::abs(since);
+  return weight(block, which) + (since > 0.0 ? tilt : -tilt);
+}
+
+double BlockInstants::attitudes_excess_s2(size_t block) const {
+  const Observation::Spread over = seen_.spread_of(block);
+  return over.attitude_s * over.attitude_s - over.readings_s * over.readings_s;
+}
+
+// Instants of neighbours must not pass each other.
+double BlockInstants::widest_reach_s(size_t block) const {
+  const std::vector<double>& t = seen_.time_s;
+  // All of the time between where the other is a reading, else half of it.
+  const auto up_to = [&](size_t other) {
+    const double between_s = std::abs(t[other] - t[block]);
+    return seen_.spread_of(other).readings_s > 0.0 ? 0.5 * between_s : between_s;
+  };
+  double widest_s = std::numeric_limits<double>::infinity();
+  if (block > 0) widest_s = up_to(block - 1);
+  if (block + 1 < t.size()) widest_s = std::min(widest_s, up_to(block + 1));
+  return widest_s;
+}
+
+BlockInstants::Rule BlockInstants::rule_of(size_t block) const {
+  const Observation::Spread over = seen_.spread_of(block);
+  if (per_block_ == 2 || !(over.readings_s > 0.0)) return {over.readings_s, 0.5};
+  const double reach_s = std::min(over.readings_fourth_s * over.readings_fourth_s / over.readings_s,
+                                  widest_reach_s(block));
+  return {reach_s, 0.5 * std::pow(over.readings_s / reach_s, 2)};
+}
+
+namespace {
+
+Quat turned_by(const Vec3& rotation_rad) {
+  const double angle = rotation_rad.norm();
+  if (angle == 0.0) return Quat::Identity();
+  return Quat(Eigen::AngleAxisd(angle, rotation_rad / angle));
+}
+
+// Rows [first, last) of an observation, which become one block.
+struct BlockRows {
+  const Observation& from;
+  size_t first, last;
+
+  // The mean time of the attitudes, because they move; of all rows where there is none.
+  double time_s() const {
+    double rows = 0.0, sum_s = 0.0;
+    for (size_t i = first; i < last; ++i) {
+      rows += from.attitude_rows[i];
+      sum_s += from.attitude_rows[i] * from.time_s[i];
+    }
+    if (rows > 0.0) return sum_s / rows;
+    for (size_t i = first; i < last; ++i) sum_s += from.time_s[i];
+    return sum_s / static_cast<double>(last - first);
+  }
+
+  // A mean moved to another time with the slope about it.
+  struct Moved {
+    double value = NAN, by = 0.0;
+  };
+
+  // Of times, those of rows that are means themselves included.
+  struct Moments {
+    double rows = 0.0, sum_s2 = 0.0, sum_s4 = 0.0;
+
+    void add(double weight, double since_s2, double own_s, double own_fourth_s) {
+      const double own_s2 = own_s * own_s;
+      rows += weight;
+      sum_s2 += weight * (since_s2 + own_s2);
+      sum_s4 +=
+          weight * (since_s2 * since_s2 + 6.0 * since_s2 * own_s2 + std::pow(own_fourth_s, 4));
+    }
+    double second_s() const { return rows > 0.0 ? std::sqrt(sum_s2 / rows) : 0.0; }
+    double fourth_s() const { return rows > 0.0 ? std::pow(sum_s4 / rows, 0.25) : 0.0; }
+  };
+
+  Observation::Spread spread(double at_s) const {
+    Moments readings, attitudes;
+    double gyro_rows = 0.0, gyro_sum_s = 0.0;
+    for (size_t i = first; i < last; ++i) {
+      const double since_s2 = std::pow(from.time_s[i] - at_s, 2);
+      const Observation::Spread own = from.spread_of(i);
+      double weight = from.gyro_rows[i].maxCoeff();
+      gyro_rows += weight;
+      gyro_sum_s += weight * (from.time_s[i] - at_s);
+      for (const ScalarReadings& read : from.scalar) {
+        if (!read.rows.empty()) weight = std::max(weight, read.rows[i]);
+      }
+      readings.add(weight, since_s2, own.readings_s, own.readings_fourth_s);
+      attitudes.add(from.attitude_rows[i], since_s2, own.attitude_s, own.readings_fourth_s);
+    }
+    const Moments& most = readings.rows > 0.0 ? readings : attitudes;
+    Observation::Spread result{most.second_s(), attitudes.second_s(), most.fourth_s()};
+    if (gyro_rows > 0.0) result.gyro_offset_s = gyro_sum_s / gyro_rows;
+    return result;
+  }
+
+  // The mean of the gyro's readings moved to `at_s`, and by how much.
+  Moved gyro_rate(int axis, double at_s) const {
+    return mean_of(
+        at_s, [&](size_t i) { return from.gyro_rows[i][axis]; },
+        [&](size_t i) { return from.gyro_rad_s[i][axis]; });
+  }
+
+  // The mean of one number's readings, moved to `at_s` with the slope over three blocks: a camera
+  // that sees every second row has another mean time.
+  template <typename Weight, typename Value>
+  Moved mean_of(double at_s, const Weight& weight_of, const Value& value_of) const {
+    const size_t length = last - first;
+    const double reach_s = 1.5 * (from.time_s[last - 1] - from.time_s[first]) + 1e-9;
+    double rows = 0.0, rate_sum = 0.0, time_sum_s = 0.0;
+    double all = 0.0, all_rate = 0.0, all_s = 0.0, all_s2 = 0.0, all_product = 0.0;
+    const size_t end = std::min(from.blocks(), last + length);
+    for (size_t i = first - std::min(first, length); i < end; ++i) {
+      const double weight = weight_of(i), since_s = from.time_s[i] - at_s;
+      if (!(weight > 0.0) || std::abs(since_s) > reach_s) continue;
+      const double rate_rad_s = value_of(i);
+      all += weight;
+      all_rate += weight * rate_rad_s;
+      all_s += weight * since_s;
+      all_s2 += weight * since_s * since_s;
+      all_product += weight * since_s * rate_rad_s;
+      if (i < first || i >= last) continue;
+      rows += weight;
+      rate_sum += weight * rate_rad_s;
+      time_sum_s += weight * since_s;
+    }
+    if (rows == 0.0) return {};
+    const double spread_s2 = all * all_s2 - all_s * all_s;
+    if (!(spread_s2 > 0.0)) return {rate_sum / rows, 0.0};
+    const double slope_rad_s2 = (all * all_product - all_s * all_rate) / spread_s2;
+    const double by_rad_s = -slope_rad_s2 * time_sum_s / rows;
+    return {rate_sum / rows + by_rad_s, by_rad_s};
+  }
+
+  // Attitudes of which none is missing.
+  struct Turned {
+    Quat attitude;
+    double since_s, rows;
+  };
+
+  // Each attitude moved to the block's time as by the constant rate that leaves no trend, then
+  // their mean as rotations from the first of them. How the rate changes is left in it, as in the
+  // mean of the gyro's readings, so that the one stays the integral of the other.
+  Quat mean_attitude(double at_s) const {
+    std::vector<Turned> all;
+    double sum_s2 = 0.0, rows = 0.0;
+    for (size_t i = first; i < last; ++i) {
+      if (!(from.attitude_rows[i] > 0.0)) continue;
+      all.push_back({from.attitude[i], from.time_s[i] - at_s, from.attitude_rows[i]});
+      sum_s2 += all.back().rows * all.back().since_s * all.back().since_s;
+      rows += all.back().rows;
+    }
+    if (all.empty()) return {NAN, NAN, NAN, NAN};
+    Vec3 rate_rad_s = Vec3::Zero();
+    if (all.size() > 1) {
+      rate_rad_s = rotation_vector(all.front().attitude.conjugate() * all.back().attitude) /
+                   (all.back().since_s - all.front().since_s);
+    }
+    const auto moved = [&](const Turned& one) {
+      return one.attitude * turned_by(-one.since_s * rate_rad_s);
+    };
+    Quat reference = moved(all.front());
+    // What is left of the trend is smaller each time by the square of the angle of turning.
+    constexpr int times = 3;
+    for (int again = 0; again < times && all.size() > 2; ++again) {
+      Vec3 trend = Vec3::Zero();
+      for (const Turned& one : all) {
+        trend += one.rows * one.since_s * rotation_vector(reference.conjugate() * moved(one));
+      }
+      rate_rad_s += trend / sum_s2;
+      reference = moved(all.front());
+    }
+    Vec3 sum = Vec3::Zero();
+    for (const Turned& one : all) {
+      sum += one.rows * rotation_vector(reference.conjugate() * moved(one));
+    }
+    return (reference * turned_by(sum / rows)).normalized();
+  }
+
+  void append_to(Observation& seen) const {
+    const double at_s = time_s();
+    seen.time_s.push_back(at_s);
+    Observation::Spread over = spread(at_s);
+    Vec3 gyro;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Moved moved = gyro_rate(axis, at_s);
+      gyro[axis] = moved.value;
+      over.gyro_moved_rad_s[axis] = moved.by;
+    }
+    seen.spread.push_back(over);
+    seen.attitude.push_back(mean_attitude(at_s));
+    double attitude_rows = 0.0;
+    Vec3 gyro_rows = Vec3::Zero();
+    for (size_t i = first; i < last; ++i) {
+      attitude_rows += from.attitude_rows[i];
+      gyro_rows += from.gyro_rows[i];
+    }
+    seen.attitude_rows.push_back(attitude_rows);
+    seen.gyro_rad_s.push_back(gyro);
+    seen.gyro_rows.push_back(gyro_rows);
+    for (size_t s = 0; s < from.scalar.size(); ++s) {
+      const ScalarReadings& all = from.scalar[s];
+      if (all.rows.empty()) continue;
+      const auto weight = [&](size_t i) { return all.rows[i]; };
+      seen.scalar[s].value.push_back(
+          mean_of(at_s, weight, [&](size_t i) { return all.value[i]; }).value);
+      double rows = 0.0;
+      for (size_t i = first; i < last; ++i) rows += all.rows[i];
+      seen.scalar[s].rows.push_back(rows);
+    }
+  }
+};
+
+// A change between two instants, over the time between them.
+template <typename Value>
+struct Slope {
+  Value per_s;
+  double between_s;
+};
+
+// How fast it changes from one to the next.
+template <typename Value>
+Value curvature_of(const Slope<Value>& before, const Slope<Value>& after) {
+  return 2.0 / (before.between_s + after.between_s) * (after.per_s - before.per_s);
+}
+
+// Makes the mean over a block of `all` a reading at its middle, as far as its neighbours tell how
+// the motion curves.
+class Straightened {
+ public:
+  Straightened(const Observation& all, size_t block) : all_(all), block_(block) {}
+
+  // Into the first block of `to`.
+  void put_into(Observation& to) const {
+    const Observation::Spread over = all_.spread_of(block_);
+    to.spread.front() = {};
+    if (block_ == 0 || block_ + 1 >= all_.blocks() || is_far()) return;
+    if (is_read([&](size_t i) { return all_.attitude_rows[i]; })) {
+      const Vec3 bent = curvature_of<Vec3>({turn_rad(block_ - 1) / before_s(), before_s()},
+                                           {turn_rad(block_) / after_s(), after_s()});
+      to.attitude.front() =
+          (all_.attitude[block_] * turned_by(-0.5 * over.attitude_s * over.attitude_s * bent))
+              .normalized();
+    }
+    const double half_s2 = 0.5 * over.readings_s * over.readings_s;
+    for (int k = 0; k < 3; ++k) {
+      if (!is_read([&](size_t i) { return all_.gyro_rows[i][k]; })) continue;
+      to.gyro_rad_s.front()[k] -= half_s2 * bent([&](size_t i) { return all_.gyro_rad_s[i][k]; });
+    }
+    for (size_t s = 0; s < all_.scalar.size(); ++s) {
+      const ScalarReadings& read = all_.scalar[s];
+      if (read.rows.empty() || !is_read([&](size_t i) { return read.rows[i]; })) continue;
+      to.scalar[s].value.front() -= half_s2 * bent([&](size_t i) { return read.value[i]; });
+    }
+  }
+
+ private:
+  double before_s() const { return all_.time_s[block_] - all_.time_s[block_ - 1]; }
+  double after_s() const { return all_.time_s[block_ + 1] - all_.time_s[block_]; }
+  // Rows spread evenly over a block have a root mean square of its length over sqrt(12).
+  bool is_far() const {
+    const double length_s = std::sqrt(12.0) * all_.spread_of(block_).readings_s;
+    return std::max(before_s(), after_s()) > 2.0 * length_s;
+  }
+  template <typename Rows>
+  bool is_read(const Rows& rows) const {
+    return rows(block_ - 1) > 0.0 && rows(block_) > 0.0 && rows(block_ + 1) > 0.0;
+  }
+  template <typename Value>
+  double bent(const Value& value) const {
+    return curvature_of<double>({(value(block_) - value(block_ - 1)) / before_s(), before_s()},
+                                {(value(block_ + 1) - value(block_)) / after_s(), after_s()});
+  }
+  Vec3 turn_rad(size_t from) const {
+    return rotation_vector(all_.attitude[from].conjugate() * all_.attitude[from + 1]);
+  }
+
+  const Observation& all_;
+  size_t block_;
+};
+
+}  // namespace
+
+Observation without_blocks(const Observation& seen) {
+  Observation result = seen;
+  result.time_s.clear();
+  result.spread.clear();
+  result.attitude.clear();
+  result.attitude_rows.clear();
+  result.gyro_rad_s.clear();
+  result.gyro_rows.clear();
+  result.scalar = {};
+  return result;
+}
+
+void append_mean(const Observation& from, size_t first, size_t last, Observation& to) {
+  BlockRows{from, first, last}.append_to(to);
+}
+
+void straighten_first(const Observation& all, size_t block, Observation& to) {
+  Straightened(all, block).put_into(to);
+}
+
+}  // namespace photorque

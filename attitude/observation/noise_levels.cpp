@@ -1,0 +1,353 @@
+#include "attitude/observation/noise_levels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "attitude/observation/prediction.h"
+#include "core/constants.h"
+
+namespace photorque {
+
+namespace {
+
+struct ReadingAt {
+  double time_s, value;
+};
+
+// The channel's readings as one reading would be: means of n are noisier by √n. Angles are unwound.
+std::vector<ReadingAt> readings_of(const Observation& seen, int channel) {
+  std::vector<ReadingAt> all;
+  double angle_rad = 0.0;
+  size_t before = seen.blocks();
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    const double rows = seen.rows_of(i, channel);
+    if (!(rows > 0.0)) continue;
+    if (channel >= vector_channels) {
+      const auto scalar = static_cast<size_t>(channel - vector_channels);
+      all.push_back({seen.time_s[i], seen.scalar[scalar].value[i]});
+      continue;
+    }
+    if (channel >= 3) {
+      all.push_back({seen.time_s[i], seen.gyro_rad_s[i][channel - 3]});
+      continue;
+    }
+    if (before < seen.blocks()) {
+      const Quat turn = seen.attitude[i] * seen.attitude[before].conjugate();
+      angle_rad += rotation_vector(turn)[channel];
+    }
+    before = i;
+    all.push_back({seen.time_s[i], angle_rad});
+  }
+  return all;
+}
+
+double mean_rows(const Observation& seen, int channel) {
+  double sum = 0.0, count = 0.0;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    const double rows = seen.rows_of(i, channel);
+    sum += rows;
+    count += rows > 0.0 ? 1.0 : 0.0;
+  }
+  return count > 0.0 ? sum / count : 1.0;
+}
+
+// The divided difference of `order` + 1 readings from the one at `first`, which no polynomial below
+// that order enters, however unevenly they lie; over the noise of one reading it has unit variance.
+double difference(const std::vector<ReadingAt>& x, size_t first, size_t order) {
+  double sum = 0.0, squares = 0.0;
+  const double unit_s = (x[first + order].time_s - x[first].time_s) / static_cast<double>(order);
+  for (size_t k = first; k <= first + order; ++k) {
+    double product = 1.0;
+    for (size_t j = first; j <= first + order; ++j) {
+      if (j != k) product *= (x[k].time_s - x[j].time_s) / unit_s;
+    }
+    sum += x[k].value / product;
+    squares += 1.0 / (product * product);
+  }
+  return sum / std::sqrt(squares);
+}
+
+// What readings differ by, and by how much those differences do: multiples of the last digit, and
+// the smaller ones of both where something moves steadily. Less than rounding leaves is none.
+void collect_steps(const std::vector<ReadingAt>& x, std::vector<double>& steps) {
+  double largest = 0.0;
+  for (const ReadingAt& reading : x) largest = std::max(largest, std::abs(reading.value));
+  const double rounding = 1e-12 * largest;
+  for (size_t i = 1; i < x.size(); ++i) {
+    const double step = x[i].value - x[i - 1].value;
+    if (std::abs(step) > rounding) steps.push_back(std::abs(step));
+    if (i < 2) continue;
+    const double change = step - (x[i - 1].value - x[i - 2].value);
+    if (std::abs(change) > rounding) steps.push_back(std::abs(change));
+  }
+}
+
+double median(std::vector<double>& of) {
+  const auto middle = of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2);
+  std::nth_element(of.begin(), middle, of.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::optional<double> reading_level(const std::vector<Observation>& runs, int channel) {
+  constexpr size_t lowest_order = 3, highest_order = 6, fewest = 10;
+  std::vector<std::vector<double>> sizes(highest_order + 1);
+  std::vector<double> steps;
+  for (const Observation& seen : runs) {
+    const std::vector<ReadingAt> x = readings_of(seen, channel);
+    const double one = std::sqrt(mean_rows(seen, channel));
+    for (size_t order = lowest_order; order <= highest_order; ++order) {
+      for (size_t i = 0; i + order < x.size(); ++i) {
+        sizes[order].push_back(one * std::abs(difference(x, i, order)));
+      }
+    }
+    collect_steps(x, steps);
+  }
+  if (sizes[lowest_order].size() < fewest) return std::nullopt;
+  // The median of |x| of a Gaussian is 0.6745 σ.
+  double level = median(sizes[lowest_order]) / 0.6745;
+  // White noise is alike at every order. Where the next is quieter by half, what this one holds is
+  // motion that the readings follow too coarsely.
+  constexpr double quieter = 0.5;
+  for (size_t order = lowest_order + 1; order <= highest_order; ++order) {
+    if (sizes[order].size() < fewest) break;
+    const double next = median(sizes[order]) / 0.6745;
+    if (!(next < quieter * level)) break;
+    level = next;
+  }
+  const double step = steps.empty() ? 0.0 : *std::min_element(steps.begin(), steps.end());
+  const double least = std::max(level, step / std::sqrt(12.0));
+  if (!(least > 0.0)) return std::nullopt;
+  return least;
+}
+
+namespace {
+
+struct Differences {
+  std::vector<double> values;  // zero where there is none
+  size_t count = 0;
+  int order = 2;
+};
+
+// Of what is left of the readings about a smooth motion; of the readings themselves, twice as
+// often, where that motion came from the camera and brings its noise.
+Differences differences_of(const Observation& seen, const KinematicRun& run, int k) {
+  const double interval_s = reading_interval_s(seen, 3 + k);
+  std::vector<size_t> read;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (seen.gyro_rows[i][k] > 0.0) read.push_back(i);
+  }
+  Differences result;
+  result.order = run.about_readings ? 4 : 2;
+  result.values.resize(read.size());
+  std::vector<char> good(read.size(), 1);
+  for (size_t n = 0; n < read.size(); ++n) {
+    const size_t i = read[n];
+    const double rate = run.about_readings ? seen.gyro_rad_s[i][k] : run.rate_body_rad_s[i][k];
+    result.values[n] = std::sqrt(seen.gyro_rows[i][k]) * rate;
+    if (n == 0) continue;
+    const size_t before = read[n - 1];
+    const double rows = std::max(seen.gyro_rows[i][k], seen.gyro_rows[before][k]);
+    const bool gap = seen.time_s[i] - seen.time_s[before] > 1.5 * interval_s * rows + 1e-9;
+    // Averages over unlike numbers of readings have no common level.
+    const bool unlike = seen.gyro_rows[i][k] != seen.gyro_rows[before][k];
+    const auto jump = run.axis[0].jumps.begin();
+    if (gap || unlike ||
+        std::any_of(jump + static_cast<std::ptrdiff_t>(before) + 1,
+                    jump + static_cast<std::ptrdiff_t>(i) + 1, [](char j) { return j != 0; })) {
+      good[n] = 0;
+    }
+  }
+  // good[n]: the step to reading n from the one before it is regular.
+  for (int order = 0; order < result.order; ++order) {
+    for (size_t n = result.values.size(); n-- > 1;) result.values[n] -= result.values[n - 1];
+  }
+  const auto reach = static_cast<size_t>(result.order);
+  for (size_t n = result.values.size(); n-- > 0;) {
+    bool all = n >= reach;
+    for (size_t m = 0; all && m < reach; ++m) all = good[n - m] != 0;
+    if (!all) result.values[n] = 0.0;
+    result.count += all ? 1 : 0;
+  }
+  return result;
+}
+
+// Power over that of white noise of unit variance, tapered so that slow motion does not leak.
+void add_powers(const Differences& d, std::vector<double>& powers) {
+  const size_t n = d.values.size();
+  std::vector<double> tapered(n);
+  double weight = 0.0;
+  for (size_t i = 0; i < n; ++i) {
+    const double x = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+    const double taper = 1.0 - std::cos(2.0 * pi * x);
+    tapered[i] = d.values[i] * taper;
+    if (d.values[i] != 0.0) weight += taper * taper;
+  }
+  constexpr size_t most = 800;
+  const size_t frequencies = std::min(most, n / 4);
+  for (size_t f = 0; f < frequencies; ++f) {
+    // Below the highest frequency, where there is no phase.
+    const double angle =
+        pi * (0.5 + 0.48 * (static_cast<double>(f) + 0.5) / static_cast<double>(frequencies));
+    const std::complex<double> turn = std::polar(1.0, angle);
+    std::complex<double> phase = 1.0, sum = 0.0;
+    for (size_t i = 0; i < n; ++i) {
+      sum += tapered[i] * phase;
+      phase *= turn;
+    }
+    const double passed = std::pow(2.0 - 2.0 * std::cos(angle), d.order);
+    powers.push_back(std::norm(sum) / (weight * passed));
+  }
+}
+
+}  // namespace
+
+std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
+                                     const std::vector<KinematicRun>& runs, int k,
+                                     const Thresholds::Noise& limits) {
+  std::vector<double> powers;
+  for (size_t run = 0; run < runs.size(); ++run) {
+    const Differences d = differences_of(seen[run], runs[run], k);
+    if (2 * d.count < d.values.size() || d.count < limits.min_differences) continue;
+    add_powers(d, powers);
+  }
+  if (powers.size() < limits.min_frequencies) return std::nullopt;
+  std::sort(powers.begin(), powers.end());
+  powers.resize(powers.size() * 4 / 5);
+  double sum = 0.0;
+  for (const double power : powers) sum += power;
+  // Powers are exponentially distributed. Below the quantile 4/5, which is ln 5, their mean is
+  // 1 − ln(5)/4 = 0.598 of the whole mean, and it scatters by 1.15/√n of itself (by drawing);
+  // tapered neighbours are correlated, as if there were 1.9 times fewer.
+  const double power = sum / static_cast<double>(powers.size()) / (1.0 - std::log(5.0) / 4.0);
+  const double sigma = 0.5 * 1.15 * std::sqrt(1.9 * 0.8 / static_cast<double>(powers.size()));
+  return NoiseLevel{std::sqrt(power), sigma};
+}
+
+namespace {
+
+// What is left of one channel of one run, in order of time.
+struct LeftSeries {
+  std::vector<double> time_s, value;
+};
+
+std::vector<LeftSeries> left_of(const std::vector<Prediction>& residuals,
+                                const std::vector<Observation>& runs, int channel) {
+  std::vector<LeftSeries> all(runs.size());
+  for (size_t run = 0; run < runs.size(); ++run) {
+    for (size_t i = 0; i < residuals[run].off.size(); ++i) {
+      const double x = residuals[run].off[i][channel];
+      if (!std::isfinite(x)) continue;
+      all[run].time_s.push_back(runs[run].time_s[i]);
+      all[run].value.push_back(x);
+    }
+  }
+  return all;
+}
+
+double mean_square(const std::vector<LeftSeries>& all) {
+  double sum = 0.0, count = 0.0;
+  for (const LeftSeries& s : all) {
+    for (const double x : s.value) sum += x * x;
+    count += static_cast<double>(s.value.size());
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+// The part of the mean square that neighbours share, and the time over which they do.
+struct Shared {
+  double fraction = 0.0, time_s = 0.0;
+};
+
+// Mean product of values so many readings apart, over the mean square.
+double autocorrelation(const std::vector<LeftSeries>& all, double square, size_t lag) {
+  double sum = 0.0, count = 0.0;
+  for (const LeftSeries& s : all) {
+    for (size_t i = lag; i < s.value.size(); ++i) sum += s.value[i] * s.value[i - lag];
+    count += s.value.size() > lag ? static_cast<double>(s.value.size() - lag) : 0.0;
+  }
+  return count > 0.0 ? sum / count / square : 0.0;
+}
+
+// What the next neighbours share; then where that has fallen to 1/e.
+Shared shared_by_neighbours(const std::vector<LeftSeries>& all, double square) {
+  size_t longest = 0;
+  double read_s = 0.0, intervals = 0.0;
+  for (const LeftSeries& s : all) {
+    longest = std::max(longest, s.value.size());
+    if (s.value.size() < 2) continue;
+    read_s += s.time_s.back() - s.time_s.front();
+    intervals += static_cast<double>(s.value.size() - 1);
+  }
+  if (!(intervals > 0.0)) return {};
+  const double interval_s = read_s / intervals;
+  const double neighbours = std::clamp(autocorrelation(all, square, 1), 0.0, 1.0);
+  double before = neighbours;
+  for (size_t lag = 2; lag < longest; ++lag) {
+    const double now = autocorrelation(all, square, lag), wanted = std::exp(-1.0) * neighbours;
+    if (now < wanted) {
+      const double part = (before - wanted) / (before - now);
+      return {neighbours, (static_cast<double>(lag) - 1.0 + part) * interval_s};
+    }
+    before = now;
+  }
+  return {neighbours, static_cast<double>(longest) * interval_s};
+}
+
+}  // namespace
+
+NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
+                             const std::vector<Observation>& runs, const NoiseLevels& own,
+                             Remainder remainder) {
+  NoiseLevels noise = own;
+  for (int channel = 0; channel < channel_count; ++channel) {
+    const std::vector<LeftSeries> left = left_of(residuals, runs, channel);
+    const double square = mean_square(left), level = own.of(channel).level;
+    if (!(square > level * level)) continue;
+    ChannelNoise found{std::sqrt(square)};
+    if (remainder == Remainder::correlated) {
+      const Shared shared = shared_by_neighbours(left, square);
+      found.coloured = shared.fraction;
+      found.time_s = shared.time_s;
+    }
+    noise.set(channel, found);
+  }
+  return noise;
+}
+
+NoiseLevels patient_noise(const std::vector<Observation>& runs, const NoiseLevels& own) {
+  constexpr double part = 0.1;
+  NoiseLevels noise = own;
+  for (int channel = 3; channel < channel_count; ++channel) {
+    if (channel_traits(channel).measures != Measures::rate) continue;
+    double sum = 0.0, square = 0.0, count = 0.0;
+    for (const Observation& seen : runs) {
+      for (size_t i = 0; i < seen.blocks(); ++i) {
+        if (!(seen.rows_of(i, channel) > 0.0)) continue;
+        const double x = channel < vector_channels
+                             ? seen.gyro_rad_s[i][channel - 3]
+                             : seen.scalar[static_cast<size_t>(channel - vector_channels)].value[i];
+        sum += x;
+        square += x * x;
+        count += 1.0;
+      }
+    }
+    if (!(count > 0.0)) continue;
+    const double mean = sum / count,
+                 spread = std::sqrt(std::max(0.0, square / count - mean * mean));
+    noise.set(channel, {std::max(own.of(channel).level, part * spread)});
+  }
+  return noise;
+}
+
+bool is_quieter(const NoiseLevels& now, const NoiseLevels& before) {
+  constexpr double worth = 0.9;
+  for (int channel = 0; channel < channel_count; ++channel) {
+    if (now.of(channel).level < worth * before.of(channel).level) return true;
+  }
+  return false;
+}
+
+}  // namespace photorque

@@ -1,0 +1,55 @@
+// The noise of one channel from its own readings, where no other instrument checks it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "attitude/observation/kinematics.h"
+#include "attitude/observation/observation.h"
+#include "attitude/observation/prediction.h"
+#include "inference/estimator/thresholds.h"
+
+namespace photorque {
+
+// Standard deviation of one reading of a channel (Observation::rows_of), from divided third
+// differences of neighbouring readings, which motion that is smooth from one to the next hardly
+// enters, however unevenly they lie; from those of an order up to the sixth where that is quieter
+// by half; at least that of the steps in which the channel is written. The motion's own roughness
+// counts as noise. Nothing where there are fewer than ten differences.
+std::optional<double> reading_level(const std::vector<Observation>& runs, int channel);
+
+// The level of a gyro's white noise, from the fine end of its spectrum.
+
+// The standard deviation of one reading, and the standard error of its logarithm.
+struct NoiseLevel {
+  double level = 0.0, log_sigma = 0.0;
+};
+
+// Of gyro axis k (body axes) in all runs: from the upper half of the spectrum of differences at
+// equal steps, without those across gaps and changes of the commands, the loudest fifth of the
+// frequencies left out: lines of what shakes and rings are few. None where too little is left.
+std::optional<NoiseLevel> gyro_level(const std::vector<Observation>& seen,
+                                     const std::vector<KinematicRun>& runs, int k,
+                                     const Thresholds::Noise& limits);
+
+// Names beside what stays unexplained. Of a real machine hardly any model leaves only noise; then
+// what a fit leaves counts as noise too, correlated in time, and an effect is found with certainty
+// where it stands out of that.
+
+// The noise of the runs with what a fit leaves of them (`residuals`, NaN where nothing was read) in
+// it, at least `own`, the noise of the readings alone. Channel by channel, white: as loud as the
+// mean square of what is left; correlated: besides over the time after which its autocorrelation
+// falls below 1/e, so that a slow remainder counts for the few independent numbers that it is.
+enum class Remainder { white, correlated };
+NoiseLevels with_discrepancy(const std::vector<Prediction>& residuals,
+                             const std::vector<Observation>& runs, const NoiseLevels& own,
+                             Remainder remainder);
+
+// Whether some channel of `now` is quieter than before by a tenth or more.
+bool is_quieter(const NoiseLevels& now, const NoiseLevels& before);
+
+// Noise under which what was stated holds, whatever the motion does: a tenth of the readings' own
+// spread, or `own` where that is louder.
+NoiseLevels patient_noise(const std::vector<Observation>& runs, const NoiseLevels& own);
+
+}  // namespace photorque

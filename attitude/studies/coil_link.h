@@ -1,0 +1,112 @@
+// Circular current filaments anywhere in space: field, mutual inductance, force and torque, by
+// complete elliptic integrals on one circle and quadrature round the other.
+//
+// Source of the field and the vector potential: W. R. Smythe, Static and Dynamic Electricity, 3rd
+// ed. (1968), sec. 7.10. The mutual inductance is the circulation of the potential, the one
+// integral of S. Babic and others, "Mutual inductance calculation between circular filaments
+// arbitrarily positioned in space: alternative to Grover's formula", IEEE Trans. Magn. 46 (2010)
+// 3591; coaxial circles have Maxwell's closed form (Treatise, art. 701). Thin wires in vacuum.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "core/transform.h"
+
+namespace photorque {
+
+struct CircularFilament {
+  Vec3 centre_m = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();  // unit; the current goes round it by the right hand
+  double radius_m = 1.0;        // > 0
+};
+
+// At a point off the wire, of 1 A.
+Vec3 filament_field_T_A(const CircularFilament& filament, const Vec3& at_m);
+Vec3 filament_potential_T_m_A(const CircularFilament& filament, const Vec3& at_m);
+
+// Of two filaments that do not touch; relative error about 1e-13 where their distance is above a
+// hundredth of their radii. NumericalError where the quadrature does not settle.
+double mutual_inductance_H(const CircularFilament& a, const CircularFilament& b);
+// Maxwell's closed form: coaxial circles at an axial distance.
+double coaxial_inductance_H(double radius_a_m, double radius_b_m, double distance_m);
+
+// What the current in `source` does to the current in `target`, both 1 A; torque about a point.
+struct FilamentForce {
+  Vec3 force_N_A2 = Vec3::Zero();
+  Vec3 torque_N_m_A2 = Vec3::Zero();
+};
+FilamentForce filament_force(const CircularFilament& source, const CircularFilament& target,
+                             const Vec3& about_m);
+
+// A conducting, non-magnetic sphere in an alternating field: the ball of an air bearing between
+// coils.
+
+// The magnetic moment is α V B/μ₀ with this α; −3/2 for a perfect conductor, 0 for none. Time as
+// exp(−iωt), so that the imaginary part is that of what is lost.
+// Source: L. D. Landau, E. M. Lifshitz, Electrodynamics of Continuous Media, § 59, in SI.
+std::complex<double> sphere_polarisability(double radius_m, double conductivity_S_m,
+                                           double angular_frequency_rad_s);
+
+// Power turned to heat by an even field of amplitude `field_T` [W].
+double sphere_eddy_loss_W(double radius_m, double conductivity_S_m, double angular_frequency_rad_s,
+                          double field_T);
+
+// Power through two resonant coils: inductances, the best efficiency, the currents it needs.
+
+// A flat spiral of stranded wire, its turns as circles evenly between two radii.
+struct SpiralCoil {
+  double inner_radius_m = 0.05;
+  double outer_radius_m = 0.06;
+  int turns = 10;
+  double copper_area_m2 = 1e-6;  // of the wire
+  // Resistance over that of direct current, by skin and proximity; stranded wire: 1.1 to 2.
+  double ac_factor = 1.3;
+  double copper_mass_kg() const;
+  double wire_length_m() const;
+};
+
+// Its turns at a place, with one normal.
+std::vector<CircularFilament> turns_of(const SpiralCoil& coil, const Vec3& centre_m,
+                                       const Vec3& normal);
+
+// Sum over the pairs of turns, and of each turn with itself: μ₀ r (ln(8 r/a) − 7/4) for a wire of
+// radius a with its current spread over the section (J. C. Maxwell, Treatise, art. 704; E. B. Rosa
+// and F. W. Grover, Bull. Bur. Stand. 8 (1912) 1, eq. 58). Strands fill half of the section.
+double self_inductance_H(const SpiralCoil& coil);
+double resistance_ohm(const SpiralCoil& coil);
+
+// Sums over all pairs of turns, per ampere squared in both coils.
+double mutual_inductance_H(const std::vector<CircularFilament>& a,
+                           const std::vector<CircularFilament>& b);
+FilamentForce coil_force(const std::vector<CircularFilament>& source,
+                         const std::vector<CircularFilament>& target, const Vec3& about_m);
+
+// Two coils in series resonance with their capacitors at one frequency, a voltage in the first, a
+// resistance in the second.
+struct CoilCircuit {
+  double angular_frequency_rad_s = 0.0;
+  double mutual_H = 0.0;
+  double resistance_1_ohm = 0.0, resistance_2_ohm = 0.0;
+  // Left uncompensated in the second coil; 0 at resonance. Positive: inductive.
+  double reactance_2_ohm = 0.0;
+};
+
+// The load at which the largest fraction of the power arrives at resonance, R₂ √(1 + x²), and that
+// fraction, x²/(1 + √(1 + x²))², with x² = (ω M)²/(R₁ R₂) = k² Q₁ Q₂.
+// Source: A. Kurs and others, Science 317 (2007) 83, in the form of K. Van Schuylenbergh and
+// R. Puers, Inductive Powering (2009), sec. 4.2.
+double best_load_ohm(const CoilCircuit& circuit);
+double best_link_efficiency(const CoilCircuit& circuit);
+
+// By Kirchhoff's laws, for a power in the load.
+struct CoilCurrents {
+  double first_A = 0.0, second_A = 0.0;  // amplitudes
+  // Mean of the product of the currents: half the amplitudes' product times the cosine of the phase
+  // between them. Zero at resonance, where they are a quarter of a period apart.
+  double mean_product_A2 = 0.0;
+  double efficiency = 0.0;
+};
+CoilCurrents currents_for(const CoilCircuit& circuit, double load_ohm, double power_W);
+
+}  // namespace photorque

@@ -1,0 +1,245 @@
+#include "diagnosis/attitude/effects/flexible_mode.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/estimation/fit.h"
+#include "attitude/observation/prediction.h"
+#include "core/constants.h"
+#include "diagnosis/attitude/effects/scan.h"
+
+namespace photorque {
+
+namespace {
+
+// Of swinging masses about the three body axes, beside the body.
+struct Swing {
+  Vec3 angle_rad = Vec3::Zero(), rate_rad_s = Vec3::Zero();
+};
+
+// φ'' + 2 ζ ω φ' + ω² φ = −dω_body/dt, from rest beside the body, the acceleration constant between
+// readings: exact for uneven times.
+std::vector<Swing> swings(const PropagatedRun& run, double frequency_Hz, double damping) {
+  const double angular_frequency = 2.0 * pi * frequency_Hz;
+  const double decay = damping * angular_frequency;
+  const double swing_angular_frequency = angular_frequency * std::sqrt(1.0 - damping * damping);
+  const std::vector<PlatformState>& states = run.propagated.states;
+  std::vector<Swing> result(states.size());
+  for (size_t i = 1; i < states.size(); ++i) {
+    const double h_s = run.seen.time_s[i] - run.seen.time_s[i - 1];
+    const Vec3 push = (states[i - 1].rate_body_rad_s - states[i].rate_body_rad_s) / h_s;
+    const Vec3 rest = push / (angular_frequency * angular_frequency);
+    const Vec3 off = result[i - 1].angle_rad - rest;
+    const Vec3 sine = (result[i - 1].rate_rad_s + decay * off) / swing_angular_frequency;
+    const double shrunk = std::exp(-decay * h_s);
+    const double c = shrunk * std::cos(swing_angular_frequency * h_s);
+    const double s = shrunk * std::sin(swing_angular_frequency * h_s);
+    const Vec3 angle = c * off + s * sine;
+    result[i].angle_rad = rest + angle;
+    result[i].rate_rad_s = swing_angular_frequency * (c * sine - s * off) - decay * angle;
+  }
+  return result;
+}
+
+// Takes the mean over `window` neighbours (odd) from every row.
+void take_out_slow(Eigen::MatrixXd& rows, Eigen::Index window) {
+  const Eigen::Index n = rows.rows(), half = window / 2;
+  Eigen::MatrixXd until(n + 1, rows.cols());  // sums of the rows before
+  until.row(0).setZero();
+  for (Eigen::Index i = 0; i < n; ++i) until.row(i + 1) = until.row(i) + rows.row(i);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Index first = std::max<Eigen::Index>(0, i - half);
+    const Eigen::Index last = std::min(n, i + half + 1);
+    rows.row(i) -= (until.row(last) - until.row(first)) / static_cast<double>(last - first);
+  }
+}
+
+// Of one channel, where it was read: the whitened answer to each appendage, then the residual.
+Eigen::MatrixXd answers(const PropagatedRun& run, const std::vector<Swing>& swing,
+                        const std::vector<Vec3>& axes, const std::vector<Vec3>& answer_body,
+                        Eigen::Index channel) {
+  const auto count = static_cast<Eigen::Index>(axes.size());
+  const Observation& seen = run.seen;
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(seen.blocks()), count + 1);
+  Eigen::Index used = 0;
+  Whitening whitening(seen, static_cast<int>(channel), count);
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    const bool camera = channel < 3;
+    const Eigen::Index k = channel % 3;
+    const double readings = seen.rows_of(i, static_cast<int>(channel));
+    if (!(readings > 0.0)) continue;
+    const Vec3& moved = camera ? swing[i].angle_rad : swing[i].rate_rad_s;
+    const Vec3 unit = Vec3::Unit(k);
+    const Vec3 along =
+        camera ? Vec3(run.propagated.states[i].lab_from_body.conjugate() * unit) : unit;
+    for (Eigen::Index a = 0; a < count; ++a) {
+      const auto at = static_cast<size_t>(a);
+      rows(used, a) = along.dot(answer_body[at]) * axes[at].dot(moved);
+    }
+    whitening.apply(seen.time_s[i], readings, rows.row(used).head(count));
+    rows(used++, count) = run.propagated.residual[i][channel];
+  }
+  return rows.topRows(used);
+}
+
+}  // namespace
+
+Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
+                       const std::vector<Vec3>& axes, double frequency_Hz, double damping) {
+  const auto count = static_cast<Eigen::Index>(axes.size());
+  std::vector<Vec3> answer_body;
+  for (const Vec3& axis : axes) answer_body.push_back(-inertia_kg_m2.inverse() * axis);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count + 1, count + 1);
+  for (const PropagatedRun& run : runs) {
+    const std::vector<Swing> swing = swings(run, frequency_Hz, damping);
+    for (Eigen::Index channel = 0; channel < 6; ++channel) {
+      Eigen::MatrixXd rows = answers(run, swing, axes, answer_body, channel);
+      if (rows.rows() == 0) continue;
+      const double a_second = static_cast<double>(rows.rows()) / run.seen.duration_s();
+      const auto half = static_cast<Eigen::Index>(0.5 * a_second / frequency_Hz);
+      take_out_slow(rows, 2 * std::max<Eigen::Index>(1, half) + 1);
+      sums += rows.transpose() * rows;
+    }
+  }
+  return solve_score(sums.topLeftCorner(count, count), sums.col(count).head(count),
+                     sums.diagonal().head(count));
+}
+
+namespace {
+
+// Mostly short pulls set appendages swinging (a command that begins or ends), so that a resonance
+// looks as wide as its damping: enough of it for the grid of frequencies.
+constexpr double scanned_damping = 0.08;
+
+// An appendage begins by turning with the body, its rate being counted about its axis.
+void set_axis(Disturbance& d, const Vec3& unit) {
+  set_vector(d, "axis", unit);
+  state_of(d, "rate_rad_s").per_body_rate = unit;
+}
+
+// Light appendages of one frequency about six axes: their matrices J a aᵀ span the symmetric ones.
+ScoreGroup appendages(const Disturbance& start, double frequency_Hz) {
+  ScoreGroup group;
+  group.parameters = {static_cast<int>(index_of(start, "inertia_kg_m2"))};
+  for (const Vec3& axis :
+       {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)}) {
+    Disturbance d = with_parameter(start, "frequency_Hz", frequency_Hz);
+    parameter_of(d, "damping").value = scanned_damping;
+    parameter_of(d, "inertia_kg_m2").value *= 1e-3;
+    set_axis(d, axis.normalized());
+    group.disturbances.push_back(std::move(d));
+  }
+  return group;
+}
+
+std::vector<Vec3> axes_of(const ScoreGroup& group) {
+  std::vector<Vec3> axes;
+  for (const Disturbance& d : group.disturbances) axes.push_back(vector_of(d, "axis"));
+  return axes;
+}
+
+// As the strengths of six appendages(): the one about `axis`.
+Eigen::VectorXd as_six(const Vec3& axis) {
+  const Mat3 M = axis * axis.transpose();
+  Eigen::VectorXd six(6);
+  six << M(0, 0) - M(0, 1) - M(0, 2), M(1, 1) - M(0, 1) - M(1, 2), M(2, 2) - M(0, 2) - M(1, 2),
+      2.0 * M(0, 1), 2.0 * M(0, 2), 2.0 * M(1, 2);
+  return six;
+}
+
+struct Mode {
+  double gain = 0.0;  // expected fall of χ²
+  Disturbance start;
+};
+
+// The one appendage that does most of what the six would together: about an eigenvector of
+// Σ J a aᵀ.
+Mode best_appendage(const ScoreGroup& group, const Score& score, const Mat3& inertia_kg_m2) {
+  Mode best;
+  if (score.estimate.size() != 6) return best;
+  Mat3 sum = Mat3::Zero();
+  for (size_t i = 0; i < 6; ++i) {
+    const Vec3 axis = vector_of(group.disturbances[i], "axis");
+    sum += score.estimate[static_cast<Eigen::Index>(i)] * axis * axis.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(sum);
+  for (int e = 0; e < 3; ++e) {
+    const Vec3 axis = eigen.eigenvectors().col(e);
+    const Eigen::VectorXd six = as_six(axis);
+    const double along = six.dot(score.information * score.estimate);
+    const double curvature = six.dot(score.information * six);
+    if (!(along > 0.0 && curvature > 0.0)) continue;
+    if (along * along < best.gain * curvature) continue;
+    best.gain = along * along / curvature;
+    const double whole_kg_m2 = axis.dot(inertia_kg_m2 * axis);
+    const double fraction = std::min(along / curvature / whole_kg_m2, 0.5);
+    best.start = group.disturbances.front();
+    set_axis(best.start, axis);
+    // The platform's recoil makes a heavy appendage swing faster than with the platform held.
+    parameter_of(best.start, "frequency_Hz").value *= std::sqrt(1.0 - fraction);
+    parameter_of(best.start, "damping").value = 0.04;
+    parameter_of(best.start, "inertia_kg_m2").value = fraction * whole_kg_m2;
+  }
+  return best;
+}
+
+// What two scores tell that share no reading's news, about the same parameters.
+Score together(const Score& a, const Score& b) {
+  if (a.estimate.size() != b.estimate.size()) return b;
+  const Eigen::MatrixXd information = a.information + b.information;
+  const Eigen::VectorXd gradient = a.information * a.estimate + b.information * b.estimate;
+  return solve_score(information, gradient, information.diagonal());
+}
+
+}  // namespace
+
+std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
+                                        const std::vector<Observation>& runs,
+                                        const std::vector<Observation>& slow_runs,
+                                        const Thresholds::Scoring& limits) {
+  constexpr double step = 1.2, max_Hz = 5.0;
+  constexpr size_t max_starts = 3, max_fast_starts = 2;
+  const auto interval_s = [](const Observation& seen) {
+    return seen.duration_s() / static_cast<double>(seen.blocks());
+  };
+  const double highest_Hz = std::min(max_Hz, 0.4 / interval_s(runs.front()));
+  // Below it, a swing passes through enough of the averages, and the platform's own motion takes
+  // part in it; above, it is too slow to.
+  const double slow_Hz = 0.14 / interval_s(slow_runs.front());
+  const Mat3& inertia_kg_m2 = fit.best.model.platform.inertia_kg_m2;
+  const std::vector<Prediction> propagated = residuals_of(fit, runs);
+  std::vector<PropagatedRun> all;
+  for (size_t run = 0; run < runs.size(); ++run) all.push_back({runs[run], propagated[run]});
+  std::vector<Start> starts;
+  const auto start_at_peaks = [&](const std::vector<Mode>& modes, size_t most) {
+    std::vector<double> gain;
+    for (const Mode& mode : modes) gain.push_back(mode.gain);
+    for (const size_t i : peaks(gain, most)) {
+      if (gain[i] > limits.min_scan_gain) starts.push_back({modes[i].start, gain[i]});
+    }
+  };
+  std::vector<Mode> modes;
+  double f_Hz = std::max(0.02, 2.0 / span_s(runs));
+  for (; f_Hz < slow_Hz; f_Hz *= step) {
+    const ScoreGroup group = appendages(start, f_Hz);
+    modes.push_back(best_appendage(group, score(fit, slow_runs, {group}).front(), inertia_kg_m2));
+  }
+  start_at_peaks(modes, max_starts);
+  // What swings fast turns along with slow motion, as a part of the inertia: the same for all.
+  constexpr double stiff = 5.0;  // times slow_Hz
+  const Score carried = score(fit, slow_runs, {appendages(start, stiff * slow_Hz)}).front();
+  modes.clear();
+  for (; f_Hz < highest_Hz; f_Hz *= step) {
+    const ScoreGroup group = appendages(start, f_Hz);
+    const Score ringing =
+        score_of_ringing(all, inertia_kg_m2, axes_of(group), f_Hz, scanned_damping);
+    modes.push_back(ringing.gain < limits.min_scan_gain
+                        ? Mode{}
+                        : best_appendage(group, together(carried, ringing), inertia_kg_m2));
+  }
+  start_at_peaks(modes, max_fast_starts);
+  return starts;
+}
+
+}  // namespace photorque

@@ -1,0 +1,34 @@
+// Screening for appendages that swing fast, without propagating the platform again for each
+// frequency.
+#pragma once
+
+#include "attitude/observation/prediction.h"
+#include "diagnosis/attitude/effects/scan.h"
+#include "diagnosis/attitude/effects/screen.h"
+
+namespace photorque {
+
+// One run propagated along a fit.
+struct PropagatedRun {
+  const Observation& seen;
+  const Prediction& propagated;  // with residuals
+};
+
+// The score of light appendages about these axes [body, unit vectors], one strength J [kg m²] each,
+// all of one frequency and damping (fraction of critical). What the fitted motion makes each of
+// them do is exact; how the platform answers holds where nothing else turns it within a swing: it
+// is free there, δω = −J I⁻¹ a φ'. What is slower than a swing is taken out of the readings and the
+// answers alike, which stands for projecting out what the fit could still take up.
+Score score_of_ringing(const std::vector<PropagatedRun>& runs, const Mat3& inertia_kg_m2,
+                       const std::vector<Vec3>& axes, double frequency_Hz, double damping);
+
+// Starts for an appendage that swings: its frequency and axis.
+
+// The most promising flexible modes to add to `fit`, at most three. `start` is the disturbance with
+// its expected strength, `slow_runs` averages of the runs, as good for what is slow.
+std::vector<Start> flexible_mode_starts(const Disturbance& start, const Fit& fit,
+                                        const std::vector<Observation>& runs,
+                                        const std::vector<Observation>& slow_runs,
+                                        const Thresholds::Scoring& limits);
+
+}  // namespace photorque

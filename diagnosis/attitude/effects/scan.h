@@ -1,0 +1,69 @@
+// Starts for effects whose parameters enter nonlinearly (a frequency, an instant, an axis): the fit
+// would not find them from anywhere.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "attitude/disturbances/kind.h"
+#include "attitude/estimation/fit.h"
+#include "diagnosis/attitude/effects/trial.h"
+
+namespace photorque {
+
+// Frequencies at which what is left of a fit has power, strongest first [Hz], at most `most`, above
+// those of the platform's own motion.
+std::vector<double> line_frequencies_Hz(const Fit& at, const std::vector<Observation>& runs,
+                                        const Thresholds::Scoring& limits, size_t most = 4);
+
+// Where to start the fit of a candidate added to `parent`: one start, or the most promising ones of
+// a scan. `slow_runs` are averages of the runs, as good for what is slow; `lines_Hz` are the
+// parent's line_frequencies_Hz().
+std::vector<Start> starts_of(const Candidate& candidate, const Trial& parent,
+                             const std::vector<Observation>& runs,
+                             const std::vector<Observation>& slow_runs,
+                             const std::vector<double>& lines_Hz,
+                             const Thresholds::Scoring& limits);
+
+// What the scans for starts share.
+
+// From the first reading to the last [s], of all pieces and recordings on their clock: what acts at
+// one frequency keeps its phase from piece to piece.
+inline double span_s(const std::vector<Observation>& runs) {
+  double start_s = runs.front().time_s.front(), end_s = runs.front().time_s.back();
+  for (const Observation& seen : runs) {
+    start_s = std::min(start_s, seen.time_s.front());
+    end_s = std::max(end_s, seen.time_s.back());
+  }
+  return end_s - start_s;
+}
+
+// Indices of the `most` largest values that are larger than both neighbours.
+inline std::vector<size_t> peaks(const std::vector<double>& value, size_t most) {
+  std::vector<size_t> found;
+  for (size_t i = 0; i < value.size(); ++i) {
+    const bool rises = i == 0 || value[i] >= value[i - 1];
+    const bool falls = i + 1 == value.size() || value[i] > value[i + 1];
+    if (rises && falls) found.push_back(i);
+  }
+  std::sort(found.begin(), found.end(), [&](size_t a, size_t b) { return value[a] > value[b]; });
+  if (found.size() > most) found.resize(most);
+  return found;
+}
+
+inline Disturbance with_parameter(const Disturbance& like, std::string_view key, double value) {
+  Disturbance d = like;
+  parameter_of(d, key).value = value;
+  return d;
+}
+
+// Indices of the parameters of one key with so many components.
+inline std::vector<int> indices_of(const Disturbance& d, std::string_view key, size_t components) {
+  const auto first = static_cast<int>(index_of(d, key));
+  std::vector<int> all;
+  for (size_t k = 0; k < components; ++k) all.push_back(first + static_cast<int>(k));
+  return all;
+}
+
+}  // namespace photorque

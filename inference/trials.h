@@ -1,0 +1,175 @@
+// The best of many trials, fitted with more patience than all of them could be.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "core/parallel.h"
+#include "inference/domain.h"
+
+namespace photorque::inference {
+
+// Until a fit converges: one that is given up early makes whatever goes on from it seem to gain.
+inline Effort patient(const Thresholds& limits) {
+  return {.max_iterations = limits.fitting.patient_iterations, .creep = limits.fitting.creep};
+}
+
+// As long as it may still come near the best on the same runs.
+template <class Trial>
+Effort within_reach(Effort effort, const Trial& best, const Thresholds& limits) {
+  effort.worth_chi2 = best.fit.chi2 + limits.leaders.near_chi2;
+  return effort;
+}
+
+// Whether a trial explains nearly as much as the best on the same runs: where even the nominal
+// model has diverged, most others are no leaders, however few they are.
+template <class Trial>
+bool is_near(const Trial& trial, const Trial& best, const Thresholds& limits) {
+  return trial.fit.chi2 < limits.leaders.near_fraction * best.fit.chi2 + limits.leaders.near_chi2;
+}
+
+// A second chance for a trial, from where the best on the same runs ended.
+template <Domain D>
+void learn(const D& domain, const std::vector<typename D::Run>& runs, const typename D::Trial& best,
+           typename D::Trial& trial) {
+  const Thresholds& limits = domain.limits();
+  if (trial.fit.chi2 < best.fit.chi2 + limits.leaders.worth_a_fit) return;
+  const Effort brief{.max_iterations = limits.fitting.brief_iterations};
+  const Effort effort =
+      within_reach(is_near(trial, best, limits) ? patient(limits) : brief, best, limits);
+  typename D::Trial again = domain.refit_near(trial, best, runs, effort);
+  if (again.log_evidence > trial.log_evidence) trial = std::move(again);
+}
+
+// The leaders' fits are carried on until they converge: what only goes on where its parent's fit
+// stopped would seem to gain by the candidate that it adds. For the same reason they, and the
+// parents, have a second chance from where the best of them ended.
+template <Domain D>
+void settle_leaders(const D& domain, const std::vector<typename D::Run>& runs, int threads,
+                    std::vector<typename D::Trial>& found,
+                    std::vector<typename D::Trial>& parents) {
+  using Trial = typename D::Trial;
+  const Thresholds& limits = domain.limits();
+  std::vector<size_t> leaders = by_evidence(found);
+  if (leaders.empty()) return;
+  leaders.resize(std::min(limits.leaders.max_leaders, leaders.size()));
+  const Trial first = found[leaders.front()];
+  std::erase_if(leaders, [&](size_t i) { return !is_near(found[i], first, limits); });
+  parallel_for(leaders.size(), threads, [&](size_t i) {
+    Trial& trial = found[leaders[i]];
+    Trial again = domain.refit(trial, runs, domain.begins_of(trial),
+                               within_reach(patient(limits), first, limits));
+    if (again.log_evidence > trial.log_evidence) trial = std::move(again);
+  });
+  const Trial best = found[by_evidence(found).front()];
+  parallel_for(leaders.size() + parents.size(), threads, [&](size_t i) {
+    learn(domain, runs, best, i < leaders.size() ? found[leaders[i]] : parents[i - leaders.size()]);
+  });
+}
+
+// What rounds of the search share: runs in fewer samples or in pieces, fits of one candidate more.
+
+// The runs, or what each was cut into.
+template <Domain D>
+struct RunSet {
+  std::vector<typename D::Run> runs;
+  size_t pieces = 1;  // of each recording
+};
+
+// In fewer samples: enough for changes of the fit that are slow, and several times faster.
+template <Domain D>
+std::vector<typename D::Run> slow_runs(const D& domain, const typename D::Trial& about,
+                                       const RunSet<D>& set) {
+  return domain.average(about, set.runs, domain.limits().fitting.slow_blocks / set.pieces);
+}
+
+// Averages and pieces flatter some: what was not fitted to the full readings stands below the first
+// `fitted` of these trials, which were, as it stood before.
+template <class Trial>
+void keep_below(std::vector<Trial>& trials, size_t fitted) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < fitted; ++i) lowest = std::min(lowest, trials[i].log_evidence);
+  for (size_t i = fitted; i < trials.size(); ++i) {
+    trials[i].log_evidence = std::min(trials[i].log_evidence, lowest);
+  }
+}
+
+template <class Trial>
+void sort_by_evidence(std::vector<Trial>& trials) {
+  std::stable_sort(trials.begin(), trials.end(),
+                   [](const Trial& a, const Trial& b) { return a.log_evidence > b.log_evidence; });
+}
+
+// Of trials of the same candidates, found in different order, the best.
+template <class Trial>
+std::vector<Trial> without_twins(std::vector<Trial> trials) {
+  std::vector<Trial> kept;
+  for (Trial& trial : trials) {
+    const auto twin = std::find_if(kept.begin(), kept.end(), [&](const Trial& t) {
+      return same_candidates(t.candidates, trial.candidates);
+    });
+    if (twin == kept.end()) {
+      kept.push_back(std::move(trial));
+    } else if (trial.log_evidence > twin->log_evidence) {
+      *twin = std::move(trial);
+    }
+  }
+  return kept;
+}
+
+// One fit that is to be done.
+template <Domain D>
+struct Task {
+  size_t candidate;
+  typename D::Start start;
+};
+
+// The fits of all tasks on `runs`; of several starts of a candidate the best.
+template <Domain D>
+std::vector<typename D::Trial> extend_by_tasks(const D& domain, const typename D::Trial& parent,
+                                               const std::vector<Task<D>>& tasks,
+                                               const std::vector<typename D::Run>& runs,
+                                               int threads) {
+  using Trial = typename D::Trial;
+  const Effort effort{.max_iterations = domain.limits().fitting.trial_iterations};
+  std::vector<Trial> trials(tasks.size());
+  parallel_for(tasks.size(), threads, [&](size_t i) {
+    trials[i] = domain.extend(parent, tasks[i].candidate, tasks[i].start, runs, effort);
+  });
+  std::vector<Trial> best;
+  for (Trial& trial : trials) {
+    if (!best.empty() && best.back().candidates == trial.candidates) {
+      if (trial.log_evidence > best.back().log_evidence) best.back() = std::move(trial);
+    } else {
+      best.push_back(std::move(trial));
+    }
+  }
+  return best;
+}
+
+// The pieces of the runs in which the parent stays near the readings, and the parent fitted to
+// them. Where it does so in none, however short, what is missing acts fast and is seen best in long
+// ones: the longest that leave little more than the shortest do, whole runs included.
+template <Domain D>
+std::pair<RunSet<D>, typename D::Trial> near_pieces(const D& domain,
+                                                    const typename D::Trial& parent,
+                                                    const std::vector<typename D::Run>& runs) {
+  constexpr double little_more = 3.0;
+  std::vector<std::pair<RunSet<D>, typename D::Trial>> tried{{{runs}, parent}};
+  for (const size_t count : domain.limits().search.pieces) {
+    std::vector<typename D::Run> shorter = domain.cut(runs, count);
+    // Too few readings to be cut.
+    if (shorter.empty()) break;
+    RunSet<D> pieces{std::move(shorter), count};
+    typename D::Trial near =
+        domain.refit(parent, pieces.runs, domain.seen_begins(parent, pieces.runs), {});
+    tried.emplace_back(std::move(pieces), std::move(near));
+    if (!has_diverged(tried.back().second, domain.limits())) return std::move(tried.back());
+  }
+  const double enough = little_more * tried.back().second.fit.chi2_per_sample();
+  return std::move(*std::find_if(tried.begin(), tried.end(), [&](const auto& one) {
+    return !(one.second.fit.chi2_per_sample() > enough);
+  }));
+}
+
+}  // namespace photorque::inference

@@ -1,0 +1,42 @@
+// Packets over UDP.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "tools/realtime/photorque_serve.h"
+
+namespace photorque {
+
+// Bytes as they came; longer packets are cut, which their size then tells.
+struct ReceivedBytes {
+  std::array<std::byte, 128> bytes{};
+  size_t size = 0;
+  uint64_t sender = 0;
+};
+
+// A socket that never blocks. Copies share it; the last one closes it.
+class UdpSocket {
+ public:
+  // Binds to address and port (0: any that is free). In the last `spin_ns` before the end of a wait
+  // the socket is polled instead of slept on. InputError (key serve.address) where that cannot be.
+  UdpSocket(const std::string& address, int port, int64_t spin_ns);
+
+  // To the client. A client that has left is not an error.
+  void send(const photorque_measurement_packet& packet, uint64_t client) const;
+  // The next packet that is there or comes until `until_ns` (CLOCK_MONOTONIC).
+  std::optional<ReceivedBytes> receive(int64_t until_ns) const;
+  // For people: "127.0.0.1:4160".
+  const std::string& where() const { return where_; }
+
+ private:
+  int64_t spin_ns_;
+  std::shared_ptr<const int> socket_;
+  std::string where_;
+};
+
+}  // namespace photorque
