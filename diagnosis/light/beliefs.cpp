@@ -3,7 +3,6 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/format.h"
-#include "diagnosis/light/written.h"
 #include "scenes/effects/stated.h"
 #include "scenes/experiment/toml.h"
 

@@ -30,6 +30,15 @@ function(photorque_unity target)
   target_compile_options(${target} PRIVATE -Wno-shadow)
 endfunction()
 
+# The standard library and Eigen, compiled once for all targets.
+function(photorque_precompiled target)
+  if(target STREQUAL photorque_core)
+    target_precompile_headers(${target} PRIVATE ${CMAKE_SOURCE_DIR}/core/precompiled.h)
+  else()
+    target_precompile_headers(${target} REUSE_FROM photorque_core)
+  endif()
+endfunction()
+
 # photorque_folder(NAME [FILES file ...] [WITHOUT file ...] [USES folder ...] [LINKS library ...] [ALONE file ...])
 #   One static library photorque_NAME for a top-level folder: FILES, or every source below the folder but
 #   those WITHOUT. USES names the folders it may include (public), LINKS the outside libraries that only
@@ -52,7 +61,7 @@ function(photorque_folder name)
     target_link_libraries(${target} PUBLIC photorque_${used})
   endforeach()
   target_link_libraries(${target} PRIVATE ${arg_LINKS})
-  target_precompile_headers(${target} PRIVATE ${CMAKE_SOURCE_DIR}/core/precompiled.h)
+  photorque_precompiled(${target})
   photorque_unity(${target})
 endfunction()
 

@@ -110,9 +110,10 @@ endif()
 find_program(PHOTORQUE_CCACHE ccache)
 if(PHOTORQUE_CCACHE)
   # Paths are hashed as seen from the clone, so that a second clone finds what the first compiled.
+  # What a file depends on is known from the compiler, so that a first build preprocesses nothing twice.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
       CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
-      CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=true CCACHE_MAXSIZE=20G
+      CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=true CCACHE_DEPEND=true CCACHE_MAXSIZE=20G
       ${PHOTORQUE_CCACHE})
   add_compile_options(-fpch-preprocess)
 endif()

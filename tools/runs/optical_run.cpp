@@ -8,7 +8,6 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/text/format.h"
-#include "diagnosis/light/apply.h"
 #include "images/writers/image_file.h"
 #include "receivers/gather/bodies/wrench.h"
 #include "scenes/effects/stated.h"
