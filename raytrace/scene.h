@@ -8,7 +8,7 @@
 
 #include "core/spectrum.h"
 #include "core/transform.h"
-#include "raytrace/surfaces/surface.h"
+#include "raytrace/surfaces/bsdf.h"
 
 namespace photorque {
 

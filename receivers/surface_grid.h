@@ -1,14 +1,18 @@
-// A regular grid of bins laid over part of a scene, and the area of surface in every bin.
+// A regular grid of bins laid over part of a scene, the area of surface in every bin, and values on
+// it as a picture.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/errors.h"
+#include "core/product.h"
+#include "core/transform.h"
 #include "raytrace/scene.h"
 
 namespace photorque {
@@ -98,5 +102,26 @@ std::array<Vec2, 3> corners_in_bins(const SurfaceGrid& grid, const Scene& scene,
 
 // Texture coordinates of the corners of a face.
 std::array<Vec2, 3> texture_corners(const Scene& scene, const SurfaceFace& face);
+
+// Cuts a triangle along the lines of a grid of unit cells [0, width] × [0, height] and calls
+// `add(column, row, fraction)` with the fraction of the triangle's area in each cell it meets. The
+// fractions are ≥ 0 and sum to 1 within a few roundings, also for a triangle that the grid sees
+// edge-on. `corners` are in units of cells; what is outside counts for the nearest cell.
+//
+// Method: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Comm. ACM 17 (1974),
+// first into columns and then into rows, on polygons that carry barycentric coordinates, in which
+// areas are measured.
+void split_over_cells(const std::array<Vec2, 3>& corners, int width, int height,
+                      const std::function<void(int, int, double)>& add);
+
+// The same pieces themselves: add(column, row, corners of a convex polygon), each corner by its
+// weights of the triangle's corners 1 and 2.
+void clip_to_cells(const std::array<Vec2, 3>& corners, int width, int height,
+                   const std::function<void(int, int, std::span<const Vec2>)>& add);
+
+// A Map of one estimate per bin, with the grid's edges and labels. Over a plane, an axis that lies
+// along a body axis is called by it.
+Map grid_map(const SurfaceGrid& grid, const std::vector<Estimate>& bins, const std::string& name,
+             const std::string& title, const std::string& unit);
 
 }  // namespace photorque

@@ -7,7 +7,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "scenes/platforms/generator.h"
 
 namespace {

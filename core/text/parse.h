@@ -1,4 +1,5 @@
-// Text taken apart: lines, cells, words, numbers, columns, and what JSON and URIs need before that.
+// Text taken apart: lines, cells and words, which are views into the text that was given; numbers
+// and columns; what JSON texts and URIs need before they are read.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/light/recordings/recording.h"
 #include "photovoltaics/fit/fit.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

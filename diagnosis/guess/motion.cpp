@@ -11,7 +11,7 @@
 #include "core/errors.h"
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/guess/names.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

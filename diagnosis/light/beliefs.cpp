@@ -4,7 +4,7 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "diagnosis/light/written.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/errors.h"
-#include "receivers/jackknife.h"
+#include "raytrace/receiver.h"
 
 namespace photorque {
 namespace {

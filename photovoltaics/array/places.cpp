@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "receivers/surface_clip.h"
+#include "receivers/surface_grid.h"
 
 namespace photorque {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "raytrace/surfaces/fresnel.h"
+#include "raytrace/surfaces/glass.h"
 
 namespace photorque {
 namespace {

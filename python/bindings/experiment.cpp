@@ -5,8 +5,7 @@
 
 #include "core/errors.h"
 #include "python/bindings/exchange/document.h"
-#include "scenes/experiment/toml_reader.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque::python {
 namespace {

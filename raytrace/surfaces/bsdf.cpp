@@ -6,6 +6,17 @@
 #include "core/constants.h"
 
 namespace photorque {
+
+OpticalSurface grey_surface(std::string name, double specular, double diffuse, double transmitted) {
+  OpticalSurface surface;
+  surface.name = std::move(name);
+  surface.absorbed.fill(1.0 - specular - diffuse - transmitted);
+  surface.specular.fill(specular);
+  surface.diffuse.fill(diffuse);
+  surface.transmitted.fill(transmitted);
+  return surface;
+}
+
 namespace {
 
 // Axes of a hit; z is the normal on the lit side.
@@ -109,15 +120,6 @@ Vec3 mean_flow(const OpticalSurface& surface, Component component, const Inciden
       return -power * incidence.direction;
   }
   return power * incidence.direction;
-}
-
-double scattering_1_sr(const OpticalSurface& surface, double cosine, const Vec3& out, size_t band) {
-  const PowerFractions fractions = fractions_of(surface, cosine, band);
-  const Lobe* specular = lobe_of(surface, Component::specular);
-  const Lobe* diffuse = lobe_of(surface, Component::diffuse);
-  double f = specular ? fractions.specular * specular->density(cosine, out) / out.z() : 0.0;
-  f += fractions.diffuse * (diffuse ? diffuse->density(cosine, out) / out.z() : 1.0 / pi);
-  return f;
 }
 
 Vec3 lambertian_direction(double u, double v) {

@@ -15,10 +15,32 @@
 #include <string>
 
 #include "core/numerics/random.h"
+#include "core/spectrum.h"
 #include "core/transform.h"
-#include "raytrace/surfaces/surface.h"
 
 namespace photorque {
+
+struct Bsdf;
+
+// Fractions of the incident power, per wavelength band, the same for every angle of incidence:
+//   absorbed    stays in the surface (no re-emission)
+//   specular    leaves mirrored about the normal
+//   diffuse     leaves on the side it came from, by Lambert's law
+//   transmitted goes straight on (a thin sheet, no refraction)
+// They are in [0, 1] and sum to 1 in every band. Rough, glazed, retroreflecting and re-emitting
+// surfaces have a BSDF, which says more; their fractions here are those at normal incidence.
+struct OpticalSurface {
+  std::string name;
+  BandValues absorbed{};
+  BandValues specular{};
+  BandValues diffuse{};
+  BandValues transmitted{};
+  std::shared_ptr<const Bsdf> bsdf = nullptr;
+};
+
+// The same fractions in all bands; `absorbed` is what remains. The caller keeps the sum ≤ 1.
+OpticalSurface grey_surface(std::string name, double specular, double diffuse,
+                            double transmitted = 0.0);
 
 // The components of a BSDF; light that is not absorbed goes on along one of them. Transmitted light
 // goes straight on, retroreflected light goes back where it came from.
@@ -106,9 +128,6 @@ Vec3 scattered_direction(const OpticalSurface& surface, Component component,
 // along the component.
 Vec3 mean_flow(const OpticalSurface& surface, Component component, const Incidence& incidence,
                double power);
-
-// f(i, o) without delta functions (mirror, straight on, retroreflection), in the frame of the hit.
-double scattering_1_sr(const OpticalSurface& surface, double cosine, const Vec3& out, size_t band);
 
 // Lambert's law about z: uniform in projected solid angle. `u`, `v` ∈ (0, 1).
 Vec3 lambertian_direction(double u, double v);

@@ -49,6 +49,16 @@ class CosineTable {
 
 // ∫ 2 μ g(μ) dμ over [0, 1]: the mean of g over light that comes evenly from everywhere. By
 // Simpson's rule in the root of μ, for functions that are smooth in it or read from a table.
-double even_mean(const std::function<double(double cosine)>& g);
+inline double even_mean(const std::function<double(double cosine)>& g) {
+  constexpr int steps = 4096;
+  double sum = 0.0;
+  for (int i = 0; i <= steps; ++i) {
+    const double root = static_cast<double>(i) / steps, cosine = root * root;
+    const double weight = i == 0 || i == steps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+    // 2 μ dμ = 4 x³ dx with x the root.
+    sum += weight * 4.0 * root * cosine * g(cosine);
+  }
+  return sum / (3.0 * steps);
+}
 
 }  // namespace photorque

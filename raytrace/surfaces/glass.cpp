@@ -4,12 +4,85 @@
 #include <sstream>
 
 #include "core/constants.h"
+#include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/cosine_table.h"
-#include "raytrace/surfaces/fresnel.h"
-#include "raytrace/surfaces/rough_glass.h"
+#include "raytrace/surfaces/ggx.h"
 
 namespace photorque {
+
+double refracted_cosine(double cosine, double index) {
+  return std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
+}
+
+double fresnel_reflectance(double cosine, double index) {
+  if (index == 1.0) return 0.0;  // at grazing incidence too
+  const double inside = refracted_cosine(cosine, index);
+  const double across = (cosine - index * inside) / (cosine + index * inside);
+  const double within = (index * cosine - inside) / (index * cosine + inside);
+  return 0.5 * (across * across + within * within);
+}
+
 namespace {
+
+// The rough front of a clear dielectric: GGX microfacets that reflect by Fresnel's law.
+//
+// The lobe is what one reflection sends away, of power E(μ) = ∫ F(i·h) D G2/(4 μ) do. It is
+// reciprocal; whatever it does not send away counts as entering the glass, so nothing is lost.
+class RoughGlass final : public Lobe {
+ public:
+  // `alpha` ∈ [0.001, 1], `index` ∈ (1, 10].
+  RoughGlass(double alpha, double index);
+
+  // E at `cosine`. To 1e-4, from a table.
+  double reflectance(double cosine) const { return once_(cosine)[0]; }
+
+  Vec3 direction(double cosine, const Draw& draw) const override;
+  Vec3 mean_direction(double cosine) const override;
+  double density(double cosine, const Vec3& out) const override;
+
+ private:
+  Ggx facets_;
+  double index_;
+  CosineTable<3> once_;  // power, sums of o_x and o_z
+};
+
+RoughGlass::RoughGlass(double alpha, double index)
+    : facets_{alpha}, index_(index), once_([this](double cosine) {
+        return facets_.moments(
+            cosine, [this](double facing) { return fresnel_reflectance(facing, index_); });
+      }) {}
+
+Vec3 RoughGlass::direction(double cosine, const Draw& draw) const {
+  const Vec3 in = direction_at(cosine);
+  Vec3 out = Vec3::UnitZ();
+  // Glass reflects one ray in some 25 at a steep angle: as many attempts are the rule, this many
+  // never happen.
+  constexpr uint64_t most = 4096;
+  for (uint64_t attempt = 0; attempt < most; ++attempt) {
+    const Draw now = draw.attempt(attempt);
+    const Vec3 normal = facets_.visible_normal(in, now.u, now.v);
+    const double facing = in.dot(normal);
+    out = 2.0 * facing * normal - in;
+    const double kept = facets_.leaves(cosine, out.z());
+    if (kept > 0.0 && draw.extra(3 * attempt + 2) < kept * fresnel_reflectance(facing, index_)) {
+      return out;
+    }
+  }
+  out.z() = std::max(1e-6, std::abs(out.z()));
+  return out.normalized();
+}
+
+Vec3 RoughGlass::mean_direction(double cosine) const {
+  const auto [power, x, z] = once_(cosine);
+  return {x / power, 0.0, z / power};
+}
+
+double RoughGlass::density(double cosine, const Vec3& out) const {
+  const Vec3 in = direction_at(cosine);
+  const double facing = in.dot((in + out).normalized());
+  return facets_.once_reflected_1_sr(in, out) * fresnel_reflectance(facing, index_) /
+         reflectance(cosine);
+}
 
 using Reflectance = std::function<double(double cosine)>;
 
@@ -119,7 +192,7 @@ OpticalSurface behind_glass(const OpticalSurface& base, double index, double alp
   Bsdf bsdf = base.bsdf ? *base.bsdf : Bsdf{};
   Reflectance front = [index](double cosine) { return fresnel_reflectance(cosine, index); };
   if (alpha > 0.0) {
-    const std::shared_ptr<const RoughGlass> rough = rough_glass(alpha, index);
+    const std::shared_ptr<const RoughGlass> rough = std::make_shared<RoughGlass>(alpha, index);
     front = [rough](double cosine) { return rough->reflectance(cosine); };
     bsdf.specular = rough;
   }

@@ -1,7 +1,10 @@
 #include "raytrace/tracing/view.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
+#include "core/numerics/random.h"
 #include "core/parallel.h"
 #include "raytrace/tracing/find_hits.h"
 
@@ -65,6 +68,62 @@ std::vector<VisiblePoint> look(const TraceableScene& scene, size_t count,
     }
   });
   return points;
+}
+
+namespace {
+
+constexpr double far_radii = 20.0;  // of the scene
+
+// Start and end of a ray in the lab, for a point on it near the scene.
+void add_ray(std::vector<float>& rays, const Sight& sight, const VisiblePoint& seen,
+             const RigidTransform& lab_from_body, double radius_m) {
+  const bool is_near = sight.origin_m.norm() < far_radii * radius_m;
+  const double nearest_m = -sight.origin_m.dot(sight.direction);
+  const double reach_m = 3.0 * radius_m;
+  const double from_m = is_near ? 0.0 : std::max(0.0, nearest_m - reach_m);
+  const double to_m = seen.hit ? seen.distance_m : std::max(nearest_m, 0.0) + 0.5 * reach_m;
+  if (!seen.hit && (sight.origin_m + nearest_m * sight.direction).norm() > reach_m) return;
+  for (const double along_m : {from_m, to_m}) {
+    const Vec3 at = lab_from_body.point(sight.origin_m + along_m * sight.direction);
+    for (int k = 0; k < 3; ++k) rays.push_back(static_cast<float>(at[k]));
+  }
+}
+
+}  // namespace
+
+bool stands_far(const Beam& beam, double radius_m) {
+  return beam.lab_from_emitter.translation_m.norm() > far_radii * radius_m ||
+         (beam.aperture && std::isinf(beam.aperture->radius_m));
+}
+
+std::vector<float> shown_rays(const TraceableScene& scene, const std::vector<Beam>& beams,
+                              const RigidTransform& lab_from_body, double radius_m, size_t about) {
+  if (beams.empty() || about == 0) return {};
+  const size_t stride = (beams.size() + about - 1) / about;
+  const size_t each = std::clamp<size_t>(about / beams.size(), 1, 100);
+  const RigidTransform body_from_lab = lab_from_body.inverse();
+  std::vector<Sight> sights;
+  SampleBlock samples;
+  RayBlock block;
+  for (size_t i = 0; i < beams.size(); i += stride) {
+    std::array<uint32_t*, sobol_dimensions> out;
+    for (size_t d = 0; d < out.size(); ++d) out[d] = samples.bits[d].data();
+    sobol_points({1, i, 0}, 0, out);
+    beams[i].emitter->emit(samples, block);
+    const RigidTransform body_from_emitter = body_from_lab * beams[i].lab_from_emitter;
+    for (size_t k = 0; k < each; ++k) {
+      const Vec3 origin(block.origin_m[0][k], block.origin_m[1][k], block.origin_m[2][k]);
+      const Vec3 direction(block.direction[0][k], block.direction[1][k], block.direction[2][k]);
+      sights.push_back(
+          {body_from_emitter.point(origin), body_from_emitter.direction(direction.normalized())});
+    }
+  }
+  const auto seen = look(scene, sights.size(), [&](size_t i) { return sights[i]; });
+  std::vector<float> rays;
+  for (size_t i = 0; i < sights.size(); ++i) {
+    add_ray(rays, sights[i], seen[i], lab_from_body, radius_m);
+  }
+  return rays;
 }
 
 }  // namespace photorque

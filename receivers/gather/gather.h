@@ -1,4 +1,4 @@
-// Direct light on a flat surface, gathered from the surface's side.
+// Direct light on a flat surface, and its torque, gathered from the surface's side.
 //
 // Between a bin and an aperture either provably nothing stands, and the light is a quadrature
 // (raytrace/direct/disc_light.h) without noise, or something may, and shadow rays to scrambled
@@ -14,6 +14,7 @@
 
 #include "raytrace/tracing/tracer.h"
 #include "receivers/maps/flux_map.h"
+#include "receivers/maps/torque_map.h"
 
 namespace photorque {
 
@@ -60,6 +61,19 @@ bool gathering_pays(size_t pairs, uint64_t rays);
 // The result is the same bits at any number of threads.
 Gathered gather_direct(const TraceableScene& scene, const RigidTransform& lab_from_body,
                        std::span<const Beam> beams, const FluxMapReceiver& map,
+                       const GatherOptions& options);
+
+// With the force f per area of FirstContact (lamp.h), torques per bin are integrals of (r − p) × f
+// by the same rules as irradiance; what bounces is for rays.
+
+// Whether gather_torque() applies: as can_gather(), for both sides, and surfaces whose fractions
+// are the same for every angle and that send light nowhere else.
+bool can_gather_torque(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams);
+
+// The direct entries of the torque map, at the attitude `lab_from_body`; else as gather_direct().
+// `target_error` is not used.
+Gathered gather_torque(const TraceableScene& scene, const RigidTransform& lab_from_body,
+                       std::span<const Beam> beams, const TorqueMapReceiver& map,
                        const GatherOptions& options);
 
 }  // namespace photorque

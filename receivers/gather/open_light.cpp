@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "receivers/gather/triangle_rule.h"
+#include "receivers/gather/quadrature.h"
 
 namespace photorque {
 namespace {

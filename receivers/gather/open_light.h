@@ -9,7 +9,7 @@
 
 #include <span>
 #include <unordered_map>
-#include "receivers/gather/chebyshev_tiles.h"
+#include "receivers/gather/quadrature.h"
 #include "receivers/maps/flux_map.h"
 
 namespace photorque {

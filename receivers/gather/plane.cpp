@@ -3,10 +3,137 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/constants.h"
+#include "receivers/surface_grid.h"
 
 namespace photorque {
+namespace {
+
+struct CellPiece {
+  size_t bin;
+  SurfacePatch patch;
+};
+
+Vec2 cell_of(const SurfaceGrid& grid, const Vec3& position_m) {
+  return {
+      (grid.u_axis_body.dot(position_m) - grid.u_low) / (grid.u_high - grid.u_low) * grid.width,
+      (grid.v_axis_body.dot(position_m) - grid.v_low) / (grid.v_high - grid.v_low) * grid.height};
+}
+
+// A fan of triangles for every piece of a face.
+void add_pieces(const SurfaceGrid& grid, const SurfaceFace& face, std::vector<CellPiece>& pieces) {
+  // No structured binding: Clang 14 captures none.
+  const Vec3 &a = face.corner_body_m[0], &b = face.corner_body_m[1], &c = face.corner_body_m[2];
+  const auto place = [&](const Vec2& weight) {
+    return Vec3(a + weight.x() * (b - a) + weight.y() * (c - a));
+  };
+  const std::array<Vec2, 3> corners = {cell_of(grid, a), cell_of(grid, b), cell_of(grid, c)};
+  clip_to_cells(corners, grid.width, grid.height, [&](int column, int row, auto polygon) {
+    const size_t bin =
+        static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(column);
+    if (!(grid.area_m2[bin] > 0.0)) return;
+    const Vec3 origin = place(polygon[0]);
+    for (size_t i = 2; i < polygon.size(); ++i) {
+      const Vec3 edge1 = place(polygon[i - 1]) - origin, edge2 = place(polygon[i]) - origin;
+      const double area_m2 = 0.5 * edge1.cross(edge2).norm();
+      if (area_m2 > 1e-12 * grid.area_m2[bin]) {
+        pieces.push_back({bin, {origin, edge1, edge2, area_m2, face.instance, true}});
+      }
+    }
+  });
+}
+
+// A counting sort. Returns where each bin begins, and where all end.
+std::vector<uint32_t> sort_by_bin(std::vector<CellPiece>& pieces, size_t bins) {
+  std::vector<uint32_t> begin(bins + 1, 0);
+  for (const CellPiece& piece : pieces) ++begin[piece.bin + 1];
+  for (size_t bin = 0; bin < bins; ++bin) begin[bin + 1] += begin[bin];
+  std::vector<uint32_t> next(begin.begin(), begin.end() - 1);
+  std::vector<CellPiece> sorted(pieces.size());
+  for (const CellPiece& piece : pieces) sorted[next[piece.bin]++] = piece;
+  pieces = std::move(sorted);
+  return begin;
+}
+
+// The whole bin as one parallelogram, if one instance fills it once.
+bool fill_whole(const SurfaceGrid& grid, const BinPatches& plane, size_t bin,
+                std::span<const CellPiece> pieces, SurfacePatch& whole) {
+  const double du = (grid.u_high - grid.u_low) / grid.width;
+  const double dv = (grid.v_high - grid.v_low) / grid.height;
+  // The plane of the faces may be inclined to the plane of the grid.
+  const double lean = plane.normal.dot(grid.normal_body);
+  const auto along = [&](const Vec3& axis) {
+    return Vec3(axis - plane.normal.dot(axis) / lean * grid.normal_body);
+  };
+  const double full_m2 = du * dv / std::abs(lean);
+  const bool same = std::all_of(pieces.begin(), pieces.end(), [&](const CellPiece& piece) {
+    return piece.patch.instance == pieces[0].patch.instance;
+  });
+  if (!same || std::abs(grid.area_m2[bin] - full_m2) > 1e-9 * full_m2) return false;
+  const auto width = static_cast<size_t>(grid.width);
+  const size_t column = bin % width, row = bin / width;
+  const double u = grid.u_low + du * static_cast<double>(column);
+  const double v = grid.v_low + dv * static_cast<double>(row);
+  const Vec3 flat = u * grid.u_axis_body + v * grid.v_axis_body;
+  const double ray_offset = plane.normal.dot(plane.point_m - flat) / lean;
+  whole = {flat + ray_offset * grid.normal_body,
+           du * along(grid.u_axis_body),
+           dv * along(grid.v_axis_body),
+           full_m2,
+           pieces[0].patch.instance,
+           false};
+  return true;
+}
+
+}  // namespace
+
+Vec3 SurfacePatch::at(double s, double t) const {
+  if (!triangle) return origin_m + s * edge1_m + t * edge2_m;
+  const double root = std::sqrt(s);
+  return origin_m + root * (1.0 - t) * edge1_m + root * t * edge2_m;
+}
+
+bool is_flat(const Scene& scene, const SurfaceGrid& grid) {
+  if (grid.over != SurfaceGrid::Over::plane) return false;
+  const std::vector<SurfaceFace> faces = faces_of(scene, grid.instances, grid.facing_body);
+  const Vec3 normal = faces[0].area_body_m2.normalized();
+  const double extent = std::hypot(grid.u_high - grid.u_low, grid.v_high - grid.v_low);
+  return std::all_of(faces.begin(), faces.end(), [&](const SurfaceFace& face) {
+    if (face.area_body_m2.dot(normal) < 0.0) return false;
+    return std::all_of(face.corner_body_m.begin(), face.corner_body_m.end(), [&](const Vec3& p) {
+      return std::abs(normal.dot(p - faces[0].corner_body_m[0])) <= 1e-6 * extent;
+    });
+  });
+}
+
+BinPatches bin_patches(const Scene& scene, const SurfaceGrid& grid) {
+  const std::vector<SurfaceFace> faces = faces_of(scene, grid.instances, grid.facing_body);
+  BinPatches all;
+  all.point_m = faces[0].corner_body_m[0];
+  Vec3 area = Vec3::Zero();
+  std::vector<CellPiece> pieces;
+  for (const SurfaceFace& face : faces) {
+    area += face.area_body_m2;
+    add_pieces(grid, face, pieces);
+  }
+  all.normal = area.normalized();
+  const std::vector<uint32_t> begin = sort_by_bin(pieces, grid.bins());
+  for (size_t bin = 0; bin < grid.bins(); ++bin) {
+    all.first.push_back(static_cast<uint32_t>(all.patches.size()));
+    if (begin[bin] == begin[bin + 1]) continue;
+    const auto here = std::span(pieces).subspan(begin[bin], begin[bin + 1] - begin[bin]);
+    SurfacePatch whole;
+    if (fill_whole(grid, all, bin, here, whole)) {
+      all.patches.push_back(whole);
+    } else {
+      for (const CellPiece& piece : here) all.patches.push_back(piece.patch);
+    }
+  }
+  all.first.push_back(static_cast<uint32_t>(all.patches.size()));
+  return all;
+}
 
 std::pair<BinTile, BinTile> BinTile::halves() const {
   BinTile low = *this, high = *this;

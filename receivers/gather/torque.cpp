@@ -1,4 +1,4 @@
-#include "receivers/gather/torque.h"
+#include "receivers/gather/gather.h"
 
 #include <algorithm>
 #include <chrono>
@@ -7,14 +7,14 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/interpolation.h"
-#include "receivers/gather/chebyshev_tiles.h"
-#include "receivers/gather/first_contact.h"
+#include "receivers/gather/lamp.h"
+#include "receivers/gather/quadrature.h"
 #include "receivers/gather/shaded_sampler.h"
 
 namespace photorque {
 namespace {
 
-constexpr size_t axes = 3;
+constexpr size_t torque_axes = 3;
 
 // What light does to the surfaces of a plane, per power of light: its torque about a point.
 class Torque {
@@ -36,8 +36,8 @@ class Torque {
   }
   void add(const Vec3& torque_N_m, const GatherLamp&, size_t bin, uint32_t,
            std::span<double> entries) const {
-    for (size_t axis = 0; axis < axes; ++axis) {
-      entries[bin * axes + axis] += torque_N_m[static_cast<Eigen::Index>(axis)];
+    for (size_t axis = 0; axis < torque_axes; ++axis) {
+      entries[bin * torque_axes + axis] += torque_N_m[static_cast<Eigen::Index>(axis)];
     }
   }
 
@@ -121,9 +121,9 @@ class OpenTorque {
   void add_bin(size_t bin, const Vec3& density_N_m, double error_N_m, std::span<double> torque_N_m,
                std::span<double> bound_N_m) const {
     const double area_m2 = plane_.patches().of(bin)[0].area_m2;
-    for (size_t axis = 0; axis < axes; ++axis) {
-      torque_N_m[bin * axes + axis] += area_m2 * density_N_m[static_cast<Eigen::Index>(axis)];
-      bound_N_m[bin * axes + axis] += area_m2 * error_N_m;
+    for (size_t axis = 0; axis < torque_axes; ++axis) {
+      torque_N_m[bin * torque_axes + axis] += area_m2 * density_N_m[static_cast<Eigen::Index>(axis)];
+      bound_N_m[bin * torque_axes + axis] += area_m2 * error_N_m;
     }
   }
 
@@ -159,9 +159,9 @@ class OpenTorque {
         low = high;
       }
       const double area_m2 = patch.area_m2 * (patch.triangle ? 2.0 : 1.0);
-      for (size_t axis = 0; axis < axes; ++axis) {
-        torque_N_m[bin * axes + axis] += area_m2 * mean.value[static_cast<Eigen::Index>(axis)];
-        bound_N_m[bin * axes + axis] += area_m2 * (mean.error + 2.0 * inner_error);
+      for (size_t axis = 0; axis < torque_axes; ++axis) {
+        torque_N_m[bin * torque_axes + axis] += area_m2 * mean.value[static_cast<Eigen::Index>(axis)];
+        bound_N_m[bin * torque_axes + axis] += area_m2 * (mean.error + 2.0 * inner_error);
       }
     }
     return patches.empty() ? 0 : 1;

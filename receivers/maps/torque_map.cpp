@@ -4,8 +4,7 @@
 
 #include "core/constants.h"
 #include "receivers/kind.h"
-#include "receivers/maps/grid_map.h"
-#include "receivers/settings.h"
+#include "receivers/surface_grid.h"
 
 namespace photorque {
 namespace {

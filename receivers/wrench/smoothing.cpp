@@ -6,7 +6,7 @@
 namespace photorque {
 namespace {
 
-constexpr Eigen::Index components = std::tuple_size_v<WrenchComponents>;
+constexpr Eigen::Index per_wrench = std::tuple_size_v<WrenchComponents>;
 
 // Azimuths without the last, if that is the first once more.
 std::span<const double> once_around(const std::vector<double>& around_rad) {
@@ -17,12 +17,12 @@ std::span<const double> once_around(const std::vector<double>& around_rad) {
 
 // Both halves in twelve columns.
 Eigen::MatrixXd values_of(std::span<const TwofoldWrench> wrenches, size_t nodes) {
-  Eigen::MatrixXd values(static_cast<Eigen::Index>(nodes), 2 * components);
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(nodes), 2 * per_wrench);
   for (size_t n = 0; n < nodes; ++n) {
     const auto row = static_cast<Eigen::Index>(n);
-    for (Eigen::Index k = 0; k < components; ++k) {
+    for (Eigen::Index k = 0; k < per_wrench; ++k) {
       values(row, k) = wrenches[n].first[static_cast<size_t>(k)];
-      values(row, components + k) = wrenches[n].second[static_cast<size_t>(k)];
+      values(row, per_wrench + k) = wrenches[n].second[static_cast<size_t>(k)];
     }
   }
   return values;
@@ -35,7 +35,7 @@ double unresolved(const Eigen::MatrixXd& rest, std::span<const double> elevation
   const auto rings = static_cast<Eigen::Index>(elevation_rad.size());
   for (Eigen::Index n = 0; n < rest.rows(); ++n) {
     const double weight = std::cos(elevation_rad[static_cast<size_t>(n % rings)]);
-    sum += weight * rest(n, k) * rest(n, components + k);
+    sum += weight * rest(n, k) * rest(n, per_wrench + k);
     weights += weight;
   }
   return std::max(0.0, sum / weights);
@@ -50,9 +50,9 @@ Powers powers_of(const SphereSeries& halves, int degree, Eigen::Index from) {
   // Force and torque have three components each, which share their factors.
   Powers powers;
   for (Eigen::Index k = from; k < from + 3; ++k) {
-    const double both = halves.mean_product(degree, k, components + k);
+    const double both = halves.mean_product(degree, k, per_wrench + k);
     const double first = halves.mean_product(degree, k, k);
-    const double second = halves.mean_product(degree, components + k, components + k);
+    const double second = halves.mean_product(degree, per_wrench + k, per_wrench + k);
     powers.common += both;
     powers.noise += 0.25 * (first + second - 2.0 * both);
   }
@@ -72,8 +72,8 @@ SmoothWrench smooth_over_sphere(const WrenchTable& table, std::span<const Twofol
   const SphereSeries halves =
       SphereSeries::fit(static_cast<int>(degree), azimuths, elevations, values);
   const Eigen::MatrixXd rest = values - halves.on_grid(azimuths, elevations);
-  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(2 * components, components);
-  for (Eigen::Index k = 0; k < components; ++k) mean(k, k) = mean(components + k, k) = 0.5;
+  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(2 * per_wrench, per_wrench);
+  for (Eigen::Index k = 0; k < per_wrench; ++k) mean(k, k) = mean(per_wrench + k, k) = 0.5;
 
   SmoothWrench smooth{halves.combined(mean), {}, {}};
   for (const Eigen::Index from : {Eigen::Index{0}, Eigen::Index{3}}) {
@@ -92,7 +92,7 @@ SmoothWrench smooth_over_sphere(const WrenchTable& table, std::span<const Twofol
   }
   const Eigen::MatrixXd nodes = smooth.series.on_grid(table.around_rad, elevations);
   for (Eigen::Index n = 0; n < nodes.rows(); ++n) {
-    for (Eigen::Index k = 0; k < components; ++k) smooth.at_node.push_back(nodes(n, k));
+    for (Eigen::Index k = 0; k < per_wrench; ++k) smooth.at_node.push_back(nodes(n, k));
   }
   return smooth;
 }

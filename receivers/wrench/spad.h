@@ -6,28 +6,21 @@
 // in even steps and reads the force alone, of analysis type "Area".
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "core/wrench.h"
 
 namespace photorque {
 
+// What a file holds.
 struct SpadFile {
   std::string system;  // what the table is of
   // Force and torque under light of 1 Pa pressure (so that 1 m² is 1 N): scale by the irradiance
   // over the speed of light. About the file's centre of mass, taken as metres: the format does not
   // name its unit.
   WrenchTable table;
-  bool has_torque = false;  // else the table's torques are zero
+  bool has_torque = false;  // else the torques are left out
 };
-
-// Reads a table of type "Area" with forces in m², mm², cm², in² or ft² (torques in the cubes). Rows
-// may come in any order; every direction must be there once. Values are taken as they are: see
-// single_valued() and mean_push_N() for what real files need checked. `name` is the file in
-// errors. InputError with the line for anything that does not fit.
-SpadFile parse_spad(const std::string& text, const std::string& name);
-SpadFile read_spad(const std::filesystem::path& path);
 
 // The text of a file. The table must be of azimuth and elevation, whole and regular (−180 … 180 and
 // −90 … 90 deg), InputError otherwise; it is made single-valued first. Forces and torques keep 12

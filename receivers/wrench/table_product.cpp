@@ -1,11 +1,202 @@
 #include "receivers/wrench/table_product.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "core/constants.h"
-#include "receivers/wrench/polar_maps.h"
+#include "core/parallel.h"
+#include "core/product.h"
 
 namespace photorque {
+namespace {
+
+constexpr int side = 241;  // nodes of a disc's picture
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// One component of a table as a smooth function of both angles.
+class SmoothComponent {
+ public:
+  // Nothing where the angles around are not in even steps all the way round.
+  static std::optional<SmoothComponent> of(const WrenchTable& table, int axis) {
+    constexpr double same = 1e-6;
+    std::vector<double> around = table.around_rad;
+    if (around.size() > 3 && std::abs(around.back() - around.front() - 2.0 * pi) < same) {
+      around.pop_back();
+    }
+    const auto count = static_cast<double>(around.size());
+    if (around.size() < 3 || table.polar_rad.size() < 2) return std::nullopt;
+    for (size_t i = 0; i < around.size(); ++i) {
+      const double even = around[0] + 2.0 * pi * static_cast<double>(i) / count;
+      if (std::abs(around[i] - even) > same) return std::nullopt;
+    }
+    return SmoothComponent(table, std::move(around), axis);
+  }
+
+  // The value with its standard error: it is a weighted sum of the values at the nodes.
+  Estimate operator()(double polar_rad, double around_rad) const {
+    // The four nodes about the angle, perhaps beyond a pole.
+    const std::vector<double>& polar = table_.polar_rad;
+    const auto count = static_cast<int>(polar.size());
+    const auto above = std::upper_bound(polar.begin(), polar.end(), polar_rad) - polar.begin();
+    const int first = static_cast<int>(above) - 2;
+    std::vector<Node> nodes;
+    for (int i = first; i < first + 4; ++i) {
+      if (const auto node = node_at(i, count)) nodes.push_back(*node);
+    }
+    // By polar angle, which beyond a pole may be there twice.
+    std::vector<Row> rows;
+    for (size_t i = 0; i < nodes.size(); ++i) {  // Lagrange
+      double weight = 1.0;
+      for (size_t k = 0; k < nodes.size(); ++k) {
+        if (k == i) continue;
+        weight *= (polar_rad - nodes[k].at_rad) / (nodes[i].at_rad - nodes[k].at_rad);
+      }
+      auto row = std::ranges::find(rows, nodes[i].index, &Row::polar);
+      if (row == rows.end()) {
+        rows.push_back({nodes[i].index, std::vector<double>(around_rad_.size(), 0.0)});
+        row = rows.end() - 1;
+      }
+      add_round(around_rad + (nodes[i].opposite ? pi : 0.0), weight, row->weights);
+    }
+    double sum = 0.0, variance = 0.0;
+    for (const Row& row : rows) {
+      for (size_t i = 0; i < row.weights.size(); ++i) {
+        const size_t node = table_.node(i, row.polar);
+        sum += row.weights[i] * table_.torque_body_N_m[node][axis_];
+        const double error = row.weights[i] * table_.torque_error_N_m[node][axis_];
+        variance += error * error;
+      }
+    }
+    return {sum, std::sqrt(variance)};
+  }
+
+ private:
+  struct Node {
+    double at_rad;
+    size_t index;
+    bool opposite;  // on the other side of a pole
+  };
+  // The nodes of one polar angle.
+  struct Row {
+    size_t polar;
+    std::vector<double> weights;
+  };
+
+  SmoothComponent(const WrenchTable& table, std::vector<double> around, int axis)
+      : table_(table), around_rad_(std::move(around)), axis_(axis) {}
+
+  // Node i of the polar angles, those below 0 and from `count` on being mirrored at the pole, if
+  // the table reaches to it.
+  std::optional<Node> node_at(int i, int count) const {
+    const std::vector<double>& polar = table_.polar_rad;
+    const bool tilt = table_.angles == WrenchTable::Angles::tilt_heading;
+    const double low_pole = tilt ? 0.0 : -0.5 * pi, high_pole = low_pole + pi;
+    constexpr double same = 1e-9;
+    const auto at = [&](int k) { return polar[static_cast<size_t>(k)]; };
+    if (i >= 0 && i < count) return Node{at(i), static_cast<size_t>(i), false};
+    if (i < 0 && std::abs(at(0) - low_pole) < same && -i < count) {
+      return Node{2.0 * low_pole - at(-i), static_cast<size_t>(-i), true};
+    }
+    const int mirrored = 2 * (count - 1) - i;
+    if (i >= count && std::abs(at(count - 1) - high_pole) < same && mirrored >= 0) {
+      return Node{2.0 * high_pole - at(mirrored), static_cast<size_t>(mirrored), true};
+    }
+    return std::nullopt;
+  }
+
+  // The trigonometric polynomial through the values of one polar angle: `weight` of it.
+  // Source: A. Zygmund, Trigonometric Series, chapter X (its Dirichlet kernels).
+  void add_round(double at_rad, double weight, std::vector<double>& weights) const {
+    const auto count = static_cast<double>(around_rad_.size());
+    for (size_t i = 0; i < around_rad_.size(); ++i) {
+      const double half = 0.5 * std::remainder(at_rad - around_rad_[i], 2.0 * pi);
+      double kernel = 1.0;
+      if (std::abs(half) > 1e-12) {
+        kernel = std::sin(count * half) /
+                 (count * (around_rad_.size() % 2 == 0 ? std::tan(half) : std::sin(half)));
+      }
+      weights[i] += weight * kernel;
+    }
+  }
+
+  const WrenchTable& table_;
+  std::vector<double> around_rad_;
+  int axis_;
+};
+
+// A map over the disc of radius `reach`, by `value(distance from the middle, angle around)`.
+template <typename Value>
+Map disc(double reach, const Value& value) {
+  Map map;
+  map.width = map.height = side;
+  const double edge = reach * side / (side - 1.0);  // the outermost nodes lie on the rim
+  map.x_low = map.y_low = -edge;
+  map.x_high = map.y_high = edge;
+  map.smooth = map.signed_values = true;
+  map.unit = "N m";
+  map.value.resize(side * side);
+  map.standard_error.resize(side * side);
+  parallel_for(side, 0, [&](size_t row) {
+    for (size_t column = 0; column < side; ++column) {
+      const double x = reach * (2.0 * static_cast<double>(column) / (side - 1.0) - 1.0);
+      const double y = reach * (2.0 * static_cast<double>(row) / (side - 1.0) - 1.0);
+      const double distance = std::hypot(x, y);
+      const Estimate at =
+          distance > reach * (1.0 + 1e-12) ? Estimate{nan, nan} : value(distance, std::atan2(y, x));
+      map.value[row * side + column] = at.value;
+      map.standard_error[row * side + column] = at.standard_error;
+    }
+  });
+  return map;
+}
+
+}  // namespace
+
+std::vector<Map> polar_maps(const WrenchTable& table, const std::string& name) {
+  constexpr double same = 1e-9;
+  std::vector<Map> maps;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto component = SmoothComponent::of(table, axis);
+    if (!component) return maps;
+    const std::string stem = std::string("torque_") + "xyz"[axis] + "_" + name;
+    // A whole body needs no name.
+    const std::string title = std::string("Torque of light about body ") + "xyz"[axis] +
+                              (name == "body" ? "" : " on " + name);
+    if (table.angles == WrenchTable::Angles::tilt_heading) {
+      if (table.polar_rad.front() > same) return maps;
+      Map map = disc(table.polar_rad.back() / degree_rad, [&](double tilt_deg, double heading_rad) {
+        return (*component)(tilt_deg * degree_rad, heading_rad);
+      });
+      map.name = stem + "_polar";
+      map.title = title;
+      map.x_label = "tilt towards heading 0 [deg]";
+      map.y_label = "tilt towards heading 90 [deg]";
+      maps.push_back(std::move(map));
+      continue;
+    }
+    const bool sphere = std::abs(table.polar_rad.front() + 0.5 * pi) < same &&
+                        std::abs(table.polar_rad.back() - 0.5 * pi) < same;
+    if (!sphere) return maps;
+    for (const bool plus : {true, false}) {
+      // Seen from −z, x runs to the left.
+      Map map = disc(1.0, [&](double distance, double around_rad) {
+        const double from_pole = 2.0 * std::asin(std::min(1.0, distance * std::sqrt(0.5)));
+        const double elevation = 0.5 * pi - from_pole;
+        return plus ? (*component)(elevation, around_rad)
+                    : (*component)(-elevation, pi - around_rad);
+      });
+      map.name = stem + (plus ? "_from_plus_z" : "_from_minus_z");
+      map.title = title + ", light from the side of " + (plus ? "+z" : "−z");
+      map.x_label = plus ? "towards +x" : "towards −x";
+      map.y_label = "towards +y";
+      maps.push_back(std::move(map));
+    }
+  }
+  return maps;
+}
 
 double stated_deg(double angle_rad) {
   return std::round(1e10 * angle_rad / degree_rad) / 1e10;

@@ -3,12 +3,11 @@
 #include <set>
 
 #include "receivers/kind.h"
-#include "receivers/settings.h"
 
 namespace photorque {
 namespace {
 
-constexpr size_t components = std::tuple_size_v<WrenchComponents>;
+constexpr size_t wrench_components = std::tuple_size_v<WrenchComponents>;
 
 // Names as short as they can be while no two are equal: nodes, else paths, else paths with their
 // material, else numbered.
@@ -69,7 +68,7 @@ WrenchReceiver::WrenchReceiver(std::string name, const Scene& scene,
 }
 
 size_t WrenchReceiver::bins() const {
-  return 2 * part_names_.size() * components;
+  return 2 * part_names_.size() * wrench_components;
 }
 
 // Neighbouring hits mostly share an instance and a depth: a run of them is summed in registers.
@@ -84,8 +83,8 @@ void WrenchReceiver::score(const Hits& hits, std::span<double> sums) const {
     }
     const size_t part = part_of_instance_[instance];
     if (part == part_names_.size()) continue;
-    const size_t entry = part * components + (bounced ? direct_entries() : 0);
-    add_run(hits, begin, end, about_body_m_, sums.subspan(entry, components));
+    const size_t entry = part * wrench_components + (bounced ? direct_entries() : 0);
+    add_run(hits, begin, end, about_body_m_, sums.subspan(entry, wrench_components));
   }
 }
 
@@ -95,10 +94,10 @@ WrenchEstimate WrenchReceiver::estimate(const BinSums& sums,
                                         const std::function<bool(size_t)>& counts) const {
   std::vector<WrenchComponents> replicates(static_cast<size_t>(sums.replicates));
   WrenchComponents bound{};
-  for (size_t group = 0; group < bins() / components; ++group) {
+  for (size_t group = 0; group < bins() / wrench_components; ++group) {
     if (!counts(group)) continue;
-    for (size_t k = 0; k < components; ++k) {
-      const size_t bin = group * components + k;
+    for (size_t k = 0; k < wrench_components; ++k) {
+      const size_t bin = group * wrench_components + k;
       for (size_t r = 0; r < replicates.size(); ++r) {
         replicates[r][k] += sums.of(static_cast<int>(r))[bin];
       }
@@ -106,7 +105,7 @@ WrenchEstimate WrenchReceiver::estimate(const BinSums& sums,
     }
   }
   WrenchEstimate wrench = wrench_from_replicates(replicates, about_body_m_);
-  for (size_t k = 0; k < components; ++k) {
+  for (size_t k = 0; k < wrench_components; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     wrench.covariance(i, i) += bound[k] * bound[k];
   }
@@ -149,7 +148,7 @@ std::vector<Quantity> wrench_quantities(const WrenchEstimate& wrench, const std:
   const std::string where = "_" + name + (wrench.mean.frame == Frame::body ? "_body" : "_lab");
   const Vec3 force_error_N = wrench.force_error_N(), torque_error_N_m = wrench.torque_error_N_m();
   std::vector<Quantity> quantities;
-  quantities.reserve(components);
+  quantities.reserve(wrench_components);
   for (int axis = 0; axis < 3; ++axis) {
     quantities.push_back({component("force", axis) + where + "_N",
                           {wrench.mean.force_N[axis], force_error_N[axis]}});

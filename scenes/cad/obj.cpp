@@ -5,7 +5,6 @@
 
 #include "core/text/parse.h"
 #include "scenes/cad/part.h"
-#include "scenes/cad/polygon.h"
 
 namespace photorque::cad {
 namespace {

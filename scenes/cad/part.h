@@ -1,10 +1,14 @@
-// A model from CAD as its file has it: parts of triangles with names, without unit or optics.
+// A model from CAD as its file has it: parts of triangles with names, without unit or optics. Faces
+// with more than three corners are cut into triangles.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/transform.h"
 #include "raytrace/scene.h"
 
 namespace photorque::cad {
@@ -33,5 +37,12 @@ std::vector<Part> read_stl(std::string_view bytes, const std::string& file,
 // InputError as read_stl(), and for curves and surfaces (`curv`, `surf`), which are not read.
 // Source: Wavefront, "Object Files (.obj)", in the Advanced Visualizer manual, appendix B1.
 std::vector<Part> read_obj(std::string_view text, const std::string& file, const std::string& name);
+
+// The triangles of a polygon without holes, as places in `corners`, in its own order of corners. A
+// polygon that is not quite plane is cut as it is seen along its mean normal (Newell's); one that
+// crosses itself gives some triangles that overlap. Fewer than three corners give none; corners in
+// one line give triangles without area.
+// Source: D. Eberly, "Triangulation by Ear Clipping" (2002).
+std::vector<std::array<uint32_t, 3>> triangles_of(const std::vector<Vec3>& corners);
 
 }  // namespace photorque::cad

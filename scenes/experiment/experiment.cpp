@@ -8,7 +8,6 @@
 #include "core/constants.h"
 #include "core/files.h"
 #include "receivers/kind.h"
-#include "receivers/settings.h"
 #include "scenes/experiment/doubts.h"
 #include "scenes/gltf/lights.h"
 #include "scenes/gltf/reader.h"

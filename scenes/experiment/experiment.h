@@ -20,7 +20,7 @@
 #include "receivers/kind.h"
 #include "scenes/cad/model.h"
 #include "scenes/experiment/joints.h"
-#include "scenes/gltf/picture.h"
+#include "scenes/gltf/reader.h"
 
 namespace photorque {
 

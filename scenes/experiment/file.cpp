@@ -7,7 +7,7 @@
 #include "core/files.h"
 #include "core/provenance.h"
 #include "scenes/experiment/experiment.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "scenes/experiment/uncertain.h"
 
 namespace photorque {

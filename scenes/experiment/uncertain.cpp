@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/errors.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

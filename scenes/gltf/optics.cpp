@@ -7,7 +7,7 @@
 
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/glass.h"
-#include "scenes/gltf/file/schema.h"
+#include "scenes/gltf/file/fault.h"
 
 namespace photorque::gltf {
 namespace {

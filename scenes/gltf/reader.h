@@ -27,10 +27,19 @@
 #include "core/settings/settings.h"
 #include "core/spectrum.h"
 #include "raytrace/scene.h"
-#include "scenes/gltf/file/open.h"
-#include "scenes/gltf/picture.h"
+#include "scenes/gltf/file/buffers.h"
 
 namespace photorque {
+
+// A picture that a model carries. This folder opens none: whoever reads an experiment says how.
+struct BaseColours {
+  int width = 0, height = 0;  // texels, at least 1
+  std::vector<float> rgb;     // linear red, green and blue in [0, 1]; row by row from the top
+};
+
+// From the bytes of a PNG or JPEG, whose values are sRGB as glTF has it. Throws InputError for
+// bytes that are no picture.
+using PictureReader = std::function<BaseColours(const std::string& bytes)>;
 
 struct GltfOptions {
   Bands bands = {};

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "scenes/gltf/file/schema.h"
+#include "scenes/gltf/file/fault.h"
 
 namespace photorque::gltf {
 namespace {

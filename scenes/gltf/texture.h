@@ -10,7 +10,7 @@
 
 #include "raytrace/scene.h"
 #include "scenes/gltf/file/document.h"
-#include "scenes/gltf/picture.h"
+#include "scenes/gltf/reader.h"
 
 namespace photorque::gltf {
 

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "raytrace/surfaces/brdf_table.h"
+#include "raytrace/surfaces/measured_brdf.h"
 
 namespace photorque {
 

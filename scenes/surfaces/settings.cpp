@@ -9,8 +9,7 @@
 #include "raytrace/surfaces/bsdf.h"
 #include "raytrace/surfaces/glass.h"
 #include "raytrace/surfaces/measured_brdf.h"
-#include "raytrace/surfaces/rough_mirror.h"
-#include "raytrace/surfaces/slope_error.h"
+#include "raytrace/surfaces/mirrors.h"
 #include "scenes/surfaces/brdf_file.h"
 
 namespace photorque {

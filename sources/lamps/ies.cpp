@@ -15,15 +15,135 @@
 // Instead of `file`: polar_deg = [0, 5, …, 90] and intensity = [1, 0.9, …, 0], even round the beam,
 // or with azimuth_deg = [0, 90, …] one row of intensities after the other. Such a table needs an
 // aperture_diameter_m or is a point.
+#include "sources/lamps/ies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "core/constants.h"
 #include "core/files.h"
+#include "core/numerics/vector_math.h"
 #include "sources/lamps/keys.h"
-#include "sources/lamps/measured.h"
-#include "sources/lamps/photometric.h"
 #include "sources/lamps/settings.h"
-#include "sources/photometry/planes.h"
+#include "sources/photometry/file.h"
+#include "sources/profiles/beam_shape.h"
+
+namespace photorque {
+namespace {
+
+constexpr size_t average_steps = 3600;
+
+void fill_rectangle(double x_m, double y_m, const SampleBlock& samples, VectorBlock& point_m) {
+  for (int i = 0; i < ray_block; ++i) {
+    point_m[0][i] = x_m * (fraction_of(samples.bits[0][i]) - 0.5);
+    point_m[1][i] = y_m * (fraction_of(samples.bits[1][i]) - 0.5);
+    point_m[2][i] = 0.0;
+  }
+}
+
+void fill_ellipse(double x_m, double y_m, const SampleBlock& samples, VectorBlock& point_m) {
+  fill_disc(0.5, samples.bits[0], samples.bits[1], point_m);
+  for (int i = 0; i < ray_block; ++i) {
+    point_m[0][i] *= x_m;
+    point_m[1][i] *= y_m;
+  }
+}
+
+}  // namespace
+
+PhotometricLamp::PhotometricLamp(double power_W, const Opening& opening,
+                                 TabulatedIntensity intensity)
+    : power_W_(power_W), opening_(opening), intensity_(std::move(intensity)) {
+  const IntensityTable& table = intensity_.table();
+  if (table.pole == Pole::beam) {
+    for (const double polar_rad : table.polar_rad) {
+      largest_average_ = std::max(largest_average_, intensity_.mean(polar_rad));
+    }
+    return;
+  }
+  for (size_t i = 0; i <= average_steps; ++i) {
+    average_.push_back(round_average(pi * static_cast<double>(i) / average_steps));
+    largest_average_ = std::max(largest_average_, average_.back());
+  }
+}
+
+double PhotometricLamp::round_average(double angle_rad) const {
+  constexpr int turns = 180;
+  double sum = 0.0;
+  for (int k = 0; k < turns; ++k) {
+    const double turn_rad = 2.0 * pi * (k + 0.5) / turns;
+    const double sine = std::sin(angle_rad);
+    const GoniometerAngles at =
+        table_angles(intensity_.table().pole,
+                     {sine * std::cos(turn_rad), sine * std::sin(turn_rad), std::cos(angle_rad)});
+    sum += intensity_.at(at.polar_rad, at.azimuth_rad);
+  }
+  return sum / turns;
+}
+
+void PhotometricLamp::emit(const SampleBlock& samples, RayBlock& rays) const {
+  if (opening_.shape == Opening::Shape::ellipse) {
+    fill_ellipse(opening_.x_m, opening_.y_m, samples, rays.origin_m);
+  } else {
+    fill_rectangle(opening_.x_m, opening_.y_m, samples, rays.origin_m);
+  }
+  intensity_.directions(samples.bits[2], samples.bits[3], rays.direction);
+}
+
+double PhotometricLamp::relative_intensity(double angle_rad) const {
+  if (average_.empty()) return std::min(1.0, intensity_.mean(angle_rad) / largest_average_);
+  const double place = std::clamp(angle_rad / pi, 0.0, 1.0) * average_steps;
+  const size_t below = std::min(static_cast<size_t>(place), average_steps - 1);
+  const double mean =
+      std::lerp(average_[below], average_[below + 1], place - static_cast<double>(below));
+  return std::min(1.0, mean / largest_average_);
+}
+
+std::optional<UniformAperture> uniform_aperture(const PhotometricLamp& lamp) {
+  const IntensityTable& table = lamp.intensity().table();
+  const Opening& opening = lamp.opening();
+  const bool disc = opening.shape == Opening::Shape::ellipse && opening.x_m == opening.y_m;
+  if (!disc || table.pole != Pole::beam || table.planes() > 1) return std::nullopt;
+  size_t dark = table.polar_rad.size();  // the first of the angles from which on nothing shines
+  while (table.intensity[dark - 1] <= 0.0) --dark;
+  const double end_rad = table.polar_rad[std::min(dark, table.polar_rad.size() - 1)];
+  if (end_rad > 0.5 * pi * (1.0 + 1e-12) || end_rad <= 0.0) return std::nullopt;
+  const double radius_m = 0.5 * opening.x_m;
+  UniformAperture aperture{radius_m, lamp.power_W() / (pi * radius_m * radius_m), {}};
+  if (table.polar_rad.front() > 0.0) aperture.edges_rad.push_back(table.polar_rad.front());
+  // Octaves of the beam's width, so that its core is resolved however far the table goes on.
+  for (double edge_rad = full_width_rad(lamp, 0.5); edge_rad > 0.0 && edge_rad < 0.9 * end_rad;
+       edge_rad *= 2.0) {
+    if (edge_rad > table.polar_rad.front()) aperture.edges_rad.push_back(edge_rad);
+  }
+  aperture.edges_rad.push_back(std::min(end_rad, 0.5 * pi));
+  return aperture;
+}
+
+std::optional<std::string> coarseness_notice(const PhotometricLamp& lamp) {
+  constexpr double allowed = 2e-3;
+  const auto [straight, zonal] = lamp.intensity().coarseness();
+  if (std::abs(straight) <= allowed) return std::nullopt;
+  const std::vector<double>& polar = lamp.intensity().table().polar_rad;
+  const double fwhm_rad = full_width_rad(lamp, 0.5);
+  // The step where the intensity falls through half, which is where it is steepest.
+  const auto above = std::upper_bound(polar.begin() + 1, polar.end() - 1, 0.5 * fwhm_rad);
+  const double step_deg = (*above - *(above - 1)) / degree_rad;
+  // Both errors are of second order in the step.
+  const double enough_deg = step_deg * std::sqrt(allowed / std::abs(straight));
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "angles %.3g deg apart are coarse for a beam of %.4g deg FWHM: read with straight "
+                "lines between them the flux would be %+.2f %%, as a sum of zones %+.2f %%, beside "
+                "the smooth curve used here; steps of %.2g deg would do",
+                step_deg, fwhm_rad / degree_rad, 100.0 * straight, 100.0 * zonal, enough_deg);
+  return text;
+}
+
+}  // namespace photorque
 
 namespace photorque::kinds::ies {
 namespace {

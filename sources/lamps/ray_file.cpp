@@ -12,14 +12,151 @@
 //
 // The fluxes of the rays are scaled to the power: their sum is often of another scale than the flux
 // that the file states, which is said.
+#include "sources/lamps/ray_file.h"
+
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
+#include "core/numerics/vector_math.h"
 #include "sources/lamps/keys.h"
-#include "sources/lamps/measured.h"
-#include "sources/lamps/rays.h"
 #include "sources/lamps/settings.h"
+
+namespace photorque {
+namespace {
+
+// The bits of four 16-bit numbers in turn, highest first.
+uint64_t interleaved(const std::array<uint32_t, 4>& numbers) {
+  uint64_t code = 0;
+  for (int bit = 15; bit >= 0; --bit) {
+    for (const uint32_t number : numbers) code = code << 1 | (number >> bit & 1u);
+  }
+  return code;
+}
+
+// Where a ray is among the others: direction across the beam, and the point where it crosses the
+// plane z = 0 or, if it runs along it, its origin.
+std::array<double, 4> coordinates(const RaySet::Ray& ray) {
+  const double along =
+      std::abs(ray.direction.z()) > 0.1 ? ray.origin_m.z() / ray.direction.z() : 0.0;
+  return {ray.direction.x(), ray.direction.y(), ray.origin_m.x() - along * ray.direction.x(),
+          ray.origin_m.y() - along * ray.direction.y()};
+}
+
+std::vector<uint32_t> neighbourly_order(const std::vector<RaySet::Ray>& rays) {
+  std::array<double, 4> low, high;
+  low.fill(INFINITY);
+  high.fill(-INFINITY);
+  for (const RaySet::Ray& ray : rays) {
+    const auto at = coordinates(ray);
+    for (size_t k = 0; k < 4; ++k) {
+      low[k] = std::min(low[k], at[k]);
+      high[k] = std::max(high[k], at[k]);
+    }
+  }
+  std::vector<std::pair<uint64_t, uint32_t>> keys;
+  keys.reserve(rays.size());
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const auto at = coordinates(rays[i]);
+    std::array<uint32_t, 4> cell{};
+    for (size_t k = 0; k < 4; ++k) {
+      const double width = high[k] - low[k];
+      if (width > 0.0) cell[k] = static_cast<uint32_t>(65535.0 * ((at[k] - low[k]) / width));
+    }
+    keys.emplace_back(interleaved(cell), static_cast<uint32_t>(i));
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<uint32_t> order;
+  order.reserve(keys.size());
+  for (const auto& [key, index] : keys) order.push_back(index);
+  return order;
+}
+
+}  // namespace
+
+RayLamp::RayLamp(double power_W, const RaySet& set) : power_W_(power_W) {
+  const double total = set.ray_flux();
+  double before = 0.0;
+  for (const uint32_t index : neighbourly_order(set.rays)) {
+    const RaySet::Ray& ray = set.rays[index];
+    if (!(ray.flux > 0.0)) continue;
+    const Vec3 d = ray.direction.normalized();
+    entries_.push_back({before / total,
+                        {ray.origin_m.x(), ray.origin_m.y(), ray.origin_m.z()},
+                        {d.x(), d.y(), d.z()}});
+    before += ray.flux;
+  }
+  first_entry_.resize(entries_.size());
+  uint32_t entry = 0;
+  for (size_t k = 0; k < first_entry_.size(); ++k) {
+    const double fraction = static_cast<double>(k) / static_cast<double>(first_entry_.size());
+    while (entry + 1 < entries_.size() && entries_[entry + 1].before <= fraction) ++entry;
+    first_entry_[k] = entry;
+  }
+  tabulate_intensity(set);
+}
+
+void RayLamp::tabulate_intensity(const RaySet& set) {
+  std::vector<std::pair<double, double>> rises;  // and fluxes
+  for (const RaySet::Ray& ray : set.rays) {
+    const Vec3 d = ray.direction.normalized();
+    const double sine2 = d.head<2>().squaredNorm();
+    // The form without cancellation near the axis.
+    rises.emplace_back(d.z() > 0.0 ? sine2 / (1.0 + d.z()) : 1.0 - d.z(), ray.flux);
+  }
+  std::sort(rises.begin(), rises.end());
+  // Steps of 1 % of the rays, and finer in the tail, where directions thin out.
+  constexpr size_t steps = 100, fewest_rays = 4;
+  constexpr double narrowest = 1e-30;  // rises of 1e-15 rad: one direction
+  double inner = 0.0, flux = 0.0, largest = 0.0;
+  size_t first = 0;
+  for (size_t i = 0; i < rises.size(); ++i) {
+    flux += rises[i].second;
+    const bool is_last = i + 1 == rises.size();
+    const size_t left = rises.size() - first;
+    const size_t wanted = std::max(fewest_rays, std::min(rises.size() / steps, left / 8));
+    if (!is_last && i + 1 - first < wanted) continue;
+    const double outer = is_last ? rises[i].first : 0.5 * (rises[i].first + rises[i + 1].first);
+    if (outer - inner > narrowest) {
+      edge_rise_.push_back(outer);
+      step_.push_back(flux / (outer - inner));
+    } else if (is_last && !step_.empty()) {
+      const double before = step_.size() > 1 ? edge_rise_[step_.size() - 2] : 0.0;
+      step_.back() += flux / (inner - before);
+    } else {
+      continue;  // rays of one direction: they go to the next step
+    }
+    largest = std::max(largest, step_.back());
+    inner = outer;
+    flux = 0.0;
+    first = i + 1;
+  }
+  for (double& value : step_) value /= largest;
+}
+
+void RayLamp::emit(const SampleBlock& samples, RayBlock& rays) const {
+  for (int i = 0; i < ray_block; ++i) {
+    const double fraction = fraction_of(samples.bits[2][i]);
+    size_t k =
+        first_entry_[static_cast<size_t>(fraction * static_cast<double>(first_entry_.size()))];
+    while (k + 1 < entries_.size() && entries_[k + 1].before <= fraction) ++k;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      rays.origin_m[axis][i] = entries_[k].origin_m[axis];
+      rays.direction[axis][i] = entries_[k].direction[axis];
+    }
+  }
+}
+
+double RayLamp::relative_intensity(double angle_rad) const {
+  if (edge_rise_.empty()) return angle_rad == 0.0 ? 1.0 : 0.0;
+  const double sine = std::sin(0.5 * angle_rad);
+  const auto edge = std::lower_bound(edge_rise_.begin(), edge_rise_.end(), 2.0 * sine * sine);
+  if (edge == edge_rise_.end()) return 0.0;
+  return step_[static_cast<size_t>(edge - edge_rise_.begin())];
+}
+
+}  // namespace photorque
 
 namespace photorque::kinds::ray_file {
 namespace {

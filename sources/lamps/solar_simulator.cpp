@@ -23,7 +23,7 @@
 #include "core/numerics/vector_math.h"
 #include "sources/lamps/keys.h"
 #include "sources/lamps/settings.h"
-#include "sources/profiles/block_maps.h"
+#include "sources/profiles/sampling.h"
 
 namespace photorque::kinds::solar_simulator {
 namespace {

@@ -6,7 +6,6 @@
 #include "core/constants.h"
 #include "core/text/parse.h"
 #include "sources/photometry/file.h"
-#include "sources/photometry/planes.h"
 
 namespace photorque {
 namespace {
@@ -117,6 +116,26 @@ Opening read_opening(ValueLines& lines) {
   return opening;
 }
 
+// Those of `planes` with their `angles` that the file holds; intensities times `factor`.
+StoredPlanes read_planes(ValueLines& lines, const StoredRange& range, size_t planes, size_t angles,
+                         double factor) {
+  const std::vector<double> all_c_deg = lines.numbers("C angle", planes);
+  StoredPlanes stored;
+  for (size_t j = 0; j < range.count; ++j) {
+    stored.azimuth_deg.push_back(all_c_deg[(range.first + j) % planes]);
+  }
+  stored.polar_deg = lines.numbers("gamma angle", angles);
+  require_ascending(stored.polar_deg, "gamma angles", lines.where());
+  require_goniometer_range(stored.polar_deg, lines.where());
+  for (size_t i = 0; i < range.count * angles; ++i) {
+    stored.intensity.push_back(factor * lines.number("intensity"));
+    if (!std::isfinite(stored.intensity.back())) {
+      throw InputError(lines.where(), "intensity", "a number that overflows", "a finite one");
+    }
+  }
+  return stored;
+}
+
 }  // namespace
 
 PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name) {
@@ -161,20 +180,7 @@ PhotometricFile read_eulumdat(const std::string& bytes, const std::string& name)
     throw InputError(lines.where(), "number of C planes", std::to_string(planes),
                      "a multiple of " + std::to_string(parts) + " for this symmetry");
   }
-  const std::vector<double> all_c_deg = lines.numbers("C angle", planes);
-  StoredPlanes stored;
-  for (size_t j = 0; j < range.count; ++j) {
-    stored.azimuth_deg.push_back(all_c_deg[(range.first + j) % planes]);
-  }
-  stored.polar_deg = lines.numbers("gamma angle", angles);
-  require_ascending(stored.polar_deg, "gamma angles", lines.where());
-  require_goniometer_range(stored.polar_deg, lines.where());
-  for (size_t i = 0; i < range.count * angles; ++i) {
-    stored.intensity.push_back(factor * lines.number("intensity"));
-    if (!std::isfinite(stored.intensity.back())) {
-      throw InputError(lines.where(), "intensity", "a number that overflows", "a finite one");
-    }
-  }
+  const StoredPlanes stored = read_planes(lines, range, planes, angles, factor);
   file.table = unfold(stored, range.symmetry, lines.where());
   require_light(file, lines.where());
   note_gaps(file);

@@ -7,7 +7,6 @@
 #include "core/constants.h"
 #include "core/text/parse.h"
 #include "sources/photometry/file.h"
-#include "sources/photometry/planes.h"
 
 namespace photorque {
 namespace {

@@ -92,7 +92,6 @@ InverseFlux::InverseFlux(const AngularProfile& profile) {
     coefficients_.insert(coefficients_.end(), cubic.begin(), cubic.end());
     const double middle = 0.5 * (knot(k) + knot(k + 1));
     const double error = std::abs(outside(rise(middle)) / total - middle);
-    largest_error_ = std::max(largest_error_, error);
     if (!monotone || !(error <= allowed_error)) {
       throw NumericalError("the angular profile of a source is too steep to be tabulated: error " +
                            std::to_string(error) + " of the flux" +

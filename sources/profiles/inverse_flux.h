@@ -23,10 +23,6 @@ class InverseFlux {
   // not monotone.
   explicit InverseFlux(const AngularProfile& profile);
 
-  // Largest difference found between the flux outside the cone that the table gives and the one
-  // asked for, as a fraction of all flux, at the middle of every interval.
-  double largest_error() const { return largest_error_; }
-
   // ∫ I dΩ [sr times the unit of I].
   double flux() const { return flux_; }
 
@@ -75,7 +71,6 @@ class InverseFlux {
   static double knot(uint64_t k) { return std::bit_cast<double>((first_knot + k) << shift); }
 
   std::vector<double> coefficients_;
-  double largest_error_ = 0.0;
   double flux_ = 0.0;
 };
 

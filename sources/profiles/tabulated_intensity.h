@@ -1,3 +1,49 @@
+// Intensity over directions as a goniometer measures it: a table of planes.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/transform.h"
+#include "sources/profiles/sampling.h"
+
+namespace photorque {
+
+// Spherical coordinates about a pole. Which way the pole points in the frame of an emitter (z along
+// the beam, x and y across):
+enum class Pole {
+  beam,        // +z: type C of LM-63, C planes and γ of EULUMDAT
+  vertical,    // +y: type A, latitude V and longitude H
+  horizontal,  // +x: type B, latitude H and longitude V
+};
+
+// Intensity I(polar, azimuth) ≥ 0 of any one unit, at least one value > 0. Between the angles of a
+// plane it is a monotone cubic (see monotone_slopes()), between planes linear in azimuth; outside
+// the angles of the table there is no light.
+struct IntensityTable {
+  Pole pole = Pole::beam;
+  std::vector<double> polar_rad;    // from the pole, strictly ascending in [0, π], at least two
+  std::vector<double> azimuth_rad;  // of the planes, strictly ascending
+  // The planes go all the way round: azimuths in [0, 2π), the last plane is a neighbour of the
+  // first, and a single plane stands for every azimuth. Otherwise at least two planes, less than a
+  // turn apart.
+  bool closed = true;
+  std::vector<double> intensity;  // [plane][polar]
+
+  size_t planes() const { return azimuth_rad.size(); }
+  const double* plane(size_t index) const { return &intensity[index * polar_rad.size()]; }
+};
+
+struct GoniometerAngles {
+  double polar_rad = 0.0;    // ∈ [0, π]
+  double azimuth_rad = 0.0;  // ∈ (−π, π]
+};
+// The coordinates of a direction of the emitter's frame (a unit vector). For the pole `beam` the
+// azimuth is the photometric C angle: seen from above a luminaire that shines down, C runs against
+// the clock from the luminaire's x axis; in the emitter's frame, which looks along the light, it
+// therefore runs from +x towards −y.
+GoniometerAngles table_angles(Pole pole, const Vec3& direction);
+
 // The interpolant of an intensity table: its value, its flux, and rays drawn from it.
 //
 // Method. Every plane gets a knot half-way between any two of its angles (monotone_middle()) and is
@@ -5,15 +51,6 @@
 // I_j(polar), with hats that fall linearly to the neighbouring planes. A ray chooses a plane by its
 // fraction of the flux, an azimuth within the hat by inverting its quadratic, and a polar angle by
 // the plane's PlaneSampler.
-#pragma once
-
-#include <vector>
-
-#include "sources/profiles/block_maps.h"
-#include "sources/profiles/intensity_table.h"
-#include "sources/profiles/plane_sampler.h"
-
-namespace photorque {
 
 class TabulatedIntensity {
  public:

@@ -5,7 +5,7 @@
 
 #include "attitude/propagation/run.h"
 #include "core/errors.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/attitude/settings_bench.h"
 
 namespace photorque {

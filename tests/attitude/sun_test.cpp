@@ -8,7 +8,7 @@
 #include "attitude/environment/environment.h"
 #include "attitude/environment/epoch.h"
 #include "core/errors.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/attitude/disturbance_bench.h"
 
 namespace photorque {

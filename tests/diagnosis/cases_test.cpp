@@ -7,7 +7,7 @@
 
 #include "core/files.h"
 #include "diagnosis/attitude/diagnose.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/outside.h"
 #include "tools/proof/case.h"
 #include "tools/proof/files.h"

@@ -11,7 +11,7 @@
 #include "diagnosis/attitude/findings/empirical_torque.h"
 #include "diagnosis/attitude/scans/scan.h"
 #include "diagnosis/report/improved.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 
 namespace photorque {

@@ -17,7 +17,7 @@
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
 #include "diagnosis/guess/names.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

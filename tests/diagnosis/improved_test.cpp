@@ -8,7 +8,7 @@
 
 #include "attitude/propagation/run.h"
 #include "core/constants.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/diagnosis/sample_diagnosis.h"
 
 namespace photorque {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "diagnosis/attitude/diagnose.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/diagnosis/named.h"
 
 namespace photorque {

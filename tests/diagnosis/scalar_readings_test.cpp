@@ -10,7 +10,7 @@
 #include "attitude/readings/angle_sequence.h"
 #include "attitude/readings/channels.h"
 #include "attitude/stretches/segments.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 
 namespace photorque {

@@ -11,7 +11,7 @@
 #include "core/constants.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/diagnosis/machine_bench.h"
 
 namespace photorque {

@@ -5,7 +5,7 @@
 #include "core/constants.h"
 #include "core/numerics/quadrature.h"
 #include "raytrace/surfaces/cosine_table.h"
-#include "raytrace/surfaces/fresnel.h"
+#include "raytrace/surfaces/glass.h"
 #include "tests/raytrace/bsdf_kinds.h"
 #include "tests/raytrace/test_scenes.h"
 

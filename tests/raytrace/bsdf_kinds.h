@@ -10,8 +10,7 @@
 #include "raytrace/surfaces/ggx.h"
 #include "raytrace/surfaces/glass.h"
 #include "raytrace/surfaces/measured_brdf.h"
-#include "raytrace/surfaces/rough_mirror.h"
-#include "raytrace/surfaces/slope_error.h"
+#include "raytrace/surfaces/mirrors.h"
 
 namespace photorque::testing {
 
@@ -20,6 +19,17 @@ struct SurfaceKind {
   OpticalSurface surface;
   bool smooth;  // f(i, o) varies slowly enough for a quadrature over the hemisphere
 };
+
+// f(i, o) without delta functions (mirror, straight on, retroreflection), in the frame of the hit.
+inline double scattering_1_sr(const OpticalSurface& surface, double cosine, const Vec3& out,
+                              size_t band) {
+  const PowerFractions fractions = fractions_of(surface, cosine, band);
+  const Bsdf none, &bsdf = surface.bsdf ? *surface.bsdf : none;
+  double f = 0.0;
+  if (bsdf.specular) f += fractions.specular * bsdf.specular->density(cosine, out) / out.z();
+  f += fractions.diffuse * (bsdf.diffuse ? bsdf.diffuse->density(cosine, out) / out.z() : 1.0 / pi);
+  return f;
+}
 
 inline OpticalSurface with_lobe(double specular, double diffuse, std::shared_ptr<const Lobe> lobe) {
   OpticalSurface surface = grey_surface("s", specular, diffuse);

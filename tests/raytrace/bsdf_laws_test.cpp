@@ -11,6 +11,7 @@ namespace {
 
 using testing::first_moment;
 using testing::random_draw;
+using testing::scattering_1_sr;
 using testing::send_ray;
 using testing::surface_kinds;
 using testing::SurfaceKind;

@@ -11,6 +11,7 @@ namespace {
 using testing::first_moment;
 using testing::forward_scatter;
 using testing::measured;
+using testing::scattering_1_sr;
 using testing::tabulated;
 
 const double cosines_of_incidence[] = {0.1, 0.5, 0.866, 1.0};

@@ -3,7 +3,6 @@
 #include <random>
 
 #include "receiver_scenes.h"
-#include "receivers/maps/flux_statistics.h"
 
 namespace photorque {
 namespace {

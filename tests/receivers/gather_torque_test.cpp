@@ -1,5 +1,5 @@
 // Torque of direct light gathered from the surface's side.
-#include "receivers/gather/torque.h"
+#include "receivers/gather/gather.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include "core/constants.h"
 #include "raytrace/surfaces/bsdf.h"
-#include "raytrace/surfaces/rough_mirror.h"
+#include "raytrace/surfaces/mirrors.h"
 #include "receivers/gather/bodies/wrench.h"
 #include "tests/receivers/lamp_lottery.h"
 #include "tests/receivers/receiver_scenes.h"

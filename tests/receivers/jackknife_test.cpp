@@ -1,4 +1,4 @@
-#include "receivers/jackknife.h"
+#include "raytrace/receiver.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // surfaces is its pressure times what they stand in its way, whichever side is lit.
 #include <gtest/gtest.h>
 
-#include "receivers/gather/bodies/inside.h"
-#include "receivers/gather/sunlight/wrench.h"
+#include "receivers/gather/bodies/facets.h"
+#include "receivers/gather/bodies/sunlit_body.h"
 #include "tests/raytrace/test_scenes.h"
 #include "tests/receivers/gather_lamps.h"
 #include "tests/receivers/receiver_scenes.h"

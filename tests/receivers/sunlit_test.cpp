@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "core/constants.h"
-#include "receivers/gather/sunlight/wrench.h"
+#include "receivers/gather/bodies/sunlit_body.h"
 #include "receivers/wrench/wrench.h"
 #include "tests/outside.h"
 #include "tests/receivers/gather_lamps.h"

@@ -5,7 +5,6 @@
 #include <random>
 
 #include "receiver_scenes.h"
-#include "receivers/surface_clip.h"
 
 namespace photorque {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/constants.h"
 #include "gltf_test_model.h"
 #include "scenes/cad/model.h"
-#include "scenes/cad/polygon.h"
+#include "scenes/cad/part.h"
 #include "scenes/experiment/experiment.h"
 
 namespace photorque {

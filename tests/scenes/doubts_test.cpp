@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scenes/experiment/coincident_faces.h"
-
 namespace photorque {
 namespace {
 

@@ -1,5 +1,5 @@
 // TOML into settings, and overrides from the command line.
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -13,6 +13,7 @@
 #include "sources/kind.h"
 #include "sources/photometry/file.h"
 #include "tests/raytrace/test_scenes.h"
+#include "tests/sources/ies_writer.h"
 
 namespace photorque {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/files.h"
 #include "platform_closed_mesh.h"
 #include "scenes/experiment/experiment.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "scenes/gltf/reader.h"
 #include "scenes/platforms/generator.h"
 

@@ -3,7 +3,7 @@
 // Weast (ed.), CRC Handbook of Chemistry and Physics.
 #include "core/constants.h"
 #include "platform_closed_mesh.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "scenes/platforms/generator.h"
 
 namespace photorque {

@@ -1,6 +1,6 @@
 #include "core/constants.h"
 #include "sampling.h"
-#include "sources/lamps/etendue.h"
+#include "sources/lamps/disc.h"
 
 namespace photorque {
 namespace {

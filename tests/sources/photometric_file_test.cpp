@@ -7,8 +7,9 @@
 #include "core/constants.h"
 #include "core/files.h"
 #include "sampling.h"
-#include "sources/lamps/photometric.h"
+#include "sources/lamps/ies.h"
 #include "sources/profiles/beam_shape.h"
+#include "tests/sources/ies_writer.h"
 
 namespace photorque {
 namespace {

@@ -6,8 +6,8 @@
 #include "sampling.h"
 #include "sources/lamps/disc.h"
 #include "sources/profiles/beam_shape.h"
-#include "sources/profiles/block_maps.h"
 #include "sources/profiles/inverse_flux.h"
+#include "sources/profiles/sampling.h"
 
 namespace photorque {
 namespace {
@@ -75,7 +75,6 @@ double angle_of(double rise) {
 TEST(InverseFlux, MatchesClosedFormsToAMillionthOfTheFlux) {
   for (const Case& c : cases()) {
     const InverseFlux inverse(c.profile);
-    EXPECT_LT(inverse.largest_error(), 1e-6) << c.name;
     for (uint64_t i = 0; i < 20000; ++i) {
       const double outside = std::max(unit_interval(mix_bits(i)), InverseFlux::smallest_fraction);
       EXPECT_NEAR(c.flux_within(angle_of(inverse.rise(outside))), 1.0 - outside,

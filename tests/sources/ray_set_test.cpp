@@ -1,12 +1,12 @@
 // Ray files of three programs: read, written, damaged, and traced as they are.
-#include "sources/rayfiles/set.h"
+#include "sources/photometry/ray_set.h"
 
 #include <filesystem>
 
 #include "core/constants.h"
 #include "core/files.h"
 #include "sampling.h"
-#include "sources/lamps/rays.h"
+#include "sources/lamps/ray_file.h"
 #include "sources/profiles/beam_shape.h"
 
 namespace photorque {

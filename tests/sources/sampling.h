@@ -14,7 +14,8 @@
 #include "core/settings/settings.h"
 #include "raytrace/emitter.h"
 #include "sources/kind.h"
-#include "sources/rayfiles/set.h"
+#include "sources/photometry/ray_set.h"
+#include "sources/profiles/tabulated_intensity.h"
 #include "tests/outside.h"
 
 namespace photorque {
@@ -26,6 +27,21 @@ namespace test {
 // Where the sample files of photometers and lamp makers lie, if they are there.
 inline std::filesystem::path samples() {
   return outside::third_party("photometry");
+}
+
+// The direction in the emitter's frame with these coordinates: the inverse of table_angles().
+inline Vec3 table_direction(Pole pole, double polar_rad, double azimuth_rad) {
+  const double across = std::sin(polar_rad) * std::cos(azimuth_rad);
+  const double up = std::sin(polar_rad) * std::sin(azimuth_rad), along = std::cos(polar_rad);
+  switch (pole) {
+    case Pole::vertical:
+      return {up, along, across};
+    case Pole::horizontal:
+      return {along, up, across};
+    case Pole::beam:
+      break;
+  }
+  return {across, -up, along};
 }
 
 inline SettingsNode vector_node(double x, double y, double z) {

@@ -6,7 +6,7 @@
 #include "core/constants.h"
 #include "raytrace/direct/disc_light.h"
 #include "sampling.h"
-#include "sources/lamps/photometric.h"
+#include "sources/lamps/ies.h"
 #include "sources/profiles/beam_shape.h"
 
 namespace photorque {

@@ -4,6 +4,7 @@
 
 #include "core/errors.h"
 #include "sources/photometry/file.h"
+#include "tests/sources/ies_writer.h"
 
 namespace photorque {
 namespace {

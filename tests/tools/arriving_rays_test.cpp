@@ -1,6 +1,6 @@
 // The rays that `trace` saves for other optics programs.
 #include "core/files.h"
-#include "sources/rayfiles/set.h"
+#include "sources/photometry/ray_set.h"
 #include "tests/tools/command_test.h"
 
 namespace photorque {

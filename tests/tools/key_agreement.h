@@ -13,8 +13,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/settings/keys.h"
-#include "scenes/experiment/toml_reader.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 #include "tools/tasks/check.h"
 
 namespace photorque {

@@ -7,7 +7,7 @@
 #include "images/publishing/staged_files.h"
 #include "images/writers/product.h"
 #include "images/writers/summary.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tools/commands/terminal.h"
 #include "tools/guards/child_process.h"
 #include "tools/proof/files.h"

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "core/text/parse.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "core/constants.h"
 #include "diagnosis/report/light_charts.h"
-#include "raytrace/tracing/shown_rays.h"
+#include "raytrace/tracing/view.h"
 #include "tools/pages/diagnosed.h"
 #include "tools/pages/stage.h"
 

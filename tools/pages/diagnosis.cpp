@@ -8,7 +8,7 @@
 #include "attitude/estimation/nominal_model.h"
 #include "core/text/format.h"
 #include "diagnosis/report/charts.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tools/pages/diagnosed.h"
 #include "tools/pages/platform.h"
 #include "tools/pages/stage.h"

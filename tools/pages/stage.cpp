@@ -7,9 +7,9 @@
 
 #include "core/constants.h"
 #include "images/browser/content.h"
-#include "raytrace/tracing/shown_rays.h"
-#include "receivers/maps/grid_map.h"
+#include "raytrace/tracing/view.h"
 #include "receivers/maps/torque_map.h"
+#include "receivers/surface_grid.h"
 
 namespace photorque {
 namespace {

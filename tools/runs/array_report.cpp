@@ -5,7 +5,7 @@
 
 #include "core/constants.h"
 #include "core/errors.h"
-#include "receivers/jackknife.h"
+#include "raytrace/receiver.h"
 #include "tools/runs/array_power.h"
 
 namespace photorque {

@@ -8,7 +8,7 @@
 
 #include "raytrace/tracing/tracer.h"
 #include "receivers/maps/flux_map.h"
-#include "sources/rayfiles/set.h"
+#include "sources/photometry/ray_set.h"
 
 namespace photorque {
 

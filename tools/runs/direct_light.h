@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/wrench.h"
-#include "receivers/gather/torque.h"
+#include "receivers/gather/gather.h"
 #include "scenes/experiment/experiment.h"
 
 namespace photorque {

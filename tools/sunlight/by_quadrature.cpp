@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "receivers/gather/sunlight/wrench.h"
+#include "receivers/gather/bodies/sunlit_body.h"
 #include "tools/sunlight/ways.h"
 
 namespace photorque {

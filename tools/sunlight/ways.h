@@ -53,8 +53,8 @@ class LightDirections {
 std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m);
 
-// By quadrature (receivers/gather/sunlight/wrench.h). Null where the scene is not for that, or the
-// experiment wants rays.
+// By quadrature (receivers/gather/bodies/sunlit_body.h). Null where the scene is not for that, or
+// the experiment wants rays.
 std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
                                                    const Vec3& about_body_m, int threads);
 

@@ -13,7 +13,7 @@
 #include "core/errors.h"
 #include "diagnosis/light/model/lab.h"
 #include "diagnosis/module/design.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tools/coupling/couple.h"
 #include "tools/keys/registry.h"
 #include "tools/realtime/settings.h"

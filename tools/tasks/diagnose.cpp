@@ -21,8 +21,7 @@
 #include "images/drawing/map_picture.h"
 #include "images/drawing/plot_picture.h"
 #include "images/publishing/staged_files.h"
-#include "scenes/experiment/toml_reader.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 #include "tools/runs/attitude_run.h"
 
 namespace photorque {

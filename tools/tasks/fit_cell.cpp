@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "photovoltaics/fit/fit.h"
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tools/cells/words.h"
 
 namespace photorque {

@@ -6,7 +6,6 @@
 #include "images/publishing/staged_files.h"
 #include "images/scene/picture.h"
 #include "images/scene/pinhole.h"
-#include "raytrace/tracing/shown_rays.h"
 #include "raytrace/tracing/view.h"
 
 namespace photorque {

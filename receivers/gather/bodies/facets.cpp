@@ -1,8 +1,10 @@
 #include "receivers/gather/bodies/facets.h"
 
 #include <algorithm>
+#include <map>
+#include <numeric>
+#include <vector>
 
-#include "receivers/gather/bodies/inside.h"
 #include "receivers/surface_grid.h"
 
 namespace photorque {
@@ -79,6 +81,110 @@ void Facets::find_free(double scene_radius_m) {
     }
     facet.free = {!below, !above};
   }
+}
+
+namespace {
+
+// For every corner of every face a number that corners at the same place have in common.
+std::vector<std::array<uint32_t, 3>> welded(std::span<const SurfaceFace> faces) {
+  const auto at = [&](uint32_t corner) -> const Vec3& {
+    return faces[corner / 3].corner_body_m[corner % 3];
+  };
+  std::vector<uint32_t> order(3 * faces.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, [&](uint32_t a, uint32_t b) {
+    return std::lexicographical_compare(at(a).data(), at(a).data() + 3, at(b).data(),
+                                        at(b).data() + 3);
+  });
+  std::vector<std::array<uint32_t, 3>> places(faces.size());
+  uint32_t place = 0;
+  for (size_t i = 0; i < order.size(); ++i) {
+    if (i > 0 && at(order[i]) != at(order[i - 1])) ++place;
+    places[order[i] / 3][order[i] % 3] = place;
+  }
+  return places;
+}
+
+// Along an edge from its lower place to its higher, or back.
+struct DirectedEdge {
+  uint32_t low, high;
+  bool forward;
+};
+
+std::vector<DirectedEdge> edges_of(const std::vector<std::array<uint32_t, 3>>& places) {
+  std::vector<DirectedEdge> edges;
+  for (const auto& p : places) {
+    // Two of its corners are one: it has no area, and the others meet without it.
+    if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t a = p[k], b = p[(k + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b), a < b});
+    }
+  }
+  std::ranges::sort(edges, [](const DirectedEdge& a, const DirectedEdge& b) {
+    return std::tie(a.low, a.high, a.forward) < std::tie(b.low, b.high, b.forward);
+  });
+  return edges;
+}
+
+// Every edge of two triangles that run along it in opposite ways.
+bool is_without_gap(const std::vector<DirectedEdge>& edges) {
+  if (edges.empty() || edges.size() % 2 != 0) return false;
+  for (size_t i = 0; i < edges.size(); i += 2) {
+    const DirectedEdge &a = edges[i], &b = edges[i + 1];
+    const bool is_pair = a.low == b.low && a.high == b.high && a.forward != b.forward;
+    const bool is_more = i > 0 && edges[i - 1].low == a.low && edges[i - 1].high == a.high;
+    if (!is_pair || is_more) return false;
+  }
+  return true;
+}
+
+// The bodies of a mesh: places that edges connect have one root.
+class Bodies {
+ public:
+  Bodies(size_t places, const std::vector<DirectedEdge>& edges) : root_(places) {
+    std::iota(root_.begin(), root_.end(), 0U);
+    for (const DirectedEdge& edge : edges) root_[of(edge.low)] = of(edge.high);
+  }
+  uint32_t of(uint32_t place) {
+    while (root_[place] != place) place = root_[place] = root_[root_[place]];
+    return place;
+  }
+
+ private:
+  std::vector<uint32_t> root_;
+};
+
+}  // namespace
+
+std::optional<bool> fronts_look_inwards(std::span<const SurfaceFace> faces) {
+  const auto places = welded(faces);
+  const std::vector<DirectedEdge> edges = edges_of(places);
+  if (!is_without_gap(edges)) return std::nullopt;
+  Bodies bodies(3 * faces.size(), edges);
+  struct Size {
+    double volume_m3 = 0.0, area_m2 = 0.0, reach_m = 0.0;
+  };
+  std::map<uint32_t, Size> sizes;
+  const Vec3 origin_m = faces.front().corner_body_m[0];
+  for (size_t f = 0; f < faces.size(); ++f) {
+    const Vec3 to_m = faces[f].corner_body_m[0] - origin_m;
+    Size& size = sizes[bodies.of(places[f][0])];
+    size.volume_m3 += faces[f].area_body_m2.dot(to_m) / 3.0;
+    size.area_m2 += faces[f].area_body_m2.norm();
+    size.reach_m = std::max(size.reach_m, to_m.norm());
+  }
+  bool inwards = false, outwards = false;
+  for (const auto& [body, size] : sizes) {
+    // A fold without area, whose corners are one with nothing else's.
+    if (size.area_m2 == 0.0) continue;
+    // Of a volume that is nothing but rounding no side is the inner one.
+    constexpr double rounding = 1e-12;
+    if (std::abs(size.volume_m3) <= rounding * size.area_m2 * size.reach_m) return std::nullopt;
+    (size.volume_m3 < 0.0 ? inwards : outwards) = true;
+  }
+  if (inwards == outwards) return std::nullopt;
+  return inwards;
 }
 
 }  // namespace photorque

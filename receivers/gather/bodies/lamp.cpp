@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "receivers/gather/triangle_rule.h"
+#include "receivers/gather/quadrature.h"
 
 namespace photorque {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "raytrace/direct/irradiance_table.h"
 #include "receivers/gather/bodies/facets.h"
-#include "receivers/gather/first_contact.h"
 #include "receivers/gather/lamp.h"
 
 namespace photorque {

@@ -1,5 +1,7 @@
 #include "scenes/gltf/file/buffers.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -7,7 +9,7 @@
 
 #include "core/provenance.h"
 #include "core/text/parse.h"
-#include "scenes/gltf/file/schema.h"
+#include "scenes/gltf/file/fault.h"
 
 namespace photorque::gltf {
 namespace {

@@ -3,7 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,7 +12,14 @@
 #include <vector>
 
 #include "scenes/gltf/file/fault.h"
-#include "scenes/gltf/file/open.h"
+
+namespace photorque {
+
+// The bytes behind a relative path (percent decoded), or nothing. InputError where the path, or a
+// link on it, leads out of the model's folder and may not.
+using GltfOpen = std::function<std::optional<std::string>(const std::string& relative_path)>;
+
+}  // namespace photorque
 
 namespace photorque::gltf {
 

@@ -1,6 +1,6 @@
 #include "scenes/gltf/file/compression.h"
 
-#include "scenes/gltf/file/schema.h"
+#include "scenes/gltf/file/fault.h"
 
 namespace photorque::gltf {
 

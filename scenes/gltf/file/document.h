@@ -2,6 +2,17 @@
 // reader work on.
 #pragma once
 
+// The one way in which this program sees tinygltf: without image decoding and without access to
+// files. Textures cannot matter to a tracer of light in bands, and whatever a model makes us open
+// is opened (and recorded) by buffers.h alone. The macros change the class, so every source file
+// must see the same ones.
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#define TINYGLTF_NO_FS
+
+#include <tiny_gltf.h>
+
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -9,8 +20,6 @@
 
 #include "scenes/gltf/file/buffers.h"
 #include "scenes/gltf/file/fault.h"
-#include "scenes/gltf/file/open.h"
-#include "scenes/gltf/file/tinygltf_seam.h"
 
 namespace photorque::gltf {
 

@@ -3,7 +3,7 @@
 #include <meshoptimizer.h>
 
 #include "scenes/gltf/file/compression.h"
-#include "scenes/gltf/file/schema.h"
+#include "scenes/gltf/file/fault.h"
 
 namespace photorque::gltf {
 namespace {

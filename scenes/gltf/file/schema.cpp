@@ -1,15 +1,248 @@
-#include "scenes/gltf/file/schema.h"
+#include "scenes/gltf/file/fault.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <sstream>
 #include <string_view>
 
 #include "core/errors.h"
-#include "scenes/gltf/file/fault.h"
-#include "scenes/gltf/file/properties.h"
 
 namespace photorque::gltf {
+
 namespace {
+
+// The members of a glTF document that the reader depends on, as tables.
+//
+// They follow the specification (glTF 2.0, section 5 "Properties Reference") and the READMEs of the
+// extensions that they name, member by member.
+
+// What a value has to be.
+enum class Shape {
+  integer,
+  number,
+  numbers,
+  text,
+  flag,
+  object,
+  objects,         // an array of objects
+  reference,       // an index into the list `target`
+  references,      // an array of them
+  reference_map,   // an object whose members are references
+  reference_maps,  // an array of those
+};
+
+struct Fields;
+
+// One member of an object.
+struct Field {
+  const char* key;
+  Shape shape;
+  bool required = false;
+  double low = -1e308;  // of integer, number and each of numbers
+  double high = 1e308;
+  uint64_t multiple = 1;          // of integer: it is a multiple of this
+  size_t length = 0;              // of numbers: exactly so many; 0 for any
+  const char* choices = nullptr;  // of integer and text: the allowed values, separated by spaces
+  const char* target = nullptr;   // of references
+  const char* beside = nullptr;   // legal only together with this member
+  const char* without = nullptr;  // illegal together with this member
+  const Fields* inner = nullptr;  // of object and objects
+  bool may_be_empty = false;      // of arrays: an empty one changes nothing
+};
+
+// The members of one kind of object.
+struct Fields {
+  const Field* first;
+  size_t count;
+  const Field* begin() const { return first; }
+  const Field* end() const { return first + count; }
+};
+
+template <size_t n>
+constexpr Fields fields(const Field (&list)[n]) {
+  return {list, n};
+}
+
+namespace properties {
+
+// Integers beyond 2^53 do not survive other JSON parsers (section 2.7).
+inline constexpr double largest_integer = 9007199254740992.0;
+// tinygltf holds the members of sparse accessors as int.
+inline constexpr double largest_int = 2147483647.0;
+inline constexpr const char* index_types = "5121 5123 5125";
+inline constexpr const char* component_types = "5120 5121 5122 5123 5125 5126";
+inline constexpr const char* element_types = "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4";
+
+inline constexpr Field asset_list[] = {
+    {.key = "version", .shape = Shape::text, .required = true},
+    {.key = "minVersion", .shape = Shape::text},
+};
+inline constexpr Fields asset = fields(asset_list);
+
+inline constexpr Field buffer_list[] = {
+    {.key = "byteLength",
+     .shape = Shape::integer,
+     .required = true,
+     .low = 1,
+     .high = largest_integer},
+    {.key = "uri", .shape = Shape::text},
+};
+inline constexpr Fields buffer = fields(buffer_list);
+
+inline constexpr Field buffer_view_list[] = {
+    {.key = "buffer", .shape = Shape::reference, .required = true, .target = "buffers"},
+    {.key = "byteOffset", .shape = Shape::integer, .low = 0, .high = largest_integer},
+    {.key = "byteLength",
+     .shape = Shape::integer,
+     .required = true,
+     .low = 1,
+     .high = largest_integer},
+    {.key = "byteStride", .shape = Shape::integer, .low = 4, .high = 252, .multiple = 4},
+    {.key = "target", .shape = Shape::integer, .choices = "34962 34963"},
+};
+inline constexpr Fields buffer_view = fields(buffer_view_list);
+
+inline constexpr Field sparse_indices_list[] = {
+    {.key = "bufferView", .shape = Shape::reference, .required = true, .target = "bufferViews"},
+    {.key = "byteOffset", .shape = Shape::integer, .low = 0, .high = largest_int},
+    {.key = "componentType", .shape = Shape::integer, .required = true, .choices = index_types},
+};
+inline constexpr Fields sparse_indices = fields(sparse_indices_list);
+
+inline constexpr Field sparse_values_list[] = {
+    {.key = "bufferView", .shape = Shape::reference, .required = true, .target = "bufferViews"},
+    {.key = "byteOffset", .shape = Shape::integer, .low = 0, .high = largest_int},
+};
+inline constexpr Fields sparse_values = fields(sparse_values_list);
+
+inline constexpr Field sparse_list[] = {
+    {.key = "count", .shape = Shape::integer, .required = true, .low = 1, .high = largest_int},
+    {.key = "indices", .shape = Shape::object, .required = true, .inner = &sparse_indices},
+    {.key = "values", .shape = Shape::object, .required = true, .inner = &sparse_values},
+};
+inline constexpr Fields sparse = fields(sparse_list);
+
+inline constexpr Field accessor_list[] = {
+    {.key = "bufferView", .shape = Shape::reference, .target = "bufferViews"},
+    {.key = "byteOffset",
+     .shape = Shape::integer,
+     .low = 0,
+     .high = largest_integer,
+     .beside = "bufferView"},
+    {.key = "componentType", .shape = Shape::integer, .required = true, .choices = component_types},
+    {.key = "normalized", .shape = Shape::flag},
+    {.key = "count", .shape = Shape::integer, .required = true, .low = 1, .high = largest_integer},
+    {.key = "type", .shape = Shape::text, .required = true, .choices = element_types},
+    {.key = "sparse", .shape = Shape::object, .inner = &sparse},
+};
+inline constexpr Fields accessor = fields(accessor_list);
+
+inline constexpr Field metallic_roughness_list[] = {
+    {.key = "baseColorFactor", .shape = Shape::numbers, .low = 0, .high = 1, .length = 4},
+    {.key = "metallicFactor", .shape = Shape::number, .low = 0, .high = 1},
+    {.key = "roughnessFactor", .shape = Shape::number, .low = 0, .high = 1},
+    {.key = "baseColorTexture", .shape = Shape::object},
+};
+inline constexpr Fields metallic_roughness = fields(metallic_roughness_list);
+
+inline constexpr Field specular_glossiness_list[] = {
+    {.key = "diffuseFactor", .shape = Shape::numbers, .low = 0, .high = 1, .length = 4},
+    {.key = "specularFactor", .shape = Shape::numbers, .low = 0, .high = 1, .length = 3},
+    {.key = "glossinessFactor", .shape = Shape::number, .low = 0, .high = 1},
+    {.key = "diffuseTexture", .shape = Shape::object},
+};
+inline constexpr Fields specular_glossiness = fields(specular_glossiness_list);
+
+inline constexpr Field transmission_list[] = {
+    {.key = "transmissionFactor", .shape = Shape::number, .low = 0, .high = 1},
+};
+inline constexpr Fields transmission = fields(transmission_list);
+
+inline constexpr Field ior_list[] = {{.key = "ior", .shape = Shape::number, .low = 0}};
+inline constexpr Fields ior = fields(ior_list);
+
+inline constexpr Field material_extensions_list[] = {
+    {.key = "KHR_materials_transmission", .shape = Shape::object, .inner = &transmission},
+    {.key = "KHR_materials_ior", .shape = Shape::object, .inner = &ior},
+    {.key = "KHR_materials_pbrSpecularGlossiness",
+     .shape = Shape::object,
+     .inner = &specular_glossiness},
+};
+inline constexpr Fields material_extensions = fields(material_extensions_list);
+
+inline constexpr Field material_list[] = {
+    {.key = "name", .shape = Shape::text},
+    {.key = "pbrMetallicRoughness", .shape = Shape::object, .inner = &metallic_roughness},
+    {.key = "alphaMode", .shape = Shape::text, .choices = "OPAQUE MASK BLEND"},
+    {.key = "alphaCutoff", .shape = Shape::number, .low = 0},
+    {.key = "doubleSided", .shape = Shape::flag},
+    {.key = "extensions", .shape = Shape::object, .inner = &material_extensions},
+};
+inline constexpr Fields material = fields(material_list);
+
+inline constexpr Field primitive_list[] = {
+    {.key = "attributes", .shape = Shape::reference_map, .required = true, .target = "accessors"},
+    {.key = "indices", .shape = Shape::reference, .target = "accessors"},
+    {.key = "material", .shape = Shape::reference, .target = "materials"},
+    {.key = "mode", .shape = Shape::integer, .low = 0, .high = 6},
+    {.key = "targets", .shape = Shape::reference_maps, .target = "accessors"},
+    {.key = "extensions", .shape = Shape::object},
+};
+inline constexpr Fields primitive = fields(primitive_list);
+
+inline constexpr Field mesh_list[] = {
+    {.key = "primitives", .shape = Shape::objects, .required = true, .inner = &primitive},
+    {.key = "weights", .shape = Shape::numbers},
+};
+inline constexpr Fields mesh = fields(mesh_list);
+
+inline constexpr Field instancing_list[] = {
+    {.key = "attributes", .shape = Shape::reference_map, .required = true, .target = "accessors"},
+};
+inline constexpr Fields instancing = fields(instancing_list);
+
+inline constexpr Field node_extensions_list[] = {
+    {.key = "EXT_mesh_gpu_instancing", .shape = Shape::object, .inner = &instancing},
+};
+inline constexpr Fields node_extensions = fields(node_extensions_list);
+
+inline constexpr Field node_list[] = {
+    {.key = "name", .shape = Shape::text},
+    {.key = "children", .shape = Shape::references, .target = "nodes", .may_be_empty = true},
+    {.key = "mesh", .shape = Shape::reference, .target = "meshes"},
+    {.key = "skin", .shape = Shape::reference, .target = "skins", .beside = "mesh"},
+    {.key = "camera", .shape = Shape::reference, .target = "cameras"},
+    {.key = "weights", .shape = Shape::numbers},
+    {.key = "matrix", .shape = Shape::numbers, .length = 16},
+    {.key = "translation", .shape = Shape::numbers, .length = 3, .without = "matrix"},
+    {.key = "rotation", .shape = Shape::numbers, .length = 4, .without = "matrix"},
+    {.key = "scale", .shape = Shape::numbers, .length = 3, .without = "matrix"},
+    {.key = "extensions", .shape = Shape::object, .inner = &node_extensions},
+};
+inline constexpr Fields node = fields(node_list);
+
+inline constexpr Field scene_list[] = {
+    {.key = "nodes", .shape = Shape::references, .target = "nodes", .may_be_empty = true},
+};
+inline constexpr Fields scene = fields(scene_list);
+
+inline constexpr Field document_list[] = {
+    {.key = "asset", .shape = Shape::object, .required = true, .inner = &asset},
+    {.key = "buffers", .shape = Shape::objects, .inner = &buffer},
+    {.key = "bufferViews", .shape = Shape::objects, .inner = &buffer_view},
+    {.key = "accessors", .shape = Shape::objects, .inner = &accessor},
+    {.key = "materials", .shape = Shape::objects, .inner = &material},
+    {.key = "meshes", .shape = Shape::objects, .inner = &mesh},
+    {.key = "nodes", .shape = Shape::objects, .inner = &node},
+    {.key = "scenes", .shape = Shape::objects, .inner = &scene},
+    {.key = "scene", .shape = Shape::reference, .target = "scenes"},
+};
+inline constexpr Fields document = fields(document_list);
+
+}  // namespace properties
 
 using nlohmann::json;
 

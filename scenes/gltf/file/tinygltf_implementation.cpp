@@ -1,5 +1,5 @@
-// Compiles tinygltf's own code, with the macros of the seam.
+// Compiles tinygltf's own code, with the macros of document.h.
 #include <fstream>  // version 2.7 needs it in its writer, and leaves it out with TINYGLTF_NO_FS
 
 #define TINYGLTF_IMPLEMENTATION
-#include "scenes/gltf/file/tinygltf_seam.h"
+#include "scenes/gltf/file/document.h"

@@ -4,6 +4,7 @@
 #include "sources/photometry/file.h"
 #include "sources/profiles/tabulated_intensity.h"
 #include "tests/fuzz/target.h"
+#include "tests/sources/ies_writer.h"
 
 namespace photorque::fuzz {
 

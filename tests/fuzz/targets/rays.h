@@ -1,8 +1,8 @@
 // Of ray files: what was read makes a lamp and can be written back.
 #pragma once
 
-#include "sources/lamps/rays.h"
-#include "sources/rayfiles/set.h"
+#include "sources/lamps/ray_file.h"
+#include "sources/photometry/ray_set.h"
 #include "tests/fuzz/target.h"
 
 namespace photorque::fuzz {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/fuzz/target.h"
 
 namespace {

@@ -1,6 +1,6 @@
 // Fuzz target: any text as TOML, and its first line as an override of the tree that it gives.
 // line_mutator.cpp changes lines, keys and values, not only bytes.
-#include "scenes/experiment/toml_reader.h"
+#include "scenes/experiment/toml.h"
 #include "tests/fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

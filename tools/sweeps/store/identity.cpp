@@ -3,8 +3,7 @@
 #include "core/files.h"
 #include "core/provenance.h"
 #include "scenes/experiment/named_files.h"
-#include "scenes/experiment/toml_reader.h"
-#include "scenes/experiment/toml_writer.h"
+#include "scenes/experiment/toml.h"
 
 namespace photorque {
 namespace {

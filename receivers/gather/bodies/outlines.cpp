@@ -1,0 +1,182 @@
+#include "receivers/gather/bodies/outlines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "receivers/gather/bodies/partition.h"
+
+namespace photorque {
+namespace {
+
+// The ends of an edge in a fixed order, and its instance: corners of one mesh are placed alike, to
+// the last bit.
+using EdgeKey = std::array<double, 7>;
+
+EdgeKey key_of(uint32_t instance, const Vec3& a, const Vec3& b) {
+  const bool turned = std::lexicographical_compare(b.data(), b.data() + 3, a.data(), a.data() + 3);
+  const Vec3 &first = turned ? b : a, &second = turned ? a : b;
+  return {static_cast<double>(instance),
+          first.x(),
+          first.y(),
+          first.z(),
+          second.x(),
+          second.y(),
+          second.z()};
+}
+
+// Where other facets cut through one.
+std::vector<Line> cuts_through(const Facet& facet, const Facets& facets, double rounding_m) {
+  std::vector<Line> lines;
+  const auto add = [&](const Line& line) {
+    // Not of neighbours, whose planes meet it at a corner.
+    Screen screen(facet);
+    screen.add(std::span(&line, 1), facet.normal, -facet.normal, rounding_m);
+    if (!screen.traces().empty()) lines.push_back(line);
+  };
+  std::map<EdgeKey, int> in_plane;  // which sides of it there are: above 1, below 2
+  for (uint32_t instance = 0; instance < facets.instances(); ++instance) {
+    const Ball& all = facets.ball_of(instance);
+    if ((all.centre_m - facet.ball.centre_m).norm() > all.radius_m + facet.ball.radius_m) continue;
+    for (const Facet& other : facets.of(instance)) {
+      const double apart_m = (other.ball.centre_m - facet.ball.centre_m).norm();
+      if (&other == &facet || apart_m > other.ball.radius_m + facet.ball.radius_m) continue;
+      std::array<double, 3> height_m;
+      for (size_t i = 0; i < 3; ++i) {
+        height_m[i] = facet.normal.dot(other.corner_m[i] - facet.corner_m[0]);
+      }
+      const auto [low, high] = std::minmax_element(height_m.begin(), height_m.end());
+      if (*low > rounding_m || *high < -rounding_m) continue;
+      std::vector<Vec3> ends_m;
+      for (size_t i = 0; i < 3; ++i) {
+        if (std::abs(height_m[i]) <= rounding_m) ends_m.push_back(other.corner_m[i]);
+      }
+      if (ends_m.size() == 3) continue;
+      // An edge in the plane is a cut if the surface goes on below it.
+      const bool on_edge = ends_m.size() == 2;
+      for (size_t i = 0; i < 3 && ends_m.size() < 2; ++i) {
+        const size_t j = (i + 1) % 3;
+        const bool apart = std::min(std::abs(height_m[i]), std::abs(height_m[j])) > rounding_m;
+        if (!apart || (height_m[i] < 0.0) == (height_m[j] < 0.0)) continue;
+        const double part = height_m[i] / (height_m[i] - height_m[j]);
+        ends_m.emplace_back(other.corner_m[i] + part * (other.corner_m[j] - other.corner_m[i]));
+      }
+      if (ends_m.size() != 2) continue;
+      if (on_edge) {
+        const int side = *high > rounding_m ? 1 : 2;
+        int& sides = in_plane[key_of(instance, ends_m[0], ends_m[1])];
+        if ((sides | side) != 3 || sides == 3) {
+          sides |= side;
+          continue;
+        }
+        sides = 3;
+      }
+      add({ends_m[0], ends_m[1]});
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
+Outlines::Outlines(const Facets& facets) {
+  std::map<EdgeKey, size_t> known;
+  for (uint32_t instance = 0; instance < facets.instances(); ++instance) {
+    for (const Facet& facet : facets.of(instance)) {
+      for (size_t i = 0; i < 3; ++i) {
+        const Vec3 &a = facet.corner_m[i], &b = facet.corner_m[(i + 1) % 3];
+        const auto [place, is_new] = known.emplace(key_of(instance, a, b), edges_.size());
+        if (is_new) {
+          edges_.push_back({{a, b}, {facet.normal, Vec3::Zero()}, 1});
+          continue;
+        }
+        Edge& edge = edges_[place->second];
+        // Neighbours that are turned alike run along their edge in opposite directions.
+        if (edge.facets == 1) edge.normal[1] = edge.line.from_m == a ? -facet.normal : facet.normal;
+        ++edge.facets;
+      }
+    }
+  }
+}
+
+void Outlines::in_light(const Vec3& travel, std::vector<Line>& lines) const {
+  for (const Edge& edge : edges_) {
+    const double one = edge.normal[0].dot(travel), other = edge.normal[1].dot(travel);
+    if (edge.facets != 2 || one * other <= 0.0) lines.push_back(edge.line);
+  }
+}
+
+void Outlines::in_sight(const Vec3& travel, std::vector<Line>& lines) const {
+  constexpr double smooth = 0.95;  // cosine between neighbours, 18 deg
+  for (const Edge& edge : edges_) {
+    const double one = edge.normal[0].dot(travel), other = edge.normal[1].dot(travel);
+    const bool turns = edge.facets != 2 || one * other <= 0.0;
+    if (turns || edge.normal[0].dot(edge.normal[1]) < smooth) lines.push_back(edge.line);
+  }
+}
+
+std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m) {
+  std::vector<std::vector<Line>> cuts;
+  for (const Facet& facet : facets.all()) cuts.push_back(cuts_through(facet, facets, rounding_m));
+  return cuts;
+}
+
+LineGrid::LineGrid(std::vector<Line> lines, const Vec3& travel, double radius_m)
+    : lines_(std::move(lines)),
+      across_(travel.unitOrthogonal()),
+      aside_(travel.cross(across_)),
+      low_m_(-radius_m),
+      per_m_(width / (2.0 * radius_m)),
+      cells_(width * width),
+      seen_(lines_.size(), 0) {
+  for (uint32_t i = 0; i < lines_.size(); ++i) add(i);
+}
+
+int LineGrid::column(double x_m) const {
+  return std::clamp(static_cast<int>((x_m - low_m_) * per_m_), 0, width - 1);
+}
+
+// Column by column, in the rows that the line has there.
+void LineGrid::add(uint32_t index) {
+  const Line& line = lines_[index];
+  Vec2 from(across_.dot(line.from_m), aside_.dot(line.from_m));
+  Vec2 to(across_.dot(line.to_m), aside_.dot(line.to_m));
+  if (from.x() > to.x()) std::swap(from, to);
+  const int first = column(from.x()), last = column(to.x());
+  for (int c = first; c <= last; ++c) {
+    const auto height_at = [&](double x) {
+      const double run = to.x() - from.x();
+      const double part = run > 0.0 ? std::clamp((x - from.x()) / run, 0.0, 1.0) : 0.0;
+      return from.y() + part * (to.y() - from.y());
+    };
+    double one = from.y(), other = to.y();
+    if (first != last) {
+      one = height_at(low_m_ + c / per_m_);
+      other = height_at(low_m_ + (c + 1) / per_m_);
+    }
+    // A hair further, for rounding.
+    const double hair = 1e-9 / per_m_;
+    const int bottom = column(std::min(one, other) - hair);
+    const int top = column(std::max(one, other) + hair);
+    for (int r = bottom; r <= top; ++r) cells_[cell(c, r)].push_back(index);
+  }
+}
+
+void LineGrid::over(const TriangleCorners& corners_m, std::vector<Line>& found) {
+  found.clear();
+  ++question_;
+  Eigen::AlignedBox2d box;
+  for (const Vec3& corner : corners_m) box.extend(Vec2(across_.dot(corner), aside_.dot(corner)));
+  const double hair = 1e-9 / per_m_;
+  for (int c = column(box.min().x() - hair); c <= column(box.max().x() + hair); ++c) {
+    for (int r = column(box.min().y() - hair); r <= column(box.max().y() + hair); ++r) {
+      for (const uint32_t index : cells_[cell(c, r)]) {
+        if (seen_[index] == question_) continue;
+        seen_[index] = question_;
+        found.push_back(lines_[index]);
+      }
+    }
+  }
+}
+
+}  // namespace photorque

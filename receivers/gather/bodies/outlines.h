@@ -1,0 +1,59 @@
+// The lines at which shadows in parallel light can end. For the files of this folder only.
+#pragma once
+
+#include <vector>
+
+#include "receivers/gather/bodies/partition.h"
+
+namespace photorque {
+
+// The edges of all facets, each once, with what meets there.
+class Outlines {
+ public:
+  explicit Outlines(const Facets& facets);
+
+  // Where the surface ends, or turns from the light to its dark side: no other edge of a mesh
+  // bounds a shadow.
+  void in_light(const Vec3& travel, std::vector<Line>& lines) const;
+  // What is seen from afar against `travel` changes there: outlines and creases in sight.
+  void in_sight(const Vec3& travel, std::vector<Line>& lines) const;
+
+ private:
+  struct Edge {
+    Line line;
+    Vec3 normal[2];
+    int facets = 0;
+  };
+  std::vector<Edge> edges_;
+};
+
+// Where other facets cut through one, facet by facet.
+std::vector<std::vector<Line>> all_cuts(const Facets& facets, double rounding_m);
+
+// Lines by where light along `travel` carries them, so that those over a facet are found fast.
+class LineGrid {
+ public:
+  // `radius_m`: all lines lie in a ball about the origin.
+  LineGrid(std::vector<Line> lines, const Vec3& travel, double radius_m);
+
+  const std::vector<Line>& lines() const { return lines_; }
+  // Those that may pass over or under a triangle.
+  void over(const TriangleCorners& corners_m, std::vector<Line>& found);
+
+ private:
+  static constexpr int width = 48;
+  static size_t cell(int column, int row) {
+    return static_cast<size_t>(column) * width + static_cast<size_t>(row);
+  }
+  int column(double x_m) const;
+  void add(uint32_t index);
+
+  std::vector<Line> lines_;
+  Vec3 across_, aside_;
+  double low_m_, per_m_;
+  std::vector<std::vector<uint32_t>> cells_;
+  std::vector<uint32_t> seen_;  // by the how manieth question
+  uint32_t question_ = 0;
+};
+
+}  // namespace photorque

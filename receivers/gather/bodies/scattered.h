@@ -1,0 +1,131 @@
+// What light does that a surface scatters by Lambert's law.
+//
+// Where light came from does not matter once it is scattered so. The force and torque that a watt
+// of it brings about by all that follows, w(x), is a field on the surfaces, the same for light from
+// anywhere:
+//
+//   w(x) = ∫ cos θ/π [contact(y) + scattered share(y) w(y) + what goes on by mirrors] dω,
+//
+// with y where the direction ω from x leads. It is found once, by rays from every patch of surface,
+// and the linear equations that they make; twice, from independent rays, whose difference is the
+// error. For the files of this folder only.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "receivers/gather/bodies/facets.h"
+#include "receivers/gather/bodies/onward.h"
+#include "receivers/gather/bodies/partition.h"
+
+namespace photorque {
+
+// Of either set of rays.
+using TwofoldSum = Eigen::Array<double, 12, 1>;
+
+class ScatteredLight {
+ public:
+  struct Effort {
+    size_t patches = 1000;       // about, of equal areas; at least one for each facet
+    uint64_t rays = 1ull << 23;  // about, of either set
+    uint64_t seed = 1;
+    int threads = 0;
+  };
+
+  // Facets, and all lines at which something may end over them. By facet: where others cut it.
+  struct Shape {
+    const Facets& facets;
+    const Outlines& outlines;
+    const std::vector<std::vector<Line>>& cuts;
+  };
+  // Facets' sides from which nothing is to be seen scatter into empty space.
+  ScatteredLight(const TraceableScene& scene, const Shape& shape, const Vec3& about_m,
+                 const Effort& effort);
+
+  // Force and torque about the point per watt of this band that leaves a piece of a side: the mean
+  // over a whole cell, or that of the patch at its centre. Near lines() it matters whether
+  // something stands closely above, which no piece may be of two minds about.
+  const TwofoldSum& per_watt(size_t side, const Piece& piece, bool covered, size_t band) const {
+    const size_t node = piece.whole ? node_of(side, piece.cell.level, piece.cell.path)
+                                    : node_at(side, piece.centre_uv);
+    return per_watt_[band][node][covered ? 1 : 0];
+  }
+  // The lines that end what stands closely above a side.
+  std::span<const Line> lines(size_t side) const { return lines_[side]; }
+  // The area of most patches.
+  double patch_m2() const { return patch_m2_; }
+  // How close that is.
+  double close_m() const { return close_m_; }
+  // Where light lands that nobody sees arrive: by how much of the patch is covered.
+  TwofoldSum per_watt_at(size_t side, const Vec2& uv, size_t band) const {
+    const size_t node = node_at(side, uv);
+    return mixed(per_watt_[band][node], nodes_[node].covered);
+  }
+  // Light from there meets nothing.
+  bool unseen(size_t side) const { return unseen_[side]; }
+
+ private:
+  // Of a tree of cells for each side; patches are those that are not cut.
+  struct Node {
+    uint32_t first_quarter = 0;  // 0: a patch
+    bool crowded = false;        // something begins or ends over it, close by
+    double covered = 0.0;        // share of its area that has something closely above
+  };
+  struct Patch {
+    size_t side, node;
+    Cell cell;
+  };
+  // Where nothing is closely above, and where something is.
+  using Pair = std::array<TwofoldSum, 2>;
+  static TwofoldSum mixed(const Pair& pair, double covered) {
+    return (1.0 - covered) * pair[0] + covered * pair[1];
+  }
+  size_t node_of(size_t side, uint32_t level, uint64_t path) const;
+  size_t node_at(size_t side, const Vec2& uv) const;
+  void grow(size_t side, size_t node, const Cell& cell, std::span<const Trace> traces,
+            const Facet& facet, double patch_m2);
+  void find_covered(const TraceableScene& scene, const Facets& facets, uint64_t seed);
+
+  // One band's field by one set of rays.
+  struct Task {
+    const TraceableScene& scene;
+    const Facets& facets;
+    Vec3 about_m;
+    Effort effort;
+    size_t band;
+    int half;
+  };
+  // A crowded patch twice, once for either kind of its places.
+  struct Work {
+    Patch patch;
+    size_t kind;
+  };
+  // What the rays of some patches met: the momentum left there, and the fractions that other
+  // patches scatter on.
+  struct Reached {
+    struct Part {
+      uint32_t patch;  // of the chunk
+      size_t place;
+      double fraction;
+    };
+    std::vector<WrenchSum> contact;
+    std::vector<Part> parts;
+  };
+  std::vector<Work> work_of(const Task& task) const;
+  void add_starts(const Task& task, const Work& one, uint64_t number, uint32_t count,
+                  uint32_t owner, std::vector<OnwardRay>& rays) const;
+  static void merge_places(std::vector<Reached::Part>& parts, size_t from);
+  std::vector<Reached> send_out(const Task& task, const std::vector<Work>& work) const;
+  void settle(const Task& task, const std::vector<Work>& work, const std::vector<Reached>& reached);
+  void find_means(size_t band);
+
+  std::vector<uint32_t> root_;  // by side
+  std::vector<bool> unseen_;    // by side
+  std::vector<Node> nodes_;
+  std::vector<Patch> patches_;
+  std::vector<std::vector<Line>> lines_;  // by side
+  double patch_m2_ = 0.0, close_m_ = 0.0;
+  std::vector<std::vector<Pair>> per_watt_;  // by band and node
+};
+
+}  // namespace photorque

@@ -1,0 +1,72 @@
+// Force and torque of sunlight on a body, with all that bounces, almost without noise: for tables
+// over thousands of directions.
+//
+// Direct light. Parallel light shades along straight lines: every edge of a shadow is the trace of
+// an edge at which a mesh ends or turns away from the light, or of a line at which one surface cuts
+// through another. Each lit facet is cut along these traces into pieces that are lit as a whole or
+// not at all, one shadow ray each; areas and centres of the pieces are exact. The Sun is as wide as
+// it is in what arrives on a facet, and a point in what shades it: half-shadows add and take away
+// alike on either side of an edge, and what remains is of the square of the Sun's half-angle.
+//
+// Light that goes on. What Lambert's law scatters is a field on the surfaces that does not depend
+// on where light came from (scattered.h). What mirrors throw and thin sheets pass on is followed
+// from small cells of the lit pieces, smaller where neighbours do not agree.
+//
+// For scenes in which nothing else happens to light. Other surfaces, and lamps that are near, are
+// for rays (raytrace/tracing/tracer.h), which know none of this and are what it is tested against.
+#pragma once
+
+#include <memory>
+
+#include "receivers/gather/bodies/outlines.h"
+#include "receivers/gather/bodies/scattered.h"
+
+namespace photorque {
+
+struct SunlitEffort {
+  ScatteredLight::Effort scattered = {};
+  size_t mirror_cells = 1000;  // of about equal areas, over all surfaces
+};
+
+// A wrench of sunlight: of what first contact leaves, and of all that follows twice, from
+// independent estimates of the scattered light.
+struct SunlitWrench {
+  WrenchSum direct = WrenchSum::Zero();
+  TwofoldSum bounced = TwofoldSum::Zero();
+  // One standard error of what mirrors throw: from the scatter within the last cells.
+  WrenchSum mirror_error = WrenchSum::Zero();
+  uint64_t rays = 0;
+
+  WrenchSum total() const { return direct + 0.5 * (bounced.head<6>() + bounced.tail<6>()); }
+};
+
+// A scene made ready for any direction. Immutable; called from many threads at once.
+class SunlitBody {
+ public:
+  // Null unless the only beam is a sun of at most 1 deg half-angle, all surfaces are plain and the
+  // facets no more than 20,000, which can be tested against each other. `scene` must outlive this.
+  static std::unique_ptr<const SunlitBody> make(const TraceableScene& scene,
+                                                std::span<const Beam> beams, const Vec3& about_m,
+                                                const SunlitEffort& effort = {});
+
+  // About the point of make(), in the body frame. Cells of mirrored light are cut as long as one of
+  // them may be wrong by `tolerance_N_m`; infinite: never.
+  SunlitWrench wrench(const RigidTransform& lab_from_body, double tolerance_N_m) const;
+
+ private:
+  SunlitBody(const TraceableScene& scene, const Beam& beam, const Vec3& about_m,
+             const SunlitEffort& effort);
+  class Direction;
+
+  const TraceableScene& scene_;
+  Beam beam_;
+  Vec3 about_m_;
+  Facets facets_;
+  BodyLight light_;
+  Outlines outlines_;
+  std::vector<std::vector<Line>> cuts_;  // by facet
+  double area_m2_, mirror_cell_m2_;
+  ScatteredLight scattered_;
+};
+
+}  // namespace photorque

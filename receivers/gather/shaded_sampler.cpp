@@ -1,0 +1,120 @@
+#include "receivers/gather/shaded_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "core/parallel.h"
+
+namespace photorque {
+
+Gathering::Gathering(const TraceableScene& scene, const RigidTransform& lab_from_body,
+                     std::span<const Beam> beams, const GatherSide& side, int threads, bool tables)
+    : plane_(scene, side.grid, side.bands, side.side),
+      triangles_(triangles_above(scene.scene(), plane_.patches().point_m, plane_.normal())) {
+  const RigidTransform body_from_lab = lab_from_body.inverse();
+  // The LEDs of an array share one emitter and its tables.
+  std::map<const Emitter*, std::shared_ptr<const DiscLight>> lights;
+  for (const Beam& beam : beams) {
+    auto& light = lights[beam.emitter.get()];
+    if (!light) light = std::make_shared<DiscLight>(*beam.emitter, *beam.aperture);
+    lamps_.emplace_back(beam, light, body_from_lab, plane_);
+  }
+  for (const auto& [emitter, light] : lights) {
+    if (tables) make_table(*light, threads);
+  }
+  // Of every lamp, what may shade any bin.
+  std::vector<uint32_t> all(triangles_.size());
+  std::iota(all.begin(), all.end(), 0u);
+  std::vector<std::vector<uint32_t>> occluders(lamps_.size());
+  parallel_for(lamps_.size(), threads, [&](size_t lamp) {
+    const Ball whole = plane_.ball_of({0, 0, side.grid.width, side.grid.height});
+    occluders[lamp] = in_shaft(whole, lamps_[lamp], all);
+  });
+  const std::vector<BinTile> squares = tiles();
+  sights_.resize(squares.size());
+  parallel_for(squares.size(), threads, [&](size_t t) {
+    for (uint32_t lamp = 0; lamp < lamps_.size(); ++lamp) {
+      descend(squares[t], lamp, occluders[lamp], sights_[t]);
+    }
+  });
+}
+
+size_t Gathering::shaded_pairs() const {
+  size_t pairs = 0;
+  for (const TileSight& sight : sights_) pairs += sight.shaded.size();
+  return pairs;
+}
+
+// A table of a light for all its lamps above the plane, where it pays.
+void Gathering::make_table(const DiscLight& light, int threads) {
+  constexpr size_t min_pairs = 2000;  // of a bin and a lamp
+  double low_m = INFINITY, high_m = 0.0;
+  std::vector<GatherLamp*> served;
+  for (GatherLamp& lamp : lamps_) {
+    const auto [min_m, max_m] = lamp.heights_m(plane_);
+    if (&lamp.light() != &light || !(min_m > 0.0)) continue;
+    low_m = std::min(low_m, min_m);
+    high_m = std::max(high_m, max_m);
+    served.push_back(&lamp);
+  }
+  if (served.size() * plane_.grid().bins() < min_pairs) return;
+  auto table = IrradianceTable::make(light, low_m, high_m, threads);
+  if (!table) return;
+  const auto shared = std::make_shared<const IrradianceTable>(*std::move(table));
+  for (GatherLamp* lamp : served) lamp->use(shared);
+}
+
+std::vector<BinTile> Gathering::tiles() const {
+  const SurfaceGrid& grid = plane_.grid();
+  std::vector<BinTile> squares;
+  for (int row = 0; row < grid.height; row += tile_side) {
+    for (int column = 0; column < grid.width; column += tile_side) {
+      squares.push_back({column, row, std::min(tile_side, grid.width - column),
+                         std::min(tile_side, grid.height - row)});
+    }
+  }
+  return squares;
+}
+
+std::vector<uint32_t> Gathering::in_shaft(const Ball& ball, const GatherLamp& lamp,
+                                          std::span<const uint32_t> candidates) const {
+  std::vector<uint32_t> kept;
+  if (candidates.empty()) return kept;
+  const Shaft shaft(ball, lamp.aperture_ball(ball));
+  for (const uint32_t t : candidates) {
+    if (shaft.may_meet(triangles_[t])) kept.push_back(t);
+  }
+  return kept;
+}
+
+// Splits a tile until nothing can shade it, or it is one bin.
+void Gathering::descend(const BinTile& tile, uint32_t index, std::span<const uint32_t> candidates,
+                        TileSight& sight) const {
+  const GatherLamp& lamp = lamps_[index];
+  const Ball ball = plane_.ball_of(tile);
+  if (lamp.misses(ball)) return;
+  const std::vector<uint32_t> occluders = in_shaft(ball, lamp, candidates);
+  if (lamp.lights_front() && occluders.empty()) {
+    sight.open.push_back({tile, ball, index});
+    return;
+  }
+  if (tile.count() == 1) {
+    const size_t bin = plane_.bin_at(tile.column, tile.row);
+    if (plane_.patches().of(bin).empty()) return;
+    sight.shaded.push_back({static_cast<uint32_t>(bin), index});
+    return;
+  }
+  const auto [low, high] = tile.halves();
+  descend(low, index, occluders, sight);
+  descend(high, index, occluders, sight);
+}
+
+bool is_gatherable(const Scene& scene, const SurfaceGrid& grid, std::span<const Beam> beams) {
+  const bool apertures =
+      std::all_of(beams.begin(), beams.end(), [](const Beam& b) { return b.aperture.has_value(); });
+  return apertures && is_flat(scene, grid);
+}
+
+}  // namespace photorque

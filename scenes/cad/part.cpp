@@ -1,0 +1,116 @@
+#include "scenes/cad/part.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace photorque::cad {
+namespace {
+
+Vec3 mean_normal(const std::vector<Vec3>& corners) {
+  Vec3 normal = Vec3::Zero();
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Vec3 a = corners[i] - corners[0], b = corners[(i + 1) % corners.size()] - corners[0];
+    normal += a.cross(b);
+  }
+  return normal;
+}
+
+// Seen along the normal, in a plane with a right-handed pair of axes.
+std::vector<Vec2> flattened(const std::vector<Vec3>& corners, const Vec3& normal) {
+  const Vec3 z = normal.normalized();
+  Vec3::Index least = 0;
+  z.cwiseAbs().minCoeff(&least);
+  const Vec3 x = Vec3::Unit(least).cross(z).normalized(), y = z.cross(x);
+  std::vector<Vec2> flat;
+  for (const Vec3& corner : corners) {
+    const Vec3 at = corner - corners[0];
+    flat.emplace_back(at.dot(x), at.dot(y));
+  }
+  return flat;
+}
+
+double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+bool is_inside(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& p) {
+  return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+}
+
+class EarClipper {
+ public:
+  explicit EarClipper(std::vector<Vec2> flat) : flat_(std::move(flat)), left_(flat_.size()) {
+    std::iota(left_.begin(), left_.end(), 0u);
+    for (size_t i = 0; i < left_.size(); ++i) is_ear_.push_back(finds_ear(i) ? 1 : 0);
+  }
+
+  std::vector<std::array<uint32_t, 3>> clip() {
+    while (left_.size() > 3) cut(next_ear());
+    triangles_.push_back({left_[0], left_[1], left_[2]});
+    return std::move(triangles_);
+  }
+
+ private:
+  size_t before(size_t i) const { return (i + left_.size() - 1) % left_.size(); }
+  size_t after(size_t i) const { return (i + 1) % left_.size(); }
+  bool turns_left(size_t i) const {
+    return turn(flat_[left_[before(i)]], flat_[left_[i]], flat_[left_[after(i)]]) > 0.0;
+  }
+
+  bool finds_ear(size_t i) const {
+    if (!turns_left(i)) return false;
+    const Vec2 &a = flat_[left_[before(i)]], &b = flat_[left_[i]], &c = flat_[left_[after(i)]];
+    for (const uint32_t other : left_) {
+      const Vec2& p = flat_[other];
+      // Corners that touch are at the same place in polygons with a slit to a hole.
+      if (p == a || p == b || p == c) continue;
+      if (is_inside(a, b, c, p)) return false;
+    }
+    return true;
+  }
+
+  // Where none is an ear, the polygon crosses itself or is flat: then any corner that turns left,
+  // else the first.
+  size_t next_ear() const {
+    for (size_t i = 0; i < left_.size(); ++i) {
+      if (is_ear_[i]) return i;
+    }
+    for (size_t i = 0; i < left_.size(); ++i) {
+      if (turns_left(i)) return i;
+    }
+    return 0;
+  }
+
+  // Only its neighbours may have become ears, or none any more.
+  void cut(size_t i) {
+    triangles_.push_back({left_[before(i)], left_[i], left_[after(i)]});
+    left_.erase(left_.begin() + static_cast<ptrdiff_t>(i));
+    is_ear_.erase(is_ear_.begin() + static_cast<ptrdiff_t>(i));
+    const size_t next = i % left_.size();
+    for (const size_t neighbour : {before(next), next}) {
+      is_ear_[neighbour] = finds_ear(neighbour) ? 1 : 0;
+    }
+  }
+
+  std::vector<Vec2> flat_;
+  std::vector<uint32_t> left_;
+  std::vector<uint8_t> is_ear_;  // of each that is left
+  std::vector<std::array<uint32_t, 3>> triangles_;
+};
+
+}  // namespace
+
+std::vector<std::array<uint32_t, 3>> triangles_of(const std::vector<Vec3>& corners) {
+  if (corners.size() < 3) return {};
+  if (corners.size() == 3) return {{0, 1, 2}};
+  const Vec3 normal = mean_normal(corners);
+  // Without an area there is no side to see it from; a fan has none either.
+  if (!(normal.stableNorm() > 0.0) || !normal.allFinite()) {
+    std::vector<std::array<uint32_t, 3>> fan;
+    for (uint32_t i = 2; i < corners.size(); ++i) fan.push_back({0, i - 1, i});
+    return fan;
+  }
+  return EarClipper(flattened(corners, normal)).clip();
+}
+
+}  // namespace photorque::cad

@@ -1,0 +1,382 @@
+#include "scenes/experiment/toml.h"
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "core/files.h"
+#include "core/text/parse.h"
+
+namespace photorque {
+namespace {
+
+template <typename T>
+std::string iso_text(const T& date_or_time) {
+  std::ostringstream text;
+  text << date_or_time;
+  return text.str();
+}
+
+SettingsNode to_settings(const toml::node& node, const std::string& name) {
+  SettingsNode result;
+  result.where = {name, static_cast<int>(node.source().begin.line)};
+  if (const auto* table = node.as_table()) {
+    SettingsNode::Table items;
+    for (const auto& [key, item] : *table) {
+      SettingsNode& entry = items[std::string(key.str())] = to_settings(item, name);
+      // The key, not its value: a table made by a dotted key has no place of its own.
+      entry.where.line = static_cast<int>(key.source().begin.line);
+    }
+    result.value = std::move(items);
+  } else if (const auto* array = node.as_array()) {
+    SettingsNode::Array items;
+    for (const auto& item : *array) items.push_back(to_settings(item, name));
+    result.value = std::move(items);
+  } else if (const auto* text = node.as_string()) {
+    result.value = text->get();
+  } else if (const auto* whole = node.as_integer()) {
+    result.value = whole->get();
+  } else if (const auto* real = node.as_floating_point()) {
+    result.value = real->get();
+  } else if (const auto* flag = node.as_boolean()) {
+    result.value = flag->get();
+  } else if (const auto* date = node.as_date()) {
+    result.value = iso_text(date->get());
+  } else if (const auto* time = node.as_time()) {
+    result.value = iso_text(time->get());
+  } else if (const auto* moment = node.as_date_time()) {
+    result.value = iso_text(moment->get());
+  }
+  return result;
+}
+
+// Tables within tables are built, walked and freed by recursion. Keys of so many parts, and no more
+// than toml++'s own 256 values within each other, stay far from the end of a stack.
+constexpr size_t max_key_parts = 16;
+
+// The text from a quote to behind its end, or to the end of all.
+size_t end_of_string(std::string_view text, size_t begin) {
+  const char quote = text[begin];
+  const bool multiline = text.substr(begin, 3) == std::string(3, quote);
+  const size_t quotes = multiline ? 3 : 1;
+  for (size_t i = begin + quotes; i < text.size(); ++i) {
+    if (text[i] == '\\' && quote == '"') {
+      ++i;
+    } else if (text.substr(i, quotes) == std::string(quotes, quote)) {
+      return i + quotes;
+    } else if (text[i] == '\n' && !multiline) {
+      return i;
+    }
+  }
+  return text.size();
+}
+
+// Throws InputError for keys of too many parts, before anything recurses into them.
+void require_shallow(std::string_view text, const std::string& name) {
+  size_t dots = 0;
+  int line = 1;
+  for (size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    size_t end = i + 1;
+    if (c == '"' || c == '\'') end = end_of_string(text, i);
+    if (c == '#') end = std::min(text.find('\n', i), text.size());
+    if (c == '.') ++dots;
+    if (std::string_view("=,[]{}\n").find(c) != std::string_view::npos) dots = 0;
+    if (dots >= max_key_parts) {
+      throw InputError({name, line}, "", "a key of more than 16 parts", "at most 16");
+    }
+    line += static_cast<int>(std::count(text.begin() + static_cast<ptrdiff_t>(i),
+                                        text.begin() + static_cast<ptrdiff_t>(end), '\n'));
+    i = end;
+  }
+}
+
+// A step of a key's path: a name, or an index when the name is empty.
+struct Step {
+  std::string name;
+  size_t index = 0;
+};
+
+const InputLocation command_line{"--set", 0};
+
+InputError wrong_key(const std::string& assignment) {
+  return {command_line, "", "\"" + assignment + "\"",
+          "KEY=VALUE, where KEY is like source[0].power_W"};
+}
+
+// "source[0].power_W" → source, [0], power_W. Empty when it is not a path.
+std::vector<Step> steps_of(std::string_view key) {
+  std::vector<Step> steps;
+  while (!key.empty()) {
+    const size_t length = std::min(key.find_first_of(".["), key.size());
+    if (length == 0) return {};
+    steps.push_back({std::string(key.substr(0, length))});
+    key.remove_prefix(length);
+    while (key.starts_with('[')) {
+      Step step;
+      const auto [end, error] =
+          std::from_chars(key.data() + 1, key.data() + key.size(), step.index);
+      if (error != std::errc() || end == key.data() + key.size() || *end != ']') return {};
+      steps.push_back(step);
+      key.remove_prefix(static_cast<size_t>(end - key.data()) + 1);
+    }
+    if (key.empty()) break;
+    if (!key.starts_with('.') || key.size() == 1) return {};
+    key.remove_prefix(1);
+  }
+  if (steps.size() > 2 * max_key_parts) {  // each may have an index
+    throw InputError(command_line, "", "a key of more than 16 parts", "at most 16");
+  }
+  return steps;
+}
+
+bool is_bare_word(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./+:~").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+}
+
+SettingsNode value_of(const std::string& text, const std::string& key) {
+  SettingsNode node;
+  require_shallow(text, command_line.file);
+  try {
+    SettingsNode document = to_settings(toml::parse("value = " + text), command_line.file);
+    auto& table = std::get<SettingsNode::Table>(document.value);
+    if (table.size() != 1) throw InputError(command_line, key, "\"" + text + "\"", "one value");
+    node = std::move(table.begin()->second);
+  } catch (const toml::parse_error&) {
+    if (!is_bare_word(text)) {
+      throw InputError(command_line, key, "\"" + text + "\"", "a TOML value or one bare word");
+    }
+    node.value = text;
+  }
+  return node;
+}
+
+void locate_on_command_line(SettingsNode& node) {
+  node.where = command_line;
+  if (auto* array = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (auto& item : *array) locate_on_command_line(item);
+  } else if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    for (auto& [key, item] : *table) locate_on_command_line(item);
+  }
+}
+
+// The item that one step leads to, made if it is a new key of a table.
+SettingsNode& follow(SettingsNode& node, const Step& step, const std::string& key) {
+  if (!step.name.empty()) {
+    auto* table = std::get_if<SettingsNode::Table>(&node.value);
+    if (table == nullptr) {
+      throw InputError(command_line, key, "that " + step.name + " lies in " + describe(node),
+                       "a table there");
+    }
+    const auto [item, is_new] = table->try_emplace(step.name);
+    if (is_new) item->second.where = command_line;
+    return item->second;
+  }
+  if (node.is_table() && step.index == 0) return node;  // [source] is short for one [[source]]
+  auto* array = std::get_if<SettingsNode::Array>(&node.value);
+  const size_t size = array == nullptr ? 0 : array->size();
+  if (step.index >= size) {
+    throw InputError(command_line, key, "index " + std::to_string(step.index),
+                     array == nullptr ? "no index: this is " + describe(node)
+                                      : "an index from 0 to " + std::to_string(size - 1));
+  }
+  return (*array)[step.index];
+}
+
+void erase_other_units(SettingsNode::Table& table, const std::string& key) {
+  const KeyUnit unit = unit_of_key(key);
+  if (unit.unit.empty()) return;
+  std::erase_if(table, [&](const auto& item) {
+    const KeyUnit other = unit_of_key(item.first);
+    return item.first != key && other.stem == unit.stem && other.dimension == unit.dimension;
+  });
+}
+
+// Line `number` of a text, from one, without blanks around it and without a comment.
+std::string bare_line(const std::string& text, int number) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int i = 0; i < number && std::getline(lines, line); ++i) {
+  }
+  return std::string(trimmed(std::string_view(line).substr(0, line.find('#'))));
+}
+
+// What TOML expects instead of a line that it cannot read: the usual slips by name.
+std::string expected_line(const std::string& line) {
+  const size_t equals = line.find('=');
+  if (equals == std::string::npos) return "TOML";
+  const std::string key(trimmed(std::string_view(line).substr(0, equals)));
+  const std::string value(trimmed(std::string_view(line).substr(equals + 1)));
+  if (key.empty()) return "TOML";
+  if (value.empty()) return "TOML, a value behind " + key + " =";
+  const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  const bool is_word = is_letter(value[0]) || value[0] == '/' || value[0] == '.';
+  if (is_word && value.find('"') == std::string::npos) {
+    return "TOML, text in quotes: " + key + " = \"" + value + "\"";
+  }
+  const bool is_number = value.find_first_not_of("+-0123456789.,eE") == std::string::npos;
+  const size_t comma = value.find(',');
+  if (is_number && comma != std::string::npos && comma == value.rfind(',')) {
+    std::string with_point = value;
+    with_point[comma] = '.';
+    return "TOML, a decimal point: " + key + " = " + with_point;
+  }
+  return "TOML";
+}
+
+}  // namespace
+
+SettingsNode parse_toml(const std::string& text, const std::string& name) {
+  for (const char* ending : {".stl", ".obj", ".gltf", ".glb"}) {
+    if (!name.ends_with(ending)) continue;
+    throw InputError({name}, "", "a model of a scene",
+                     "an experiment (photorque new EXPERIMENT.toml --scene MODEL makes one)");
+  }
+  require_text(text, {name, 1});
+  require_shallow(text, name);
+  try {
+    return to_settings(toml::parse(text, name), name);
+  } catch (const toml::parse_error& error) {
+    const InputLocation where{name, static_cast<int>(error.source().begin.line)};
+    throw InputError(where, "", "a syntax error (" + std::string(error.description()) + ")",
+                     expected_line(bare_line(text, where.line)));
+  }
+}
+
+SettingsNode read_toml(const std::filesystem::path& path) {
+  constexpr uint64_t largest_bytes = 1ull << 26;
+  return parse_toml(read_file(path, largest_bytes), path.string());
+}
+
+void apply_override(SettingsNode& root, const std::string& assignment) {
+  const size_t equals = assignment.find('=');
+  if (equals == std::string::npos) throw wrong_key(assignment);
+  const std::string key = assignment.substr(0, equals);
+  const std::vector<Step> steps = steps_of(key);
+  if (steps.empty()) throw wrong_key(assignment);
+
+  SettingsNode value = value_of(assignment.substr(equals + 1), key);
+  locate_on_command_line(value);
+  SettingsNode* holder = &root;
+  for (size_t i = 0; i + 1 < steps.size(); ++i) holder = &follow(*holder, steps[i], key);
+  follow(*holder, steps.back(), key) = std::move(value);
+  if (auto* table = std::get_if<SettingsNode::Table>(&holder->value)) {
+    erase_other_units(*table, steps.back().name);
+  }
+}
+
+const SettingsNode* find_setting(const SettingsNode& root, const std::string& key) {
+  const std::vector<Step> steps = steps_of(key);
+  const SettingsNode* node = steps.empty() ? nullptr : &root;
+  for (const Step& step : steps) {
+    if (node == nullptr) return nullptr;
+    if (const auto* table = std::get_if<SettingsNode::Table>(&node->value)) {
+      if (step.name.empty() && step.index == 0) continue;
+      const auto at = step.name.empty() ? table->end() : table->find(step.name);
+      node = at == table->end() ? nullptr : &at->second;
+    } else {
+      const auto* items = std::get_if<SettingsNode::Array>(&node->value);
+      const bool there = items != nullptr && step.name.empty() && step.index < items->size();
+      node = there ? &(*items)[step.index] : nullptr;
+    }
+  }
+  return node;
+}
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string all = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      all += '\\';
+      all += c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      char escaped[8];
+      std::snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned>(c));
+      all += escaped;
+    } else {
+      all += c;
+    }
+  }
+  return all + '"';
+}
+
+std::string key_text(const std::string& key) {
+  const bool is_bare = !key.empty() && std::ranges::all_of(key, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  });
+  return is_bare ? key : quoted(key);
+}
+
+std::string real_text(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
+  const std::string text = shortest(value);
+  return text.find_first_of(".eE") == std::string::npos ? text + ".0" : text;
+}
+
+struct ValueWriter {
+  std::string operator()(bool value) const { return value ? "true" : "false"; }
+  std::string operator()(int64_t value) const { return std::to_string(value); }
+  std::string operator()(double value) const { return real_text(value); }
+  std::string operator()(const std::string& value) const { return quoted(value); }
+  std::string operator()(const SettingsNode::Array& items) const {
+    std::string all;
+    for (const SettingsNode& item : items) all += (all.empty() ? "" : ", ") + toml_value(item);
+    return "[" + all + "]";
+  }
+  std::string operator()(const SettingsNode::Table& table) const {
+    std::string all;
+    for (const auto& [key, value] : table) {
+      all += (all.empty() ? "" : ", ") + key_text(key) + " = " + toml_value(value);
+    }
+    return all.empty() ? "{}" : "{ " + all + " }";
+  }
+};
+
+const SettingsNode::Array* tables_of(const SettingsNode& node) {
+  const auto* items = std::get_if<SettingsNode::Array>(&node.value);
+  const bool all_tables = items != nullptr && !items->empty() &&
+                          std::ranges::all_of(*items, [](const auto& i) { return i.is_table(); });
+  return all_tables ? items : nullptr;
+}
+
+std::string section(const std::string& head, const SettingsNode& table) {
+  std::string text = "\n" + head + "\n";
+  for (const auto& [key, value] : std::get<SettingsNode::Table>(table.value)) {
+    text += key_text(key) + " = " + toml_value(value) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string toml_value(const SettingsNode& node) {
+  return std::visit(ValueWriter{}, node.value);
+}
+
+std::string toml_document(const SettingsNode::Table& root) {
+  std::string values, sections;
+  for (const auto& [key, node] : root) {
+    const std::string name = key_text(key);
+    if (node.is_table()) {
+      sections += section("[" + name + "]", node);
+    } else if (const auto* items = tables_of(node)) {
+      for (const SettingsNode& item : *items) sections += section("[[" + name + "]]", item);
+    } else {
+      values += name + " = " + toml_value(node) + "\n";
+    }
+  }
+  return values + sections;
+}
+
+}  // namespace photorque

@@ -1,0 +1,36 @@
+// TOML text into the tree that core/settings reads, and back. The only place for toml++.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/settings/settings.h"
+
+namespace photorque {
+
+// The tree of a TOML document. `name` is how messages call it; every value remembers its line.
+// Dates and times become their ISO 8601 text. Throws InputError with the line of a syntax error.
+SettingsNode parse_toml(const std::string& text, const std::string& name);
+
+// The same for a file.
+SettingsNode read_toml(const std::filesystem::path& path);
+
+// Sets one value as the command line's `--set KEY=VALUE` does: "source[0].power_W=10".
+//
+// KEY is a path of names and indices from the root; tables on the way that do not exist are made,
+// array items are not. VALUE is TOML; a bare word (a name, a path) is a text. A key of the same
+// quantity in another unit is replaced: power_mW=5 takes the place of power_W. Messages about the
+// value say "--set" instead of a file. Throws InputError when the assignment makes no sense.
+void apply_override(SettingsNode& root, const std::string& assignment);
+
+// The value under such a KEY; null where there is none, or KEY is no path.
+const SettingsNode* find_setting(const SettingsNode& root, const std::string& key);
+
+// One value on one line, tables inline. Real numbers read back as the same doubles.
+std::string toml_value(const SettingsNode& node);
+
+// A whole document: a table's own values first, then its tables and arrays of tables as sections;
+// what lies deeper stands inline.
+std::string toml_document(const SettingsNode::Table& root);
+
+}  // namespace photorque

@@ -1,0 +1,69 @@
+// From uniform fractions to places and directions: area-preserving maps of blocks to discs and
+// spheres, vectorised; polar angles drawn from one plane of an intensity table.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "raytrace/emitter.h"
+
+namespace photorque {
+
+using FractionBlock = std::array<uint32_t, ray_block>;
+using ValueBlock = std::array<float, ray_block>;
+using VectorBlock = std::array<ValueBlock, 3>;
+
+// Points evenly over a disc about the z axis at z = 0: radius from the square root of the first
+// fraction, azimuth from the second. Polar rather than concentric: every ring then holds its
+// fraction of a stratified set exactly.
+void fill_disc(double radius_m, const FractionBlock& radial, const FractionBlock& turn,
+               VectorBlock& point_m);
+
+// Unit vectors at 1 − cos θ = `rise` from the z axis, azimuth from a fraction. The norm is 1 to
+// 2e-7; directions keep their relative precision down to the narrowest beams.
+void fill_directions(const ValueBlock& rise, const FractionBlock& turn, VectorBlock& direction);
+
+// Polar angles drawn from one plane of an intensity table.
+//
+// Method. The distribution is tabulated at cells so fine that within them the intensity is linear
+// in the rise 1 − cos θ to `cell_error` of the plane's flux. Every cell holds its exact flux
+// (Gauss–Legendre with 8 nodes on cubics times a sine: rounding), and a quadratic is inverted in
+// it.
+
+// 1 − cos θ, with its relative precision near the axis.
+inline double rise_at(double polar_rad) {
+  const double sine = std::sin(0.5 * polar_rad);
+  return 2.0 * sine * sine;
+}
+
+// The distribution of the polar angle in one plane, for samples of equal weight.
+class PlaneSampler {
+ public:
+  static constexpr double cell_error = 1e-8;
+
+  // Knots of the plane's cubic: angles, intensities and slopes of one length.
+  PlaneSampler(const std::vector<double>& polar_rad, const double* intensity, const double* slope);
+
+  // ∫ I sin θ dθ over the plane, ≥ 0.
+  double flux() const { return flux_; }
+  // 1 − cos θ below which a fraction ∈ (0, 1) of the flux lies. Only where flux() > 0.
+  double rise(double fraction) const;
+
+ private:
+  struct Cell {
+    double before;     // fraction of the flux below the cell
+    double rise;       // of its lower edge
+    double width;      // in rise
+    double low, high;  // fraction per rise at its edges
+  };
+  struct Curve;
+  void add(const Curve& curve, double low_rad, double high_rad, double plane_flux, int depth);
+
+  double flux_ = 0.0;
+  std::vector<Cell> cells_;
+  std::vector<uint32_t> first_cell_;  // for evenly spaced fractions
+};
+
+}  // namespace photorque
