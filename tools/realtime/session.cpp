@@ -105,7 +105,7 @@ void Session::meet_client() {
   while ((settings_.wait_for_client || !is_paced()) && !gate_.client()) {
     take_in(give_up_ns);
     if (monotonic_ns() > give_up_ns) {
-      throw NumericalError("no client came to " + socket_.where + " within " +
+      throw NumericalError("no client came to " + socket_.where() + " within " +
                            shortest(settings_.client_timeout_s) + " s (serve.client_timeout_s)");
     }
   }
