@@ -51,7 +51,7 @@ class LightOfLamps(unittest.TestCase):
     def test_beams_emit_one_watt(self):
         for beam in (Beam("gaussian", 0.15), Beam("super_gaussian", 0.5, 4.0), Beam("cosine_power", exponent=20.0)):
             angles = np.linspace(0.0, 0.5 * math.pi, 200001)
-            per_angle = 2.0 * math.pi * beam.on_axis_per_sr * beam.relative(np.cos(angles)) * np.sin(angles)
+            per_angle = 2.0 * math.pi * beam.on_axis_per_sr() * beam.relative(np.cos(angles)) * np.sin(angles)
             self.assertAlmostEqual(np.trapz(per_angle, angles), 1.0, delta=1e-7, msg=beam)
             self.assertEqual(beam.relative(np.array(-0.5)), 0.0)
         half = Beam("super_gaussian", 0.5, 4.0).relative(np.cos(0.25))

@@ -1,10 +1,12 @@
 """What recordings can show of an effect: growth of chi², and which other effects explain it as well."""
 
+import functools
+
 import numpy as np
 
 from . import effects, readings
 
-MOST_ROWS = {"scan": 300, "sweep": 80, "run": 16}  # of a recording that are used
+MOST_ROWS = {"scan": 300, "sweep": 80, "run": 32}  # of a recording that are used
 
 
 class Judge:
@@ -94,14 +96,18 @@ class Judge:
                 break
         return best
 
-    def left_by_all(self, target):
-        """What remains of `target` beside all numbers of the catalogue together, to first order."""
+    @functools.cached_property
+    def _catalogue(self):
+        """An orthonormal basis of all changes of the readings that numbers of the catalogue make."""
         columns = np.column_stack([self.slopes(rival) for rival in self.rivals() if rival.neutral])
-        scale = np.linalg.norm(columns, axis=0)
-        columns = columns[:, scale > 0.0] / scale[scale > 0.0]
-        off = target - self.nominal
-        fit = columns @ np.linalg.lstsq(columns, off, rcond=1e-3)[0]
-        return float(np.sum((off - fit) ** 2))
+        length = np.linalg.norm(columns, axis=0)
+        basis, singular, _ = np.linalg.svd(columns[:, length > 0.0] / length[length > 0.0], full_matrices=False)
+        return basis[:, singular > 1e-3 * singular[0]]
+
+    def unexplained(self, some):
+        """The growth of chi² under these effects beyond all numbers of the catalogue, to first order."""
+        off = self.whitened(self.with_effects(some)) - self.nominal
+        return float(np.sum((off - self._catalogue @ (self._catalogue.T @ off)) ** 2))
 
     def accepted(self, acting, near):
         """Which answers count as right where `acting` acts: sets of names, indices by name, and the least

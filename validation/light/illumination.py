@@ -44,7 +44,7 @@ class Beam:
         power = half_widths**2 if self.profile == "gaussian" else half_widths**self.order
         return np.where(cosine > 0.0, np.exp2(-power), 0.0)
 
-    @functools.cached_property
+    @functools.lru_cache(maxsize=1000)
     def on_axis_per_sr(self):
         """Intensity on the axis [1/sr] of a lamp of one watt."""
         if self.profile == "cosine_power":
@@ -223,16 +223,31 @@ def fresnel_ratio(index, cosine):
     return (1.0 - 0.5 * (across + along)) / (1.0 - ((index - 1.0) / (index + 1.0)) ** 2)
 
 
-class _Placed:
-    """One lamp in body axes."""
+@dataclasses.dataclass
+class _Aperture:
+    """A lamp in body axes."""
 
-    def __init__(self, lamp, lab_from_body):
-        self.lamp = lamp
-        self.centre = np.asarray(lamp.position_m) @ lab_from_body
-        self.axis = np.asarray(lamp.axis) @ lab_from_body
-        # Two unit vectors across the axis: a column each of the Householder matrix that turns z into it.
-        away = self.axis + np.array([0.0, 0.0, math.copysign(1.0, self.axis[2])])
-        self.across = lamp.radius_m * (np.eye(3) - 2.0 * np.outer(away, away) / (away @ away))[:2]
+    beam: Beam
+    radius_m: float
+    centre: np.ndarray
+    axis: np.ndarray
+    across: np.ndarray  # two radii across the axis, a row each
+
+    @classmethod
+    def of(cls, lamp, lab_from_body):
+        axis = np.asarray(lamp.axis) @ lab_from_body
+        # Two unit vectors across the axis: rows of the Householder matrix that turns it into z.
+        away = axis + np.array([0.0, 0.0, math.copysign(1.0, axis[2])])
+        across = (np.eye(3) - 2.0 * np.outer(away, away) / (away @ away))[:2]
+        return cls(lamp.beam, lamp.radius_m, np.asarray(lamp.position_m) @ lab_from_body, axis, lamp.radius_m * across)
+
+    def behind_mirror(self, wall):
+        """The lamp's image in the plane of a wall."""
+        turn = np.ones(3)
+        turn[wall.axis] = -1.0
+        centre = self.centre * turn
+        centre[wall.axis] += 2.0 * wall.at_m
+        return _Aperture(self.beam, self.radius_m, centre, self.axis * turn, self.across * turn)
 
     def places(self, disc):
         """Points of the aperture at places (n, 2) of the unit disc."""
@@ -246,7 +261,7 @@ class _Placed:
         leaves = (to[0] * self.axis[0] + to[1] * self.axis[1] + to[2] * self.axis[2]) / r
         axis, sign = normal
         meets = np.maximum(0.0, -sign * to[axis] / r)
-        light = self.lamp.beam.on_axis_per_sr * self.lamp.beam.relative(leaves) * meets / r2
+        light = self.beam.on_axis_per_sr() * self.beam.relative(leaves) * meets / r2
         return light if glass_index is None else light * fresnel_ratio(glass_index, meets)
 
 
@@ -293,13 +308,13 @@ class Room:
         if key not in self.known:
             if len(self.known) > MOST_KNOWN:
                 self.known.clear()
-            placed = _Placed(lamp, lab_from_body)
+            aperture = _Aperture.of(lamp, lab_from_body)
             if way == "direct":
-                light = self._direct(placed, places, lab_from_body, UP, None, glass)
+                light = self._direct(aperture, places, lab_from_body, UP, None, glass)
             elif way == "diffuse":
-                light = self._transfer(wall, places) @ self._on_wall(placed, wall, lab_from_body)
+                light = self._transfer(wall, places) @ self._on_wall(aperture, wall, lab_from_body)
             else:
-                light = self._mirrored(placed, wall, places)
+                light = self._mirrored(aperture, wall, places)
             self.known[key] = light
         return self.known[key]
 
@@ -319,23 +334,23 @@ class Room:
             hidden |= crosses_box(low - margin, high + margin, a, b)
         return hidden
 
-    def _direct(self, placed, places, lab_from_body, normal, but, glass):
+    def _direct(self, aperture, places, lab_from_body, normal, but, glass):
         disc, shares = _disc_rule()
-        sources = placed.places(disc)[:, None, :]
-        light = places.average(shares @ placed.received(sources, places.points, normal, glass))
+        sources = aperture.places(disc)[:, None, :]
+        light = places.average(shares @ aperture.received(sources, places.points, normal, glass))
         if not self.walls and not self.boxes:
             return light
         probes = places.probes()
-        margin = placed.lamp.radius_m
-        suspects = np.flatnonzero(self._hidden(placed.centre, probes, but, lab_from_body, margin).any(axis=1))
+        margin = aperture.radius_m
+        suspects = np.flatnonzero(self._hidden(aperture.centre, probes, but, lab_from_body, margin).any(axis=1))
         if len(suspects) == 0:
             return light
         points, disc = places.fine()
-        sources = placed.places(disc)
+        sources = aperture.places(disc)
         for k in suspects:
             hidden = self._hidden(sources, points[k], but, lab_from_body)
             if hidden.any():
-                taken = placed.received(sources[hidden], points[k][hidden], normal, glass)
+                taken = aperture.received(sources[hidden], points[k][hidden], normal, glass)
                 light[k] = max(0.0, light[k] - taken.sum() / len(hidden))
         return light
 
@@ -352,12 +367,12 @@ class Room:
         centres[:, 2] = heights.ravel()
         return centres, np.repeat(np.diff(edges) * width, along)
 
-    def _on_wall(self, placed, wall, lab_from_body):
+    def _on_wall(self, aperture, wall, lab_from_body):
         """Irradiance per watt on every patch of a wall."""
         centres, _ = self._patches(wall)
         patches = Points(self.plate, centres[:, 0], centres[:, 1])
         patches.points = centres
-        return self._direct(placed, patches, lab_from_body, (wall.axis, wall.facing), wall, None)
+        return self._direct(aperture, patches, lab_from_body, (wall.axis, wall.facing), wall, None)
 
     def _transfer(self, wall, places):
         """Irradiance at every place from a unit of irradiance on every patch of a white Lambertian wall."""
@@ -375,17 +390,11 @@ class Room:
             self.known[key] = np.concatenate(matrix).T
         return self.known[key]
 
-    def _mirrored(self, placed, wall, places):
+    def _mirrored(self, aperture, wall, places):
         """Light per watt by way of a perfect mirror: that of the lamp's image, seen through the wall."""
-        if (placed.centre[wall.axis] - wall.at_m) * wall.facing <= 0.0:
+        if (aperture.centre[wall.axis] - wall.at_m) * wall.facing <= 0.0:
             return np.zeros(len(places.average(places.points[:, 0])))
-        turn = np.ones(3)
-        turn[wall.axis] = -1.0
-        image = _Placed.__new__(_Placed)
-        image.lamp = placed.lamp
-        image.centre = placed.centre * turn
-        image.centre[wall.axis] += 2.0 * wall.at_m
-        image.axis, image.across = placed.axis * turn, placed.across * turn
+        image = aperture.behind_mirror(wall)
         points, disc = places.fine(MIRROR_SAMPLES)
         sources = image.places(disc)
         light = np.zeros(len(points))
