@@ -4,7 +4,6 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "scenes/effects/stated.h"
-#include "diagnosis/light/written.h"
 #include "scenes/experiment/toml.h"
 
 namespace photorque {

@@ -15,8 +15,6 @@
 #include "core/text/parse.h"
 #include "scenes/experiment/named_files.h"
 #include "scenes/experiment/toml.h"
-#include "tools/fmi/archive.h"
-#include "tools/fmi/description.h"
 #include "tools/fmi/standard.h"
 #include "tools/fmi/unit.h"
 #include "tools/runs/attitude_run.h"

@@ -16,7 +16,6 @@
 #include "diagnosis/light/together.h"
 #include "diagnosis/report/improved.h"
 #include "diagnosis/report/json.h"
-#include "diagnosis/report/page.h"
 #include "images/drawing/map.h"
 #include "images/drawing/plot.h"
 #include "images/writers/staged_files.h"
