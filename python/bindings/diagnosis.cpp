@@ -9,7 +9,7 @@
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/pages/diagnosis.h"
-#include "tools/tasks/diagnose.h"
+#include "tools/verbs/attitude/diagnose.h"
 
 namespace photorque::python {
 namespace {
@@ -26,8 +26,8 @@ std::shared_ptr<DiagnosisHandle> diagnose_recordings(const ExperimentHandle& exp
   const RunOptions options = experiment.with(threads, py::none());
   const Call call(options.experiment, py::none(), log);
   return call.run([&] {
-    return std::make_shared<DiagnosisHandle>(DiagnosisHandle{
-        diagnose_experiment(options, recordings, holdouts, call.console()), options});
+    return std::make_shared<DiagnosisHandle>(
+        DiagnosisHandle{run_diagnose(options, recordings, holdouts, call.console()), options});
   });
 }
 
@@ -86,7 +86,8 @@ void bind_diagnosis(py::module_& module) {
           "write_page",
           [](const DiagnosisHandle& run, const std::filesystem::path& path) {
             return write_alone(path, [&] {
-              return diagnosis_page(run, run.options, head_of(run.options, "diagnose"));
+              return diagnosis_page(run.diagnosis, run.provenance, run.of_light, run.options,
+                                    head_of(run.options, "diagnose"));
             });
           },
           py::arg("path"),

@@ -8,8 +8,8 @@
 #include "python/bindings/own/lamp.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
-#include "tools/tasks/power.h"
-#include "tools/tasks/trace.h"
+#include "tools/verbs/power.h"
+#include "tools/verbs/trace.h"
 
 namespace photorque::python {
 namespace {
@@ -54,7 +54,7 @@ std::shared_ptr<LightHandle> trace(const ExperimentHandle& experiment, int threa
   const Call call(options.experiment, progress, log);
   add_lamps(options, lamps, call);
   return call.run([&] {
-    TraceRun traced = trace_experiment(options, call.console());
+    TraceRun traced = run_trace(options, call.console());
     auto handle = std::make_shared<LightHandle>(
         LightHandle{std::move(traced.run), std::move(traced.light), std::move(traced.result),
                     head_of(options, "trace")});
@@ -71,7 +71,7 @@ std::shared_ptr<PowerHandle> power(const ExperimentHandle& experiment, int threa
   const Call call(options.experiment, progress, log);
   add_lamps(options, lamps, call);
   return call.run([&] {
-    PowerRun found = power_of_experiment(options, call.console());
+    PowerRun found = run_power(options, call.console());
     auto handle = std::make_shared<PowerHandle>();
     handle->run = std::move(found.run);
     handle->light = std::move(found.light);
@@ -158,15 +158,7 @@ void bind_runs(py::module_& module) {
             return write_alone(
                 path, [&] { return light_page(*self.run, self.light, self.result, self.head); });
           },
-          py::arg("path"), "The run as one HTML page to look at in a browser; gives its path.")
-      .def(
-          "write_baked",
-          [](const LightHandle& self, const std::filesystem::path& path) {
-            return write_alone(path,
-                               [&] { return baked_file(*self.run, self.light, self.result); });
-          },
-          py::arg("path"),
-          "The scene with the irradiance as textures and vertex colours (GLB); gives its path.");
+          py::arg("path"), "The run as one HTML page to look at in a browser; gives its path.");
   auto power = py::class_<PowerHandle, LightHandle, std::shared_ptr<PowerHandle>>(
       module, "Power", "A trace and what the solar array makes of it.");
   add_result(power, "power");

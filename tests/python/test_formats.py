@@ -77,12 +77,10 @@ class Formats(FolderTest):
         self.assertAlmostEqual(y - dy / 2, y_low, places=12)
 
 
-    def test_page_and_baked_model(self):
+    def test_page(self):
         page = pathlib.Path(self.power.write_page(self.folder / "look.html")).read_text()
         self.assertTrue(page.startswith("<!doctype html>"))
         self.assertIn(repr(self.power.power_W.value)[:9], page)
-        glb = pathlib.Path(self.power.write_baked(self.folder / "baked.glb")).read_bytes()
-        self.assertEqual((glb[:4], int.from_bytes(glb[8:12], "little")), (b"glTF", len(glb)))
 
 
 class Sweeps(unittest.TestCase):

@@ -18,12 +18,6 @@ class SameAsProgram(FolderTest):
         traced = photorque.trace(photorque.Experiment(nominal, keys=few_rays))
         self.assert_same_files(traced, files, 10)
 
-    def test_baked_model(self):
-        files = self.run_program("trace", nominal, "--set", "trace.rays=65536", "--bake")
-        traced = photorque.trace(photorque.Experiment(nominal, keys=few_rays))
-        baked = pathlib.Path(traced.write_baked(self.folder / "own.glb")).read_bytes()
-        self.assertTrue(baked == files["baked.glb"])
-
     def test_power_and_its_numbers(self):
         experiment = photorque.Experiment(nominal, keys=few_rays | {"attitude.tilt_deg": 30})
         files = self.run_program("power", nominal, "--set", "trace.rays=65536", "--set",

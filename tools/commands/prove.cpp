@@ -8,7 +8,6 @@
 #include "images/writers/product.h"
 #include "images/writers/summary.h"
 #include "scenes/experiment/toml_reader.h"
-#include "tools/commands/terminal.h"
 #include "tools/guards/child_process.h"
 #include "tools/proof/files.h"
 #include "tools/proof/light/files.h"
@@ -16,11 +15,23 @@
 #include "tools/scoring/blind_run.h"
 #include "tools/scoring/case_files.h"
 #include "tools/scoring/document.h"
+#include "tools/verbs/verb.h"
 
 namespace photorque::kinds::prove {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct Options : CommandOptions {
+  std::optional<fs::path> cases;
+  bool only_make = false;
+};
+
+void add_options(Command& command, Options& options) {
+  command.add_experiment(options);
+  command.add("--cases", options.cases, "Score this folder of cases instead of new ones");
+  command.add("--only-make", options.only_make, "Make the cases, diagnose nothing");
+}
 
 struct ProveSettings {
   InjectedPlan plan;
@@ -49,7 +60,7 @@ LightPlan light_plan_of(const InjectedPlan& shared, const Settings& prove) {
 }
 
 // [prove] of the settings file; docs/proof.md says what the keys mean.
-ProveSettings read_settings(const CommandLine& line) {
+ProveSettings read_settings(const Options& line) {
   SettingsNode node = read_toml(line.experiment);
   for (const std::string& change : line.overrides) apply_override(node, change);
   const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
@@ -124,7 +135,7 @@ bool has_oracle(const fs::path& case_folder, const CaseScore& score) {
 }
 
 std::vector<CaseScore> diagnose_and_score(const std::vector<fs::path>& folders,
-                                          const ProveSettings& settings, const CommandLine& line,
+                                          const ProveSettings& settings, const Options& line,
                                           const Console& console) {
   const fs::path out = line.out_folder();
   const BlindRun how{content_hash(read_file(own_program())), settings.replay,
@@ -223,7 +234,7 @@ std::string name_of_cases(const std::filesystem::path& folder) {
   return (whole.filename() == "cases" ? whole.parent_path() : whole).filename().string();
 }
 
-void run_prove(const CommandLine& line) {
+void run(const Options& line, const Program&) {
   const Console console = terminal(line);
   const ProveSettings settings = read_settings(line);
   const fs::path out = line.out_folder();
@@ -260,10 +271,11 @@ void run_prove(const CommandLine& line) {
 }  // namespace
 
 Verb kind() {
-  Verb verb{"prove", "Inject effects in recordings, diagnose them blind, score the answers",
-            run_prove};
-  verb.takes_cases = true;
-  return verb;
+  return {"prove",
+          "Inject effects in recordings, diagnose them blind, score the answers",
+          command_with(add_options, run),
+          {"prove"},
+          "[prove]"};
 }
 
 }  // namespace photorque::kinds::prove

@@ -13,7 +13,7 @@ Key light_table();      // tools/coupling
 Key serve_table();      // tools/realtime
 Key sweep_table();      // tools/sweeps
 Key supply_table();     // tools/supply
-Key fit_table();        // tools/tasks
+Key fit_table();        // tools/verbs
 Key prove_table();      // tools/commands
 
 }  // namespace photorque

@@ -278,13 +278,13 @@ std::vector<RecordingSeries> shown_recordings(const Diagnosis& d, size_t most) {
   return shown;
 }
 
-RunFile diagnosis_page(const DiagnosisRun& run, const RunOptions& options, const PageHead& head) {
-  const Diagnosis& d = run.diagnosis;
+RunFile diagnosis_page(const Diagnosis& d, const Provenance& provenance, bool of_light,
+                       const RunOptions& options, const PageHead& head) {
   RunPage page;
   page.title = head.title;
   page.verb = head.verb;
   page.command = head.command;
-  page.provenance = run.provenance;
+  page.provenance = provenance;
   page.verdict = verdict_of_page(d);
   add_figures(d, page);
   add_charts(d, page);
@@ -292,7 +292,7 @@ RunFile diagnosis_page(const DiagnosisRun& run, const RunOptions& options, const
   const std::vector<RecordingSeries> recordings = shown_recordings(d, most_recordings);
   const bool found = !d.effects.empty() || !d.empirical.empty() || !d.unnamed.empty();
   const std::unique_ptr<OpticalRun> optics = is_of_module(options) ? nullptr : optics_of(options);
-  if (run.of_light) {
+  if (of_light) {
     show_light(recordings, found, optics.get(), page);
   } else if (!recordings.empty()) {
     const AttitudeExperiment experiment(options);

@@ -1,8 +1,8 @@
 // The page of `propagate`: the platform as it moves, played over time.
 #pragma once
 
+#include "tools/coupling/propagate.h"
 #include "tools/pages/runs.h"
-#include "tools/tasks/propagate.h"
 
 namespace photorque {
 

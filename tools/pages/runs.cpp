@@ -1,7 +1,5 @@
 #include "tools/pages/runs.h"
 
-#include "core/files.h"
-#include "images/browser/baked.h"
 #include "receivers/wrench/table_product.h"
 #include "tools/pages/stage.h"
 
@@ -30,29 +28,12 @@ RunPage lit_page(const OpticalRun& run, const OpticalResult& light, const RunRes
 
 }  // namespace
 
-RunFile baked_file(const OpticalRun& run, const OpticalResult& light, const RunResult& result) {
-  SceneStage stage = stage_of(run, StageMaps::of_product);
-  stage.states.push_back(lit_state(run, run.experiment().lab_from_body, light));
-  const auto glb =
-      std::make_shared<const std::string>(baked_glb(stage, result.product, result.provenance));
-  return {"baked.glb", [glb](const std::filesystem::path& path) { write_file_whole(path, *glb); },
-          "the lit scene for viewers of glTF"};
-}
-
 RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
                    const PageHead& head) {
   const std::vector<std::string> of_trace = {"emitted_W", "power_on_", "absorbed_W", "escaped_W"};
   const std::vector<std::string> of_power = {"array_power_W", "emitted_W", "power_on_cells_W",
                                              "array_efficiency", "light_to_electric_efficiency"};
   return page_file(lit_page(run, light, result, head, head.verb == "power" ? of_power : of_trace));
-}
-
-RunFile trace_page(const TraceRun& run, const PageHead& head) {
-  return light_page(*run.run, run.light, run.result, head);
-}
-
-RunFile power_page(const PowerRun& run, const PageHead& head) {
-  return light_page(*run.run, run.light, run.result, head);
 }
 
 }  // namespace photorque

@@ -4,8 +4,6 @@
 #include <string>
 
 #include "tools/pages/result.h"
-#include "tools/tasks/power.h"
-#include "tools/tasks/trace.h"
 
 namespace photorque {
 
@@ -19,10 +17,5 @@ struct PageHead {
 // The page of a run of that verb, trace or power.
 RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
                    const PageHead& head);
-RunFile trace_page(const TraceRun& run, const PageHead& head);
-RunFile power_page(const PowerRun& run, const PageHead& head);
-
-// "baked.glb": the scene at its attitude with the irradiance on it, for any viewer of glTF.
-RunFile baked_file(const OpticalRun& run, const OpticalResult& light, const RunResult& result);
 
 }  // namespace photorque

@@ -41,24 +41,24 @@ NodeWatch TorqueMapStage::watch() {
   return [stage = stage_.get()](const TracedNode& node) { add_node(*stage, node); };
 }
 
-RunFile torque_map_page(const TorqueMapRun& run, TorqueMapStage stage, const PageHead& head) {
-  RunPage page = page_of(run.result, head.title, head.verb, head.command, {"largest_", "max_"});
+RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const RunResult& result,
+                        TorqueMapStage stage, const PageHead& head) {
+  RunPage page = page_of(result, head.title, head.verb, head.command, {"largest_", "max_"});
   // The torque is what the map is made for: the first that is shown.
   std::ranges::stable_partition(page.product.maps,
                                 [](const Map& map) { return map.title.starts_with("Torque"); });
-  const WrenchTable& table = run.wrenches;
   const bool by_tilt = table.angles == WrenchTable::Angles::tilt_heading;
   page.stage = stage.take();
   page.stage->axes = {axis_of(by_tilt ? "tilt" : "elevation", table.polar_rad),
                       axis_of(by_tilt ? "heading" : "azimuth", table.around_rad)};
   const std::string first = page.stage->axes[0].name + " [deg]";
-  for (const Plot& plot : run.result.product.plots) {
+  for (const Plot& plot : result.product.plots) {
     if (plot.x_label == first) page.cursors.push_back({plot.name, 0, 1.0});
   }
   page.headline = std::to_string(table.nodes()) +
                   (by_tilt ? " attitudes" : " directions of light, in body axes") +
                   "; force and torque in body axes about the centre of rotation.";
-  page.notes = run.run->experiment().notices;
+  page.notes = run.experiment().notices;
   return page_file(std::move(page));
 }
 

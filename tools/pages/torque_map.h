@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "core/wrench_table.h"
 #include "tools/pages/runs.h"
-#include "tools/tasks/torque_map.h"
 
 namespace photorque {
 
@@ -20,6 +20,7 @@ class TorqueMapStage {
   std::unique_ptr<SceneStage> stage_;
 };
 
-RunFile torque_map_page(const TorqueMapRun& run, TorqueMapStage stage, const PageHead& head);
+RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const RunResult& result,
+                        TorqueMapStage stage, const PageHead& head);
 
 }  // namespace photorque

@@ -12,7 +12,7 @@
 #include "images/writers/read_picture.h"
 #include "receivers/gather/bodies/wrench.h"
 #include "sources/profiles/beam_shape.h"
-#include "tools/guards/memory.h"
+#include "tools/runs/memory.h"
 
 namespace photorque {
 namespace {

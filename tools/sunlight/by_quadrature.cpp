@@ -3,7 +3,7 @@
 
 #include "core/parallel.h"
 #include "receivers/gather/sunlight/wrench.h"
-#include "tools/sunlight/ways.h"
+#include "tools/sunlight/direction_map.h"
 
 namespace photorque {
 namespace {

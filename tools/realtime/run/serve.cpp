@@ -7,9 +7,9 @@
 #include <memory>
 #include <utility>
 
+#include "tools/coupling/propagate.h"
 #include "tools/realtime/session.h"
 #include "tools/runs/optical_run.h"
-#include "tools/tasks/propagate.h"
 
 namespace photorque {
 namespace {
@@ -87,7 +87,7 @@ RunResult serve_experiment(const RunOptions& options, const Console& console) {
     run.commander = [session](const LiveRow& row) { return session->tick(row); };
     take_priority(console, serve.realtime_priority);
   };
-  RunResult result = propagate_experiment(options, console, {}, prepare).result;
+  RunResult result = run_propagate(options, console, {}, prepare).result;
   session->finish();
   const Product beside = session->product();
   print_session(console, beside);
