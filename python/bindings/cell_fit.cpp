@@ -3,7 +3,7 @@
 #include "python/bindings/exchange/call.h"
 #include "python/bindings/experiment.h"
 #include "python/bindings/results.h"
-#include "tools/tasks/fit_cell.h"
+#include "tools/verbs/fit_cell.h"
 
 namespace photorque::python {
 namespace {
@@ -15,8 +15,7 @@ struct CellFit {
 std::shared_ptr<CellFit> fit_cell(const ExperimentHandle& experiment, const py::object& log) {
   const Call call(experiment.options.experiment, py::none(), log);
   return call.run([&] {
-    return std::make_shared<CellFit>(
-        CellFit{fit_cell_of_experiment(experiment.options, call.console())});
+    return std::make_shared<CellFit>(CellFit{run_fit_cell(experiment.options, call.console())});
   });
 }
 

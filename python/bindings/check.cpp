@@ -4,15 +4,14 @@
 #include "python/bindings/bind.h"
 #include "python/bindings/exchange/call.h"
 #include "python/bindings/experiment.h"
-#include "tools/tasks/check.h"
+#include "tools/verbs/check.h"
 
 namespace photorque::python {
 namespace {
 
 std::shared_ptr<CheckReport> check_of(const ExperimentHandle& experiment) {
   const Call call(experiment.options.experiment, py::none(), py::none());
-  return call.run(
-      [&] { return std::make_shared<CheckReport>(check_experiment(experiment.options)); });
+  return call.run([&] { return std::make_shared<CheckReport>(run_check(experiment.options)); });
 }
 
 // What every run does beside its work: options, callbacks, the lock let go and taken.

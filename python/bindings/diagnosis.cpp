@@ -10,7 +10,7 @@
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/pages/pages.h"
-#include "tools/tasks/diagnose.h"
+#include "tools/verbs/attitude/diagnose.h"
 
 namespace photorque::python {
 namespace {
@@ -27,8 +27,8 @@ std::shared_ptr<DiagnosisHandle> diagnose_recordings(const ExperimentHandle& exp
   const RunOptions options = experiment.with(threads, py::none());
   const Call call(options.experiment, py::none(), log);
   return call.run([&] {
-    return std::make_shared<DiagnosisHandle>(DiagnosisHandle{
-        diagnose_experiment(options, recordings, holdouts, call.console()), options});
+    return std::make_shared<DiagnosisHandle>(
+        DiagnosisHandle{run_diagnose(options, recordings, holdouts, call.console()), options});
   });
 }
 
@@ -83,14 +83,15 @@ void bind_diagnosis(py::module_& module) {
           py::arg("folder") = ".",
           "The experiment with what was found, as TOML, as it would stand in a folder.")
       .def_property_readonly(
-          "report_html", [](const DiagnosisHandle& run) { return report_html(run); },
+          "report_html", [](const DiagnosisHandle& run) { return run.report(); },
           "A page with charts.")
       .def(
           "write_page",
           [](const DiagnosisHandle& run, const std::filesystem::path& path) {
             const py::gil_scoped_release release;
             write_file_whole(
-                path, interactive_report_html(run, run.options, head_of(run.options, "diagnose")));
+                path, interactive_report_html(run.diagnosis, run.provenance, run.of_light, run.options,
+                                              head_of(run.options, "diagnose")));
             return path.string();
           },
           py::arg("path"),

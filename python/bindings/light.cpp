@@ -8,8 +8,8 @@
 #include "python/bindings/own/lamp.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
-#include "tools/tasks/power.h"
-#include "tools/tasks/trace.h"
+#include "tools/verbs/power.h"
+#include "tools/verbs/trace.h"
 
 namespace photorque::python {
 namespace {
@@ -54,7 +54,7 @@ std::shared_ptr<LightHandle> trace(const ExperimentHandle& experiment, int threa
   const Call call(options.experiment, progress, log);
   add_lamps(options, lamps, call);
   return call.run([&] {
-    TraceRun traced = trace_experiment(options, call.console());
+    TraceRun traced = run_trace(options, call.console());
     auto handle = std::make_shared<LightHandle>(
         LightHandle{std::move(traced.run), std::move(traced.light), std::move(traced.result),
                     head_of(options, "trace")});
@@ -71,7 +71,7 @@ std::shared_ptr<PowerHandle> power(const ExperimentHandle& experiment, int threa
   const Call call(options.experiment, progress, log);
   add_lamps(options, lamps, call);
   return call.run([&] {
-    PowerRun found = power_of_experiment(options, call.console());
+    PowerRun found = run_power(options, call.console());
     auto handle = std::make_shared<PowerHandle>();
     handle->run = std::move(found.run);
     handle->light = std::move(found.light);

@@ -7,7 +7,7 @@
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/pages/pages.h"
-#include "tools/tasks/propagate.h"
+#include "tools/coupling/propagate.h"
 
 namespace photorque::python {
 namespace {
@@ -39,7 +39,7 @@ std::shared_ptr<MotionHandle> propagate_motion(const ExperimentHandle& experimen
   }
   return call.run([&] {
     return std::make_shared<MotionHandle>(
-        MotionHandle{propagate_experiment(options, call.console(), further), options});
+        MotionHandle{run_propagate(options, call.console(), further), options});
   });
 }
 

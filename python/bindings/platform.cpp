@@ -7,23 +7,22 @@
 #include "python/bindings/exchange/call.h"
 #include "python/bindings/experiment.h"
 #include "python/bindings/results.h"
-#include "tools/tasks/balance.h"
-#include "tools/tasks/budget.h"
+#include "tools/verbs/attitude/balance.h"
+#include "tools/verbs/attitude/budget.h"
 
 namespace photorque::python {
 namespace {
 
 std::shared_ptr<BudgetRun> budget_of(const ExperimentHandle& experiment) {
   const Call call(experiment.options.experiment, py::none(), py::none());
-  return call.run(
-      [&] { return std::make_shared<BudgetRun>(budget_of_experiment(experiment.options)); });
+  return call.run([&] { return std::make_shared<BudgetRun>(run_budget(experiment.options)); });
 }
 
 std::shared_ptr<BalanceOutcome> balance_of(const ExperimentHandle& experiment,
                                            const std::filesystem::path& recording) {
   const Call call(experiment.options.experiment, py::none(), py::none());
   return call.run([&] {
-    return std::make_shared<BalanceOutcome>(balance_of_experiment(experiment.options, recording));
+    return std::make_shared<BalanceOutcome>(run_balance(experiment.options, {recording}));
   });
 }
 

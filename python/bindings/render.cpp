@@ -1,5 +1,5 @@
 // render(): a picture of the scene, as pixels.
-#include "tools/tasks/render.h"
+#include "tools/verbs/render.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -23,8 +23,7 @@ std::shared_ptr<RenderRun> render(const ExperimentHandle& experiment, int thread
   options.max_time_s = max_time_s;
   const Call call(options.experiment, progress, log);
   add_lamps(options, lamps, call);
-  return call.run(
-      [&] { return std::make_shared<RenderRun>(render_experiment(options, call.console())); });
+  return call.run([&] { return std::make_shared<RenderRun>(run_render(options, call.console())); });
 }
 
 py::array pixels_of(const py::object& self) {

@@ -7,8 +7,8 @@
 #include "python/bindings/exchange/call.h"
 #include "python/bindings/experiment.h"
 #include "python/bindings/results.h"
-#include "tools/tracking/camera.h"
-#include "tools/tracking/estimate.h"
+#include "tools/verbs/attitude/camera.h"
+#include "tools/verbs/attitude/estimate.h"
 
 namespace photorque::python {
 namespace {
@@ -17,8 +17,7 @@ std::shared_ptr<CameraRun> study_camera(const ExperimentHandle& experiment, int 
                                         const py::object& progress, const py::object& log) {
   const RunOptions options = experiment.with(threads, py::none());
   const Call call(options.experiment, progress, log);
-  return call.run(
-      [&] { return std::make_shared<CameraRun>(camera_of_experiment(options, call.console())); });
+  return call.run([&] { return std::make_shared<CameraRun>(run_camera(options, call.console())); });
 }
 
 std::shared_ptr<EstimateRun> estimate_attitude(const ExperimentHandle& experiment,
@@ -29,8 +28,7 @@ std::shared_ptr<EstimateRun> estimate_attitude(const ExperimentHandle& experimen
   const RunOptions options = experiment.with(threads, seed);
   const Call call(options.experiment, progress, log);
   return call.run([&] {
-    return std::make_shared<EstimateRun>(
-        estimate_of_experiment(options, call.console(), recordings, truth));
+    return std::make_shared<EstimateRun>(run_estimate(options, call.console(), recordings, truth));
   });
 }
 

@@ -7,6 +7,7 @@
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/pages/pages.h"
+#include "tools/verbs/torque_map.h"
 
 namespace photorque::python {
 namespace {
@@ -25,9 +26,10 @@ std::shared_ptr<TorqueMapHandle> torque_map(const ExperimentHandle& experiment, 
   return call.run([&] {
     TorqueMapStage stage;
     auto handle = std::make_shared<TorqueMapHandle>(TorqueMapHandle{
-        torque_map_of_experiment(options, call.console(), page ? stage.watch() : NodeWatch())});
+        run_torque_map(options, call.console(), page ? stage.watch() : NodeWatch())});
     if (page)
-      handle->page = torque_map_page(*handle, std::move(stage), head_of(options, "torque-map"));
+      handle->page = torque_map_page(*handle->run, handle->wrenches, handle->result,
+                                     std::move(stage), head_of(options, "torque-map"));
     return handle;
   });
 }

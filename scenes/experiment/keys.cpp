@@ -190,12 +190,8 @@ Key camera_table() {
 }  // namespace
 
 std::vector<Key> scene_tables() {
-  const std::vector<std::string> optical = {"trace", "power", "torque-map", "render"};
-  return {scene_table().read_by(optical),    material_table().read_by(optical),
-          source_table().read_by(optical),   receiver_table().read_by(optical),
-          joint_table().read_by(optical),    attitude_table().read_by(optical),
-          trace_table().read_by(optical),    torque_map_table().read_by({"torque-map"}),
-          camera_table().read_by({"render"})};
+  return {scene_table(),    material_table(), source_table(),     receiver_table(), joint_table(),
+          attitude_table(), trace_table(),    torque_map_table(), camera_table()};
 }
 
 }  // namespace photorque

@@ -31,7 +31,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     // A key of that table's name.
     {"attitude/disturbances/fields/helmholtz_cage.cpp", {"orbit"}},
     // What `new` writes.
-    {"tools/commands/new_experiment.cpp", {"bearing_drag", "static_unbalance"}},
+    {"tools/verbs/new_experiment.cpp", {"bearing_drag", "static_unbalance"}},
     // Light in the run is this kind; what says the same by other means is refused, and the orbit
     // learns where the Sun is.
     {"attitude/disturbances/fields/light_pressure.cpp", {"radiation_pressure"}},

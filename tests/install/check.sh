@@ -61,7 +61,7 @@ if grep -rE '#include <(embree|tbb|OpenImageIO|tiffio|nlohmann|CLI|toml|cairo)' 
 echo "== pkg-config"
 PKG_CONFIG_PATH="$(dirname "$(find "$prefix" -name photorque.pc)")"
 export PKG_CONFIG_PATH
-[[ -f "$(pkg-config --variable=includedir photorque)/photorque/tools/tasks/trace.h" ]]
+[[ -f "$(pkg-config --variable=includedir photorque)/photorque/tools/verbs/trace.h" ]]
 [[ -f "$(pkg-config --variable=libdir photorque)/libphotorque.so" ]]
 pkg-config --modversion --cflags --libs-only-l photorque
 

@@ -14,7 +14,7 @@
 #include "core/files.h"
 #include "core/settings/keys.h"
 #include "scenes/experiment/toml.h"
-#include "tools/tasks/check.h"
+#include "tools/verbs/check.h"
 
 namespace photorque {
 
@@ -46,7 +46,7 @@ inline CheckReport checked(const std::filesystem::path& file, const SettingsNode
   RunOptions options;
   options.experiment = file;
   options.text = toml_document(std::get<SettingsNode::Table>(root.value));
-  return check_experiment(options, keys);
+  return run_check(options, keys);
 }
 
 inline std::string all_of(const CheckReport& report) {

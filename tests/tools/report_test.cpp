@@ -9,7 +9,7 @@
 #include "tools/pages/charts.h"
 #include "tools/pages/pages.h"
 #include "tools/sweeps/labels.h"
-#include "tools/tasks/diagnose.h"
+#include "tools/verbs/attitude/diagnose.h"
 
 namespace photorque {
 namespace {

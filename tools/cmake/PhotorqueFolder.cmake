@@ -39,17 +39,17 @@ function(photorque_precompiled target)
   endif()
 endfunction()
 
-# photorque_folder(NAME [FILES file ...] [WITHOUT file ...] [USES folder ...] [LINKS library ...] [ALONE file ...])
-#   One static library photorque_NAME for a top-level folder: FILES, or every source below the folder but
-#   those WITHOUT. USES names the folders it may include (public), LINKS the outside libraries that only
+# photorque_folder(NAME [FILES file ...] [WITHOUT path ...] [USES folder ...] [LINKS library ...] [ALONE file ...])
+#   One static library photorque_NAME for a top-level folder: FILES, or every source below the folder
+#   but those whose path begins with one of WITHOUT. USES names the folders it may include (public), LINKS the outside libraries that only
 #   this folder may see (private), ALONE the files that cannot be compiled together with others.
 function(photorque_folder name)
   cmake_parse_arguments(arg "" "" "FILES;WITHOUT;USES;LINKS;ALONE" ${ARGN})
   if(NOT arg_FILES)
     file(GLOB_RECURSE arg_FILES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
-    if(arg_WITHOUT)
-      list(REMOVE_ITEM arg_FILES ${arg_WITHOUT})
-    endif()
+    foreach(path IN LISTS arg_WITHOUT)
+      list(FILTER arg_FILES EXCLUDE REGEX "^${path}")
+    endforeach()
     list(APPEND arg_FILES ${${name}_REGISTRY})
   endif()
   set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -6,8 +6,8 @@
 
 #include "core/errors.h"
 #include "tools/realtime/session.h"
+#include "tools/coupling/propagate.h"
 #include "tools/runs/attitude_run.h"
-#include "tools/tasks/propagate.h"
 
 namespace photorque {
 
@@ -170,7 +170,7 @@ void CoSimulation::run(double start_s, double stop_s) {
     };
     ConsoleSinks sinks;
     sinks.line = [this](const std::string& line) { words_.push_back(line); };
-    const MotionRun motion = propagate_experiment(options_, Console(sinks), {}, prepare);
+    const MotionRun motion = run_propagate(options_, Console(sinks), {}, prepare);
     const PropagationResult& result = motion.coupled->motion;
     if (!result.events.empty()) tick_s_ = result.events.back().time_s;
   } catch (...) {

@@ -13,6 +13,6 @@ Key light_table();      // tools/coupling
 Key serve_table();      // tools/realtime
 Key sweep_table();      // tools/sweeps
 Key supply_table();     // tools/supply
-Key fit_table();        // tools/tasks
+Key fit_table();        // tools/verbs
 
 }  // namespace photorque

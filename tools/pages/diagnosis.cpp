@@ -10,7 +10,6 @@
 #include "tools/pages/charts.h"
 #include "tools/pages/parts.h"
 #include "tools/runs/attitude_run.h"
-#include "tools/tasks/diagnose.h"
 
 namespace photorque {
 namespace {
@@ -118,14 +117,13 @@ std::vector<RecordingSeries> shown_recordings(const Diagnosis& d, size_t most) {
   return shown;
 }
 
-std::string interactive_report_html(const DiagnosisRun& run, const RunOptions& options,
-                                    const PageHead& head) {
-  const Diagnosis& d = run.diagnosis;
+std::string interactive_report_html(const Diagnosis& d, const Provenance& provenance, bool of_light,
+                                    const RunOptions& options, const PageHead& head) {
   RunPage page;
   page.title = head.title;
   page.verb = head.verb;
   page.command = head.command;
-  page.provenance = run.provenance;
+  page.provenance = provenance;
   page.text = ReportText{report_findings(d, head.title), report_evidence(d)};
   const std::vector<RecordingSeries> recordings = shown_recordings(d, most_recordings);
   if (const size_t files = shown_recordings(d, SIZE_MAX).size(); files > most_recordings) {
@@ -135,7 +133,7 @@ std::string interactive_report_html(const DiagnosisRun& run, const RunOptions& o
   }
   const bool found = !d.effects.empty() || !d.empirical.empty() || !d.unnamed.empty();
   const std::unique_ptr<OpticalRun> optics = is_of_module(options) ? nullptr : optics_of(options);
-  if (run.of_light) {
+  if (of_light) {
     show_light(recordings, found, optics.get(), page);
   } else if (!recordings.empty()) {
     const AttitudeExperiment experiment(options);

@@ -7,9 +7,6 @@
 #include "core/files.h"
 #include "receivers/wrench/table_product.h"
 #include "tools/sweeps/labels.h"
-#include "tools/tasks/power.h"
-#include "tools/tasks/torque_map.h"
-#include "tools/tasks/trace.h"
 
 namespace photorque {
 namespace {
@@ -186,38 +183,30 @@ RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunR
   return page_file(lit_page(run, light, result, head, head.verb == "power" ? of_power : of_trace));
 }
 
-RunFile trace_page(const TraceRun& run, const PageHead& head) {
-  return light_page(*run.run, run.light, run.result, head);
-}
-
-RunFile power_page(const PowerRun& run, const PageHead& head) {
-  return light_page(*run.run, run.light, run.result, head);
-}
-
 TorqueMapStage::TorqueMapStage() : stage_(std::make_shared<SceneStage>()) {}
 
 std::function<void(const TracedNode&)> TorqueMapStage::watch() {
   return [stage = stage_.get()](const TracedNode& node) { add_node(*stage, node); };
 }
 
-RunFile torque_map_page(const TorqueMapRun& run, TorqueMapStage stage, const PageHead& head) {
-  RunPage page = page_of(run.result, head, {"largest_", "max_"});
+RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const RunResult& result,
+                        TorqueMapStage stage, const PageHead& head) {
+  RunPage page = page_of(result, head, {"largest_", "max_"});
   // The torque is what the map is made for: the first that is shown.
   std::ranges::stable_partition(page.product.maps,
                                 [](const Map& map) { return map.title.starts_with("Torque"); });
-  const WrenchTable& table = run.wrenches;
   const bool by_tilt = table.angles == WrenchTable::Angles::tilt_heading;
   page.stage = std::move(*stage.stage_);
   page.stage->axes = {axis_of(by_tilt ? "tilt" : "elevation", table.polar_rad),
                       axis_of(by_tilt ? "heading" : "azimuth", table.around_rad)};
   const std::string first = page.stage->axes[0].name + " [deg]";
-  for (const Plot& plot : run.result.product.plots) {
+  for (const Plot& plot : result.product.plots) {
     if (plot.x_label == first) page.cursors.push_back({plot.name, 0, 1.0});
   }
   page.headline = std::to_string(table.nodes()) +
                   (by_tilt ? " attitudes" : " directions of light, in body axes") +
                   "; force and torque in body axes about the centre of rotation.";
-  page.notes = run.run->experiment().notices;
+  page.notes = run.experiment().notices;
   return page_file(std::move(page));
 }
 

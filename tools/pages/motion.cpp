@@ -7,7 +7,7 @@
 
 #include "core/constants.h"
 #include "scenes/experiment/experiment.h"
-#include "tools/tasks/propagate.h"
+#include "tools/coupling/propagate.h"
 
 namespace photorque {
 namespace {

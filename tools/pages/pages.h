@@ -1,22 +1,19 @@
 // The pages of the commands: what each of them found, with its scene.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
+#include "core/provenance.h"
+#include "diagnosis/diagnosis.h"
 #include "tools/runs/optical_run.h"
 #include "tools/runs/result.h"
 
 namespace photorque {
 
-struct DiagnosisRun;
 struct MotionRun;
-struct PowerRun;
 struct SceneStage;
-struct TorqueMapRun;
-struct TraceRun;
-struct TracedNode;
+struct WrenchTable;
 
 // What a page says of the run beside its results.
 struct PageHead {
@@ -28,8 +25,6 @@ struct PageHead {
 // The page of a run of that verb, trace or power.
 RunFile light_page(const OpticalRun& run, const OpticalResult& light, const RunResult& result,
                    const PageHead& head);
-RunFile trace_page(const TraceRun& run, const PageHead& head);
-RunFile power_page(const PowerRun& run, const PageHead& head);
 
 // The body at every attitude or direction of light. It grows while the nodes are traced, since
 // their maps are not part of the run's result.
@@ -37,13 +32,15 @@ class TorqueMapStage {
  public:
   TorqueMapStage();
   // Valid as long as this.
-  std::function<void(const TracedNode&)> watch();
+  NodeWatch watch();
 
  private:
-  friend RunFile torque_map_page(const TorqueMapRun&, TorqueMapStage, const PageHead&);
+  friend RunFile torque_map_page(const OpticalRun&, const WrenchTable&, const RunResult&,
+                                 TorqueMapStage, const PageHead&);
   std::shared_ptr<SceneStage> stage_;
 };
-RunFile torque_map_page(const TorqueMapRun& run, TorqueMapStage stage, const PageHead& head);
+RunFile torque_map_page(const OpticalRun& run, const WrenchTable& table, const RunResult& result,
+                        TorqueMapStage stage, const PageHead& head);
 
 // The platform as it moves, played over time. Where the experiment has a scene, that scene, with
 // its light traced at some instants of the run; otherwise an ellipsoid with the platform's moments
@@ -54,11 +51,13 @@ RunFile motion_page(const MotionRun& run, const RunOptions& options, const PageH
 // the array, where recording and nominal model part, the ranking of the alternatives, readings
 // beside predictions with the part that was never fitted shaded, and the quality of the data. It
 // needs no script.
-std::string report_html(const DiagnosisRun& run);
+std::string report_html(const Diagnosis& diagnosis, const Provenance& provenance,
+                        const std::string& title);
 // The same page with the scene, and curves and maps to point at, in place of the drawn readings.
 // Where the experiment has a scene with lamps, that scene; for motion without one an ellipsoid with
 // the platform's moments of inertia; for curves of a module no scene at all.
-std::string interactive_report_html(const DiagnosisRun& run, const RunOptions& options,
-                                    const PageHead& head);
+// `of_light`: the recordings are scans, sweeps and runs of light instead of motion.
+std::string interactive_report_html(const Diagnosis& d, const Provenance& provenance, bool of_light,
+                                    const RunOptions& options, const PageHead& head);
 
 }  // namespace photorque

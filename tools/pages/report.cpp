@@ -11,7 +11,6 @@
 #include "tools/pages/parts.h"
 #include "tools/runs/console.h"
 #include "tools/sweeps/labels.h"
-#include "tools/tasks/diagnose.h"
 
 namespace photorque {
 namespace report_text {
@@ -376,13 +375,13 @@ std::string report_evidence(const Diagnosis& d) {
          report_text::data_section(d.data);
 }
 
-std::string report_html(const DiagnosisRun& run) {
-  const std::string title = run.experiment.stem().string();
+std::string report_html(const Diagnosis& diagnosis, const Provenance& provenance,
+                        const std::string& title) {
   const std::string footer =
-      report_text::tag("footer", report_text::tag("p", xml_text(run.provenance.one_line())));
-  return text_page_html("Diagnosis of " + title, run.provenance,
-                        report_findings(run.diagnosis, title) +
-                            report_text::readings(run.diagnosis) + report_evidence(run.diagnosis) +
+      report_text::tag("footer", report_text::tag("p", xml_text(provenance.one_line())));
+  return text_page_html("Diagnosis of " + title, provenance,
+                        report_findings(diagnosis, title) +
+                            report_text::readings(diagnosis) + report_evidence(diagnosis) +
                             footer);
 }
 

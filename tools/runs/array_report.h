@@ -7,12 +7,19 @@
 #include "photovoltaics/array/layout.h"
 #include "photovoltaics/array/losses.h"
 #include "photovoltaics/array/tracker.h"
-#include "tools/runs/array_target.h"
 #include "tools/runs/optical_run.h"
+#include "tools/runs/published.h"
 
 namespace photorque {
 
 struct ArrayPower;
+
+// [array.target], at zero tilt. A key that is left out is the figure "array_power_W" or
+// "array_efficiency" of the experiment's [[published]] at zero tilt.
+struct ArrayTarget {
+  double power_W = 0.0;
+  double efficiency = 0.0;  // of the light on the cells
+};
 
 // Sub-tables of `[array]`; each is optional.
 struct ArrayReport {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "attitude/recordings/sensors.h"
 #include "core/product.h"
 #include "core/provenance.h"
 #include "scenes/experiment/experiment.h"
@@ -28,6 +29,11 @@ class AttitudeExperiment {
  private:
   ExperimentFile file_;
 };
+
+// Where the experiment has a scene and a camera with geometry, lets the camera look through that
+// scene: TrackingCamera::is_hidden by shadow rays. Returns names and hashes of the files read.
+std::vector<std::pair<std::string, std::string>> look_through_scene(const ExperimentFile& file,
+                                                                    Sensors& sensors);
 
 // Columns of a table for people. Numbers have three digits.
 struct PrintedColumn {

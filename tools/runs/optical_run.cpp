@@ -12,7 +12,7 @@
 #include "receivers/gather/bodies/wrench.h"
 #include "scenes/effects/stated.h"
 #include "sources/profiles/beam_shape.h"
-#include "tools/guards/memory.h"
+#include "tools/runs/memory.h"
 
 namespace photorque {
 namespace {

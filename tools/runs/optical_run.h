@@ -87,6 +87,17 @@ class OpticalRun {
   std::unique_ptr<std::mutex> bodies_mutex_ = std::make_unique<std::mutex>();
 };
 
+// One of several attitudes of a run, as it was traced.
+struct TracedNode {
+  const OpticalRun& run;
+  size_t nodes;  // how many there are
+  RigidTransform lab_from_body;
+  const OpticalResult& light;
+  std::optional<Estimate> electric_W = {};  // of the array, where there is one
+};
+// In the order of the nodes.
+using NodeWatch = std::function<void(const TracedNode&)>;
+
 // The warnings of several runs, each once: at most three in full, then how many more there are.
 class Warnings {
  public:

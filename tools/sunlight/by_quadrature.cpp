@@ -3,7 +3,7 @@
 
 #include "core/parallel.h"
 #include "receivers/gather/bodies/sunlit_body.h"
-#include "tools/sunlight/ways.h"
+#include "tools/sunlight/direction_map.h"
 
 namespace photorque {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "core/constants.h"
 #include "core/parallel.h"
-#include "tools/sunlight/ways.h"
+#include "tools/sunlight/direction_map.h"
 
 namespace photorque {
 namespace {

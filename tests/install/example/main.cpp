@@ -4,14 +4,14 @@
 #include "attitude/disturbances/kind.h"
 #include "attitude/propagation/run.h"
 #include "core/errors.h"
-#include "tools/tasks/trace.h"
+#include "tools/verbs/trace.h"
 
 int main(int, char** arguments) {
   using namespace photorque;
   RunOptions options;
   options.experiment = arguments[1];
   options.overrides = {"trace.rays=65536"};
-  const TraceRun traced = trace_experiment(options, Console());
+  const TraceRun traced = run_trace(options, Console());
   std::printf("absorbed %.17g W\n", traced.light.power_balance.absorbed_W.value);
 
   PropagationRun run;
@@ -25,7 +25,7 @@ int main(int, char** arguments) {
 
   options.experiment = "absent.toml";
   try {
-    trace_experiment(options, Console());
+    run_trace(options, Console());
   } catch (const InputError& error) {
     std::printf("error %s\n", error.what());
   }

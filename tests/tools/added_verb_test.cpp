@@ -1,0 +1,48 @@
+// The verb that docs/contributing.md adds: its file and a word in a list are all that it takes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/files.h"
+#include "tools/program/command_line.h"
+
+namespace photorque {
+namespace {
+
+const std::filesystem::path root = PHOTORQUE_SOURCE_DIR;
+
+TEST(AddedVerb, IsThatOfTheDocument) {
+  EXPECT_THAT(
+      read_file(root / "docs/contributing.md"),
+      testing::HasSubstr("```cpp\n" + read_file(root / "tests/tools/added/count.cpp") + "```"));
+}
+
+TEST(AddedVerb, IsReadWithItsOptionAndRun) {
+  const std::vector<Verb> verbs = all_verbs();
+  ASSERT_EQ(verbs.size(), 1u);
+  std::vector<std::string> words = {"photorque", "count",
+                                    (root / "scenes/tabletop/tabletop.toml").string(), "--parts"};
+  std::vector<char*> line;
+  for (std::string& word : words) line.push_back(word.data());
+  const CommandLine read = read_command_line(static_cast<int>(line.size()), line.data(), verbs);
+  ASSERT_FALSE(read.status);
+  EXPECT_EQ(read.verb->name, "count");
+  testing::internal::CaptureStdout();
+  read.command.run({verbs, nullptr});
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(text, testing::HasSubstr(" triangles\n"));
+  EXPECT_GT(std::count(text.begin(), text.end(), '\n'), 2);
+}
+
+TEST(AddedVerb, RefusesWhatItDoesNotKnow) {
+  const std::vector<Verb> verbs = all_verbs();
+  std::vector<std::string> words = {"photorque", "count", "lab.toml", "--facets"};
+  std::vector<char*> line;
+  for (std::string& word : words) line.push_back(word.data());
+  testing::internal::CaptureStderr();
+  const CommandLine read = read_command_line(static_cast<int>(line.size()), line.data(), verbs);
+  EXPECT_EQ(read.status, 2);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("--facets"));
+}
+
+}  // namespace
+}  // namespace photorque

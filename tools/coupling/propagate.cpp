@@ -1,0 +1,138 @@
+#include "tools/coupling/propagate.h"
+
+#include <algorithm>
+
+#include "attitude/ccsds/aem.h"
+#include "core/constants.h"
+#include "tools/coupling/report.h"
+#include "tools/coupling/table_cache.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/runs/optical_run.h"
+
+namespace photorque {
+namespace {
+
+void print_run(const Console& console, const PropagationRun& run, const CoupledResult& coupled) {
+  const PropagationResult& result = coupled.motion;
+  console.line("Disturbances");
+  for (const Disturbance& disturbance : run.model.disturbances)
+    console.line("  " + disturbance.kind);
+  console.heading("Trajectory");
+  const PlatformState& end = result.states.back();
+  const auto row = [&](const std::string& name, double value, const std::string& unit) {
+    console.line("  " + name + std::string(24 - name.size(), ' ') + show(value) + " " + unit);
+  };
+  row("until", end.time_s, "s");
+  row("tilt at the end", tilt_rad(end) / degree_rad, "deg");
+  row("heading at the end", heading_rad(end) / degree_rad, "deg, between -180 and 180");
+  row("rate at the end", end.rate_body_rad_s.norm(), "rad/s");
+  if (end.charge_drawn_C != 0.0) row("charge missing", end.charge_drawn_C / 3600.0, "Ah");
+  console.line("  in " + std::to_string(result.statistics.steps) + " steps");
+  if (coupled.attitude_error_rad) {
+    console.line("  the error of the table of light turns the body by less than " +
+                 show(*coupled.attitude_error_rad / degree_rad) + " deg until then");
+  }
+  constexpr size_t max_events = 12;
+  if (!result.events.empty()) console.heading("Events");
+  for (size_t i = 0; i < std::min(max_events, result.events.size()); ++i) {
+    const Event& event = result.events[i];
+    console.line("  " + event.name + " at " + show(event.time_s) + " s");
+  }
+  if (result.events.size() > max_events) {
+    console.line("  and " + std::to_string(result.events.size() - max_events) +
+                 " more: events.csv");
+  }
+}
+
+// The channels as a recording and the attitudes as CCSDS message.
+std::vector<RunFile> trajectory_files(const std::shared_ptr<const PropagationRun>& run,
+                                      const std::shared_ptr<const CoupledResult>& coupled,
+                                      const std::string& stamp, const std::string& name) {
+  const auto recording = [coupled, stamp](const std::filesystem::path& path) {
+    write_recording(path, coupled->motion.recording, {stamp});
+  };
+  const auto attitude = [run, coupled, stamp, name](const std::filesystem::path& path) {
+    // Dated by the trajectory, not by the clock: equal runs give equal files.
+    AttitudeEphemeris ephemeris = make_aem(coupled->motion.states, run->epoch, name, run->epoch);
+    ephemeris.comments = {stamp};
+    write_aem(path, ephemeris);
+  };
+  return {{"recording.csv", recording}, {"attitude.aem", attitude}};
+}
+
+RunOptions with_orbit_overrides(const RunOptions& options) {
+  RunOptions full = options;
+  for (const std::string& one : orbit_overrides(read_experiment_text(
+           options.experiment, options.experiment_text(), options.overrides))) {
+    full.overrides.push_back(one);
+  }
+  return full;
+}
+
+// Those that are not there yet: scene and lamps.
+void add_inputs(Provenance& provenance,
+                const std::vector<std::pair<std::string, std::string>>& inputs) {
+  for (const auto& input : inputs) {
+    if (std::ranges::find(provenance.inputs, input) == provenance.inputs.end()) {
+      provenance.inputs.push_back(input);
+    }
+  }
+}
+
+void add_light(const Console& console, const CoupledResult& coupled, const PropagationRun& run,
+               Product& product) {
+  if (coupled.table) append(product, table_product(*coupled.table));
+  if (coupled.attitude_error_rad) {
+    product.quantities.push_back(
+        {"light_table_attitude_error_deg", {*coupled.attitude_error_rad / degree_rad, 0.0}});
+  }
+  if (!coupled.beside) return;
+  print_power(console, *coupled.beside);
+  append(product, power_product(*coupled.beside, product, run.history_rows));
+}
+
+// All that a run follows from but the light, to tell its checkpoint from those of others.
+std::string identity(const Provenance& provenance,
+                     const std::vector<std::pair<std::string, std::string>>& seen) {
+  return table_cache_version() + "seed " + std::to_string(provenance.seed) + "\n" +
+         of_inputs(provenance.inputs) + of_inputs(seen);
+}
+
+}  // namespace
+
+MotionRun run_propagate(const RunOptions& options, const Console& console,
+                        const FurtherTorques& further,
+                        const std::function<void(const Settings&, PropagationRun&)>& prepare,
+                        CheckpointFile* checkpoint) {
+  const WallTime wall;
+  const RunOptions full = with_orbit_overrides(options);
+  const AttitudeExperiment experiment(full);
+  const auto run = std::make_shared<PropagationRun>(read_propagation(experiment.settings()));
+  if (options.seed) run->seed = *options.seed;
+  for (const Disturbance& one : further.disturbances) run->model.disturbances.push_back(one);
+  const auto seen = look_through_scene(experiment.file(), run->sensors);
+  if (prepare) prepare(experiment.settings(), *run);
+  RunResult result;
+  result.provenance = experiment.provenance(run->seed);
+  const auto coupled = std::make_shared<CoupledResult>(propagate_in_light(
+      full, console, experiment.file(), *run, checkpoint,
+      checkpoint == nullptr ? std::string() : identity(result.provenance, seen)));
+  PropagationResult& motion = coupled->motion;
+  if (coupled->light) add_inputs(result.provenance, coupled->light->inputs());
+  add_inputs(result.provenance, seen);
+  add_inputs(result.provenance, further.inputs);
+  print_run(console, *run, *coupled);
+  for (const std::string& warning : coupled->warnings) console.line("warning: " + warning);
+  result.provenance.warnings = coupled->warnings;
+  result.product = std::move(motion.product);
+  add_light(console, *coupled, *run, result.product);
+  const Product pointing = pointing_product(motion.states);
+  print_pointing(console, pointing);
+  append(result.product, pointing);
+  result.files = trajectory_files(run, coupled, result.provenance.one_line(),
+                                  options.experiment.stem().string());
+  result.cost = {wall.elapsed_s(), {}};
+  return {run, coupled, std::move(result)};
+}
+
+}  // namespace photorque

@@ -1,0 +1,111 @@
+#include "tools/runs/light_sanity.h"
+
+namespace photorque {
+namespace {
+
+// The lamps of one [[source]], which are called NAME or NAME[0], NAME[1], …
+std::vector<Beam> beams_of(const Experiment& experiment, const Settings& source) {
+  const std::string name = source.text_or("name", source.text_or("kind", ""));
+  std::vector<Beam> beams;
+  for (const Beam& beam : experiment.beams) {
+    if (beam.name == name || beam.name.starts_with(name + "[")) beams.push_back(beam);
+  }
+  return beams;
+}
+
+struct FewRays {
+  InsideLightReceiver inside;
+  std::vector<const Receiver*> receivers;  // those of the experiment, then `inside`
+  TraceOptions options;
+
+  explicit FewRays(const Experiment& experiment)
+      : inside(experiment.scene), receivers(experiment.receiver_pointers()) {
+    receivers.push_back(&inside);
+    options = experiment.file.trace;
+    options.replicates = 8;
+    options.rays = 16384;
+  }
+};
+
+// A fraction of what a source emits: more than slips through cracks, less than one lamp of a
+// thousand.
+constexpr double noticeable = 1e-3;
+
+std::string inside_of(const Experiment& experiment, const InsideLightReceiver& inside,
+                      const BinSums& sums, double emitted_W) {
+  for (const auto& part : inside.lit_inside(sums)) {
+    if (part.inside_W.value > noticeable * emitted_W) {
+      return experiment.scene.instances[part.instance].path;
+    }
+  }
+  return "";
+}
+
+// Whether the faces of a part look into it: the volume that they enclose is then negative (the sum
+// of the tetrahedra from the origin to each face).
+bool is_turned_inwards(const Scene& scene, const std::string& path) {
+  double six_volumes_m3 = 0.0;
+  for (const Instance& instance : scene.instances) {
+    if (instance.path != path) continue;
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    // A mirrored instance is traced with its winding swapped.
+    const double sign = instance.body_from_mesh.linear().determinant() < 0.0 ? -1.0 : 1.0;
+    for (const auto& face : mesh.triangles) {
+      const auto corner = [&](size_t k) {
+        return Vec3(instance.body_from_mesh * mesh.vertices_m[face[k]]);
+      };
+      six_volumes_m3 += sign * corner(0).dot(corner(1).cross(corner(2)));
+    }
+  }
+  return six_volumes_m3 < 0.0;
+}
+
+double lit_W(const NamedReceiver& receiver, const BinSums& sums) {
+  return receiver.flux_map->flux_map(sums).incident.power_W.value;
+}
+
+}  // namespace
+
+std::vector<InputError> light_mistakes(const OpticalRun& run) {
+  constexpr size_t max_lamps = 256;
+  constexpr double rounding = 1e-9;
+  const Experiment& experiment = run.experiment();
+  if (experiment.beams.size() > max_lamps) return {};
+  const FewRays few(experiment);
+  std::vector<InputError> mistakes;
+  std::vector<double> on_receiver_W(experiment.receivers.size(), 0.0);
+  for (const Settings& source : experiment.file.sources) {
+    const std::vector<Beam> beams = beams_of(experiment, source);
+    if (beams.empty()) continue;  // another source's name shadows it
+    const TraceResult result =
+        trace(run.scene(), experiment.lab_from_body, beams, few.receivers, few.options);
+    const double emitted_W = result.power_balance.emitted_W;
+    const std::string part = inside_of(experiment, few.inside, result.sums.back(), emitted_W);
+    if (!part.empty() && is_turned_inwards(experiment.scene, part)) {
+      mistakes.push_back({source.where(), "scene.file",
+                          "\"" + part + "\", whose faces look inwards: light falls on their backs",
+                          "faces that look outwards (turn them where the model was made)"});
+    } else if (!part.empty()) {
+      mistakes.push_back(
+          source.error("position_m", "a place inside of \"" + part + "\"", "one outside of it"));
+    } else if (result.power_balance.escaped_W.value >= (1.0 - rounding) * emitted_W) {
+      mistakes.push_back(
+          source.error("direction", "light that misses the scene", "light that meets it"));
+    }
+    for (size_t i = 0; i < experiment.receivers.size(); ++i) {
+      if (!experiment.receivers[i].flux_map) continue;
+      on_receiver_W[i] += lit_W(experiment.receivers[i], result.sums[i]);
+    }
+  }
+  if (!mistakes.empty()) return mistakes;  // which says why maps are dark
+  for (size_t i = 0; i < experiment.file.receivers.size(); ++i) {
+    const NamedReceiver& receiver = experiment.receivers[i];
+    if (!receiver.flux_map || on_receiver_W[i] > 0.0) continue;
+    mistakes.push_back(experiment.file.receivers[i].error(
+        "node", "\"" + receiver.name + "\", which no light reaches",
+        "a part that is lit: of which side, facing where?"));
+  }
+  return mistakes;
+}
+
+}  // namespace photorque

@@ -1,0 +1,71 @@
+#include "tools/runs/memory.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+
+namespace photorque {
+namespace {
+
+constexpr double bytes_per_GB = 1e9;
+
+std::optional<uint64_t> number_of_file(const char* path) {
+  std::ifstream in(path);
+  uint64_t value = 0;
+  if (in >> value) return value;
+  return std::nullopt;
+}
+
+// Of /proc/meminfo, which counts in kibibytes.
+std::optional<uint64_t> available_bytes() {
+  std::ifstream in("/proc/meminfo");
+  std::string word;
+  uint64_t kibibytes = 0;
+  while (in >> word) {
+    if (word == "MemAvailable:" && in >> kibibytes) return kibibytes * 1024;
+  }
+  return std::nullopt;
+}
+
+// What a container or a job of a cluster may still take.
+std::optional<uint64_t> left_of_group_bytes() {
+  const auto most = number_of_file("/sys/fs/cgroup/memory.max");
+  const auto taken = number_of_file("/sys/fs/cgroup/memory.current");
+  if (!most || !taken) return std::nullopt;
+  return *most > *taken ? *most - *taken : 0;
+}
+
+std::string in_GB(uint64_t bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g GB", static_cast<double>(bytes) / bytes_per_GB);
+  return text;
+}
+
+}  // namespace
+
+uint64_t memory_limit_bytes(std::optional<double> allowed_GB) {
+  if (allowed_GB) return static_cast<uint64_t>(*allowed_GB * bytes_per_GB);
+  constexpr uint64_t no_limit = std::numeric_limits<uint64_t>::max();
+  const uint64_t free_bytes =
+      std::min(available_bytes().value_or(no_limit), left_of_group_bytes().value_or(no_limit));
+  return free_bytes == no_limit ? no_limit : free_bytes / 10 * 9;
+}
+
+void hold_memory(std::optional<double> allowed_GB) {
+  if (!allowed_GB) return;
+  const rlimit limit{static_cast<rlim_t>(memory_limit_bytes(allowed_GB)), RLIM_INFINITY};
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+void require_memory(std::optional<double> allowed_GB, uint64_t bytes, const InputLocation& where,
+                    const std::string& what) {
+  const uint64_t limit = memory_limit_bytes(allowed_GB);
+  if (bytes <= limit) return;
+  throw InputError(where, what, "what takes about " + in_GB(bytes),
+                   "at most " + in_GB(limit) + " (--max-memory)");
+}
+
+}  // namespace photorque

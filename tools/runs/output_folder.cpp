@@ -1,0 +1,208 @@
+#include "tools/runs/output_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "core/errors.h"
+#include "core/files.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+InputError refused(const fs::path& path, const std::string& found, const std::string& expected) {
+  return {{path.string()}, "--out", found, expected};
+}
+
+// What cleans up after a run that was stopped (Interruption) holds its lock for some milliseconds
+// more.
+bool take_lock(int descriptor, int how, bool patiently) {
+  constexpr int tries = 50, apart_us = 20'000;
+  if (patiently) return ::flock(descriptor, how) == 0;
+  for (int i = 0; ::flock(descriptor, how | LOCK_NB) != 0; ++i) {
+    if (errno != EWOULDBLOCK || i == tries) return false;
+    ::usleep(apart_us);
+  }
+  return true;
+}
+
+constexpr int stop_waiting = SIGUSR2;  // from the destructor
+
+// Processes that this one started, whichever of its threads did.
+std::vector<pid_t> children() {
+  std::vector<pid_t> all;
+  std::error_code ignored;
+  for (const fs::directory_entry& task : fs::directory_iterator("/proc/self/task", ignored)) {
+    std::ifstream list(task.path() / "children");
+    for (pid_t child = 0; list >> child;) all.push_back(child);
+  }
+  return all;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& path, Others others) : path_(fs::absolute(path)) {
+  try {
+    // Whoever had the lock may have removed the folder meanwhile: then it is made again.
+    do make();
+    while (!lock(others));
+    remove_leftovers_of_the_dead(path_);
+    try_to_write();
+  } catch (...) {
+    remove_empty();
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  remove_empty();  // before the lock goes
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void OutputFolder::make() {
+  std::error_code failure;
+  made_.clear();
+  for (fs::path p = path_; !fs::exists(p, failure) && p.has_relative_path(); p = p.parent_path()) {
+    made_ = p;
+  }
+  if (fs::exists(path_, failure) && !fs::is_directory(path_, failure)) {
+    throw refused(path_, "a file", "a folder");
+  }
+  make_folders(path_, "--out");
+}
+
+// A page of bytes, as a full disk takes the name of a file but nothing in it.
+void OutputFolder::try_to_write() const {
+  const fs::path trial = temporary_beside(path_ / "trial");
+  const int file = ::open(trial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  int error = file < 0 ? errno : 0;
+  constexpr std::array<char, 4096> page{};
+  if (file >= 0) {
+    if (::write(file, page.data(), page.size()) != static_cast<ssize_t>(page.size())) {
+      error = errno == 0 ? ENOSPC : errno;
+    }
+    if (::close(file) != 0 && error == 0) error = errno;
+    ::unlink(trial.c_str());
+  }
+  if (error != 0) {
+    throw refused(path_, std::string("a folder that takes no files (") + std::strerror(error) + ")",
+                  "space and permission");
+  }
+}
+
+// False when the folder that was locked is not the one of this name any more.
+bool OutputFolder::lock(Others others) {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0) {
+    if (errno == ENOENT) return false;
+    throw refused(path_, std::strerror(errno), "a folder that can be read");
+  }
+  const int how = others == Others::share ? LOCK_SH : LOCK_EX;
+  if (!take_lock(descriptor_, how, others == Others::wait)) {
+    if (errno == EWOULDBLOCK) {
+      throw refused(path_, "a folder that another run is writing into",
+                    "another folder, or the end of that run");
+    }
+    return true;
+  }
+  struct stat locked {
+  }, named{};
+  return ::fstat(descriptor_, &locked) == 0 && ::stat(path_.c_str(), &named) == 0 &&
+         locked.st_ino == named.st_ino && locked.st_dev == named.st_dev;
+}
+
+void OutputFolder::remove_empty() const {
+  if (made_.empty()) return;
+  for (fs::path p = path_; ::rmdir(p.c_str()) == 0 && p != made_; p = p.parent_path()) {
+  }
+}
+
+Interruption::Interruption() {
+  sigemptyset(&signals_);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction now {};
+    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) {
+      sigaddset(&signals_, signal);
+    }
+  }
+  sigaddset(&signals_, stop_waiting);
+  pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  waiting_ = std::thread([this] { wait(); });
+}
+
+Interruption::~Interruption() {
+  pthread_kill(waiting_.native_handle(), stop_waiting);
+  waiting_.join();
+}
+
+Interruption::Watch::Watch(Interruption& interruption, const fs::path& folder)
+    : interruption_(interruption) {
+  InUse used{fs::absolute(folder)};
+  std::error_code failure;
+  for (fs::path p = used.folder; !fs::exists(p, failure) && p.has_relative_path();
+       p = p.parent_path()) {
+    ++used.missing;
+  }
+  const std::scoped_lock lock(interruption_.mutex_);
+  interruption_.in_use_.push_back(std::move(used));
+}
+
+Interruption::Watch::~Watch() {
+  const std::scoped_lock lock(interruption_.mutex_);
+  interruption_.in_use_.pop_back();
+}
+
+void Interruption::wait() {
+  int signal = 0;
+  while (sigwait(&signals_, &signal) != 0) {
+  }
+  if (signal != stop_waiting) end(signal);
+}
+
+void Interruption::clean(pid_t process) const {
+  for (size_t i = in_use_.size(); i-- > 0;) {
+    remove_leftovers(in_use_[i].folder, process);
+    fs::path p = in_use_[i].folder;
+    for (size_t k = 0; k < in_use_[i].missing && ::rmdir(p.c_str()) == 0; ++k) p = p.parent_path();
+  }
+}
+
+// The other threads still work, and one may make a temporary file after all are removed. So a
+// child, which has none of these threads, waits until this process is gone and looks again; not
+// even that is left to chance where the child is killed with it (the first process of a container).
+void Interruption::end(int signal) {
+  const std::scoped_lock lock(mutex_);
+  const pid_t parent = ::getpid();
+  clean(parent);
+  int pipe_ends[2] = {-1, -1};
+  const bool can_wait = ::pipe2(pipe_ends, O_CLOEXEC) == 0;
+  for (const pid_t child : children()) ::kill(child, SIGTERM);
+  if (can_wait && ::fork() == 0) {
+    for (const int shared : {0, 1, 2, pipe_ends[1]}) ::close(shared);
+    char none = 0;
+    while (::read(pipe_ends[0], &none, 1) > 0) {
+    }
+    clean(parent);
+    ::_exit(0);
+  }
+  ::signal(signal, SIG_DFL);
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, signal);
+  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  ::kill(parent, signal);
+  for (;;) ::pause();
+}
+
+}  // namespace photorque

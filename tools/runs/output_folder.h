@@ -1,0 +1,78 @@
+// The folder that a command writes into: made, tried, locked and cleaned before the work; left
+// clean when a signal ends the program.
+#pragma once
+
+#include <csignal>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace photorque {
+
+// A folder in which one run works. What killed runs left in it is removed. When it ends, folders
+// that it made and that are still empty go away.
+class OutputFolder {
+ public:
+  // What to do about others that work in the folder: refuse to; let those in that share as well;
+  // wait until they are done.
+  enum class Others { refuse, share, wait };
+
+  // InputError when `path` is no folder or cannot be one, when a file in it cannot be written, or
+  // when another run works there. (File systems without locks: nobody is kept out.)
+  OutputFolder(const std::filesystem::path& path, Others others);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+ private:
+  void make();
+  void try_to_write() const;
+  bool lock(Others others);
+  void remove_empty() const;
+
+  std::filesystem::path path_, made_;  // absolute; the outermost folder that was not there
+  int descriptor_ = -1;
+};
+
+// Ctrl-C, SIGTERM, SIGHUP: the program ends at once and leaves no half-written file behind.
+//
+// Made first thing in main(), before other threads are, which inherit that they are not to be
+// interrupted: one thread waits for the signals, removes the temporary files of the folders in use,
+// stops the processes that were started, and lets the signal end the program, as whoever started it
+// expects. Signals that are ignored (nohup) stay so.
+class Interruption {
+ public:
+  Interruption();
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  // A folder in use, and those above it that are not there yet, as long as it lives.
+  class Watch {
+   public:
+    Watch(Interruption& interruption, const std::filesystem::path& folder);
+    ~Watch();
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
+
+   private:
+    Interruption& interruption_;
+  };
+
+ private:
+  struct InUse {
+    std::filesystem::path folder;
+    size_t missing = 0;  // folders at the end of the path that were not there
+  };
+  void wait();
+  void clean(pid_t process) const;
+  [[noreturn]] void end(int signal);
+
+  sigset_t signals_{};
+  std::thread waiting_;
+  std::mutex mutex_;
+  std::vector<InUse> in_use_;
+};
+
+}  // namespace photorque

@@ -1,0 +1,82 @@
+// torque-map over directions of light: the table of a body in sunlight, and ways to find force and
+// torque at one direction after another.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/snapshot.h"
+#include "core/wrench.h"
+#include "receivers/wrench/smoothing.h"
+#include "tools/coupling/couple.h"
+#include "tools/runs/optical_run.h"
+
+namespace photorque {
+
+struct DirectionMap {
+  WrenchTable wrenches;  // of the whole scene, body frame
+  RunResult result;
+};
+
+// Force and torque with the Sun at every direction of [torque_map]: by quadrature where the scene
+// is for that, else by rays. When the directions cover the sphere, the wrench per pressure is a
+// file of the result in the SPAD layout. The experiment's only source must be a sun. Directions are
+// shared out over `threads` (0: all); `run` itself is best made for one. `watch` has each traced
+// for it. With a checkpoint what is done is kept there now and then, and gone on from.
+DirectionMap map_over_directions(const Console& console, const OpticalRun& run, int threads,
+                                 const NodeWatch& watch = {}, CheckpointFile* checkpoint = nullptr);
+
+// The experiment's sun: tables may be told per unit of its pressure.
+struct SunLight {
+  Vec3 towards_lab;
+  double pressure_Pa = 0.0;  // irradiance over the speed of light
+
+  // Attitude in which the Sun stands at `towards_body`. It depends on nothing else, so that the
+  // same direction, reached by two azimuths, is the same work.
+  RigidTransform lab_from_body(const Vec3& towards_body) const;
+};
+
+// What was found at one direction, about the point of the table.
+struct DirectionWrench {
+  WrenchComponents direct{};
+  TwofoldWrench bounced;     // what light does that has met a surface before, twice
+  WrenchComponents error{};  // one standard error of all that being there twice does not tell
+  uint64_t rays = 0;
+  std::vector<std::string> warnings;
+
+  void keep(Snapshot& snapshot) {
+    snapshot(direct, bounced, error, rays);
+    snapshot.each(warnings, [&](std::string& one) { snapshot(one); });
+  }
+};
+
+class LightDirections {
+ public:
+  virtual ~LightDirections() = default;
+  // From many threads at once.
+  virtual DirectionWrench at(const RigidTransform& lab_from_body) const = 0;
+  // Puts what was found at each node into the table, and says how good it is; warns where a check
+  // fails. `whole`: the nodes go from pole to pole and all round.
+  virtual void fill(WrenchTable& table, const std::vector<DirectionWrench>& found, bool whole,
+                    const Console& console, int threads,
+                    std::vector<std::string>& warnings) const = 0;
+};
+
+// By rays; direct light is gathered from the surfaces where that is possible. Bounced light is made
+// smooth over a whole sphere.
+std::unique_ptr<LightDirections> traced_directions(const OpticalRun& run, const SunLight& sun,
+                                                   const Vec3& about_body_m);
+
+// By quadrature (receivers/gather/bodies/sunlit_body.h). Null where the scene is not for that, or
+// the experiment wants rays.
+std::unique_ptr<LightDirections> sunlit_directions(const OpticalRun& run, const SunLight& sun,
+                                                   const Vec3& about_body_m, int threads);
+
+// Directions that no table has, evenly over the sphere, in which a way is held against rays.
+std::vector<RigidTransform> fresh_directions(size_t count, const SunLight& sun);
+
+// The longest of these torques [N m].
+double largest_torque_N_m(const WrenchTable& table);
+
+}  // namespace photorque

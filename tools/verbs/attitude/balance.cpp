@@ -1,0 +1,105 @@
+// photorque balance: the centre of mass from a recording, and the masses' moves that remove it.
+#include "tools/verbs/attitude/balance.h"
+
+#include "core/errors.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque {
+
+BalanceOutcome run_balance(const RunOptions& options,
+                           const std::vector<std::filesystem::path>& recordings) {
+  if (recordings.size() != 1) {
+    throw InputError({options.experiment.string()}, "--recording",
+                     recordings.empty() ? "nothing" : "several recordings", "one recording");
+  }
+  const std::filesystem::path& recording = recordings.front();
+  const WallTime wall;
+  AttitudeExperiment experiment(options);
+  experiment.add_input(recording);
+  BalanceRun run = read_balance(experiment.settings(), recording);
+  BalanceResult found = balance(run);
+  Product product = balance_product(run, found);
+  Provenance provenance = experiment.provenance(0);
+  if (found.leaves_more_than_noise()) provenance.warnings.push_back(found.warning());
+  RunResult result{std::move(product), std::move(provenance), {wall.elapsed_s(), {}}};
+  return {std::move(run), std::move(found), std::move(result)};
+}
+
+}  // namespace photorque
+
+namespace photorque::kinds::balance {
+namespace {
+
+struct Options : CommandOptions {
+  std::vector<std::filesystem::path> recordings;
+};
+
+void print_balance(const Console& console, const BalanceRun& run, const BalanceResult& result,
+                   const Product& product) {
+  console.line("Recording");
+  std::string report = run.recording.report.text();
+  for (size_t at = 0; (at = report.find('\n', at)) != std::string::npos; at += 3) {
+    report.replace(at, 1, "\n  ");
+  }
+  console.line("  " + report);
+  console.heading("Centre of mass from the centre of rotation, body axes");
+  for (int k = 0; k < 3; ++k) {
+    console.line(std::string("  ") + "xyz"[k] + "  " +
+                 show(Estimate{result.offset_body_m[k], result.sigma_m[k]}, "m"));
+  }
+  console.line("  chi² per sample of the fit " + show(result.chi2_per_sample));
+  if (result.stretches > 1) {
+    console.line("  the recording is in " + std::to_string(result.stretches) +
+                 " stretches between gaps, each with a start of its own");
+  }
+  if (result.leaves_more_than_noise()) console.line("  WARNING: " + result.warning());
+  console.heading("Moves of the masses");
+  for (const Table& table : product.tables) {
+    if (table.name != "moving_masses") continue;
+    print_table(console, table,
+                {{"mass", "mass"},
+                 {"x", "direction_x"},
+                 {"y", "direction_y"},
+                 {"z", "direction_z"},
+                 {"steps", "steps"},
+                 {"travel [m]", "travel_m"}});
+  }
+  console.heading("Left by whole steps");
+  for (const Quantity& quantity : product.quantities) {
+    if (quantity.name == "left_by_steps_m") {
+      console.line("  distance of the centre of mass  " + show(quantity.estimate, "m"));
+    } else if (quantity.name == "left_by_steps_N_m") {
+      console.line("  largest torque                  " + show(quantity.estimate, "N m"));
+    } else if (quantity.name == "resolution_m") {
+      console.line("  half a step, coarsest axis      " + show(quantity.estimate, "m"));
+    } else if (quantity.name == "published_resolution_m") {
+      console.line("  the paper's                     " + show(quantity.estimate, "m"));
+    }
+  }
+}
+
+void add_options(Command& command, Options& options) {
+  command.add_experiment(options);
+  command.add_recordings(options.recordings);
+}
+
+void run(const Options& options, const Program&) {
+  const Console console = terminal(options);
+  const BalanceOutcome outcome = run_balance(options, options.recordings);
+  print_balance(console, outcome.run, outcome.balance, outcome.result.product);
+  write_results(options, console, outcome.result);
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"balance",
+          "Centre of mass from a recording, and the balancing masses' moves",
+          command_with(add_options, run),
+          {"platform", "environment", "disturbance", "sensors", "balance", "recording"},
+          "[balance]",
+          [](const RunOptions& options) { return run_balance(options, {}).result; }};
+}
+
+}  // namespace photorque::kinds::balance

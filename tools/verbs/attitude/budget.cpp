@@ -1,0 +1,110 @@
+// photorque budget: every disturbance torque at one state, ranked, beside the paper's figures.
+#include "tools/verbs/attitude/budget.h"
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque {
+
+BudgetRun run_budget(const RunOptions& options) {
+  const WallTime wall;
+  const AttitudeExperiment experiment(options);
+  Budget budget = read_budget(experiment.settings());
+  Product product = budget_product(budget);
+  RunResult result{std::move(product), experiment.provenance(0), {wall.elapsed_s(), {}}};
+  return {std::move(budget), std::move(result)};
+}
+
+}  // namespace photorque
+
+namespace photorque::kinds::budget {
+namespace {
+
+const Table* find_table(const Product& product, const std::string& name) {
+  for (const Table& table : product.tables) {
+    if (table.name == name) return &table;
+  }
+  return nullptr;
+}
+
+const Table& table_named(const Product& product, const std::string& name) {
+  const Table* table = find_table(product, name);
+  if (table == nullptr) throw NumericalError("the budget has no table " + name);
+  return *table;
+}
+
+void print_reasons(const Console& console, const Table& figures) {
+  const auto& quantity = figures.column("quantity").texts;
+  const auto& why = figures.column("why").texts;
+  console.heading("Why");
+  for (size_t i = 0; i < quantity.size(); ++i) console.line("  " + quantity[i] + ": " + why[i]);
+}
+
+void print_air(const Console& console, const Table& parts) {
+  console.heading(parts.title);
+  print_table(console, parts,
+              {{"part", "part"},
+               {"torque [N m]", "torque_N_m"},
+               {"fraction", "share"},
+               {"Reynolds", "reynolds"},
+               {"transition", "transition_reynolds"},
+               {"law holds", "law_holds"}});
+}
+
+void print_paper(const Console& console, const Product& product) {
+  const Table& figures = table_named(product, "paper_figures");
+  console.heading("Figures of the paper beside ours");
+  print_table(console, figures,
+              {{"quantity", "quantity"},
+               {"section", "section"},
+               {"paper", "published"},
+               {"ours", "ours"},
+               {"ratio", "ratio"},
+               {"as published", "ours_as_published"}});
+  print_reasons(console, figures);
+  print_air(console, table_named(product, "paper_external_air"));
+}
+
+void add_options(Command& command, CommandOptions& options) {
+  command.add_experiment(options);
+}
+
+void run(const CommandOptions& options, const Program&) {
+  const Console console = terminal(options);
+  const BudgetRun found = run_budget(options);
+  const Product& product = found.result.product;
+  const PlatformState& state = found.budget.state;
+  console.line("State: tilt " + show(tilt_rad(state) / degree_rad) + " deg, heading " +
+               show(heading_rad(state) / degree_rad) + " deg, rate " +
+               show(state.rate_body_rad_s.norm()) + " rad/s, charge drawn " +
+               show(state.charge_drawn_C / 3600.0) + " Ah");
+  console.heading(
+      "Disturbance torques, largest first; the angle each would turn if it stayed constant");
+  print_table(console, table_named(product, "budget"),
+              {{"disturbance", "disturbance"},
+               {"torque [N m]", "torque_N_m"},
+               {"fraction", "share_of_sum"},
+               {"1 min [deg]", "angle_1_min_deg"},
+               {"1 h [deg]", "angle_1_h_deg"},
+               {"1 day [deg]", "angle_1_day_deg"},
+               {"paper [N m]", "paper_N_m"},
+               {"ours/paper", "ratio"}});
+  if (const Table* air = find_table(product, "external_air")) print_air(console, *air);
+  if (found.budget.beside_paper) print_paper(console, product);
+  write_results(options, console, found.result);
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"budget",
+          "Every disturbance torque at one state, ranked; of STASIS beside published figures",
+          command_with(add_options, run),
+          {"platform", "environment", "disturbance", "sensors", "budget"},
+          "[platform]",
+          [](const RunOptions& options) { return run_budget(options).result; }};
+}
+
+}  // namespace photorque::kinds::budget

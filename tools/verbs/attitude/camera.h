@@ -1,0 +1,19 @@
+// How well the tracking camera of an experiment knows the attitude.
+#pragma once
+
+#include "attitude/camera/study.h"
+#include "tools/runs/console.h"
+#include "tools/runs/options.h"
+#include "tools/runs/result.h"
+
+namespace photorque {
+
+struct CameraRun {
+  CameraStudy study;
+  double images_per_s = 0.0;  // exposed, read and solved, on one thread
+  RunResult result;
+};
+
+CameraRun run_camera(const RunOptions& options, const Console& console);
+
+}  // namespace photorque

@@ -1,0 +1,435 @@
+// photorque diagnose: what physics is missing between an experiment and its recordings.
+#include "tools/verbs/attitude/diagnose.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <regex>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "diagnosis/attitude/diagnose.h"
+#include "diagnosis/guess/guess.h"
+#include "diagnosis/light/beliefs.h"
+#include "diagnosis/light/diagnose.h"
+#include "diagnosis/light/module/diagnose.h"
+#include "diagnosis/light/together.h"
+#include "diagnosis/report/improved.h"
+#include "diagnosis/report/json.h"
+#include "images/drawing/map.h"
+#include "images/drawing/plot.h"
+#include "images/writers/staged_files.h"
+#include "scenes/experiment/toml.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/pages/pages.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<NamedRecording> read_all(const std::vector<fs::path>& paths,
+                                     const RecordingOptions& options,
+                                     AttitudeExperiment& experiment) {
+  std::vector<NamedRecording> all;
+  for (const fs::path& path : paths) {
+    experiment.add_input(path);
+    all.push_back({path.string(), read_recording(path, options)});
+  }
+  return all;
+}
+
+// Whether the text ends in a key whose words are names of its own, not of files.
+bool is_name(const std::string& before) {
+  static const std::regex own_names(
+      R"((^|[\s{,.])(name|node|receiver|kind|source|body|topology)\s*=\s*$)");
+  const size_t line = before.rfind('\n');
+  return std::regex_search(line == std::string::npos ? before : before.substr(line), own_names);
+}
+
+// The text of an experiment with the files that it names found from another folder.
+std::string seen_from(const std::string& text, const fs::path& experiment, const fs::path& folder) {
+  static const std::regex quoted(R"x("([^"\n]+)"|'([^'\n]+)')x");
+  std::string result;
+  size_t done = 0;
+  for (std::sregex_iterator it(text.begin(), text.end(), quoted), end; it != end; ++it) {
+    const std::string name = (*it)[1].matched ? (*it)[1].str() : (*it)[2].str();
+    const fs::path file = fs::absolute(experiment).parent_path() / name;
+    const auto at = static_cast<size_t>(it->position());
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored) || is_name(text.substr(done, at - done))) continue;
+    result += text.substr(done, at - done) + "\"" +
+              file.lexically_proximate(fs::absolute(folder)).generic_string() + "\"";
+    done = at + static_cast<size_t>(it->length());
+  }
+  return result + text.substr(done);
+}
+
+// The text with what the command line changes; then without its comments.
+std::string with_overrides(const std::string& text, const std::vector<std::string>& overrides) {
+  if (overrides.empty()) return text;
+  SettingsNode root = parse_toml(text, "");
+  std::string head;
+  for (const std::string& assignment : overrides) {
+    apply_override(root, assignment);
+    head += "# --set " + assignment + "\n";
+  }
+  return head + toml_document(std::get<SettingsNode::Table>(root.value));
+}
+
+// Whether the recordings are of light. InputError naming the first that is of another kind.
+bool are_of_light(const std::vector<fs::path>& recordings, const std::vector<fs::path>& holdouts) {
+  const bool of_light = is_light_recording(recordings.front());
+  for (const auto* all : {&recordings, &holdouts}) {
+    for (const fs::path& path : *all) {
+      if (!fs::exists(path) || is_light_recording(path) == of_light) continue;
+      throw InputError({path.string()}, "",
+                       of_light ? "no recording of light" : "a recording of light",
+                       std::string(of_light ? "one" : "one of motion") + " as " +
+                           recordings.front().filename().string());
+    }
+  }
+  return of_light;
+}
+
+std::vector<LightRecording> read_light(const std::vector<fs::path>& paths,
+                                       const UsualCircumstances& usual, Provenance& provenance) {
+  std::vector<LightRecording> all;
+  for (const fs::path& path : paths) {
+    all.push_back(read_light_recording(path, usual));
+    provenance.inputs.emplace_back(path.filename().string(), content_hash(read_file(path)));
+  }
+  return all;
+}
+
+using Progress = std::function<void(const std::string&)>;
+
+Progress progress_on(const Console& console, const std::string& of) {
+  return [&console, of](const std::string& what) { console.line("  " + of + what + " ..."); };
+}
+
+// Lamps and array of an experiment, and their recordings.
+struct LightInput {
+  Experiment experiment;
+  LightLab lab{experiment};
+  LightBelief nominal{lab.nominal(), {}};
+  std::vector<LightRecording> recordings = {}, holdouts = {};
+  Provenance provenance = {};
+};
+
+std::unique_ptr<LightInput> read_light_input(const RunOptions& options,
+                                             const std::vector<fs::path>& paths,
+                                             const std::vector<fs::path>& holdout_paths) {
+  const std::string text = options.experiment_text();
+  const auto reread = [&](const std::string& assignment) {
+    std::vector<std::string> overrides = options.all_overrides();
+    if (!assignment.empty()) overrides.push_back(assignment);
+    return resolve_experiment(read_experiment_text(options.experiment, text, overrides));
+  };
+  std::unique_ptr<LightInput> input(new LightInput{reread("")});
+  input->provenance = build_provenance();
+  input->provenance.inputs = input->experiment.inputs;
+  input->nominal = light_belief(
+      input->lab, uncertain_keys(options.experiment, text, options.all_overrides()), reread);
+  const UsualCircumstances usual{
+      input->experiment.lab_from_body.rotation,
+      input->lab.has_array() ? input->lab.design().temperature_K : 298.15};
+  input->recordings = read_light(paths, usual, input->provenance);
+  input->holdouts = read_light(holdout_paths, usual, input->provenance);
+  return input;
+}
+
+DiagnosisRun diagnose_light_recordings(const RunOptions& options,
+                                       const std::vector<fs::path>& paths,
+                                       const std::vector<fs::path>& holdout_paths,
+                                       const Console& console) {
+  const auto input = read_light_input(options, paths, holdout_paths);
+  LightDiagnoseOptions how;
+  how.threads = options.threads;
+  how.progress = progress_on(console, "");
+  Diagnosis diagnosis = diagnose_light(input->lab, input->nominal, std::move(input->recordings),
+                                       std::move(input->holdouts), how);
+  return {std::move(diagnosis), std::move(input->provenance), options.experiment,
+          with_overrides(options.experiment_text(), options.all_overrides()), true};
+}
+
+// Curves of a module in sunlight: no scene is needed.
+DiagnosisRun diagnose_module_curves(const RunOptions& options, const Settings& root,
+                                    const std::vector<fs::path>& paths,
+                                    const std::vector<fs::path>& holdout_paths) {
+  const ModuleDesign design = read_module(root, options.experiment.parent_path());
+  root.finish();
+  Provenance provenance = build_provenance();
+  const std::string text = options.experiment_text();
+  provenance.inputs.emplace_back(options.experiment.filename().string(), content_hash(text));
+  for (const fs::path& file : design.reference_files) {
+    provenance.inputs.emplace_back(file.filename().string(), content_hash(read_file(file)));
+  }
+  const std::vector<LightRecording> recordings = read_light(paths, {}, provenance),
+                                    holdouts = read_light(holdout_paths, {}, provenance);
+  ModuleDiagnoseOptions how;
+  how.threads = options.threads;
+  Diagnosis diagnosis = diagnose_module(design, recordings, holdouts, how);
+  return {std::move(diagnosis), std::move(provenance), options.experiment,
+          with_overrides(text, options.all_overrides()), true};
+}
+
+MotionRecorded read_motion(const RunOptions& options, AttitudeExperiment& experiment,
+                           const std::vector<fs::path>& paths,
+                           const std::vector<fs::path>& holdout_paths) {
+  MotionRecorded motion{read_attitude_model(experiment.settings()), {}, {}, {}};
+  const Settings recording = own_table(experiment.settings(), "recording", false);
+  const RecordingOptions reading = read_recording_options(recording);
+  motion.recordings = read_all(paths, reading, experiment);
+  motion.holdouts = read_all(holdout_paths, reading, experiment);
+  std::vector<const Recording*> all;
+  for (const auto* some : {&motion.recordings, &motion.holdouts}) {
+    for (const NamedRecording& one : *some) all.push_back(&one.recording);
+  }
+  refuse_absent_columns(recording, all);
+  recording.finish();
+  motion.how.threads = options.threads;
+  return motion;
+}
+
+DiagnosisRun diagnose_motion(const RunOptions& options, const std::vector<fs::path>& paths,
+                             const std::vector<fs::path>& holdout_paths, const Console& console) {
+  AttitudeExperiment experiment(options);
+  MotionRecorded motion = read_motion(options, experiment, paths, holdout_paths);
+  motion.how.progress = progress_on(console, "");
+  Diagnosis diagnosis = diagnose(motion.nominal, motion.recordings, motion.holdouts, motion.how);
+  return {std::move(diagnosis), experiment.provenance(0), options.experiment,
+          with_overrides(options.experiment_text(), options.overrides), false};
+}
+
+// Recordings by what they hold. A run of the array says how the platform moved, too.
+struct Sorted {
+  std::vector<fs::path> motion, light;
+};
+
+Sorted sorted_by_content(const std::vector<fs::path>& paths) {
+  Sorted sorted;
+  for (const fs::path& path : paths) {
+    const std::optional<LightRecording::Kind> kind = light_kind_of(path);
+    if (kind) sorted.light.push_back(path);
+    if (!kind || *kind == LightRecording::Kind::run) sorted.motion.push_back(path);
+  }
+  return sorted;
+}
+
+DiagnosisRun diagnose_both(const RunOptions& options, const Sorted& recordings,
+                           const Sorted& holdouts, const Console& console) {
+  AttitudeExperiment experiment(options);
+  MotionRecorded motion = read_motion(options, experiment, recordings.motion, holdouts.motion);
+  motion.how.progress = progress_on(console, "motion: ");
+  motion.how.read_elsewhere = {"array_voltage_V", "array_current_A", "cell_temperature_K"};
+  const auto input = read_light_input(options, recordings.light, holdouts.light);
+  LightRecorded light{
+      input->lab, input->nominal, std::move(input->recordings), std::move(input->holdouts), {}};
+  light.how.threads = options.threads;
+  light.how.progress = progress_on(console, "light: ");
+  Diagnosis diagnosis = diagnose_together(std::move(motion), std::move(light));
+  Provenance provenance = experiment.provenance(0);
+  for (const auto& one : input->provenance.inputs) {
+    if (std::ranges::find(provenance.inputs, one) == provenance.inputs.end()) {
+      provenance.inputs.push_back(one);
+    }
+  }
+  return {std::move(diagnosis), std::move(provenance), options.experiment,
+          with_overrides(options.experiment_text(), options.all_overrides()), true};
+}
+
+}  // namespace
+
+std::string DiagnosisRun::json() const {
+  return diagnosis_json(diagnosis, provenance);
+}
+
+std::string DiagnosisRun::improved(const fs::path& folder) const {
+  return improved_experiment(seen_from(text, experiment, folder), diagnosis, fs::absolute(folder));
+}
+
+std::string DiagnosisRun::report() const {
+  return report_html(diagnosis, provenance, experiment.stem().string());
+}
+
+// A recording counts once, and one that was fitted cannot judge the fit.
+void require_each_once(const std::vector<fs::path>& recordings,
+                       const std::vector<fs::path>& holdouts) {
+  std::vector<fs::path> known;
+  for (const auto* all : {&recordings, &holdouts}) {
+    for (const fs::path& path : *all) {
+      if (!fs::exists(path)) continue;
+      const bool is_known = std::ranges::any_of(
+          known, [&](const fs::path& other) { return fs::equivalent(path, other); });
+      if (is_known) {
+        throw InputError({path.string()}, all == &holdouts ? "--holdout" : "--recording",
+                         "a file that was given already", "another recording");
+      }
+      known.push_back(path);
+    }
+  }
+}
+
+DiagnosisRun run_diagnose(const RunOptions& options, const std::vector<fs::path>& recordings,
+                          const std::vector<fs::path>& holdouts, const Console& console) {
+  if (recordings.empty()) {
+    throw InputError({options.experiment.string()}, "--recording", "nothing", "a recording (CSV)");
+  }
+  require_each_once(recordings, holdouts);
+  SettingsNode node = parse_toml(options.experiment_text(), options.experiment.string());
+  for (const std::string& assignment : options.all_overrides()) apply_override(node, assignment);
+  const Settings root(std::make_shared<const SettingsNode>(std::move(node)));
+  if (root.has("module")) return diagnose_module_curves(options, root, recordings, holdouts);
+  const Sorted sorted = sorted_by_content(recordings);
+  if (root.has("platform") && root.has("scene") && !sorted.light.empty() &&
+      !sorted.motion.empty()) {
+    return diagnose_both(options, sorted, sorted_by_content(holdouts), console);
+  }
+  // Without a platform nothing but light is meant: its reader says what a file is not.
+  return are_of_light(recordings, holdouts) || (root.has("scene") && !root.has("platform"))
+             ? diagnose_light_recordings(options, recordings, holdouts, console)
+             : diagnose_motion(options, recordings, holdouts, console);
+}
+
+std::string first_experiment(const std::vector<fs::path>& recordings, const fs::path& file) {
+  const std::string text = guess_experiment(recordings, file.parent_path());
+  const Settings root(std::make_shared<const SettingsNode>(parse_toml(text, file.string())));
+  if (root.has("module")) {
+    read_module(root, file.parent_path());
+  } else {
+    read_attitude_model(root);
+    const Settings recording = own_table(root, "recording", false);
+    read_recording_options(recording);
+    recording.finish();
+  }
+  root.finish();
+  return text;
+}
+
+void write_diagnosis(const DiagnosisRun& run, const std::string& report, const fs::path& folder) {
+  const std::string json = run.json(), improved = run.improved(folder);
+  StagedFiles staged(folder);
+  write_file_whole(staged.path() / "improved.toml", improved);
+  write_file_whole(staged.path() / "report.html", report);
+  write_file_whole(staged.path() / "diagnosis.json", json);
+  staged.publish_as("diagnose", run.provenance);
+}
+
+}  // namespace photorque
+
+namespace photorque::kinds::diagnose {
+namespace {
+
+struct Options : CommandOptions {
+  std::vector<std::filesystem::path> recordings, holdouts;
+  std::vector<std::filesystem::path> guess;  // recordings without an experiment
+  bool page = false;
+};
+
+// Of data/run1.csv.gz: "run1".
+std::string name_of_guess(const std::vector<std::filesystem::path>& guess) {
+  std::filesystem::path name = guess.front().filename();
+  while (name.has_extension()) name = name.stem();
+  return name.string();
+}
+
+void add_options(Command& command, Options& options) {
+  command.add_experiment(options, Command::Folder::own, false);
+  command.add_recordings(options.recordings);
+  command
+      .add("--holdout", options.holdouts,
+           "A recording held out: never fitted, it judges the finding; as above")
+      .is_one_each = true;
+  command.add("--guess", options.guess,
+              "Instead of an experiment: write one that fits the columns of these "
+              "recordings (CSV), its assumptions marked");
+  command.add_page(options.page);
+  command.mistake = [&options]() -> std::string {
+    if (!options.guess.empty()) options.name = name_of_guess(options.guess);
+    if (options.experiment.empty() != options.guess.empty()) return "";
+    return options.guess.empty() ? "experiment is required, or --guess RECORDING"
+                                 : "an experiment beside --guess: one of the two";
+  };
+}
+
+void print_diagnosis(const Console& console, const Diagnosis& d) {
+  console.line(d.sentence);
+  for (const FoundEffect& effect : d.effects) {
+    console.line("  " + effect.kind + ", probability " + show(effect.probability));
+    for (const FittedParameter& p : effect.parameters) {
+      std::string text = "    " + p.key + " ";
+      for (size_t i = 0; i < p.value.size(); ++i) {
+        const double sigma = i < p.sigma.size() ? p.sigma[i] : 0.0;
+        text += (i > 0 ? ", " : "= ") + show(Estimate{p.value[i], sigma}, "");
+      }
+      console.line(text);
+    }
+    for (const std::string& text : effect.known_together) {
+      console.line("    known together, none by itself: " + text);
+    }
+    for (const auto& [key, words] : effect.texts) console.line("    " + key + " = " + words);
+    for (const std::string& rival : effect.indistinguishable_from) {
+      console.line("    these data do not tell it from " + rival);
+    }
+  }
+  console.line("  chi² per sample " + show(d.chi2_per_sample_before) + " before, " +
+               show(d.chi2_per_sample_after) + " after");
+  if (d.holdout) {
+    console.line("  never fitted:    " + show(d.holdout->chi2_per_sample_before) + " before, " +
+                 show(d.holdout->chi2_per_sample_after) + " after");
+  }
+  for (const std::string& warning : d.warnings) console.line("  note: " + warning);
+}
+
+// All that is printed is an experiment too.
+void write_guess(const Options& options) {
+  const Console console = terminal(options);
+  const std::filesystem::path file = options.out_folder() / (options.name + ".toml");
+  const std::string text = first_experiment(options.guess, file);
+  // Somebody may have confirmed what stands there.
+  if (std::filesystem::exists(file) && read_file(file) != text) {
+    throw InputError({file.string()}, "", "another file of this name",
+                     "a folder without one (--out DIR)");
+  }
+  write_file_whole(file, text);
+  console.line(text);
+  console.line("# Written to " + file.string() + ". Next, as it is or confirmed:");
+  std::string next = "# photorque diagnose " + file.string();
+  for (const std::filesystem::path& recording : options.guess) {
+    next += " --recording " + recording.string();
+  }
+  console.line(next);
+}
+
+void run(const Options& options, const Program&) {
+  if (!options.guess.empty()) return write_guess(options);
+  const Console console = terminal(options);
+  const DiagnosisRun run = run_diagnose(options, options.recordings, options.holdouts, console);
+  print_diagnosis(console, run.diagnosis);
+  const std::string report =
+      options.page ? interactive_report_html(run.diagnosis, run.provenance, run.of_light, options,
+                                             page_head(options, options.recordings, options.holdouts))
+                   : run.report();
+  write_diagnosis(run, report, options.out_folder());
+  console.line("Results in " + options.out_folder().string());
+  if (!options.json) return;
+  const std::string json = run.json();
+  std::fwrite(json.data(), 1, json.size(), stdout);
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"diagnose",
+          "What physics is missing between an experiment and its recordings",
+          command_with(add_options, run),
+          {"array", "effect", "platform", "environment", "disturbance", "sensors", "recording",
+           "module"},
+          "[platform], [module] or [sensors] of light"};
+}
+
+}  // namespace photorque::kinds::diagnose

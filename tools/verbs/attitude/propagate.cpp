@@ -1,0 +1,47 @@
+// photorque propagate: propagates the platform through its disturbances.
+#include "tools/coupling/propagate.h"
+
+#include "tools/pages/pages.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque::kinds::propagate {
+namespace {
+
+struct Options : CommandOptions {
+  std::optional<double> checkpoint_min;
+  bool page = false;
+};
+
+void add_options(Command& command, Options& options) {
+  command.add_experiment(options);
+  command.add_checkpoint(options.checkpoint_min);
+  command.add_page(options.page);
+}
+
+void run(const Options& options, const Program&) {
+  const Console console = terminal(options);
+  std::optional<CheckpointFile> checkpoint;
+  if (options.checkpoint_min) {
+    checkpoint.emplace(options.out_folder() / "propagate.checkpoint",
+                       60.0 * *options.checkpoint_min);
+  }
+  MotionRun run = run_propagate(options, console, {}, {}, checkpoint ? &*checkpoint : nullptr);
+  if (options.page) run.result.files.push_back(motion_page(run, options, page_head(options)));
+  write_results(options, console, run.result);
+  // Its work is done and stands in the results.
+  std::error_code stays;
+  if (checkpoint) std::filesystem::remove(checkpoint->path(), stays);
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"propagate",
+          "Fly the platform: attitude, rates, charge, every torque; a recording",
+          command_with(add_options, run),
+          {"platform", "environment", "disturbance", "sensors", "propagate", "light", "array"},
+          "[platform]",
+          [](const RunOptions& options) { return run_propagate(options, Console()).result; }};
+}
+
+}  // namespace photorque::kinds::propagate

@@ -1,0 +1,123 @@
+// photorque serve: the platform in real time beside hardware and programs.
+#include "tools/verbs/attitude/serve.h"
+
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+
+#include <memory>
+#include <utility>
+
+#include "tools/coupling/propagate.h"
+#include "tools/realtime/session.h"
+#include "tools/runs/optical_run.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque {
+namespace {
+
+constexpr double s_to_ns = 1e9;
+
+// Before all programs of ordinary priority, and with memory that is never paged out.
+void take_priority(const Console& console, int priority) {
+  // Ordinary threads may otherwise be woken 50 microseconds late, to save power.
+  ::prctl(PR_SET_TIMERSLACK, 1UL);
+  if (priority == 0) return;
+  sched_param wanted{};
+  wanted.sched_priority = priority;
+  const bool first = ::sched_setscheduler(0, SCHED_FIFO, &wanted) == 0;
+  const bool stays = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  if (first && stays) return;
+  console.line(std::string("  without ") + (first ? "" : "real-time priority ") +
+               (stays ? "" : "locked memory ") + "(not permitted: ulimit -r, ulimit -l)");
+}
+
+void print_serving(const Console& console, const ServeSettings& serve, const std::string& where) {
+  const bool lockstep = serve.mode == ServeSettings::Mode::lockstep;
+  console.line("serving at " + where + ", " + show(serve.rate_Hz) + " Hz" +
+               (lockstep ? ", in lockstep" : ""));
+  if (!serve.address.starts_with("127.")) {
+    console.line("  whoever reaches this address commands the platform: packets carry no secret");
+  }
+}
+
+void print_session(const Console& console, const Product& product) {
+  console.heading("Real time");
+  for (const Quantity& quantity : product.quantities) {
+    if (quantity.estimate.value == 0.0 && quantity.name != "ticks_missed") continue;
+    console.line("  " + padded(quantity.name, 28) + show(quantity.estimate.value));
+  }
+}
+
+// What acted, for propagate.commands.
+Recording commands_recording(Schedule commands, double last_tick_s) {
+  // The last holds on; a recording has two rows at least.
+  if (commands.time_s.size() == 1 && last_tick_s > commands.time_s.back()) {
+    commands.time_s.push_back(last_tick_s);
+    commands.held.push_back(commands.held.back());
+  }
+  Recording recording;
+  recording.time_s = commands.time_s;
+  for (int axis = 0; axis < 3; ++axis) {
+    Channel channel{std::string("command_") + "xyz"[axis] + "_N_m", {}};
+    for (const ZeroOrderHold& held : commands.held) {
+      channel.values.push_back(held.command_body_N_m[axis]);
+    }
+    recording.channels.push_back(std::move(channel));
+  }
+  return recording;
+}
+
+}  // namespace
+
+RunResult serve_experiment(const RunOptions& options, const Console& console) {
+  ServeSettings serve;
+  std::shared_ptr<Session> session;
+  const auto prepare = [&](const Settings& root, PropagationRun& run) {
+    serve = read_serve(root);
+    UdpSocket socket(serve.address, serve.port, static_cast<int64_t>(s_to_ns * serve.spin_s));
+    print_serving(console, serve, socket.where());
+    run.output_rate_Hz = run.options.tick_rate_Hz = serve.rate_Hz;
+    run.model.schedule = {};
+    session = std::make_shared<Session>(serve, std::move(socket), run.seed, run.initial.time_s);
+    run.commander = [session](const LiveRow& row) { return session->tick(row); };
+    take_priority(console, serve.realtime_priority);
+  };
+  RunResult result = run_propagate(options, console, {}, prepare).result;
+  session->finish();
+  const Product beside = session->product();
+  print_session(console, beside);
+  append(result.product, beside);
+  const std::string stamp = result.provenance.one_line();
+  const auto write = [session, stamp](const std::filesystem::path& path) {
+    write_recording(path, commands_recording(session->commands(), session->last_tick_s()), {stamp});
+  };
+  result.files.push_back({"commands.csv", write, "what acted, for propagate.commands"});
+  return result;
+}
+
+}  // namespace photorque
+
+namespace photorque::kinds::serve {
+namespace {
+
+void add_options(Command& command, CommandOptions& options) {
+  command.add_experiment(options);
+}
+
+void run(const CommandOptions& options, const Program&) {
+  const Console console = terminal(options);
+  write_results(options, console, serve_experiment(options, console));
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"serve",
+          "The platform in real time: measurements out, commands in, over UDP",
+          command_with(add_options, run),
+          {"platform", "environment", "disturbance", "sensors", "propagate", "serve", "light"},
+          "[platform]"};
+}
+
+}  // namespace photorque::kinds::serve

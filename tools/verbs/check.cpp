@@ -1,0 +1,356 @@
+// photorque check: everything about an experiment that can be known without running it.
+#include "tools/verbs/check.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+#include "attitude/camera/study.h"
+#include "attitude/disturbances/mass/moving_masses.h"
+#include "attitude/filtering/study.h"
+#include "attitude/propagation/run.h"
+#include "attitude/recordings/recording.h"
+#include "attitude/studies/budget.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "diagnosis/light/model/lab.h"
+#include "diagnosis/light/module/design.h"
+#include "scenes/experiment/toml.h"
+#include "tools/coupling/couple.h"
+#include "tools/keys/registry.h"
+#include "tools/realtime/session.h"
+#include "tools/runs/array_power.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/runs/light_sanity.h"
+#include "tools/sweeps/plan.h"
+#include "tools/verbs/fit_cell.h"
+#include "tools/verbs/supply.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque {
+namespace {
+
+std::string counted(size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+// The table of a mistake, "source[0]" of "lab.toml:18: source[0].power_W: found …".
+std::string table_of(const InputError& mistake) {
+  std::string line = mistake.what();
+  const size_t end = std::min(line.find(": found "), line.find(": expected "));
+  if (end != std::string::npos) line.resize(end);
+  const size_t colon = line.rfind(": ");
+  if (colon != std::string::npos) line.erase(0, colon + 2);
+  return line.substr(0, line.find('.'));
+}
+
+// What is found, table by table, with the first mistake of each.
+class Checker {
+ public:
+  Checker(const RunOptions& options, KeyCheck keys)
+      : options_(options), by_declaration_(keys == KeyCheck::by_declaration) {}
+
+  CheckReport report() {
+    if (by_declaration_) {
+      attempt([&] { report_.mistakes = misread_keys(written(), tables_); });
+      for (const InputError& mistake : report_.mistakes) misread_.push_back(table_of(mistake));
+    }
+    attempt([&] {
+      file_ = read_experiment_text(options_.experiment, options_.experiment_text(),
+                                   options_.all_overrides());
+    });
+    if (file_) note_tables();
+    if (file_) read_tables();
+    return std::move(report_);
+  }
+
+ private:
+  // The file with its overrides, as it stands.
+  SettingsNode written() const {
+    SettingsNode root = parse_toml(options_.experiment_text(), options_.experiment.string());
+    for (const std::string& change : options_.all_overrides()) apply_override(root, change);
+    return root;
+  }
+
+  void note_tables() {
+    for (const Key& table : tables_) {
+      if (file_->settings.has(table.name)) report_.tables.push_back(table.name);
+    }
+  }
+
+  void read_tables() {
+    const bool fits = file_->settings.has("fit");
+    // A scene without lamps beside a platform is for the camera alone.
+    const bool unlit = file_->sources.empty() && file_->settings.has("platform");
+    const bool is_module = file_->settings.has("module");
+    if (file_->scene_file && !unlit) check_light();
+    if (file_->settings.has("platform")) check_motion();
+    if (fits) check_fit();
+    if (is_module) check_module();
+    if (file_->settings.has("sweep")) check_sweep();
+    if (!file_->scene_file && !file_->settings.has("platform") && !fits && !is_module) {
+      add_mistake(file_->settings.error("", "nothing that a command starts from",
+                                        "[scene], [platform], [module] or [fit]"));
+    }
+  }
+
+  // Whether it went well; else its one line, once.
+  bool attempt(const std::function<void()>& work) {
+    try {
+      work();
+      return true;
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      const bool whole = error.names_file() || what.starts_with("--");
+      add_mistake(whole ? error : InputError({options_.experiment.string()}, what, "", ""));
+      return false;
+    }
+  }
+  void add_mistake(const InputError& mistake) {
+    const std::string line = mistake.what();
+    const bool known = std::ranges::any_of(
+        report_.mistakes, [&](const InputError& other) { return other.what() == line; });
+    // What a misspelt key leads to is no second mistake.
+    const bool follows = std::ranges::find(misread_, table_of(mistake)) != misread_.end();
+    if (!known && !follows) report_.mistakes.push_back(mistake);
+  }
+  void add(const std::string& command, const std::string& what) {
+    report_.commands.push_back({command, what});
+  }
+
+  void check_light() {
+    std::shared_ptr<OpticalRun> run;
+    if (!attempt([&] { run = std::make_shared<OpticalRun>(options_, Console()); })) return;
+    report_.notes = run->experiment().notices;
+    for (const std::string& doubt : run->experiment().warnings) report_.notes.push_back(doubt);
+    attempt([&] { read_published(file_->others("published")); });
+    for (const InputError& mistake : light_mistakes(*run)) add_mistake(mistake);
+    say_light(*run);
+    if (file_->settings.has("array")) attempt([&] { check_array(*run); });
+    check_recordings_of_light(*run);
+  }
+
+  // An experiment that says how light is read, or what is missing from it, is meant for them.
+  void check_recordings_of_light(const OpticalRun& run) {
+    const auto are_of_light = [](const Settings& sensors) {
+      return sensors.has("irradiance") || sensors.has("array");
+    };
+    const bool is_meant = file_->settings.has("platform")
+                              ? std::ranges::any_of(file_->others("sensors"), are_of_light)
+                              : file_->settings.has("sensors") || file_->settings.has("effect");
+    if (!is_meant) return;
+    attempt([&] {
+      const LightLab lab(run.experiment());
+      add("diagnose", "scans, sweeps and runs (--recording FILE) of " +
+                          counted(lab.lamps(), "lamp") + " on " + lab.receiver());
+    });
+  }
+
+  void say_light(const OpticalRun& run) {
+    const Experiment& experiment = run.experiment();
+    double power_W = 0.0;
+    for (const Beam& beam : experiment.beams) power_W += beam.emitter->power_W();
+    std::string onto;
+    for (size_t i = 0; i < experiment.file.receivers.size(); ++i) {
+      const NamedReceiver& receiver = experiment.receivers[i];
+      onto += (onto.empty() ? "" : ", ") + receiver.name + " (" + receiver.kind + ")";
+    }
+    add("trace", std::to_string(experiment.file.trace.rays) + " rays of " +
+                     counted(experiment.beams.size(), "lamp") + ", " + show(power_W) + " W, " +
+                     (onto.empty() ? "without receivers" : "onto " + onto));
+    add("render", std::to_string(experiment.camera.width) + " × " +
+                      std::to_string(experiment.camera.height) + " pixels");
+    const AttitudeGrid& grid = file_->torque_map;
+    if (file_->light_directions) {
+      add("torque-map", counted(file_->light_directions->elevation_rad.size(), "elevation") +
+                            " × " +
+                            counted(file_->light_directions->azimuth_rad.size(), "azimuth"));
+    } else {
+      add("torque-map", counted(grid.tilt_rad.size(), "tilt") + " × " +
+                            counted(grid.heading_rad.size(), "heading"));
+    }
+  }
+
+  void check_array(OpticalRun& run) {
+    const ArrayPower array = read_array_power(run);
+    for (const std::string& notice : array.notices) report_.notes.push_back(notice);
+    // Dark, but the cells must lie on the map.
+    const FluxMapReceiver& map = run.flux_map(array.flux_map);
+    const BinSums dark{map.bins(), 2, std::vector<double>(2 * map.bins(), 0.0)};
+    BinSums dark_angles;
+    if (array.incidence) {
+      const size_t bins = run.experiment().receivers[*array.incidence].receiver->bins();
+      dark_angles = {bins, 2, std::vector<double>(2 * bins, 0.0)};
+    }
+    cell_currents(array.design, array_light(map, dark, dark_angles), array.responsivity_A_W);
+    add("power", counted(static_cast<size_t>(array.design.cells()), "cell") + " on " + map.name());
+  }
+
+  void check_motion() {
+    RunOptions full = options_;
+    attempt([&] {
+      for (const std::string& one : orbit_overrides(*file_)) full.overrides.push_back(one);
+    });
+    std::unique_ptr<AttitudeExperiment> experiment;
+    if (!attempt([&] { experiment = std::make_unique<AttitudeExperiment>(full); })) return;
+    const Settings& settings = experiment->settings();
+    if (!attempt([&] { read_attitude_model(settings); })) return;
+    attempt([&] { say_propagation(read_propagation(settings)); });
+    attempt([&] {
+      const ServeSettings serve = read_serve(settings);
+      add("serve", show(serve.rate_Hz) + " Hz at " + serve.address);
+    });
+    add("fmu", "a unit for co-simulation by FMI 3.0");
+    if (settings.has("supply_trade")) {
+      attempt([&] { add("supply", supply_in_words(full)); });
+    }
+    attempt([&] {
+      const EstimateStudy study = read_estimate(settings);
+      add("estimate", "recordings of motion (--recording FILE), or simulated runs: " +
+                          std::to_string(study.runs));
+      const auto& camera = study.nominal.sensors.camera;
+      if (!camera || !camera->geometry) return;
+      const Platform& platform = study.nominal.model.platform;
+      read_camera_study(settings, *camera->geometry, platform.tilt_limit_rad);
+      add("camera", counted(camera->geometry->markers.size(), "marker"));
+    });
+    attempt([&] {
+      const Budget budget = read_budget(settings);
+      add("budget", counted(budget.entries.size(), "torque"));
+    });
+    attempt([&] {
+      if (!settings.has("balance")) return;
+      const Settings balance = own_table(settings, "balance", false);
+      const auto masses = read_moving_masses(balance);
+      balance.finish();
+      add("balance",
+          "a recording (--recording FILE); moving masses: " + std::to_string(masses.size()));
+    });
+    attempt([&] {
+      const Settings recording = own_table(settings, "recording", false);
+      read_recording_options(recording);
+      recording.finish();
+      add("diagnose", "recordings of motion (--recording FILE)");
+    });
+  }
+
+  void say_propagation(const PropagationRun& run) {
+    std::string light;
+    if (has_light(*file_)) {
+      const LightSettings settings = read_light(*file_);
+      require_light_once(*file_);
+      if (settings.mode == LightSettings::Mode::table) light = ", in light by a table";
+      if (settings.mode == LightSettings::Mode::trace) light = ", in light traced on the way";
+    }
+    add("propagate", show(run.duration_s) + " s of " + show(run.model.platform.mass_kg) +
+                         " kg under " + counted(run.model.disturbances.size(), "disturbance") +
+                         light);
+  }
+
+  void check_fit() {
+    attempt([&] { add("fit-cell", what_fit_asks(options_)); });
+  }
+
+  void check_module() {
+    attempt([&] {
+      const ModuleDesign design = read_module(file_->settings, options_.experiment.parent_path());
+      add("diagnose", "curves (--recording FILE) of a module of " +
+                          counted(static_cast<size_t>(design.cells), "cell") +
+                          " in series, beside " +
+                          (design.datasheet.empty()
+                               ? counted(design.references.size(), "reference curve")
+                               : counted(design.datasheet.size(), "point") + " of its datasheet"));
+    });
+  }
+
+  void check_sweep() {
+    attempt([&] {
+      const SweepPlan plan = read_sweep_plan(file_->others("sweep").front());
+      if (plan.designs() == 0) {
+        add("optimise", "over " + counted(plan.axes.size(), "key") + " by " + plan.verb);
+        return;
+      }
+      RunOptions first = options_;
+      for (const std::string& one : plan.overrides(0)) first.overrides.push_back(one);
+      read_experiment_text(first.experiment, first.experiment_text(), first.all_overrides());
+      add("sweep", counted(plan.designs(), "design") + " by " + plan.verb);
+    });
+  }
+
+  const RunOptions& options_;
+  bool by_declaration_;
+  std::vector<Key> tables_ = experiment_keys();
+  std::vector<std::string> misread_;  // tables with keys that are wrong by themselves
+  std::optional<ExperimentFile> file_;
+  CheckReport report_;
+};
+
+}  // namespace
+
+CheckReport run_check(const RunOptions& options, KeyCheck keys) {
+  return Checker(options, keys).report();
+}
+
+}  // namespace photorque
+
+namespace photorque::kinds::check {
+namespace {
+
+void add_options(Command& command, CommandOptions& options) {
+  command.add_experiment(options, Command::Folder::none);
+}
+
+void print_commands(const Console& console, const CheckReport& report,
+                    const std::vector<Verb>& verbs) {
+  for (const CheckReport::Command& command : report.commands) {
+    const Verb& verb = *std::ranges::find(verbs, command.name, &Verb::name);
+    std::string tables;
+    for (const std::string& table : report.tables) {
+      if (std::ranges::find(verb.tables, table) != verb.tables.end()) tables += " [" + table + "]";
+    }
+    console.line(padded(command.name, 12) + command.what);
+    console.line(padded("", 12) + "reads" + tables);
+  }
+}
+
+// What each command starts from, where the file has none of it.
+void print_lacking(const Console& console, const CheckReport& report,
+                   const std::vector<Verb>& verbs) {
+  std::vector<std::string> said;
+  for (const Verb& verb : verbs) {
+    if (verb.needs.empty() || std::ranges::find(said, verb.needs) != said.end()) continue;
+    said.push_back(verb.needs);
+    std::string names;
+    bool runs = false;
+    for (const Verb& other : verbs) {
+      if (other.needs != verb.needs) continue;
+      names += (names.empty() ? "" : ", ") + other.name;
+      runs = runs || std::ranges::find(report.commands, other.name, &CheckReport::Command::name) !=
+                         report.commands.end();
+    }
+    // Beside a sweep no search, and the other way round: both read [sweep].
+    if (!runs) console.line("not " + names + ": without " + verb.needs);
+  }
+}
+
+void run(const CommandOptions& options, const Program& program) {
+  const Console console = terminal(options);
+  const CheckReport report = run_check(options);
+  print_commands(console, report, program.verbs);
+  if (report.mistakes.empty()) print_lacking(console, report, program.verbs);
+  for (const std::string& note : report.notes) console.line("note: " + note);
+  if (report.mistakes.empty()) return;
+  for (size_t i = 0; i + 1 < report.mistakes.size(); ++i) {
+    std::fprintf(stderr, "%s\n", report.mistakes[i].what());
+  }
+  throw InputError(report.mistakes.back());
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"check", "What is wrong with an experiment, and what every command would do with it",
+          command_with(add_options, run)};
+}
+
+}  // namespace photorque::kinds::check

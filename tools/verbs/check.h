@@ -1,0 +1,34 @@
+// Everything about an experiment that can be known without running it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/errors.h"
+#include "tools/runs/options.h"
+
+namespace photorque {
+
+struct CheckReport {
+  struct Command {
+    std::string name;
+    std::string what;  // what the command would do, in a sentence
+  };
+  std::vector<Command> commands;
+  std::vector<std::string> tables;  // that the file has, in the order of the documents
+  // Every key that is unknown, of the wrong type or out of range; beside them, of tables without
+  // such, the first that a run would end with.
+  std::vector<InputError> mistakes;
+  std::vector<std::string> notes;  // what the readers had to assume
+};
+
+enum class KeyCheck {
+  by_declaration,  // tools/keys first, then the readers
+  by_readers,      // the readers alone: for the test that holds them against the declarations
+};
+
+// Reads the experiment as every command would: all files that it names, every table, the geometry;
+// and sends a few rays, to find lamps inside of solids and maps without light.
+CheckReport run_check(const RunOptions& options, KeyCheck keys = KeyCheck::by_declaration);
+
+}  // namespace photorque

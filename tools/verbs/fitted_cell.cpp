@@ -1,0 +1,177 @@
+#include "tools/verbs/fitted_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "core/constants.h"
+
+namespace photorque {
+namespace {
+
+using Is = CellRow::Is;
+
+// A number that is positive by its nature, and known to better than itself.
+bool is_determined(const CellRow& row) {
+  return row.is != Is::value || row.estimate.standard_error < row.estimate.value ||
+         row.estimate.standard_error == 0.0;
+}
+
+std::string words_of(const CellRow& row) {
+  const std::string value = show(row.estimate.value);
+  if (row.is == Is::lower_limit) return "above " + value + " (95 %): no leak shows";
+  if (row.is == Is::upper_limit) return "below " + value + " (95 %)";
+  // An error of ten times the number is none.
+  constexpr double hopeless = 10.0;
+  if (!(row.estimate.standard_error < hopeless * std::abs(row.estimate.value)) &&
+      !is_determined(row)) {
+    return "not determined; the best fit has " + value;
+  }
+  return show(row.estimate, "");
+}
+
+const char* kind_of(Is is) {
+  return is == Is::value ? "value" : is == Is::lower_limit ? "lower limit" : "upper limit";
+}
+
+}  // namespace
+
+double FitTask::thermal_V() const {
+  return cells_in_series * boltzmann_J_K * temperature_K / elementary_charge_C;
+}
+
+std::vector<CellRow> diode_rows(const SingleDiode& d, const FitTask& task) {
+  const double per_cell = 1.0 / task.thermal_V();
+  std::vector<CellRow> rows = {
+      {"photocurrent_A", d.photocurrent_A},
+      {"saturation_A", d.saturation_A},
+      {"ideality", {d.scale_V.value * per_cell, d.scale_V.standard_error * per_cell}},
+      {"series_ohm", d.series_ohm},
+      {"shunt_ohm", d.shunt_ohm}};
+  if (d.series_below_ohm) rows[3] = {"series_below_ohm", {*d.series_below_ohm}, Is::upper_limit};
+  if (d.shunt_above_ohm) rows[4] = {"shunt_above_ohm", {*d.shunt_above_ohm}, Is::lower_limit};
+  return rows;
+}
+
+Product parameter_product(const std::vector<CellRow>& rows) {
+  Product product;
+  Table table =
+      Table::of("parameters", "Fitted parameters", {"parameter", "is", "value", "standard_error"});
+  for (const CellRow& row : rows) {
+    product.quantities.push_back({row.name, row.estimate});
+    const bool is_value = row.is == Is::value;
+    table.row()
+        .set("parameter", row.name)
+        .set("is", kind_of(row.is))
+        .set("value", row.estimate.value)
+        .set("standard_error",
+             is_value ? row.estimate.standard_error : std::numeric_limits<double>::quiet_NaN());
+  }
+  product.tables.push_back(table);
+  return product;
+}
+
+void print_rows(const Console& console, const std::vector<CellRow>& rows) {
+  console.heading("Fitted parameters (± standard error)");
+  for (const CellRow& row : rows) {
+    // A limit is printed beside the name of what it limits.
+    std::string name = row.name;
+    if (row.is != Is::value) name = name.substr(0, name.find('_')) + "_ohm";
+    console.line("  " + padded(name, 26) + words_of(row));
+  }
+}
+
+void print_undetermined(const Console& console, const std::vector<CellRow>& rows) {
+  std::string names;
+  for (const CellRow& row : rows) {
+    if (!is_determined(row)) names += (names.empty() ? "" : ", ") + row.name;
+  }
+  if (!names.empty()) console.line("  these data do not determine " + names);
+}
+
+void print_bounds(const Console& console, const std::vector<BoundReached>& bounds) {
+  for (const BoundReached& bound : bounds) {
+    console.line("  warning: " + bound.key + " ended on its bound, " + show(bound.value) + ": " +
+                 bound.meaning);
+  }
+}
+
+void print_key(const Console& console, const char* name, double value, const std::string& comment) {
+  char text[80];
+  std::snprintf(text, sizeof text, "  %s = %.9g", name, value);
+  console.line(text + (comment.empty() ? "" : "   # " + comment));
+}
+
+void print_cell(const Console& console, const SingleDiode& d, const FitTask& task) {
+  const double cells = task.cells_in_series;
+  console.heading("One cell, for [array.cell_parameters]");
+  print_key(console, "saturation_1_A", d.saturation_A.value);
+  print_key(console, "ideality_1", d.scale_V.value / task.thermal_V());
+  if (d.series_below_ohm) {
+    print_key(console, "series_ohm", *d.series_below_ohm / cells, "an upper limit (95 %)");
+  } else {
+    print_key(console, "series_ohm", d.series_ohm.value / cells);
+  }
+  if (d.shunt_above_ohm) {
+    print_key(console, "shunt_ohm", *d.shunt_above_ohm / cells, "a lower limit (95 %)");
+  } else {
+    print_key(console, "shunt_ohm", d.shunt_ohm.value / cells);
+  }
+  print_key(console, "reference_temperature_K", task.temperature_K);
+  console.line("  reference_area_m2 =   # to be filled in: the area of one cell");
+}
+
+// What the fitted curve leaves of each measured point, between the curve's own points straight.
+Plot::Curve residuals_of(const Plot::Curve& measured, const Plot::Curve& fitted) {
+  Plot::Curve left{"", measured.x, {}, {}, true};
+  for (size_t i = 0; i < measured.x.size(); ++i) {
+    const auto above = std::upper_bound(fitted.x.begin(), fitted.x.end(), measured.x[i]);
+    const auto last = static_cast<std::ptrdiff_t>(fitted.x.size()) - 1;
+    const auto k =
+        static_cast<size_t>(std::clamp<std::ptrdiff_t>(above - fitted.x.begin(), 1, last));
+    const double t = (measured.x[i] - fitted.x[k - 1]) / (fitted.x[k] - fitted.x[k - 1]);
+    left.y.push_back(measured.y[i] - (1.0 - t) * fitted.y[k - 1] - t * fitted.y[k]);
+  }
+  return left;
+}
+
+void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
+                  const std::vector<ArrayPoint>& maxima, Product& product) {
+  Plot plot{"fit", "Measured and fitted", "voltage [V]", "current [A]", {}, false, false, {}};
+  Plot::Panel power{"power [W]", {}, false};
+  Plot::Curve measured{"measured", {}, {}, {}, true}, line{"fitted", {}, {}, {}, false};
+  for (const IvSweep& sweep : task.sweeps) {
+    measured.x.insert(measured.x.end(), sweep.voltage_V.begin(), sweep.voltage_V.end());
+    measured.y.insert(measured.y.end(), sweep.current_A.begin(), sweep.current_A.end());
+  }
+  for (const RatedPoint& p : task.datasheet) {
+    for (const auto& [v, i] :
+         {std::pair{0.0, p.short_circuit_A}, {p.maximum_V, p.maximum_A}, {p.open_circuit_V, 0.0}}) {
+      measured.x.push_back(v);
+      measured.y.push_back(i);
+    }
+  }
+  for (const ArrayPoint& p : fitted) {
+    line.x.push_back(p.voltage_V);
+    line.y.push_back(p.current_A);
+  }
+  const auto times_voltage = [](Plot::Curve curve) {
+    for (size_t i = 0; i < curve.x.size(); ++i) curve.y[i] *= curve.x[i];
+    return curve;
+  };
+  Plot::Curve peaks{"maxima", {}, {}, {}, true};
+  for (const ArrayPoint& p : maxima) {
+    peaks.x.push_back(p.voltage_V);
+    peaks.y.push_back(p.power_W());
+  }
+  power.curves = {times_voltage(measured), times_voltage(line), peaks};
+  plot.curves = {measured, line};
+  plot.below.push_back(power);
+  if (line.x.size() > 1) {
+    plot.below.push_back({"left [A]", {residuals_of(measured, line)}, false, {0.0}});
+  }
+  product.plots.push_back(plot);
+}
+
+}  // namespace photorque

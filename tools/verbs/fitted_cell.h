@@ -1,0 +1,58 @@
+// What `fit-cell` was asked for; the fitted cell in words, as a table and as a picture.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/product.h"
+#include "photovoltaics/fit/fit.h"
+#include "photovoltaics/network/curve.h"
+#include "tools/runs/console.h"
+
+namespace photorque {
+
+// [fit] of an experiment.
+struct FitTask {
+  std::vector<std::filesystem::path> files;
+  std::vector<IvSweep> sweeps;
+  std::vector<RatedPoint> datasheet;
+  TemperatureSlopes slopes;
+  RatedTolerance tolerance;
+  SweepNoise noise;
+  int cells_in_series = 1;
+  int substrings = 0;  // 0: even light
+  double temperature_K = 298.15;
+
+  // n V_t of the whole device over the ideality of one of its cells, at that temperature.
+  double thermal_V() const;
+};
+
+// A figure of a fit. A limit (95 %, one-sided) is what is left of a number that the data do not
+// determine; its name says so: "shunt_above_ohm".
+struct CellRow {
+  enum class Is { value, lower_limit, upper_limit };
+  std::string name;
+  Estimate estimate;
+  Is is = Is::value;
+};
+
+std::vector<CellRow> diode_rows(const SingleDiode& diode, const FitTask& task);
+
+// The figures, and the table `parameters`.
+Product parameter_product(const std::vector<CellRow>& rows);
+void print_rows(const Console& console, const std::vector<CellRow>& rows);
+// Parameters that are positive by their nature and come out with an error as large as themselves.
+void print_undetermined(const Console& console, const std::vector<CellRow>& rows);
+// Each bound on which the fit ended: key, bound, what it means.
+void print_bounds(const Console& console, const std::vector<BoundReached>& bounds);
+void print_key(const Console& console, const char* name, double value,
+               const std::string& comment = "");
+// The keys of an experiment's [array.cell_parameters] for one of the cells.
+void print_cell(const Console& console, const SingleDiode& diode, const FitTask& task);
+
+// Measured points and a fitted curve, as current and as power.
+void add_fit_plot(const FitTask& task, const std::vector<ArrayPoint>& fitted,
+                  const std::vector<ArrayPoint>& maxima, Product& product);
+
+}  // namespace photorque

@@ -1,0 +1,276 @@
+// photorque new: a first experiment, commented, for a model of one's own or for a platform alone.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <set>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/text/parse.h"
+#include "receivers/surface_grid.h"
+#include "scenes/cad/model.h"
+#include "scenes/experiment/toml.h"
+#include "scenes/gltf/reader.h"
+#include "tools/verbs/check.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque::kinds::new_experiment {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options : CommandOptions {
+  std::optional<fs::path> scene;
+};
+
+void add_options(Command& command, Options& options) {
+  command.add_experiment(options, Command::Folder::none);
+  command.add("--scene", options.scene, "A model (glTF, GLB, STL or OBJ) to be lit");
+}
+
+constexpr const char* platform_text = R"(
+# ---- The platform: for budget, propagate, balance and diagnose
+[platform]
+topology = "tabletop"                 # dumbbell | tabletop | hollow | free (a spacecraft)
+mass_kg = 7.0                         # of everything that turns
+inertia_kg_m2 = [[0.11, 0, 0], [0, 0.12, 0], [0, 0, 0.19]]   # about the centre of rotation, body axes
+tilt_limit_deg = 30                   # the bearing's stop
+
+[environment]
+gravity_m_s2 = 9.80665
+latitude_deg = 45.5
+
+# One table for every torque that acts; docs/disturbances.md has them all. A number may be given with
+# its uncertainty, which diagnose then fits.
+[[disturbance]]
+kind = "static_unbalance"
+offset_m = { value = [0, 0, -1e-5], sigma = [2e-7, 2e-7, 1e-6] }   # of the centre of mass
+
+[[disturbance]]
+kind = "bearing_drag"
+coefficient_N_m_s = 2e-5
+
+[sensors.camera]
+noise_arcsec = [37, 37, 12]           # about lab x, y and z
+[sensors.gyro]
+noise_rad_s = 2e-4
+
+[propagate]
+duration_s = 600
+initial_tilt_deg = 1
+)";
+
+std::string quoted(const std::string& text) {
+  return toml_value({text});
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+double top_m(const Scene& scene) {
+  double top = 0.0;
+  for (const Instance& instance : scene.instances) {
+    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
+      top = std::max(top, (instance.body_from_mesh * vertex).z());
+    }
+  }
+  return top;
+}
+
+double upward_area_m2(const Scene& scene, uint32_t instance) {
+  double area = 0.0;
+  const std::vector<uint32_t> alone = {instance};
+  for (const SurfaceFace& face : faces_of(scene, alone, Vec3::UnitZ())) {
+    area += face.area_body_m2.z();
+  }
+  return area;
+}
+
+// The middle, seen from above, of all parts of that name.
+Vec3 middle_m(const Scene& scene, const std::string& path) {
+  Eigen::AlignedBox3d box;
+  for (const Instance& instance : scene.instances) {
+    if (instance.path != path) continue;
+    for (const Vec3& vertex : scene.meshes[instance.mesh].vertices_m) {
+      box.extend(Vec3(instance.body_from_mesh * vertex));
+    }
+  }
+  return box.isEmpty() ? Vec3(Vec3::Zero()) : Vec3(box.center());
+}
+
+// The part that light from above most likely is meant for: one whose name says so, else the one
+// with most surface to be seen from above.
+std::string lit_node(const Scene& scene) {
+  std::string best;
+  double best_score = -1.0;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const std::string& path = scene.instances[i].path;
+    const auto says = [&](const char* word) { return path.find(word) != std::string::npos; };
+    const double bonus = says("solar") || says("cells") || says("panel") ? 1e6 : 0.0;
+    const double area_m2 = upward_area_m2(scene, i);
+    const double score = area_m2 > 0.0 ? area_m2 * (1.0 + bonus) : -1.0;
+    if (score > best_score) {
+      best_score = score;
+      best = path;
+    }
+  }
+  return best;
+}
+
+std::string listed(const std::string& what, const std::set<std::string>& names) {
+  constexpr size_t most = 40;
+  std::string text = "# " + what + ":\n";
+  size_t count = 0;
+  for (const std::string& name : names) {
+    if (++count > most) return text + "#   and " + std::to_string(names.size() - most) + " more\n";
+    text += "#   " + quoted(name) + "\n";
+  }
+  return text;
+}
+
+// What is to be known of a model before it can be read: of STL and OBJ its unit, by --set.
+struct SceneWords {
+  std::optional<CadConventions> cad;
+  std::string unit, up;
+};
+
+SceneWords scene_words(const Options& options) {
+  std::string ending = options.scene->extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending != ".gltf" && ending != ".glb" && !cad_format(*options.scene)) {
+    throw InputError({options.scene->string()}, "", "a model \"" + ending + "\"",
+                     "glTF, STL or OBJ (.gltf, .glb, .stl, .obj): others are converted to one of "
+                     "them, as docs/files.md says");
+  }
+  SettingsNode root;
+  for (const std::string& assignment : options.overrides) apply_override(root, assignment);
+  const Settings settings(std::make_shared<const SettingsNode>(std::move(root)));
+  SceneWords words;
+  if (cad_format(*options.scene)) {
+    if (!settings.has("scene") || !settings.table("scene").has("unit")) {
+      throw InputError({options.scene->string()}, "scene.unit", "nothing",
+                       "the unit of its lengths, which the file does not say: --set scene.unit=mm");
+    }
+    const Settings scene = settings.table("scene");
+    const std::vector<std::string> units = cad_units(), axes = {"z", "y"};
+    words.unit = units[scene.choice("unit", units)];
+    words.up = axes[scene.choice_or("up", axes, 0)];
+    words.cad = CadConventions{metres_of_unit(words.unit), words.up == "y"};
+  }
+  settings.finish();
+  return words;
+}
+
+std::string scene_text(const SceneWords& words) {
+  if (!words.cad) {
+    return "   # metres, +Y up: glTF (x, y, z) is body (x, -z, y), its origin the centre of "
+           "rotation\n# metres_per_unit = 0.001            # of a model in millimetres\n\n";
+  }
+  return "\nunit = \"" + words.unit +
+         "\"                           # of lengths in the file\nup = \"" + words.up +
+         "\"                              # " +
+         (words.up == "y" ? "(x, y, z) is body (x, -z, y)" : "its axes are the body's") +
+         ", its origin the centre of rotation\n\n";
+}
+
+std::string materials_text(const SceneWords& words, const std::set<std::string>& materials) {
+  if (!words.cad) {
+    return listed("Materials whose optics may be given here instead of derived", materials) +
+           "# [[material]]\n# name = \"...\"\n# absorptance = 0.9\n# diffuse = 0.1\n\n";
+  }
+  std::string text = "# The file says nothing of optics: measure or look them up.\n";
+  for (const std::string& name : materials) {
+    text += "[[material]]\nname = " + quoted(name) + "\nabsorptance = 0.5\ndiffuse = 0.5\n\n";
+  }
+  return text;
+}
+
+std::string light_text(const GltfModel& model, const std::string& file, const SceneWords& words) {
+  const Scene& scene = model.scene;
+  std::set<std::string> nodes, materials;
+  for (const Instance& instance : scene.instances) {
+    nodes.insert(instance.path);
+    if (!instance.material.empty()) materials.insert(instance.material);
+  }
+  const double radius_m = scene.radius_m(), height_m = top_m(scene) + 2.0 * radius_m;
+  const std::string lit = lit_node(scene);
+  const Vec3 above_m = middle_m(scene, lit);
+  // No digits of a middle that is the model's own but for rounding.
+  const auto small = [&](double x_m) { return std::abs(x_m) < 1e-4 * radius_m ? 0.0 : x_m; };
+  return "[scene]\nfile = " + quoted(file) + scene_text(words) + materials_text(words, materials) +
+         "# ---- Light\n[[source]]\nkind = \"led\"                         # led | led_array | "
+         "laser "
+         "| sun | solar_simulator | ies | ray_file\npower_W = 10                          # "
+         "radiant\n"
+         "aperture_diameter_m = " +
+         number(0.1 * radius_m) +
+         "\nprofile = \"gaussian\"\nfwhm_deg = 10                         # of the radiant "
+         "intensity\nwavelength_nm = 730\nposition_m = [" +
+         number(small(above_m.x())) + ", " + number(small(above_m.y())) + ", " + number(height_m) +
+         "]              # lab: z up; above the part that is measured\ndirection = [0, 0, -1]\n\n# "
+         "---- What is measured\n" +
+         listed("Parts", nodes) + "[[receiver]]\nkind = \"flux_map\"\nnode = " + quoted(lit) +
+         "\nfacing = [0, 0, 1]                    # only faces turned up\nbins = [100, 100]\n\n"
+         "[[receiver]]\nkind = \"wrench\"                       # force and torque of light on the "
+         "whole\nname = \"platform\"\n\n[attitude]\ntilt_deg = 0\nheading_deg = 0\n\n[trace]\nrays "
+         "= 1048576                        # standard errors fall with their root\n\n"
+         "[torque_map]                          # torque-map: the torque of light at every "
+         "attitude\n"
+         "tilt_deg = [0, 10, 20, 30]\nheading_deg = [0, 45, 90, 135, 180, 225, 270, 315]   # 0: "
+         "leans towards +x\n"
+         "rays = 131072                         # at each\n";
+}
+
+void run(const Options& options, const Program&) {
+  const Console console = terminal(options);
+  std::error_code unreadable;
+  if (fs::exists(options.experiment, unreadable)) {
+    throw InputError({options.experiment.string()}, "", "a file that is there already",
+                     "a name for a new one");
+  }
+  std::string text =
+      "# Made by photorque new: a first guess at everything. Keys carry their unit; "
+      "docs/experiment.md has them all.\n# photorque check " +
+      options.experiment.filename().string() + " says what can be done with it.\n\n";
+  if (options.scene) {
+    const SceneWords words = scene_words(options);
+    const GltfModel model =
+        words.cad ? read_cad(*options.scene, *words.cad) : read_gltf(*options.scene);
+    const fs::path file = fs::absolute(*options.scene)
+                              .lexically_proximate(fs::absolute(options.experiment).parent_path());
+    text += light_text(model, file.generic_string(), words);
+  } else if (!options.overrides.empty()) {
+    throw InputError({options.experiment.string()}, "", "--set " + options.overrides.front(),
+                     "nothing without --scene: the new file is there to be changed");
+  } else {
+    text += std::string(platform_text).substr(1);
+  }
+  // So that names of files beside it can be followed.
+  if (options.experiment.has_parent_path()) make_folders(options.experiment.parent_path());
+  RunOptions checked;
+  checked.experiment = options.experiment;
+  checked.text = text;
+  const CheckReport report = run_check(checked);
+  if (!report.mistakes.empty()) throw InputError(report.mistakes.front());
+  write_file_whole(options.experiment, text);
+  console.line("Written to " + options.experiment.string());
+  for (const CheckReport::Command& command : report.commands) {
+    console.line("  " + padded(command.name, 12) + command.what);
+  }
+  for (const std::string& note : report.notes) console.line("note: " + note);
+}
+
+}  // namespace
+
+Verb kind() {
+  return {
+      "new",
+      "A first experiment, commented: for a model (--scene; glTF, STL, OBJ), or a platform alone",
+      command_with(add_options, run)};
+}
+
+}  // namespace photorque::kinds::new_experiment

@@ -1,0 +1,153 @@
+// photorque optimise: the best design over continuous keys, without derivatives.
+#include <algorithm>
+#include <cmath>
+
+#include "core/text/parse.h"
+#include "tools/sweeps/optimiser.h"
+#include "tools/sweeps/pictures.h"
+#include "tools/sweeps/values.h"
+#include "tools/verbs/studies.h"
+
+namespace photorque::kinds::optimise {
+namespace {
+
+// The axes of [sweep] as a box. InputError for one without ends.
+SearchBox box_of(const ExperimentFile& file, const SweepPlan& plan) {
+  SearchBox box;
+  for (const SweepAxis& axis : plan.axes) {
+    if (!axis.low || !axis.high || !(*axis.low < *axis.high)) {
+      throw file.settings.error("sweep", "an axis " + axis.key + " that is no range",
+                                "from and to, one below the other");
+    }
+    box.low.push_back(*axis.low);
+    box.high.push_back(*axis.high);
+  }
+  return box;
+}
+
+// The experiment as it stands, where it says what an axis is; else the middle.
+std::vector<double> start_of(const SearchBox& box, const SweepPlan& plan,
+                             const RunIdentity& identity) {
+  std::vector<double> start;
+  for (size_t i = 0; i < plan.axes.size(); ++i) {
+    double value = 0.5 * (box.low[i] + box.high[i]);
+    try {
+      value = number_in(toml_text(identity.value({}, plan.axes[i].key))).value_or(value);
+    } catch (const InputError&) {
+      // In another unit, or not said at all.
+    }
+    start.push_back(std::clamp(value, box.low[i], box.high[i]));
+  }
+  return start;
+}
+
+class Search {
+ public:
+  Search(const CommandOptions& options, const std::vector<Verb>& verbs)
+      : options_(options),
+        console_(terminal(options)),
+        file_(read_experiment_file(options.experiment, options.all_overrides())),
+        plan_(read_study_plan(file_, verbs)),
+        engine_(study_task(options, plan_, verbs, SweepFiles{options.out_folder()}.database())),
+        evaluator_(plan_, engine_) {
+    if (plan_.objectives.empty()) {
+      throw file_.settings.error("sweep.maximise", "nothing", "maximise or minimise");
+    }
+    // From now on the designs are those that the search asks for.
+    plan_.grid = false;
+    box_ = box_of(file_, plan_);
+    for (SweepAxis& axis : plan_.axes) axis.values.clear();
+  }
+
+  void run() {
+    box_.start = start_of(box_, plan_, engine_.identity());
+    const SearchPlan& search = plan_.search;
+    const size_t all = search.global + search.local;
+    console_.heading("At most " + std::to_string(all) + " designs by `" + plan_.verb + '`');
+    progress_ = console_.progress("search");
+    search_box(box_, search.global, search.local, search.precision,
+               [this](std::span<const double> point) { return value_at(point); });
+    const Changes none;
+    result_.nominal = evaluator_.evaluate({&none, 1}).front();
+    console_.done();
+    console_.line("  " + std::to_string(result_.designs.size()) + " designs; " +
+                  std::to_string(engine_.made()) + " runs now, " + std::to_string(engine_.kept()) +
+                  " kept from before");
+    const bool all_failed =
+        std::ranges::none_of(result_.designs, [](const Design& d) { return d.error.empty(); });
+    if (all_failed) {
+      throw_failed_study(options_, {{}, 2, result_.designs.front().error}, 0,
+                         result_.designs.size());
+    }
+    Product more;
+    more.plots.push_back(search_plot(plan_, result_));
+    finish_study({options_, console_, file_, plan_, engine_, std::move(result_)}, true,
+                 std::move(more));
+  }
+
+ private:
+  PointValue value_at(std::span<const double> point) {
+    Changes changes;
+    for (size_t i = 0; i < point.size(); ++i) {
+      plan_.axes[i].values.push_back(toml_number(point[i]));
+      changes.push_back(plan_.axes[i].key + "=" + plan_.axes[i].values.back());
+    }
+    result_.designs.push_back(evaluator_.evaluate({&changes, 1}).front());
+    const Design& design = result_.designs.back();
+    const size_t all = std::max<size_t>(1, plan_.search.global + plan_.search.local);
+    if (progress_) {
+      progress_(
+          std::min(1.0, static_cast<double>(result_.designs.size()) / static_cast<double>(all)));
+    }
+    PointValue value{!design.error.empty()};
+    const Objective& objective = plan_.objectives.front();
+    const auto merit = figure_of(design, plan_.judged_column(objective));
+    value.failed = value.failed || !merit;
+    if (merit) value.merit = objective.maximise ? merit->value : -merit->value;
+    for (const Constraint& constraint : plan_.constraints) {
+      const auto figure = figure_of(design, constraint.figure.column());
+      value.failed = value.failed || !figure;
+      value.margins.push_back(figure ? relative_margin(constraint, figure->value) : -1.0);
+    }
+    return value;
+  }
+
+  // In parts of the limit, so that constraints of any unit weigh alike.
+  static double relative_margin(const Constraint& constraint, double value) {
+    const auto part = [](double margin, double limit) {
+      return std::isinf(limit) || limit == 0.0 ? margin : margin / std::abs(limit);
+    };
+    const double above = value - constraint.at_least, below = constraint.at_most - value;
+    return std::min(part(above, constraint.at_least), part(below, constraint.at_most));
+  }
+
+  const CommandOptions& options_;
+  Console console_;
+  ExperimentFile file_;
+  SweepPlan plan_;
+  RunEngine engine_;
+  DesignEvaluator evaluator_;
+  SearchBox box_;
+  SweepResult result_;
+  std::function<void(double)> progress_;
+};
+
+void add_options(Command& command, CommandOptions& options) {
+  command.add_traced_experiment(options);
+}
+
+void run(const CommandOptions& options, const Program& program) {
+  Search(options, program.verbs).run();
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"optimise",
+          "The best design over the axes of a sweep, without derivatives",
+          command_with(add_options, run),
+          {"sweep"},
+          "[sweep]"};
+}
+
+}  // namespace photorque::kinds::optimise

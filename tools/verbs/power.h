@@ -1,0 +1,21 @@
+// Trace, then the solar array.
+#pragma once
+
+#include <memory>
+
+#include "tools/runs/array_power.h"
+#include "tools/runs/optical_run.h"
+
+namespace photorque {
+
+struct PowerRun {
+  std::shared_ptr<const OpticalRun> run;
+  OpticalResult light;
+  ArrayPower array;
+  ArrayResult power;
+  RunResult result;
+};
+
+PowerRun run_power(const RunOptions& options, const Console& console);
+
+}  // namespace photorque

@@ -1,0 +1,84 @@
+// photorque schema: the keys of experiments for editors, documents and whoever asks for one.
+#include <cstdio>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "tools/keys/document.h"
+#include "tools/keys/registry.h"
+#include "tools/keys/schema.h"
+#include "tools/keys/words.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque::kinds::schema {
+namespace {
+
+// A key by its path, and the table that holds it: "source.power_W".
+struct FoundKey {
+  std::string path;  // with the choice that brings it: "source (led).power_W"
+  const Key* key;
+};
+
+void find(const std::vector<Key>& keys, const std::string& written, const std::string& path,
+          const std::string& wanted, std::vector<FoundKey>& found) {
+  for (const Key& key : keys) {
+    const std::string name = written.empty() ? key.name : written + "." + key.name;
+    const std::string full = path.empty() ? key.name : path + "." + key.name;
+    if (name == wanted) found.push_back({full, &key});
+    find(key.keys, name, full, wanted, found);
+    for (const Key::Choice& choice : key.choices) {
+      find(choice.keys, written, path + " (" + choice.name + ")", wanted, found);
+    }
+  }
+}
+
+void print_key(const std::string& wanted) {
+  const std::vector<Key> tables = experiment_keys();
+  std::vector<FoundKey> found;
+  find(tables, "", "", wanted, found);
+  if (found.empty()) {
+    throw InputError({"--key"}, "", wanted, "a key with its table, such as source.power_W");
+  }
+  for (const FoundKey& one : found) {
+    std::printf("%s: %s\n", one.path.c_str(), description_of(*one.key).c_str());
+  }
+}
+
+struct Options : CommandOptions {
+  std::string key;                               // to be explained
+  std::vector<std::filesystem::path> documents;  // whose tables of keys are renewed
+};
+
+void add_options(Command& command, Options& options) {
+  command.add_common(options);
+  command.add("--out", options.out, "Write the schema into this file");
+  command.add("--key", options.key, "Explain one key instead: source.power_W");
+  command
+      .add("--document", options.documents,
+           "Instead renew the tables of keys in this Markdown file, between its marks")
+      .is_one_each = true;
+}
+
+void run(const Options& options, const Program&) {
+  if (!options.key.empty()) return print_key(options.key);
+  for (const std::filesystem::path& document : options.documents) {
+    write_file_whole(document,
+                     with_key_tables(read_file(document), experiment_keys(), document.string()));
+  }
+  if (!options.documents.empty()) return;
+  const std::string schema = json_schema(experiment_keys());
+  if (options.out) {
+    write_file_whole(*options.out, schema);
+  } else {
+    std::fputs(schema.c_str(), stdout);
+  }
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"schema",
+          "Every key of an experiment: as a JSON Schema for editors, or one key's meaning",
+          command_with(add_options, run)};
+}
+
+}  // namespace photorque::kinds::schema

@@ -1,0 +1,118 @@
+// photorque supply: ways to bring power aboard, side by side.
+#include "tools/verbs/supply.h"
+
+#include "attitude/propagation/run.h"
+#include "core/constants.h"
+#include "tools/runs/attitude_run.h"
+#include "tools/supply/options.h"
+#include "tools/supply/report.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque {
+namespace {
+
+SupplyTask read_task(const Settings& root, const Settings& s) {
+  SupplyTask task;
+  task.model = read_attitude_model(root).model;
+  task.model.disturbances.clear();
+  task.load_W = s.number_or("load_W", task.load_W, Range::positive());
+  task.duration_s = s.number_or("duration_s", task.duration_s, Range::positive());
+  const double usual_rad = task.model.platform.tilt_limit_rad.value_or(30.0 * degree_rad);
+  const double most_rad =
+      s.number_or("tilt_max_deg", usual_rad, {0.0, 80.0 * degree_rad, true, false});
+  const int64_t tilts = s.integer_or("tilts", 7, 2, 181);
+  for (int64_t i = 0; i < tilts; ++i) {
+    task.tilt_rad.push_back(most_rad * static_cast<double>(i) / static_cast<double>(tilts - 1));
+  }
+  return task;
+}
+
+// A table that may be absent, with its own defaults.
+Settings table_or_empty(const Settings& s, const std::string& key) {
+  if (s.has(key)) return s.table(key);
+  return Settings(std::make_shared<const SettingsNode>(), s.name() + "." + key);
+}
+
+// The ways but for those by light, whose tables are handed on.
+struct TradeWithoutLight {
+  SupplyTrade trade;
+  std::vector<Settings> beams;
+};
+
+TradeWithoutLight read_trade(const Settings& root, const Settings& s) {
+  TradeWithoutLight read;
+  read.beams = s.tables("beam");
+  read.trade.task = read_task(root, s);
+  SupplyTrade& trade = read.trade;
+  const Settings battery = table_or_empty(s, "battery");
+  trade.options.push_back(battery_option(battery, trade.task));
+  constexpr int steps = 20;
+  for (int i = 0; i <= steps; ++i) {
+    trade.charge_fraction.push_back(static_cast<double>(i) / steps);
+    trade.battery_torque_N_m.push_back(
+        battery_torque_N_m(battery, trade.task, trade.charge_fraction.back()));
+  }
+  trade.options.push_back(cable_option(table_or_empty(s, "cable"), trade.task));
+  for (const Settings& one : s.tables("microwave")) {
+    trade.options.push_back(microwave_option(one, trade.task));
+  }
+  trade.options.push_back(induction_option(table_or_empty(s, "induction"), trade.task));
+  return read;
+}
+
+}  // namespace
+
+std::string supply_in_words(const RunOptions& options) {
+  const AttitudeExperiment experiment(options);
+  const Settings s = own_table(experiment.settings(), "supply_trade", true);
+  const TradeWithoutLight read = read_trade(experiment.settings(), s);
+  std::string words;
+  for (const SupplyOption& option : read.trade.options) words += option.name + ", ";
+  for (const Settings& beam : read.beams) words += read_beam(beam, options).name + ", ";
+  s.finish();
+  return words + "for " + show(read.trade.task.load_W) + " W";
+}
+
+RunResult run_supply(const RunOptions& options, const Console& console) {
+  const WallTime wall;
+  const AttitudeExperiment experiment(options);
+  const Settings s = own_table(experiment.settings(), "supply_trade", true);
+  TradeWithoutLight read = read_trade(experiment.settings(), s);
+  SupplyTrade trade = std::move(read.trade);
+  std::vector<BeamSettings> beams;
+  for (const Settings& beam : read.beams) beams.push_back(read_beam(beam, options));
+  s.finish();
+  for (const BeamSettings& beam : beams) {
+    trade.options.push_back(beam_option(beam, trade.task, console));
+  }
+  Product product = supply_product(trade);
+  print_supply(console, product, trade);
+  return {
+      std::move(product), experiment.provenance(options.seed.value_or(0)), {wall.elapsed_s(), {}}};
+}
+
+}  // namespace photorque
+
+namespace photorque::kinds::supply {
+namespace {
+
+void add_options(Command& command, CommandOptions& options) {
+  command.add_experiment(options);
+}
+
+void run(const CommandOptions& options, const Program&) {
+  const Console console = terminal(options);
+  write_results(options, console, run_supply(options, console));
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"supply",
+          "Battery, cable, microwaves, coils or light: what each delivers, weighs and disturbs",
+          command_with(add_options, run),
+          {"platform", "environment", "disturbance", "sensors", "supply_trade"},
+          "[supply_trade]"};
+}
+
+}  // namespace photorque::kinds::supply

@@ -1,0 +1,230 @@
+// photorque torque-map: force, torque and power over a grid of attitudes, or of directions of
+// light.
+#include "tools/verbs/torque_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "receivers/wrench/table_product.h"
+#include "tools/pages/pages.h"
+#include "tools/runs/array_power.h"
+#include "tools/sunlight/direction_map.h"
+#include "tools/verbs/verb.h"
+
+namespace photorque {
+namespace {
+
+// A cell of the table in the terminal, three blanks before it at least.
+std::string in_column(const std::string& text) {
+  constexpr size_t width = 28;
+  const auto shown = static_cast<size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));  // UTF-8
+  return std::string(3, ' ') + text + std::string(shown < width ? width - shown : 0, ' ');
+}
+
+// Power over the attitudes, one row per node in the order of the wrench table.
+class PowerTable {
+ public:
+  explicit PowerTable(bool with_array) {
+    std::vector<std::string> columns = {"tilt_deg", "heading_deg", "on_receiver_W",
+                                        "on_receiver_error_W"};
+    if (with_array) columns.insert(columns.end(), {"electric_W", "electric_error_W"});
+    table_ = Table::of("power_over_attitude", "Power over tilt and heading", columns);
+  }
+  void add(double tilt_rad, double heading_rad, const Estimate& light,
+           const std::optional<Estimate>& electric) {
+    Table::Row row = table_.row();
+    row.set("tilt_deg", stated_deg(tilt_rad)).set("heading_deg", stated_deg(heading_rad));
+    row.set("on_receiver_W", light.value).set("on_receiver_error_W", light.standard_error);
+    if (!electric) return;
+    row.set("electric_W", electric->value).set("electric_error_W", electric->standard_error);
+  }
+  const Table& table() const { return table_; }
+
+  // Curves over the tilt, one per heading, of the columns `stem`_W and `stem`_error_W.
+  Plot plot(size_t headings, size_t tilts, const std::string& stem, const std::string& name,
+            const std::string& title) const {
+    const auto& power_W = table_.column(stem + "_W").values;
+    const auto& error_W = table_.column(stem + "_error_W").values;
+    Plot plot;
+    plot.name = name;
+    plot.title = title;
+    plot.x_label = "tilt [deg]";
+    plot.y_label = "power [W]";
+    for (size_t h = 0; h < headings; ++h) {
+      Plot::Curve curve;
+      for (size_t t = 0; t < tilts; ++t) {
+        const size_t row = h * tilts + t;
+        curve.x.push_back(table_.column("tilt_deg").values[row]);
+        curve.y.push_back(power_W[row]);
+        curve.y_error.push_back(error_W[row]);
+      }
+      curve.label = "heading " + show(table_.column("heading_deg").values[h * tilts]) + " deg";
+      plot.curves.push_back(std::move(curve));
+    }
+    return plot;
+  }
+
+ private:
+  Table table_;
+};
+
+void print_torques(const WrenchTable& wrenches, const AttitudeGrid& grid, const Console& console) {
+  console.heading("Torque about the centre of rotation, body frame");
+  std::string names = "  tilt [deg]  heading [deg]";
+  for (const char* name : {"torque x", "torque y", "torque z"}) names += in_column(name);
+  console.line(names);
+  double largest_N_m = 0.0;
+  for (const Vec3& torque : wrenches.torque_body_N_m) {
+    largest_N_m = std::max(largest_N_m, torque.cwiseAbs().maxCoeff());
+  }
+  // Where everything cancels, rounding stays.
+  const auto rounded_N_m = [&](double x) { return std::abs(x) < 1e-13 * largest_N_m ? 0.0 : x; };
+  for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
+    for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
+      const size_t node = wrenches.node(h, t);
+      char angles[64];
+      std::snprintf(angles, sizeof angles, "  %10g  %13g", grid.tilt_rad[t] / degree_rad,
+                    grid.heading_rad[h] / degree_rad);
+      std::string line = angles;
+      for (int i = 0; i < 3; ++i) {
+        line += in_column(show(Estimate{rounded_N_m(wrenches.torque_body_N_m[node][i]),
+                                        rounded_N_m(wrenches.torque_error_N_m[node][i])},
+                               "N m"));
+      }
+      console.line(line);
+    }
+  }
+}
+
+TorqueMapRun over_attitudes(const Console& console, const std::shared_ptr<OpticalRun>& shared,
+                            const NodeWatch& watch) {
+  OpticalRun& run = *shared;
+  std::optional<ArrayPower> array;
+  if (!run.experiment().file.others("array").empty()) array = read_array_power(run);
+  if (array) {
+    for (const std::string& notice : array->notices) console.line("note: " + notice);
+  }
+  const AttitudeGrid& grid = run.experiment().file.torque_map;
+  if (!run.experiment().file.settings.has("torque_map")) {
+    console.line("note: no [torque_map]: tilts to 30 deg towards eight headings");
+  }
+  const size_t flux_map = array ? array->flux_map : run.flux_map_index("");
+
+  WrenchTable wrenches =
+      make_wrench_table(WrenchTable::Angles::tilt_heading, grid.tilt_rad, grid.heading_rad);
+  PowerTable powers(array.has_value());
+  uint64_t rays = 0;
+  double wall_s = 0.0;
+  Warnings warnings;
+  const auto progress = console.progress("attitudes");
+  for (size_t h = 0; h < grid.heading_rad.size(); ++h) {
+    for (size_t t = 0; t < grid.tilt_rad.size(); ++t) {
+      const size_t node = wrenches.node(h, t);
+      // The same seed everywhere: neighbouring attitudes share their sampling errors, so that
+      // differences between them are better known than each.
+      const RigidTransform lab_from_body = lab_from_body_at(grid.tilt_rad[t], grid.heading_rad[h]);
+      const OpticalResult result =
+          run.run(lab_from_body, {}, run.experiment().file.torque_map_rays);
+      set_node(wrenches, node, run.wrench().total(result.sums[run.wrench_index()]));
+      std::optional<Estimate> electric;
+      if (array) electric = evaluate(*array, run, result).power_W;
+      powers.add(grid.tilt_rad[t], grid.heading_rad[h],
+                 run.flux_map(flux_map).flux_map(result.sums[flux_map]).incident.power_W, electric);
+      warnings.add(run.warnings(result), "tilt " + show(stated_deg(grid.tilt_rad[t])) +
+                                             " deg, heading " +
+                                             show(stated_deg(grid.heading_rad[h])) + " deg");
+      if (watch) watch({run, wrenches.nodes(), lab_from_body, result, electric});
+      rays += result.rays;
+      wall_s += result.wall_s;
+      if (progress) progress(static_cast<double>(node + 1) / static_cast<double>(wrenches.nodes()));
+    }
+  }
+  console.done();
+
+  Product product = wrench_table_product(wrenches, "body");
+  product.tables.push_back(powers.table());
+  product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), "on_receiver",
+                                      "power_on_receiver_over_tilt",
+                                      "Light on " + run.experiment().receivers[flux_map].name));
+  if (array) {
+    product.plots.push_back(powers.plot(grid.heading_rad.size(), grid.tilt_rad.size(), "electric",
+                                        "electric_power_over_tilt", "Electric power of the array"));
+  }
+  print_torques(wrenches, grid, console);
+  warnings.print(console);
+  return {shared,
+          std::move(wrenches),
+          {std::move(product), warnings.into(run.provenance()), {wall_s, rays}}};
+}
+
+}  // namespace
+
+TorqueMapRun run_torque_map(const RunOptions& options, const Console& console,
+                            const NodeWatch& watch, CheckpointFile* checkpoint) {
+  RunOptions own = options;
+  const ExperimentFile file =
+      read_experiment_text(options.experiment, options.experiment_text(), options.all_overrides());
+  if (file.light_directions) own.threads = 1;
+  if (checkpoint != nullptr && !file.light_directions) {
+    throw InputError({"--checkpoint"}, "", "a map over tilts",
+                     "directions of sunlight ([torque_map] azimuth_step_deg, or azimuth_deg)");
+  }
+  const auto run = std::make_shared<OpticalRun>(own, console);
+  if (!file.light_directions) return over_attitudes(console, run, watch);
+  DirectionMap map = map_over_directions(console, *run, options.threads, watch, checkpoint);
+  return {run, std::move(map.wrenches), std::move(map.result)};
+}
+
+}  // namespace photorque
+
+namespace photorque::kinds::torque_map {
+namespace {
+
+struct Options : CommandOptions {
+  std::optional<double> checkpoint_min;
+  bool page = false;
+};
+
+void add_options(Command& command, Options& options) {
+  command.add_traced_experiment(options);
+  command.add_checkpoint(options.checkpoint_min);
+  command.add_page(options.page);
+}
+
+void run(const Options& options, const Program&) {
+  const Console console = terminal(options);
+  std::optional<CheckpointFile> checkpoint;
+  if (options.checkpoint_min) {
+    checkpoint.emplace(options.out_folder() / "torque-map.checkpoint",
+                       60.0 * *options.checkpoint_min);
+  }
+  TorqueMapStage stage;
+  const NodeWatch watch = options.page ? stage.watch() : NodeWatch{};
+  TorqueMapRun run = run_torque_map(options, console, watch, checkpoint ? &*checkpoint : nullptr);
+  if (options.page) {
+    run.result.files.push_back(
+        torque_map_page(*run.run, run.wrenches, run.result, std::move(stage), page_head(options)));
+  }
+  write_results(options, console, run.result);
+  // Its work is done and stands in the results.
+  std::error_code stays;
+  if (checkpoint) std::filesystem::remove(checkpoint->path(), stays);
+}
+
+}  // namespace
+
+Verb kind() {
+  return {"torque-map",
+          "Force, torque and power over a grid of attitudes or directions of light",
+          command_with(add_options, run),
+          {"scene", "material", "source", "receiver", "joint", "attitude", "trace", "torque_map",
+           "array"},
+          "[scene] and [[source]]",
+          [](const RunOptions& options) { return run_torque_map(options, Console()).result; }};
+}
+
+}  // namespace photorque::kinds::torque_map

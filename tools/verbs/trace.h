@@ -1,0 +1,20 @@
+// Irradiance on every receiver, power balance, radiation wrench.
+#pragma once
+
+#include <memory>
+
+#include "tools/runs/optical_run.h"
+
+namespace photorque {
+
+struct TraceRun {
+  std::shared_ptr<const OpticalRun> run;
+  OpticalResult light;
+  RunResult result;
+};
+
+// The rays that arrive on each flux map, where the experiment asks for them, are files of the
+// result; without `with_files` they are not traced.
+TraceRun run_trace(const RunOptions& options, const Console& console, bool with_files = true);
+
+}  // namespace photorque

@@ -1,0 +1,181 @@
+#include "tools/verbs/verb.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+#include "core/text/parse.h"
+#include "tools/pages/pages.h"
+
+namespace photorque {
+namespace {
+
+// Says at most so often that something is due.
+class Pace {
+ public:
+  explicit Pace(std::chrono::milliseconds least) : least_(least) {}
+  bool due(bool always = false) {
+    const std::scoped_lock lock(mutex_);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < least_ && !always) return false;
+    last_ = now;
+    return true;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::chrono::milliseconds least_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void draw_bar(const std::string& what, double fraction) {
+  constexpr int width = 30;
+  const int filled = static_cast<int>(std::lround(width * fraction));
+  std::string bar;
+  for (int i = 0; i < width; ++i) bar += i < filled ? "█" : "·";
+  std::fprintf(stderr, "\r%s %s %3.0f %%\033[K", what.c_str(), bar.c_str(), 100.0 * fraction);
+  std::fflush(stderr);
+}
+
+std::string seconds_above_zero(const std::string& text) {
+  const std::optional<double> seconds = number_in(text);
+  return seconds && *seconds > 0.0 ? "" : "found " + text + ", expected a number of seconds > 0";
+}
+
+std::string minutes_above_zero(const std::string& text) {
+  const std::optional<double> minutes = number_in(text);
+  const bool good = minutes && *minutes > 0.0 && *minutes <= 1e6;
+  return good ? "" : "found " + text + ", expected a number of minutes > 0";
+}
+
+// As a shell takes it for one word.
+std::string shell_word(const std::string& word) {
+  static constexpr const char* plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,+-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+std::filesystem::path CommandOptions::out_folder() const {
+  if (out) return *out;
+  return std::filesystem::path("out") / (name.empty() ? experiment.stem().string() : name) / verb;
+}
+
+void Command::add_common(CommandOptions& common) {
+  add("--threads", common.threads, "Threads to use (default: all)").range =
+      Option::Between<int>(0, 1024);
+  add("--seed", common.seed, "Seed of all randomness, over the experiment's own").range =
+      Option::Between<int64_t>(0, std::numeric_limits<int64_t>::max());
+  Option& memory =
+      add("--max-memory", common.max_memory_GB,
+          "Most memory to take, in GB (default: nine tenths of what the machine has free)");
+  memory.range = Option::Between<double>(0.5, 1e6);
+  memory.mistake = [](const std::string& text) {
+    return number_in(text) ? "" : text + " is no finite number";
+  };
+  add("--quiet", common.quiet, "Print nothing but errors");
+  add("--json", common.json, "Print the summary as JSON instead of text");
+}
+
+void Command::add_experiment(CommandOptions& common, Folder writes, bool required) {
+  add("experiment", common.experiment, "Experiment file (TOML)").is_required = required;
+  add("--set", common.overrides, "Change a key of the experiment: KEY=VALUE").is_one_each = true;
+  folder = writes;
+  if (writes != Folder::none) {
+    add("-o,--out", common.out, "Folder for the results (default: out/EXPERIMENT/VERB)");
+  }
+  add_common(common);
+}
+
+void Command::add_traced_experiment(CommandOptions& common, Folder writes) {
+  add_experiment(common, writes);
+  add("--target-error", common.target_error,
+      "Add rays until every bin above a tenth of the peak has this relative "
+      "standard error (0.01: 1 %)")
+      .range = Option::Between<double>(1e-6, 1.0);
+  add("--max-time", common.max_time_s, "Stop adding rays before this many seconds have passed")
+      .mistake = seconds_above_zero;
+  add("--allow-outside", common.allow_outside,
+      "Follow links and paths of the model that lead out of its folder");
+}
+
+void Command::add_recordings(std::vector<std::filesystem::path>& recordings) {
+  add("--recording", recordings, "A recording (CSV); may be repeated").is_one_each = true;
+}
+
+void Command::add_page(bool& page) {
+  add("--page", page, "Write page.html too: scene, maps and curves to look at in a browser");
+}
+
+void Command::add_checkpoint(std::optional<double>& minutes) {
+  add("--checkpoint", minutes,
+      "Keep the state of the run in the folder of results (VERB.checkpoint) every so "
+      "many minutes; after a kill the same command goes on from there")
+      .mistake = minutes_above_zero;
+}
+
+Console terminal(const CommandOptions& options) {
+  if (options.quiet || options.json) return Console();
+  ConsoleSinks sinks;
+  // At once, also into a pipe: a program may wait for the line that says where a run listens.
+  sinks.line = [](const std::string& text) {
+    std::printf("%s\n", text.c_str());
+    std::fflush(stdout);
+  };
+  if (::isatty(STDERR_FILENO) != 0) {
+    const auto pace = std::make_shared<Pace>(std::chrono::milliseconds(100));
+    sinks.progress = [pace](const std::string& what, double fraction) {
+      if (pace->due(fraction >= 1.0)) draw_bar(what, fraction);
+    };
+    sinks.done = [] { std::fprintf(stderr, "\r\033[K"); };
+  } else {
+    const auto pace = std::make_shared<Pace>(std::chrono::seconds(10));
+    sinks.note = [pace](const std::string& text) {
+      if (pace->due()) std::fprintf(stderr, "%s\n", text.c_str());
+    };
+  }
+  return Console(std::move(sinks));
+}
+
+void write_results(const CommandOptions& options, const Console& console, const RunResult& result) {
+  const auto folder = options.out_folder();
+  const auto paths = write_run(result, folder, options.verb);
+  if (options.json) std::fputs(result.summary().c_str(), stdout);
+  console.heading("Written to " + folder.string());
+  console.line("  summary.json and " + std::to_string(paths.size()) + " more files; pictures:");
+  for (const auto& path : paths) {
+    if (path.extension() == ".png") console.line("  " + path.filename().string());
+  }
+  for (const RunFile& file : result.files) {
+    console.line("  " + file.name + (file.remark.empty() ? "" : ": " + file.remark));
+  }
+}
+
+PageHead page_head(const CommandOptions& options,
+                   const std::vector<std::filesystem::path>& recordings,
+                   const std::vector<std::filesystem::path>& holdouts) {
+  std::string command =
+      "photorque " + options.verb + " " + shell_word(options.experiment.filename().string());
+  const auto add = [&command](const char* option, const std::string& word) {
+    command += std::string(" ") + option + " " + shell_word(word);
+  };
+  for (const std::string& change : options.overrides) add("--set", change);
+  for (const auto& path : recordings) add("--recording", path.filename().string());
+  for (const auto& path : holdouts) add("--holdout", path.filename().string());
+  if (options.seed) command += " --seed " + std::to_string(*options.seed);
+  if (options.target_error) command += " --target-error " + show(*options.target_error);
+  if (options.max_time_s) command += " --max-time " + show(*options.max_time_s);
+  if (options.allow_outside) command += " --allow-outside";
+  return {options.experiment.stem().string(), options.verb, command + " --page"};
+}
+
+}  // namespace photorque
