@@ -169,7 +169,7 @@ TEST(Rooms, HaveAtMost30FilesWhoseNamesDoNotRepeatTheRoom) {
       const std::string own = file.parent_path().filename().string();
       // A kind is named as users write it.
       const bool is_kind =
-          text_of(file).find("kinds::" + file.stem().string() + " {") != std::string::npos;
+          text_of(file).find("s::" + file.stem().string() + " {") != std::string::npos;
       EXPECT_TRUE(is_kind || !file.stem().string().starts_with(own + "_")) << file;
     }
   }
@@ -368,7 +368,7 @@ TEST(Rooms, UnitsOfKeysAreConvertedInSettingsAlone) {
 // One word in the folder's list is one file, and every kind's file is in the list. No two kinds
 // share a namespace: linkers do not see return types and would quietly take either function.
 TEST(Rooms, EveryKindIsListedOnce) {
-  static const std::regex kind_namespace(R"(namespace (?:photorque::)?kinds::([a-z0-9_]+) \{)");
+  static const std::regex kind_namespace(R"(namespace (?:photorque::)?((?:kinds|verbs)::([a-z0-9_]+)) \{)");
   std::set<std::string> names;
   for (const std::string& folder : top_folders) {
     const std::string list = text_of(root / folder / "CMakeLists.txt");
@@ -376,7 +376,7 @@ TEST(Rooms, EveryKindIsListedOnce) {
       const std::string code = code_of(file);
       std::smatch match;
       if (file.extension() != ".cpp" || !std::regex_search(code, match, kind_namespace)) continue;
-      EXPECT_EQ(match[1].str(), file.stem().string());
+      EXPECT_EQ(match[2].str(), file.stem().string());
       EXPECT_TRUE(names.insert(match[1]).second) << file;
       const std::string word =
           fs::relative(file, root / folder).replace_extension().generic_string();

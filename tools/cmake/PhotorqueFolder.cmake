@@ -30,9 +30,10 @@ function(photorque_unity target)
   target_compile_options(${target} PRIVATE -Wno-shadow)
 endfunction()
 
-# The standard library and Eigen, compiled once for all targets.
+# The standard library and Eigen, compiled once for all libraries; programs are no shared code (-fPIE).
 function(photorque_precompiled target)
-  if(target STREQUAL photorque_core)
+  get_target_property(type ${target} TYPE)
+  if(target STREQUAL photorque_core OR type STREQUAL EXECUTABLE)
     target_precompile_headers(${target} PRIVATE ${CMAKE_SOURCE_DIR}/core/precompiled.h)
   else()
     target_precompile_headers(${target} REUSE_FROM photorque_core)
@@ -67,16 +68,20 @@ endfunction()
 
 # photorque_kinds(FOLDER TYPE HEADER word ...)
 #   The registry of a folder. Each WORD, such as lamps/led, is one file FOLDER/WORD.cpp that defines
-#   `TYPE photorque::kinds::led::kind()`. Generates a source with `std::vector<TYPE> all_TYPEs()` in
+#   `TYPE photorque::kinds::led::kind()` (of the type Verb: `photorque::verbs::trace::kind()`). Generates a source with `std::vector<TYPE> all_TYPEs()` in
 #   this order, which HEADER declares. Explicit calls, because objects that register themselves are
 #   dropped by the linker from a static library.
 function(photorque_kinds folder type header)
+  set(space kinds)
+  if(type STREQUAL Verb)
+    set(space verbs)
+  endif()
   set(declarations "")
   set(calls "")
   foreach(word IN LISTS ARGN)
     get_filename_component(kind ${word} NAME)
-    string(APPEND declarations "namespace kinds::${kind} {\n${type} kind();\n}\n")
-    string(APPEND calls "      kinds::${kind}::kind(),\n")
+    string(APPEND declarations "namespace ${space}::${kind} {\n${type} kind();\n}\n")
+    string(APPEND calls "      ${space}::${kind}::kind(),\n")
     list(APPEND files ${word}.cpp)
   endforeach()
   string(REGEX REPLACE "([a-z])([A-Z])" "\\1_\\2" snake "${type}")

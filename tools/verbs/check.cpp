@@ -293,7 +293,7 @@ CheckReport run_check(const RunOptions& options, KeyCheck keys) {
 
 }  // namespace photorque
 
-namespace photorque::kinds::check {
+namespace photorque::verbs::check {
 namespace {
 
 void add_options(Command& command, CommandOptions& options) {
@@ -353,4 +353,4 @@ Verb kind() {
           command_with(add_options, run)};
 }
 
-}  // namespace photorque::kinds::check
+}  // namespace photorque::verbs::check

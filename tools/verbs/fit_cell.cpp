@@ -307,7 +307,7 @@ RunResult run_fit_cell(const RunOptions& options, const Console& console) {
 
 }  // namespace photorque
 
-namespace photorque::kinds::fit_cell {
+namespace photorque::verbs::fit_cell {
 namespace {
 
 void add_options(Command& command, CommandOptions& options) {
@@ -330,4 +330,4 @@ Verb kind() {
           [](const RunOptions& options) { return run_fit_cell(options, Console()); }};
 }
 
-}  // namespace photorque::kinds::fit_cell
+}  // namespace photorque::verbs::fit_cell

@@ -15,7 +15,7 @@
 #include "tools/verbs/check.h"
 #include "tools/verbs/verb.h"
 
-namespace photorque::kinds::new_experiment {
+namespace photorque::verbs::new_experiment {
 namespace {
 
 namespace fs = std::filesystem;
@@ -273,4 +273,4 @@ Verb kind() {
       command_with(add_options, run)};
 }
 
-}  // namespace photorque::kinds::new_experiment
+}  // namespace photorque::verbs::new_experiment

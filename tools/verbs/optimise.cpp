@@ -8,7 +8,7 @@
 #include "tools/sweeps/values.h"
 #include "tools/verbs/studies.h"
 
-namespace photorque::kinds::optimise {
+namespace photorque::verbs::optimise {
 namespace {
 
 // The axes of [sweep] as a box. InputError for one without ends.
@@ -150,4 +150,4 @@ Verb kind() {
           "[sweep]"};
 }
 
-}  // namespace photorque::kinds::optimise
+}  // namespace photorque::verbs::optimise

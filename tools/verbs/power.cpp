@@ -34,7 +34,7 @@ PowerRun run_power(const RunOptions& options, const Console& console) {
 
 }  // namespace photorque
 
-namespace photorque::kinds::power {
+namespace photorque::verbs::power {
 namespace {
 
 struct Options : CommandOptions {
@@ -67,4 +67,4 @@ Verb kind() {
           [](const RunOptions& options) { return run_power(options, Console()).result; }};
 }
 
-}  // namespace photorque::kinds::power
+}  // namespace photorque::verbs::power

@@ -169,7 +169,7 @@ std::filesystem::path write_render(const RenderRun& rendered, const std::filesys
 
 }  // namespace photorque
 
-namespace photorque::kinds::render {
+namespace photorque::verbs::render {
 namespace {
 
 void add_options(Command& command, CommandOptions& options) {
@@ -192,4 +192,4 @@ Verb kind() {
           "[scene] and [[source]]"};
 }
 
-}  // namespace photorque::kinds::render
+}  // namespace photorque::verbs::render

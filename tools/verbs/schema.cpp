@@ -9,7 +9,7 @@
 #include "tools/keys/words.h"
 #include "tools/verbs/verb.h"
 
-namespace photorque::kinds::schema {
+namespace photorque::verbs::schema {
 namespace {
 
 // A key by its path, and the table that holds it: "source.power_W".
@@ -81,4 +81,4 @@ Verb kind() {
           command_with(add_options, run)};
 }
 
-}  // namespace photorque::kinds::schema
+}  // namespace photorque::verbs::schema

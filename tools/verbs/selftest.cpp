@@ -13,7 +13,7 @@
 #include "tools/verbs/trace.h"
 #include "tools/verbs/verb.h"
 
-namespace photorque::kinds::selftest {
+namespace photorque::verbs::selftest {
 namespace {
 
 namespace fs = std::filesystem;
@@ -189,4 +189,4 @@ Verb kind() {
           command_with(add_options, run)};
 }
 
-}  // namespace photorque::kinds::selftest
+}  // namespace photorque::verbs::selftest

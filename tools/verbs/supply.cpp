@@ -93,7 +93,7 @@ RunResult run_supply(const RunOptions& options, const Console& console) {
 
 }  // namespace photorque
 
-namespace photorque::kinds::supply {
+namespace photorque::verbs::supply {
 namespace {
 
 void add_options(Command& command, CommandOptions& options) {
@@ -115,4 +115,4 @@ Verb kind() {
           "[supply_trade]"};
 }
 
-}  // namespace photorque::kinds::supply
+}  // namespace photorque::verbs::supply

@@ -4,7 +4,7 @@
 
 #include "tools/verbs/studies.h"
 
-namespace photorque::kinds::sweep {
+namespace photorque::verbs::sweep {
 namespace {
 
 struct Options : CommandOptions {
@@ -173,4 +173,4 @@ Verb kind() {
           "[sweep]"};
 }
 
-}  // namespace photorque::kinds::sweep
+}  // namespace photorque::verbs::sweep

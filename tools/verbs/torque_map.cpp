@@ -181,7 +181,7 @@ TorqueMapRun run_torque_map(const RunOptions& options, const Console& console,
 
 }  // namespace photorque
 
-namespace photorque::kinds::torque_map {
+namespace photorque::verbs::torque_map {
 namespace {
 
 struct Options : CommandOptions {
@@ -227,4 +227,4 @@ Verb kind() {
           [](const RunOptions& options) { return run_torque_map(options, Console()).result; }};
 }
 
-}  // namespace photorque::kinds::torque_map
+}  // namespace photorque::verbs::torque_map

@@ -147,7 +147,7 @@ TraceRun run_trace(const RunOptions& options, const Console& console, bool with_
 
 }  // namespace photorque
 
-namespace photorque::kinds::trace {
+namespace photorque::verbs::trace {
 namespace {
 
 struct Options : CommandOptions {
@@ -180,4 +180,4 @@ Verb kind() {
           [](const RunOptions& options) { return run_trace(options, Console(), false).result; }};
 }
 
-}  // namespace photorque::kinds::trace
+}  // namespace photorque::verbs::trace

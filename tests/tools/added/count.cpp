@@ -2,7 +2,7 @@
 #include "tools/runs/optical_run.h"
 #include "tools/verbs/verb.h"
 
-namespace photorque::kinds::count {
+namespace photorque::verbs::count {
 namespace {
 
 struct Options : CommandOptions {
@@ -37,4 +37,4 @@ Verb kind() {
           "[scene] and [[source]]"};
 }
 
-}  // namespace photorque::kinds::count
+}  // namespace photorque::verbs::count

@@ -28,7 +28,7 @@ BalanceOutcome run_balance(const RunOptions& options,
 
 }  // namespace photorque
 
-namespace photorque::kinds::balance {
+namespace photorque::verbs::balance {
 namespace {
 
 struct Options : CommandOptions {
@@ -102,4 +102,4 @@ Verb kind() {
           [](const RunOptions& options) { return run_balance(options, {}).result; }};
 }
 
-}  // namespace photorque::kinds::balance
+}  // namespace photorque::verbs::balance

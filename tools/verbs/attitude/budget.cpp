@@ -19,7 +19,7 @@ BudgetRun run_budget(const RunOptions& options) {
 
 }  // namespace photorque
 
-namespace photorque::kinds::budget {
+namespace photorque::verbs::budget {
 namespace {
 
 const Table* find_table(const Product& product, const std::string& name) {
@@ -107,4 +107,4 @@ Verb kind() {
           [](const RunOptions& options) { return run_budget(options).result; }};
 }
 
-}  // namespace photorque::kinds::budget
+}  // namespace photorque::verbs::budget

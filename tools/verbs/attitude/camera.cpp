@@ -50,7 +50,7 @@ CameraRun run_camera(const RunOptions& options, const Console& console) {
 
 }  // namespace photorque
 
-namespace photorque::kinds::camera {
+namespace photorque::verbs::camera {
 namespace {
 
 const Table& camera_table(const Product& product, const std::string& name) {
@@ -148,4 +148,4 @@ Verb kind() {
           "[sensors.camera] with markers"};
 }
 
-}  // namespace photorque::kinds::camera
+}  // namespace photorque::verbs::camera

@@ -321,7 +321,7 @@ void write_diagnosis(const DiagnosisRun& run, const std::string& report, const f
 
 }  // namespace photorque
 
-namespace photorque::kinds::diagnose {
+namespace photorque::verbs::diagnose {
 namespace {
 
 struct Options : CommandOptions {
@@ -432,4 +432,4 @@ Verb kind() {
           "[platform], [module] or [sensors] of light"};
 }
 
-}  // namespace photorque::kinds::diagnose
+}  // namespace photorque::verbs::diagnose

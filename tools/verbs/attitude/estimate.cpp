@@ -164,7 +164,7 @@ EstimateRun run_estimate(const RunOptions& options, const Console& console,
 
 }  // namespace photorque
 
-namespace photorque::kinds::estimate {
+namespace photorque::verbs::estimate {
 namespace {
 
 struct Options : CommandOptions {
@@ -264,4 +264,4 @@ Verb kind() {
           "[platform]"};
 }
 
-}  // namespace photorque::kinds::estimate
+}  // namespace photorque::verbs::estimate

@@ -2,7 +2,7 @@
 #include "tools/fmi/pack.h"
 #include "tools/verbs/verb.h"
 
-namespace photorque::kinds::fmu {
+namespace photorque::verbs::fmu {
 namespace {
 
 void add_options(Command& command, CommandOptions& options) {
@@ -24,4 +24,4 @@ Verb kind() {
           "[platform]"};
 }
 
-}  // namespace photorque::kinds::fmu
+}  // namespace photorque::verbs::fmu

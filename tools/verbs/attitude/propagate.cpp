@@ -4,7 +4,7 @@
 #include "tools/pages/pages.h"
 #include "tools/verbs/verb.h"
 
-namespace photorque::kinds::propagate {
+namespace photorque::verbs::propagate {
 namespace {
 
 struct Options : CommandOptions {
@@ -44,4 +44,4 @@ Verb kind() {
           [](const RunOptions& options) { return run_propagate(options, Console()).result; }};
 }
 
-}  // namespace photorque::kinds::propagate
+}  // namespace photorque::verbs::propagate

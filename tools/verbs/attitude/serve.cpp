@@ -98,7 +98,7 @@ RunResult serve_experiment(const RunOptions& options, const Console& console) {
 
 }  // namespace photorque
 
-namespace photorque::kinds::serve {
+namespace photorque::verbs::serve {
 namespace {
 
 void add_options(Command& command, CommandOptions& options) {
@@ -120,4 +120,4 @@ Verb kind() {
           "[platform]"};
 }
 
-}  // namespace photorque::kinds::serve
+}  // namespace photorque::verbs::serve
