@@ -13,16 +13,16 @@ from validation.light import scenarios, setting  # noqa: E402
 from validation.light.effects import Effect  # noqa: E402
 
 
-def make(name, seed, kind, effects):
+def make(name, seed, kind, effects, scan_names):
     draw = setting.RoundedDraw(seed, 1)
     world, sources, noise, recordings = setting.draw_setting(draw, [kind])
     verdict = "missing_physics" if effects else "consistent"
-    scans = {key: rows for key, rows in recordings.items() if rows.kind == "scan"}
+    scans = {key: recordings[key] for key in scan_names}
     case = scenarios.Case(name, "single", (seed,), verdict, world, sources, noise, scans, False, effects)
     scenarios.write_case(case, folder / name)
     for file in ("oracle.toml", "truth.json"):
         (folder / name / file).unlink()
 
 
-make("wall", 16, "interreflection", [])
-make("brighter", 1, "detector_gain", [Effect("source_power", None, {"factor": 0.97})])
+make("wall", 16, "interreflection", [], ["scan1"])
+make("brighter", 1, "detector_gain", [Effect("source_power", None, {"factor": 0.97})], ["scan1", "scan2"])
