@@ -8,6 +8,7 @@ import os
 import pathlib
 import resource
 import shutil
+import signal
 import subprocess
 import tempfile
 import threading
@@ -57,7 +58,8 @@ def run_child(program, arguments, folder, longest_s):
         text = errors.read(4096).decode(errors="replace")
     processor_s = used.ru_utime + used.ru_stime
     if process.returncode < 0:
-        reason = f"stopped after {longest_s:g} s" if processor_s >= longest_s else f"signal {-process.returncode}"
+        is_over = -process.returncode == signal.SIGXCPU or processor_s >= longest_s
+        reason = f"stopped after {longest_s:g} s" if is_over else f"signal {-process.returncode}"
         text = f"{reason}\n{text}"
     return Result(max(process.returncode, -1), processor_s, text)
 

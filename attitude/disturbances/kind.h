@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "attitude/disturbances/screening.h"
-#include "attitude/injection/injection.h"
 #include "attitude/model/disturbance.h"
 #include "core/settings/keys.h"
 
@@ -36,7 +35,6 @@ struct DisturbanceKind {
   // caller has read `kind`, and complains about keys that nobody read.
   Disturbance (*read)(const Settings& settings, const DisturbanceContext& context) = nullptr;
   Screening screening = {};
-  injected::Injection injection = {};
   BudgetTraits budget = {};
   // The table of [sensors] that may hold the kind's key as well; empty: no error of an instrument.
   std::string instrument = {};

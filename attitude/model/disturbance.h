@@ -24,13 +24,6 @@
 //         {scalar_parameter(settings, coefficient, Range::not_negative())});
 //   }
 //
-//   // The same for `prove`, on plain numbers (attitude/injection/injection.h).
-//   injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-//     return [c = effect.number(coefficient.name)](const injected::Surroundings& s) {
-//       return injected::times(-c, s.rate);
-//     };
-//   }
-//
 //   }  // namespace
 //
 //   DisturbanceKind kind() {
@@ -38,11 +31,7 @@
 //             .summary = "viscous drag of the bearing's air film, linear in the rate",
 //             .read = read,
 //             .screening = {.parametrisations = {{"a sentence for the report",
-//                                                 {EffectKey::number(coefficient.name, 2e-5)}}}},
-//             .injection = {.draw = injected::fixed_size(coefficient.name, 1e-5),
-//                           .torque = plain_torque,
-//                           .strength = coefficient.name,
-//                           .step = 1e-8}};
+//                                                 {EffectKey::number(coefficient.name, 2e-5)}}}}};
 //   }
 //
 //   }  // namespace photorque

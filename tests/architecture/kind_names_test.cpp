@@ -32,8 +32,6 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"attitude/disturbances/fields/helmholtz_cage.cpp", {"orbit"}},
     // What `new` writes.
     {"tools/commands/new_experiment.cpp", {"bearing_drag", "static_unbalance"}},
-    // The nominal model of every injected case, once.
-    {"tools/proof/recipes.h", {"static_unbalance", "bearing_drag", "gyro_bias"}},
     // Light in the run is this kind; what says the same by other means is refused, and the orbit
     // learns where the Sun is.
     {"attitude/disturbances/fields/light_pressure.cpp", {"radiation_pressure"}},
@@ -43,8 +41,6 @@ const std::map<std::string, std::set<std::string>> allowed = {
     // A key of [environment.sun]: the path about the Sun.
     {"attitude/environment/keys.cpp", {"orbit"}},
     {"attitude/environment/sun.cpp", {"orbit"}},
-    // A field of truth.json.
-    {"tools/proof/files.cpp", {"gyro_bias"}},
 };
 
 std::string text_without_comments(const fs::path& file) {

@@ -9,9 +9,6 @@
 #include "diagnosis/attitude/diagnose.h"
 #include "scenes/experiment/toml_reader.h"
 #include "tests/outside.h"
-#include "tools/proof/case.h"
-#include "tools/proof/files.h"
-#include "tools/proof/recipes.h"
 
 namespace photorque {
 namespace {
@@ -89,48 +86,6 @@ TEST(StrongFriction, BesideADragThatBothStandInFor) {
   EXPECT_EQ(names_found("spin_pair", {"run1.csv.gz", "run2.csv.gz"}),
             Names({"air_pressure_drag", "dry_friction"}));
 }
-
-// A plan with one case of every kind and shorter runs than docs/proof.md has.
-InjectedPlan short_plan() {
-  InjectedPlan plan;
-  plan.per_kind = 1;
-  plan.none = 1;
-  plan.pairs = 0;
-  plan.outside = 1;
-  plan.duration_s = 150.0;
-  plan.holdout_s = 100.0;
-  plan.rates_Hz = {10.0};
-  return plan;
-}
-
-// Where the plan has the case that conceals `kind`, or nothing ("none"): that comes first, then the
-// catalogue, then the laws outside of it.
-size_t place_of(const std::string& kind) {
-  if (kind == "none") return 0;
-  size_t inside = 1, outside = case_count(short_plan());
-  for (const injected::Recipe& r : injected::recipes()) outside -= r.outside ? 1 : 0;
-  for (const injected::Recipe& r : injected::recipes()) {
-    if (r.kind == kind) return r.outside ? outside : inside;
-    ++(r.outside ? outside : inside);
-  }
-  throw std::logic_error(kind);
-}
-
-class DrawnCase : public testing::TestWithParam<const char*> {};
-
-// As `prove` does it: drawn, written, read, diagnosed and scored.
-TEST_P(DrawnCase, IsNamedRightly) {
-  const InjectedCase drawn = draw_case(short_plan(), place_of(GetParam()));
-  ASSERT_TRUE(drawn.name.starts_with(GetParam())) << drawn.name;
-  const fs::path folder = fs::path(testing::TempDir()) / "drawn_case";
-  write_injected_case(drawn, folder);
-  expect_named_rightly(folder);
-}
-
-INSTANTIATE_TEST_SUITE_P(Some, DrawnCase,
-                         testing::Values("none", "magnetic_dipole", "attitude_latency",
-                                         "gyro_scale", "heading_cogging"),
-                         [](const auto& one) { return std::string(one.param); });
 
 }  // namespace
 }  // namespace photorque

@@ -1,5 +1,5 @@
-// The registry of disturbances against those who use it: what `diagnose` screens, `prove` injects,
-// `budget` ranks and docs/disturbances.md documents. Every exception is named here, and its reason
+// The registry of disturbances against those who use it: what `diagnose` screens, `budget` ranks
+// and docs/disturbances.md documents. Every exception is named here, and its reason
 // stands in the kind's own file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,6 @@
 #include "diagnosis/attitude/effects/catalogue.h"
 #include "tests/attitude/disturbance_bench.h"
 #include "tests/kinds/kind_table.h"
-#include "tools/proof/recipes.h"
 
 namespace photorque {
 namespace {
@@ -30,10 +29,6 @@ const Names not_ranked = {
     "gyro_scale",       "lamp_pressure",       "marker_positions", "orbit",
     "planet_light",     "sliding_air_drag",    "sliding_drag",     "sliding_friction",
     "sliding_spring",   "table_slope"};
-// Forces on what slides, which no laboratory of `prove` has.
-const Names of_planes = {"sliding_air_drag", "sliding_drag", "sliding_friction", "sliding_spring",
-                         "table_slope"};
-
 Names all_names() {
   Names names;
   for (const DisturbanceKind& kind : disturbance_kinds()) names.insert(kind.name);
@@ -52,23 +47,11 @@ TEST(KindRegistry, DiagnoseScreensAllButTheExceptions) {
   EXPECT_EQ(screened, without(all_names(), not_screened));
 }
 
-TEST(KindRegistry, ProveInjectsWhatDiagnoseScreens) {
-  Names drawn;
-  for (const injected::Recipe& recipe : injected::recipes()) {
-    if (!recipe.outside) drawn.insert(recipe.kind);
-  }
-  // No maker records the speed of a wheel or the current of lamps, or has a camera that sees
-  // markers.
-  EXPECT_EQ(drawn, without(without(without(all_names(), not_screened), of_planes),
-                           {"lamp_pressure", "marker_positions", "wheel_momentum"}));
-}
-
 TEST(KindRegistry, EveryExceptionHasAReasonAndNothingElse) {
   for (const DisturbanceKind& kind : disturbance_kinds()) {
     const Screening& s = kind.screening;
     const bool is_screened = !s.parametrisations.empty() || s.of_experiment != nullptr;
     EXPECT_NE(is_screened, !s.reason_against.empty()) << kind.name;
-    EXPECT_NE(kind.injection.draw == nullptr, kind.injection.reason_against.empty()) << kind.name;
     EXPECT_EQ(!kind.budget.reason_against.empty(), not_ranked.contains(kind.name)) << kind.name;
   }
 }
@@ -97,36 +80,6 @@ TEST(KindRegistry, TheKeysOfAFitAreThoseOfTheLaw) {
       }
     }
     EXPECT_EQ(numbers, d.parameters.size()) << effect.kind;
-  }
-}
-
-// An example of `prove` has the keys of the first parametrisation, within its bounds, at a size
-// that the prior of `diagnose` thinks possible.
-TEST(KindRegistry, ExamplesHaveTheKeysOfAFit) {
-  injected::RandomDraw draw(1, 1);
-  const injected::ExampleConditions conditions{
-      400.0, {{{0.11, 0, 0}, {0, 0.12, 0}, {0, 0, 0.19}}}, 2.5};
-  const AttitudeModel model = bench_model();
-  const std::vector<Effect> effects = catalogue(context_of(model));
-  for (const injected::Recipe& recipe : injected::recipes()) {
-    if (recipe.outside) continue;
-    const auto effect = std::ranges::find(effects, recipe.kind, &Effect::kind);
-    ASSERT_NE(effect, effects.end()) << recipe.kind;
-    const injected::EffectNumbers example = recipe.injection.draw(draw, conditions);
-    ASSERT_EQ(example.size(), effect->keys.size()) << recipe.kind;
-    for (const EffectKey& key : effect->keys) {
-      ASSERT_TRUE(example.contains(key.key)) << recipe.kind << "." << key.key;
-      ASSERT_EQ(example.at(key.key).size(), key.start.size()) << recipe.kind << "." << key.key;
-      for (const double value : example.at(key.key)) {
-        EXPECT_GE(value, key.lowest) << recipe.kind << "." << key.key;
-        EXPECT_LE(value, key.highest) << recipe.kind << "." << key.key;
-        if (!key.searched) {
-          EXPECT_LT(std::abs(value), 4.0 * key.scale) << recipe.kind << "." << key.key;
-        }
-      }
-    }
-    const bool has_strength = example.contains(recipe.injection.strength);
-    EXPECT_EQ(has_strength, !effect->keys.empty()) << recipe.kind;
   }
 }
 

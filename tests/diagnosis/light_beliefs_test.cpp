@@ -1,5 +1,5 @@
-// What an experiment knows of light and power to within an error. The recordings are those of the
-// maker of `prove`, which shares nothing with the program.
+// What an experiment knows of light and power to within an error. The recordings are made by
+// validation/light, which shares nothing with the program.
 #include "diagnosis/light/beliefs.h"
 
 #include <gmock/gmock.h>
@@ -12,31 +12,17 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "diagnosis/light/diagnose.h"
-#include "tools/proof/light/files.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace injected;
 
 // Scans under lamps that shine by a factor more than is stated.
 class LightBeliefs : public testing::Test {
  protected:
-  static constexpr double brighter = 0.97;
-
-  void SetUp() override {
-    c_.seed = 29;
-    RandomDraw draw(c_.seed, 1);
-    draw_light_setting(draw, c_, {"detector_gain"});
-    c_.effects = {{"source_power", -1, {{"factor", {brighter}}}}};
-    c_.verdict = "missing_physics";
-    folder_ = fs::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    write_light_case(c_, folder_);
-    text_ = read_file(folder_ / "experiment.toml");
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  static constexpr double brighter = 0.97, stated_W = 6.29;
 
   // What the expression finds, written anew.
   void rewrite(const char* expression, const std::string& format) {
@@ -46,9 +32,8 @@ class LightBeliefs : public testing::Test {
   }
   // Every power known to within 5 %.
   void doubt_powers() {
-    const double power_W = c_.believed.light.lamps.front().power_W;
     rewrite("power_W = ([0-9.]+)",
-            "power_W = { value = $1, sigma = " + std::to_string(0.05 * power_W) + " }");
+            "power_W = { value = $1, sigma = " + std::to_string(0.05 * stated_W) + " }");
   }
   Experiment read(const std::string& assignment) const {
     std::vector<std::string> overrides;
@@ -69,9 +54,8 @@ class LightBeliefs : public testing::Test {
                           {recording("scan2.csv.gz")});
   }
 
-  LightCase c_;
-  fs::path folder_;
-  std::string text_;
+  fs::path folder_ = outside::reference_data("light/brighter");
+  std::string text_ = read_file(folder_ / "experiment.toml");
 };
 
 // Light is proportional to power: an error of 5 % in all powers moves every reading by 5 % of
@@ -93,7 +77,6 @@ TEST_F(LightBeliefs, LightMovesAsThePowerDoes) {
 }
 
 TEST_F(LightBeliefs, PowerWithinItsErrorIsNoEffect) {
-  const double stated_W = c_.believed.light.lamps.front().power_W;
   const Diagnosis certain = diagnosed();
   ASSERT_EQ(certain.verdict, Verdict::missing_physics);
   ASSERT_EQ(certain.effects.size(), 1u);

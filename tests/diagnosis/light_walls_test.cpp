@@ -3,32 +3,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "core/constants.h"
 #include "diagnosis/light/clean.h"
 #include "diagnosis/light/model/illumination.h"
 #include "diagnosis/light/model/run.h"
 #include "scenes/experiment/experiment.h"
-#include "tools/proof/light/files.h"
+#include "tests/outside.h"
 
 namespace photorque {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace injected;
 
-// A setting of the maker of `prove` with an upright rectangular wall beside the receiver.
+// A laboratory with an upright rectangular wall beside the receiver.
 class LightWithWall : public testing::Test {
  protected:
-  LightWithWall() {
-    LightCase c;
-    c.seed = 16;
-    RandomDraw draw(c.seed, 1);
-    draw_light_setting(draw, c, {"interreflection"});
-    c.verdict = "consistent";
-    write_light_case(c, folder_);
-    experiment_.emplace(read_experiment(folder_ / "experiment.toml"));
-    lab_.emplace(*experiment_);
+  LightWithWall() : experiment_(read_experiment(folder_ / "experiment.toml")), lab_(experiment_) {
     for (const auto& triangle : wall().triangles) {
       for (const Vec3& corner : triangle) {
         low_ = low_.cwiseMin(corner);
@@ -37,13 +29,12 @@ class LightWithWall : public testing::Test {
     }
     across_ = high_.x() - low_.x() < high_.y() - low_.y() ? 0 : 1;
   }
-  ~LightWithWall() override { fs::remove_all(folder_); }
 
-  const LightWall& wall() const { return lab_->walls().front(); }
+  const LightWall& wall() const { return lab_.walls().front(); }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "light_walls";
-  std::optional<Experiment> experiment_;
-  std::optional<LightLab> lab_;
+  fs::path folder_ = outside::reference_data("light/wall");
+  Experiment experiment_;
+  LightLab lab_;
   Vec3 low_ = Vec3::Constant(1e9), high_ = Vec3::Constant(-1e9);
   int across_ = 0;  // the axis that is normal to the wall
 };
@@ -58,7 +49,7 @@ TEST_F(LightWithWall, EdgeLeavesASegmentOfTheAperture) {
   const Vec3 way = (edge - point).normalized();
   const Vec3 upward = (Vec3::UnitZ() - way.z() * way).normalized();
   const std::vector<ShadowBox> no_boxes;
-  const Obstacles obstacles(*lab_, no_boxes, Quat::Identity());
+  const Obstacles obstacles(lab_, no_boxes, Quat::Identity());
   for (const double c : {-0.9, -0.4, 0.0, 0.3, 0.8}) {
     const Vec3 lamp = point + 4.0 * (edge - point) + c * radius_m * upward;
     const Obstacles::Open open =
@@ -97,15 +88,15 @@ TEST(LightWalls, SheetsLieSideBySideAndLookOneWay) {
 // height a and from the foot point so far b to one side: (1/2π)(atan(b/c) − c/h atan(b/h)), h² = a²
 // + c² (D. Hamilton, W. Morgan, NACA TN 2836, 1952, configuration P-4).
 TEST_F(LightWithWall, PlacesSeeAllOfTheWall) {
-  const LightRun run(*lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));
+  const LightRun run(lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));
   LightSites sites;
   const LightRecording& r = run.recording();
   for (size_t i = 0; i < run.rows(); i += 7) {
-    sites.points_body_m.push_back(lab_->point_body_m(r.u_m[i], r.v_m[i]));
+    sites.points_body_m.push_back(lab_.point_body_m(r.u_m[i], r.v_m[i]));
     sites.weights.push_back(1.0);
     sites.groups.push_back({sites.groups.size(), 1});
   }
-  const WallExchange exchange = exchange_with(*lab_, sites, 0);
+  const WallExchange exchange = exchange_with(lab_, sites, 0);
   double nearest = 1e9;
   for (size_t g = 0; g < sites.groups.size(); ++g) {
     const Vec3& p = sites.points_body_m[g];
@@ -126,8 +117,8 @@ TEST_F(LightWithWall, PlacesSeeAllOfTheWall) {
 // Of fields whose shadows are known only those places are looked at again that either shadow
 // reaches.
 TEST_F(LightWithWall, LightBesideAKnownShadowIsThatFoundAfresh) {
-  const LightRun run(*lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));
-  LightState state = lab_->nominal();
+  const LightRun run(lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));
+  LightState state = lab_.nominal();
   const LightFields open = run.fields(state, nullptr);
   const auto with_box = [&](double x, bool on_body) {
     LightState shaded = state;
@@ -139,7 +130,7 @@ TEST_F(LightWithWall, LightBesideAKnownShadowIsThatFoundAfresh) {
   const LightFields of_first = run.fields(first, &open), of_second = run.fields(second, &of_first);
   const LightFields afresh = run.fields(second, nullptr);
   double moved = 0.0;
-  for (size_t l = 0; l < lab_->lamps(); ++l) {
+  for (size_t l = 0; l < lab_.lamps(); ++l) {
     const LampField &found = *of_second.lamps[l].field, &expected = *afresh.lamps[l].field;
     ASSERT_EQ(found, expected) << l;
     for (size_t o = 0; o < found.size(); ++o) {
@@ -151,11 +142,12 @@ TEST_F(LightWithWall, LightBesideAKnownShadowIsThatFoundAfresh) {
 
 // One reading far off among usual ones strays; a line of them is a thing.
 TEST_F(LightWithWall, ReadingsStrayAlone) {
-  const LightRun run(*lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));
+  const LightRun run(lab_, read_light_recording(folder_ / "scan1.csv.gz", {}));
   const LightRecording& r = run.recording();
-  RandomDraw draw(7, 1);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
   Eigen::VectorXd residuals(static_cast<Eigen::Index>(run.samples()));
-  for (double& x : residuals) x = draw.normal();
+  for (double& x : residuals) x = normal(random);
   const size_t middle = run.rows() / 3, far = 2 * run.rows() / 3;
   residuals[static_cast<Eigen::Index>(middle)] = 6.5;
   std::vector<size_t> line;

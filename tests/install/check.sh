@@ -82,7 +82,7 @@ done
 bash -n "$prefix/share/bash-completion/completions/photorque"
 # shellcheck disable=SC1091
 (source "$prefix/share/bash-completion/completions/photorque"
- COMP_WORDS=(photorque pro) COMP_CWORD=1 && _photorque && [[ "${COMPREPLY[*]}" == "propagate prove" ]]
+ COMP_WORDS=(photorque pro) COMP_CWORD=1 && _photorque && [[ "${COMPREPLY[*]}" == "propagate" ]]
  COMP_WORDS=(photorque trace x.toml --tar) COMP_CWORD=3 && _photorque && [[ "${COMPREPLY[*]}" == "--target-error" ]])
 if command -v zsh >/dev/null; then
   completed() { timeout 60 zsh -f "$source/tests/install/completes.zsh" "$prefix/share/zsh/vendor-completions" "$1"; }

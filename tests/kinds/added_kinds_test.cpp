@@ -13,9 +13,6 @@
 #include "sources/kind.h"
 #include "tests/attitude/disturbance_bench.h"
 #include "tests/kinds/kind_table.h"
-#include "tools/proof/case.h"
-#include "tools/proof/files.h"
-#include "tools/proof/recipes.h"
 
 namespace photorque {
 namespace {
@@ -37,25 +34,6 @@ TEST(AddedDisturbance, IsScreened) {
   EXPECT_EQ(effect->how.needs, Requirement::charge);
   const AttitudeModel model = bench_model();
   EXPECT_EQ(disturbance_of(*effect, {model.platform, model.environment}).parameters.size(), 1u);
-}
-
-// A case of it is drawn, visible, told apart from the other kinds, and written with its truth.
-TEST(AddedDisturbance, IsInjected) {
-  InjectedPlan plan;
-  plan.per_kind = 1;
-  plan.none = plan.pairs = plan.outside = 0;
-  plan.duration_s = 60.0;
-  plan.holdout_s = 30.0;
-  const auto& recipes = injected::recipes();
-  const auto recipe = std::ranges::find(recipes, added, &injected::Recipe::kind);
-  ASSERT_NE(recipe, recipes.end());
-  const InjectedCase c = draw_case(plan, static_cast<size_t>(recipe - recipes.begin()));
-  EXPECT_EQ(c.name, added + "_01");
-  ASSERT_EQ(c.world.effects.size(), 1u);
-  EXPECT_EQ(c.world.effects[0].kind, added);
-  EXPECT_GT(c.chi2_gain, 1000.0);
-  EXPECT_THAT(injected_experiment(c, true), testing::HasSubstr("kind = \"" + added + "\""));
-  EXPECT_THAT(injected_experiment(c, false), testing::Not(testing::HasSubstr(added)));
 }
 
 TEST(AddedDisturbance, IsRanked) {

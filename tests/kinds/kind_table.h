@@ -59,17 +59,15 @@ inline std::string screening_text(const Screening& screening) {
 }
 
 inline std::string kind_row(const DisturbanceKind& kind) {
-  const bool drawn = kind.injection.draw != nullptr;
   const bool ranked = kind.budget.reason_against.empty();
   return "| `" + kind.name + "` | " + kind.summary + " | " + screening_text(kind.screening) +
-         " | " + (drawn ? "yes" : "no: " + kind.injection.reason_against) + " | " +
-         (ranked ? "yes" : "no: " + kind.budget.reason_against) + " |\n";
+         " | " + (ranked ? "yes" : "no: " + kind.budget.reason_against) + " |\n";
 }
 
 inline std::string kind_table(const std::vector<DisturbanceKind>& kinds) {
   std::string text =
-      "| `kind` | in one sentence | `diagnose` screens it, expecting (SI) | `prove` injects it | "
-      "`budget` ranks it |\n|---|---|---|---|---|\n";
+      "| `kind` | in one sentence | `diagnose` screens it, expecting (SI) | `budget` ranks it |\n"
+      "|---|---|---|---|\n";
   for (const DisturbanceKind& kind : kinds) text += kind_row(kind);
   return text;
 }

@@ -162,23 +162,6 @@ TEST_F(CheckCommand, KnowsModulesAndPlansOfProve) {
                                     "expected a known key, perhaps \"cells_in_series\""));
 }
 
-// [prove] is read by the command alone: its declared keys are what it takes.
-TEST_F(CheckCommand, PlansOfProveAreDeclared) {
-  for (const Key& table : experiment_keys()) {
-    if (table.name != "prove") continue;
-    EXPECT_GT(table.keys.size(), 20u);
-    for (const Key& key : table.keys) {
-      const bool flag = key.type == Key::Type::flag;
-      const std::string of = key.name == "below" ? "of = \"light\"\n" : "";
-      const std::string plan = "[prove]\n" + of + key.name + " = " + (flag ? "7" : "true") + "\n";
-      const Outcome got = run("prove " + write("plan.toml", plan) + " --out " + at("out"));
-      EXPECT_EQ(got.status, 2) << key.name;
-      EXPECT_THAT(got.err, HasSubstr("prove." + key.name + ": found " + (flag ? "7" : "true") +
-                                     ", expected " + expected_of(key) + "\n"));
-    }
-  }
-}
-
 TEST_F(CheckCommand, NewWritesWhatRuns) {
   const std::string model = (shipped / "stasis" / "stasis.gltf").string();
   const Outcome lit = run("new " + at("lab/lit.toml") + " --scene " + model);

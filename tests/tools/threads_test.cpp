@@ -1,6 +1,5 @@
 // Every command gives the same files, to the last bit, on one thread, on two and on seven.
 #include <regex>
-#include <set>
 
 #include "tests/tools/command_test.h"
 
@@ -54,22 +53,6 @@ maximum_A = 0.939
 maximum_V = 17.04
 )";
 
-constexpr const char* proof = R"([prove]
-per_kind = 0
-pairs = 0
-triples = 0
-outside = 0
-known_unknown = 0
-noise_none = 0
-noise_effect = 0
-none = 2
-duration_s = 60
-holdout_s = 60
-rates_Hz = [5]
-oracle = false
-longest_s = 60
-)";
-
 const std::string few = " --set trace.rays=16384";
 const std::vector<Command> commands = {
     {"trace", "trace SCENES/stasis/nominal.toml" + few},
@@ -93,8 +76,7 @@ const std::vector<Command> commands = {
     {"estimate",
      "estimate SCENES/stasis/camera.toml --set propagate.duration_s=20"
      " --set propagate.output_rate_Hz=5 --set estimate.runs=1"},
-    {"supply", "supply SCENES/stasis/supply.toml"},
-    {"prove", "prove HERE/proof.toml"}};
+    {"supply", "supply SCENES/stasis/supply.toml"}};
 
 class Threads : public CommandTest, public ::testing::WithParamInterface<Command> {
  protected:
@@ -104,7 +86,6 @@ class Threads : public CommandTest, public ::testing::WithParamInterface<Command
     fs::copy(scenes / "hollow" / "hollow.gltf", at("hollow.gltf"));
     write("sunlit.toml", sunlit);
     write("datasheet.toml", datasheet);
-    write("proof.toml", proof);
     if (GetParam().name != "balance") return;
     const std::string flight = "propagate " + (scenes / "stasis" / "attitude.toml").string() +
                                " --set propagate.duration_s=60 --out " + at("flight");
@@ -121,16 +102,13 @@ class Threads : public CommandTest, public ::testing::WithParamInterface<Command
     return std::regex_replace(text, std::regex("HERE"), folder_.string());
   }
 
-  // Every file by its path, but for what a clock says: `prove` tells how long each case took.
+  // Every file by its path, but for what a clock says.
   std::map<std::string, std::string> results() const {
-    static const std::set<std::string> of_prove = {
-        "proof.md", "proof_cases.csv", "proof_by_family.csv", "runs.json", "summary.json"};
     static const std::regex wall_time("\"wall_time_s\": [^\n]*");
     std::map<std::string, std::string> all;
     for (const auto& entry : fs::recursive_directory_iterator(at("out"))) {
       const std::string name = entry.path().filename().string();
       if (!entry.is_regular_file()) continue;
-      if (GetParam().name == "prove" && of_prove.contains(name)) continue;
       if (name.starts_with("designs.")) continue;  // a database, whose pages are as they came
       std::string text = file_text(entry.path());
       if (name.ends_with(".json")) text = std::regex_replace(text, wall_time, "");

@@ -24,8 +24,6 @@ struct CommandLine : RunOptions {
   std::vector<std::filesystem::path> holdouts;    // --holdout, recordings held out from a fit
   std::vector<std::filesystem::path> guess;       // --guess, recordings without an experiment
   std::optional<std::filesystem::path> truth;     // --truth, what is known of a recording's motion
-  std::optional<std::filesystem::path> cases;     // --cases, a folder of injected cases
-  bool only_make = false;                         // --only-make: the cases, nothing more
   std::string shard;                              // --shard K/N, of a sweep
   std::optional<std::filesystem::path> scene;     // --scene, of a new experiment
   bool collect = false;                           // --collect, of a sweep
@@ -55,7 +53,6 @@ struct Verb {
   bool takes_holdouts = false;
   bool takes_guess = false;  // instead of an experiment
   bool takes_truth = false;
-  bool takes_cases = false;
   bool takes_shard = false;
   bool takes_scene = false;
   bool takes_checkpoint = false;

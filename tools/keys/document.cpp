@@ -6,7 +6,6 @@
 
 #include "core/errors.h"
 #include "tools/keys/words.h"
-#include "tools/scoring/document.h"
 
 namespace photorque {
 namespace {
@@ -87,6 +86,18 @@ const Key& table_at(const std::vector<Key>& tables, const std::string& path,
     return dot == std::string::npos ? key : table_at(key.keys, path.substr(dot + 1), file);
   }
   throw InputError({file}, "keys " + path, "no such table", "a table of an experiment");
+}
+
+// `document` with the text between "<!-- NAME begin -->" and "<!-- NAME end -->" replaced.
+std::string with_section(const std::string& document, const std::string& name,
+                         const std::string& text, const std::string& file) {
+  const std::string begin = "<!-- " + name + " begin -->\n", end = "<!-- " + name + " end -->";
+  const size_t from = document.find(begin), to = document.find(end);
+  if (from == std::string::npos || to == std::string::npos || to < from) {
+    throw InputError({file, 0}, "", "no lines \"<!-- " + name + " begin -->\" and end",
+                     "a document with both");
+  }
+  return document.substr(0, from + begin.size()) + "\n" + text + "\n" + document.substr(to);
 }
 
 }  // namespace

@@ -77,28 +77,20 @@ std::vector<Key> experiment_keys() {
   const std::vector<std::string> motion = {"budget",   "propagate", "balance", "diagnose",
                                            "estimate", "camera",    "serve",   "supply"};
   const std::vector<std::string> moves = {"propagate", "serve"};
-  return joined({with_errors_of_lamps(scene_tables()),
-                 {with_errors_of_cells(array_table())
-                      .read_by({"power", "torque-map", "propagate", "diagnose"}),
-                  published_table().read_by({"trace", "power"}),
-                  effect_table().read_by({"trace", "power", "diagnose"}),
-                  light_table().read_by(moves),
-                  platform_table().read_by(motion),
-                  environment_table().read_by(motion),
-                  disturbance_table().read_by(motion),
-                  sensors_table().read_by(motion),
-                  propagate_table().read_by(moves),
-                  serve_table().read_by({"serve"}),
-                  budget_table().read_by({"budget"}),
-                  balance_table().read_by({"balance"}),
-                  recording_table().read_by({"balance", "diagnose", "estimate"}),
-                  estimate_table().read_by({"estimate"}),
-                  camera_study_table().read_by({"camera"}),
-                  supply_table().read_by({"supply"}),
-                  sweep_table().read_by({"sweep", "optimise"}),
-                  fit_table().read_by({"fit-cell"}),
-                  module_table().read_by({"diagnose"}),
-                  prove_table().read_by({"prove"})}});
+  return joined(
+      {with_errors_of_lamps(scene_tables()),
+       {with_errors_of_cells(array_table())
+            .read_by({"power", "torque-map", "propagate", "diagnose"}),
+        published_table().read_by({"trace", "power"}),
+        effect_table().read_by({"trace", "power", "diagnose"}), light_table().read_by(moves),
+        platform_table().read_by(motion), environment_table().read_by(motion),
+        disturbance_table().read_by(motion), sensors_table().read_by(motion),
+        propagate_table().read_by(moves), serve_table().read_by({"serve"}),
+        budget_table().read_by({"budget"}), balance_table().read_by({"balance"}),
+        recording_table().read_by({"balance", "diagnose", "estimate"}),
+        estimate_table().read_by({"estimate"}), camera_study_table().read_by({"camera"}),
+        supply_table().read_by({"supply"}), sweep_table().read_by({"sweep", "optimise"}),
+        fit_table().read_by({"fit-cell"}), module_table().read_by({"diagnose"})}});
 }
 
 }  // namespace photorque

@@ -14,6 +14,5 @@ Key serve_table();      // tools/realtime
 Key sweep_table();      // tools/sweeps
 Key supply_table();     // tools/supply
 Key fit_table();        // tools/tasks
-Key prove_table();      // tools/commands
 
 }  // namespace photorque

@@ -181,10 +181,6 @@ int run(int argc, char** argv, Interruption& interruption) {
                           "What is true of the recording's motion (CSV with q_w ..., such as "
                           "time_history.csv of propagate), to compare with");
     }
-    if (verb.takes_cases) {
-      command->add_option("--cases", line.cases, "Score this folder of cases instead of new ones");
-      command->add_flag("--only-make", line.only_make, "Make the cases, diagnose nothing");
-    }
     if (verb.takes_keys) {
       command->add_option("--out", line.out, "Write the schema into this file");
       command->add_option("--key", line.key, "Explain one key instead: source.power_W");

@@ -93,8 +93,7 @@ class Checker {
         {"[sensors.camera] with markers", {"camera"}},
         {"[supply_trade]", {"supply"}},
         {"[sweep]", {"sweep", "optimise"}},
-        {"[fit]", {"fit-cell"}},
-        {"[prove]", {"prove"}}};
+        {"[fit]", {"fit-cell"}}};
     const auto runs = [&](const std::string& verb) {
       return std::ranges::find(report_.commands, verb, &CheckReport::Command::name) !=
              report_.commands.end();
@@ -106,7 +105,7 @@ class Checker {
   }
 
   void read_tables() {
-    const bool fits = file_->settings.has("fit"), proves = file_->settings.has("prove");
+    const bool fits = file_->settings.has("fit");
     // A scene without lamps beside a platform is for the camera alone.
     const bool unlit = file_->sources.empty() && file_->settings.has("platform");
     const bool is_module = file_->settings.has("module");
@@ -115,10 +114,9 @@ class Checker {
     if (fits) check_fit();
     if (is_module) check_module();
     if (file_->settings.has("sweep")) check_sweep();
-    if (proves) add("prove", "recordings with injected effects, made, diagnosed and scored");
-    if (!file_->scene_file && !file_->settings.has("platform") && !fits && !proves && !is_module) {
+    if (!file_->scene_file && !file_->settings.has("platform") && !fits && !is_module) {
       add_mistake(file_->settings.error("", "nothing that a command starts from",
-                                        "[scene], [platform], [module], [fit] or [prove]"));
+                                        "[scene], [platform], [module] or [fit]"));
     }
   }
 

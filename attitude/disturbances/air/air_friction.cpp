@@ -3,7 +3,6 @@
 // coefficient: k ≥ 0 [N m s^1.5]; or one [[disturbance.part]] per body of external_air.h, whose
 // friction about the vertical axis is summed in the environment's air. The law is taken the same
 // about every axis.
-#include <cmath>
 
 #include "attitude/disturbances/air/external_air.h"
 #include "attitude/disturbances/kind.h"
@@ -31,14 +30,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   return make_disturbance<AirFriction>({coefficient(settings, context.environment)});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [k = effect.number(braking.name)](const Surroundings& s) {
-    return times(-k * std::sqrt(length(s.rate)), s.rate);
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -48,11 +39,6 @@ DisturbanceKind kind() {
           .screening = {.parametrisations = {{"laminar boundary layers of the surrounding air "
                                               "brake with the power 1.5 of the rate",
                                               {EffectKey::not_negative(braking.name, 5e-5)}}}},
-          .injection = {.draw = injected::fixed_size(braking.name, 3e-5),
-                        .torque = plain_torque,
-                        .strength = braking.name,
-                        .step = 1e-8,
-                        .pairs = true},
           .budget = {.paper_figure = "lumped_drag_at_1_rpm_N_m"},
           .keys = {Key::uncertain("coefficient", Range::not_negative(),
                                   "k in T = −k |ω|^½ ω, N m s^1.5; *or* `[[disturbance.part]]`")

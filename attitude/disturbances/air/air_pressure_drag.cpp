@@ -43,14 +43,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   return make_disturbance<AirPressureDrag>({coefficient(settings, context.environment)});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [k = effect.number(braking.name)](const Surroundings& s) {
-    return times(-k * length(s.rate), s.rate);
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -64,11 +56,6 @@ DisturbanceKind kind() {
                          {"air resists each axis as its shape does, with the square of the rate",
                           {EffectKey::vector_not_negative(braking.name, 1e-3)},
                           true}}},
-      .injection = {.draw = injected::fixed_size(braking.name, 5e-4),
-                    .torque = plain_torque,
-                    .strength = braking.name,
-                    .step = 1e-7,
-                    .pairs = true},
       .budget = {.paper_figure = "cfd_drag_at_1_rpm_N_m"},
       .keys = {Key::uncertain(
                    "coefficient_N_m_s2", Range::not_negative(),

@@ -20,14 +20,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<RoomDraft>({vector_parameter(settings, torque_lab)});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [steady_N_m = effect.triple(torque_lab.name)](const Surroundings& s) {
-    return injected::to_body(s.attitude, steady_N_m);
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -39,11 +31,6 @@ DisturbanceKind kind() {
                               {EffectKey::vector(torque_lab.name, 5e-6)}}},
                         .needs = Requirement::laboratory,
                         .steady = true},
-          .injection = {.draw = injected::random_direction(torque_lab.name, 5e-6),
-                        .torque = plain_torque,
-                        .strength = torque_lab.name,
-                        .step = 1e-9,
-                        .pairs = true},
           .keys = {Key::uncertain_vector("torque_lab_N_m", "lab axes")}};
 }
 

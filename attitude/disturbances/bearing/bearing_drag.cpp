@@ -113,12 +113,6 @@ std::vector<Key> socket_keys() {
       Key::number_or("discharge_coefficient", 0.8, {0.0, 1.0, true, false}, "of the holes")};
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [c = effect.number(coefficient.name)](const Surroundings& s) { return times(-c, s.rate); };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -131,10 +125,6 @@ DisturbanceKind kind() {
                                           {EffectKey::number(coefficient.name, 2e-5)}}},
                     .needs = Requirement::bearing,
                     .least_sum = LeastSum{min_sum_N_m_s, "the bearing's drag would feed energy"}},
-      .injection = {.draw = injected::fixed_size(coefficient.name, 1e-5),
-                    .torque = plain_torque,
-                    .strength = coefficient.name,
-                    .step = 1e-8},
       .keys = {
           Key::uncertain("coefficient_N_m_s", Range::not_negative(),
                          "c in T = −c ω, about every axis; *or*")

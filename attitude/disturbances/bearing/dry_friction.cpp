@@ -33,15 +33,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return d;
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [size_N_m = effect.number(friction.name)](const Surroundings& s) {
-    constexpr double creep_rad_s = 1e-6;  // what the file takes by default
-    return times(-size_N_m / std::hypot(length(s.rate), creep_rad_s), s.rate);
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -53,11 +44,6 @@ DisturbanceKind kind() {
           {.parametrisations = {{"something rubs: a torque of constant size against the motion",
                                  {EffectKey::not_negative(friction.name, 5e-6)}}},
            .needs = Requirement::bearing},
-      .injection = {.draw = injected::fixed_size(friction.name, 3e-6),
-                    .torque = plain_torque,
-                    .strength = friction.name,
-                    .step = 1e-9,
-                    .pairs = true},
       .keys = {Key::uncertain("torque_N_m", Range::not_negative(), "τ in T = −τ ω/√(ω² + creep²)"),
                Key::number_or("creep_rate_rad_s", 1e-6, Range::positive(),
                               "below it the torque fades to zero")}};

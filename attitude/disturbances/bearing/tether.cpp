@@ -67,14 +67,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return d;
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [k = effect.number(stiffness.name)](const Surroundings& s) {
-    return times(-k, turn_of(s.attitude));
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -84,12 +76,6 @@ DisturbanceKind kind() {
           .screening = {.parametrisations = {{"a cable pulls the platform back to zero attitude",
                                               {EffectKey::not_negative(stiffness.name, 1e-5)}}},
                         .needs = Requirement::air_bearing},
-          .injection = {.draw = injected::fixed_size(stiffness.name, 3e-5),
-                        .torque = plain_torque,
-                        .strength = stiffness.name,
-                        .step = 1e-8,
-                        .needs_small_turns = true,
-                        .pairs = true},
           .keys = {
               Key::uncertain("stiffness_N_m_per_rad", Range::not_negative(),
                              "k in T = −k φ; φ is the shortest way and jumps at half a turn"),

@@ -20,14 +20,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<TurbineTorque>({scalar_parameter(settings, torque_up)});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [size_N_m = effect.number(torque_up.name)](const Surroundings& s) {
-    return times(size_N_m, s.up);
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -39,11 +31,6 @@ DisturbanceKind kind() {
                                               {EffectKey::number(torque_up.name, 5e-6)}}},
                         .needs = Requirement::air_bearing,
                         .alike = {{"room_draft"}}},
-          .injection = {.draw = injected::either_sign(torque_up.name, 3e-6),
-                        .torque = plain_torque,
-                        .strength = torque_up.name,
-                        .step = 1e-9,
-                        .pairs = true},
           .keys = {Key::uncertain("torque_N_m", {}, "positive counterclockwise from above")}};
 }
 

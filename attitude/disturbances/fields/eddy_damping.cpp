@@ -26,14 +26,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
       {scalar_parameter(settings, damping, Range::not_negative())});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [k = effect.number(damping.name)](const Surroundings& s) {
-    return times(k, cross(cross(s.rate, s.field), s.field));
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -44,11 +36,6 @@ DisturbanceKind kind() {
                             {{"eddy currents brake rotation across the ambient magnetic field",
                               {EffectKey::not_negative(damping.name, 2e4)}}},
                         .needs = Requirement::field},
-          .injection = {.draw = injected::fixed_size(damping.name, 5e3),
-                        .torque = plain_torque,
-                        .strength = damping.name,
-                        .step = 1.0,
-                        .pairs = true},
           .keys = {Key::uncertain("coefficient_N_m_s_per_T2", Range::not_negative(),
                                   "k in T = k (ω × B) × B; a thin shell has (2π/3) σ R⁴ δ")}};
 }

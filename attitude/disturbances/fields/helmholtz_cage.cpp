@@ -81,7 +81,6 @@ DisturbanceKind kind() {
       .screening =
           {.reason_against =
                "the coils are a part of the laboratory that is set, not one that is forgotten"},
-      .injection = {.reason_against = "diagnose does not screen it"},
       .sets = "the magnetic field",
       .keys = {
           Key::vector3_or("field_lab_T", Vec3::Zero(), "what the coils set, lab axes; *or*"),

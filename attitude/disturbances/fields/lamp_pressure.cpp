@@ -43,7 +43,6 @@ DisturbanceKind kind() {
                                               {EffectKey::vector(torque_lab.name, 5e-6),
                                                EffectKey::largest_recorded(led_current.name)}}},
                         .needs = Requirement::lamps},
-          .injection = {.reason_against = "needs lamps beside the motion"},
           .budget = {.reason_against = "depends on the light at the instant"},
           .keys = {Key::uncertain_vector("torque_lab_N_m", "at that current, lab axes"),
                    Key::number("led_current_A", Range::positive(),

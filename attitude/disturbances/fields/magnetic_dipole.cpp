@@ -27,14 +27,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<MagneticDipole>({dipole(settings)});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [m_A_m2 = effect.triple(moment.name)](const Surroundings& s) {
-    return cross(m_A_m2, s.field);
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -47,11 +39,6 @@ DisturbanceKind kind() {
                {{"a residual magnetic dipole of the platform turns towards the ambient field",
                  {EffectKey::vector(moment.name, 0.05)}}},
            .needs = Requirement::field},
-      .injection = {.draw = injected::random_direction(moment.name, 0.03),
-                    .torque = plain_torque,
-                    .strength = moment.name,
-                    .step = 1e-5,
-                    .pairs = true},
       .keys = {
           Key::uncertain_vector("dipole_A_m2", "m in T = m × B, body axes; *or* the loops")
               .optional(),

@@ -13,7 +13,6 @@
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/kind.h"
 #include "attitude/environment/eclipse.h"
-#include "core/constants.h"
 
 namespace photorque::kinds::orbit {
 namespace {
@@ -81,7 +80,6 @@ DisturbanceKind kind() {
       .summary = "a circular orbit around the Earth: free fall, gradient, field and shadow",
       .read = read,
       .screening = {.reason_against = "where a platform is, is known"},
-      .injection = {.reason_against = "diagnose does not screen it"},
       .budget = {.reason_against = "an orbit is where the others act"},
       .has_eclipses = true,
       .sets = "the magnetic field",

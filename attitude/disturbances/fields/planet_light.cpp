@@ -9,7 +9,6 @@
 // planet. scale: default 1.
 //
 // The planet's night side reflects nothing, so that an eclipse shows by itself; infrared stays.
-#include <cmath>
 
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/fields/surface_lookup.h"
@@ -124,7 +123,6 @@ DisturbanceKind kind() {
       .summary = "sunlight that the planet reflects, and its infrared, push on a spacecraft",
       .read = read,
       .screening = {.reason_against = "needs a table that torque-map traces for this spacecraft"},
-      .injection = {.reason_against = "needs a traced table"},
       .budget = {.reason_against = "of a spacecraft in orbit, not of a platform on the ground"},
       .keys = {
           Key::text("table",

@@ -11,8 +11,6 @@
 // last per cent or so: a full battery takes no more, an empty one gives no more.
 #include <cmath>
 
-#include <algorithm>
-
 #include "attitude/disturbances/kind.h"
 #include "core/constants.h"
 
@@ -135,7 +133,6 @@ DisturbanceKind kind() {
       .screening =
           {.reason_against =
                "acts on the battery alone; of the motion nothing shows it but battery_discharge"},
-      .injection = {.reason_against = "diagnose does not screen it"},
       .sets = "the battery's current",
       .keys = {
           Key::uncertain(

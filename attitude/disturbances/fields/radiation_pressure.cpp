@@ -126,7 +126,6 @@ DisturbanceKind kind() {
       .read = read,
       .screening = {.of_experiment = of_experiment,
                     .widths = "1 m³, where `[environment.sun]` is stated"},
-      .injection = {.reason_against = "the laboratories of `prove` see no Sun"},
       .budget = {.paper_figure = "radiation_torque_at_30_deg_N_m"},
       .keys = {Key::text("table",
                          "CSV of `torque-map` (`wrench_table_body.csv`): `tilt_deg`, `heading_deg` "

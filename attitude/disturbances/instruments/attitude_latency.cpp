@@ -18,11 +18,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
                                            Stage::measurement);
 }
 
-// The law again, for `prove`.
-void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
-  platform.camera_latency_s = effect.number(latency.name);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -31,12 +26,6 @@ DisturbanceKind kind() {
           .read = read,
           .screening = {.parametrisations = {{"the camera reports an attitude that is already past",
                                               {EffectKey::not_negative(latency.name, 0.1)}}}},
-          .injection = {.draw = injected::fixed_size(latency.name, 0.05),
-                        .alter = plain_change,
-                        .strength = latency.name,
-                        .step = 1e-4,
-                        .max_factor = 6.0,
-                        .pairs = true},
           .budget = {.reason_against = "an error of an instrument: no torque"},
           .instrument = "camera",
           .keys = {Key::uncertain("latency_s", {}, "the camera reports what was, so long ago")}};

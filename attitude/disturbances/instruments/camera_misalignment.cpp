@@ -20,11 +20,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
                                               Stage::measurement);
 }
 
-// The law again, for `prove`.
-void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
-  platform.camera_turn = effect.triple(turn.name);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -34,11 +29,6 @@ DisturbanceKind kind() {
           .screening = {.parametrisations =
                             {{"the camera's target is mounted at a small angle to the body axes",
                               {EffectKey::vector(turn.name, 5e-3)}}}},
-          .injection = {.draw = injected::random_direction(turn.name, 0.01),
-                        .alter = plain_change,
-                        .strength = turn.name,
-                        .step = 1e-6,
-                        .max_factor = 3.0},
           .budget = {.reason_against = "an error of an instrument: no torque"},
           .instrument = "camera",
           .keys = {Key::uncertain_vector("misalignment_rad",

@@ -17,11 +17,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<GyroBias>({vector_parameter(settings, bias)}, Stage::measurement);
 }
 
-// The law again, for `prove`.
-void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
-  platform.gyro_bias = effect.triple(bias.name);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -33,10 +28,6 @@ DisturbanceKind kind() {
                         {{"the gyro reads a constant rate at rest, beyond the uncertainty stated",
                           {EffectKey::vector(bias.name, 5e-3)}}},
                     .per_recording = true},
-      .injection = {.draw = injected::random_direction(bias.name, 1e-3),
-                    .alter = plain_change,
-                    .strength = bias.name,
-                    .step = 1e-6},
       .budget = {.reason_against = "an error of an instrument: no torque"},
       .instrument = "gyro",
       .keys = {Key::uncertain_vector("bias_rad_s", "what it reads at rest")}};

@@ -19,11 +19,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<GyroMisalignment>({vector_parameter(settings, turn)}, Stage::measurement);
 }
 
-// The law again, for `prove`.
-void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
-  platform.gyro_turn = effect.triple(turn.name);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -33,12 +28,6 @@ DisturbanceKind kind() {
       .read = read,
       .screening = {.parametrisations = {{"the gyro is mounted at a small angle to the body axes",
                                           {EffectKey::vector(turn.name, 0.01)}}}},
-      .injection = {.draw = injected::random_direction(turn.name, 0.01),
-                    .alter = plain_change,
-                    .strength = turn.name,
-                    .step = 1e-5,
-                    .max_factor = 3.0,
-                    .pairs = true},
       .budget = {.reason_against = "an error of an instrument: no torque"},
       .instrument = "gyro",
       .keys = {Key::uncertain_vector("misalignment_rad", "rotation vector of the mounting")}};

@@ -20,11 +20,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<GyroScale>({vector_parameter(settings, scale)}, Stage::measurement);
 }
 
-// The law again, for `prove`.
-void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
-  platform.gyro_scale = effect.triple(scale.name);
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -35,12 +30,6 @@ DisturbanceKind kind() {
       .screening = {.parametrisations =
                         {{"the gyro's axes read too much or too little in proportion to the rate",
                           {EffectKey::vector(scale.name, 0.02)}}}},
-      .injection = {.draw = injected::random_direction(scale.name, 0.01),
-                    .alter = plain_change,
-                    .strength = scale.name,
-                    .step = 1e-5,
-                    .max_factor = 20.0,  // beyond a fifth it is no slight error
-                    .pairs = true},
       .budget = {.reason_against = "an error of an instrument: no torque"},
       .instrument = "gyro",
       .keys = {Key::uncertain_vector("scale", "three fractions: 0.01 reads 1 % too much")}};

@@ -281,7 +281,6 @@ DisturbanceKind kind() {
           .screening = {.of_experiment = of_markers,
                         .widths = "`error_m` 0.0003 each, of every marker alone and of all; needs "
                                   "markers in [sensors.camera]"},
-          .injection = {.reason_against = "the makers' cameras have no markers"},
           .budget = {.reason_against = "an error of an instrument: no torque"},
           .keys = {Key::integer(marker_key, 1, 1'000'000,
                                 "which of `markers_m`, the first is 1; without it all, with three "

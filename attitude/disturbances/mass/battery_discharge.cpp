@@ -42,14 +42,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
       Stage::mass);
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [shift_m_per_Ah = effect.triple(shift.name)](const Surroundings& s) {
-    return s.weight_at(times(s.charge_Ah, shift_m_per_Ah));
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -63,11 +55,6 @@ DisturbanceKind kind() {
                .needs = Requirement::charge,
                .alike = {{"mass_shift", Requirement::charge},
                          {"static_unbalance", Requirement::charge}}},
-          .injection = {.draw = injected::random_direction(shift.name, 2e-6),
-                        .torque = plain_torque,
-                        .strength = shift.name,
-                        .step = 1e-8,
-                        .pairs = true},
           .budget = {.paper_figure = "battery_torque_N_m"},
           .keys = {Key::uncertain_vector("shift_m_per_Ah",
                                          "of the centre of mass per charge drawn, body axes; *or* "

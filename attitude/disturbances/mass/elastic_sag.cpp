@@ -70,20 +70,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
                                      Stage::mass);
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [compliance_s2 = effect.triple(diagonal.name)](const Surroundings& s) {
-    return s.weight_at(by_component(compliance_s2, minus(s.gravity, s.gravity_level)));
-  };
-}
-
-injected::EffectNumbers draw_example(injected::RandomDraw& draw,
-                                     const injected::ExampleConditions&) {
-  return {{diagonal.name,
-           {draw.uniform(0.2e-7, 1e-7), draw.uniform(0.2e-7, 1e-7), draw.uniform(0.2e-7, 1e-7)}}};
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -95,11 +81,6 @@ DisturbanceKind kind() {
           {.parametrisations = {{"the structure bends under its weight, differently at every tilt",
                                  {EffectKey::vector_not_negative(diagonal.name, 5e-7)}}},
            .needs = Requirement::gravity},
-      .injection = {.draw = draw_example,
-                    .torque = plain_torque,
-                    .strength = diagonal.name,
-                    .step = 1e-9,
-                    .pairs = true},
       .keys = {Key::other("compliance_s2", Key::an_array | Key::a_table,
                           "C in T = m C (g − g at zero tilt) × g, metres per m/s²: three numbers "
                           "(a diagonal; only these take ±) or a symmetric 3 × 3 matrix; *or*")

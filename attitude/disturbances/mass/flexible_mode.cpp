@@ -67,28 +67,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
         .key = initial_rate}});
 }
 
-// The law again, for `prove`.
-void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
-  using namespace injected;
-  const Triple along = effect.triple(direction.name);
-  platform.appendage =
-      Appendage{times(1.0 / length(along), along), 2.0 * pi * effect.number(frequency.name),
-                effect.number(damping.name), effect.number(inertia.name)};
-}
-
-injected::EffectNumbers draw_example(injected::RandomDraw& draw,
-                                     const injected::ExampleConditions& conditions) {
-  const Triple axis = draw.direction();
-  double about_axis_kg_m2 = 0.0;
-  for (size_t k = 0; k < 3; ++k) {
-    about_axis_kg_m2 += axis[k] * axis[k] * conditions.inertia_kg_m2[k][k];
-  }
-  return {{direction.name, injected::list(axis)},
-          {frequency.name, {draw.log_uniform(0.15, 1.5)}},
-          {damping.name, {draw.log_uniform(0.005, 0.05)}},
-          {inertia.name, {0.05 * about_axis_kg_m2}}};
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -109,11 +87,6 @@ DisturbanceKind kind() {
                            {inertia.name, {0.01}, 0.05, 0.0, EffectKey::unbounded, true, true}}}},
                     .scan = Scan::mode,
                     .fast = true},
-      .injection = {.draw = draw_example,
-                    .alter = plain_change,
-                    .strength = inertia.name,
-                    .max_factor = 6.0,
-                    .needs_commands = true},
       .keys = {Key::uncertain_vector("axis", "of the mode, body axes, any length"),
                Key::uncertain("frequency_Hz", Range::positive(), "with the body at rest"),
                Key::uncertain("damping", Range::not_negative(), "fraction of critical damping"),

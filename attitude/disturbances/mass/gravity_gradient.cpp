@@ -18,26 +18,16 @@ Disturbance read(const Settings&, const DisturbanceContext&) {
   return make_disturbance<GravityGradient>({});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect&) {
-  using namespace injected;
-  return [](const Surroundings& s) {
-    constexpr double earth_radius_m = 6.3710087714e6;
-    return times(3.0 * s.gravity_m_s2 / earth_radius_m, cross(s.up, times(s.inertia, s.up)));
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
   return {.name = "gravity_gradient",
           .summary = "gravity is weaker higher up and aligns the long axis with it",
           .read = read,
-          .screening =
-              {.parametrisations =
-                   {{"gravity weakens with height and turns the longest axis towards the vertical",
-                     {}}}},
-          .injection = {.draw = injected::nothing_to_draw(), .torque = plain_torque}};
+          .screening = {
+              .parametrisations = {
+                  {"gravity weakens with height and turns the longest axis towards the vertical",
+                   {}}}}};
 }
 
 }  // namespace photorque::kinds::gravity_gradient

@@ -28,19 +28,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
                                        Stage::conditions);
 }
 
-// The law again, for `prove`.
-void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
-  using namespace injected;
-  const std::vector<double>& tilt_rad = effect.numbers(about_x.name, 2);
-  const Quaternion turn = quaternion_of({tilt_rad[0], tilt_rad[1], 0.0});
-  platform.gravity_lab = injected::to_body(conjugate(turn), platform.gravity_lab);
-}
-
-injected::EffectNumbers draw_example(injected::RandomDraw& draw,
-                                     const injected::ExampleConditions&) {
-  return {{about_x.name, {2e-3 * draw.normal(), 2e-3 * draw.normal()}}};
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -52,10 +39,6 @@ DisturbanceKind kind() {
                    {{"gravity does not point along the camera's vertical: the camera is not level",
                      {{about_x.name, {0.0, 0.0}, 5e-3}}}},
                .needs = Requirement::gravity},
-          .injection = {.draw = draw_example,
-                        .alter = plain_change,
-                        .strength = about_x.name,
-                        .step = 1e-6},
           .keys = {Key::numbers("tilt_rad", {},
                                 "[about x, about y], lab axes: turns lab −z into gravity")
                        .with_error()

@@ -44,27 +44,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext& context) {
   return make_disturbance<InertiaError>({six}, Stage::conditions);
 }
 
-// The law again, for `prove`.
-void plain_change(const InjectedEffect& effect, injected::PlainPlatform& platform) {
-  using namespace injected;
-  const std::vector<double>& d = effect.numbers(delta.name, 6);
-  const Matrix change = {{{d[0], d[3], d[4]}, {d[3], d[1], d[5]}, {d[4], d[5], d[2]}}};
-  for (size_t i = 0; i < 3; ++i) platform.inertia[i] = plus(platform.inertia[i], change[i]);
-}
-
-injected::EffectNumbers draw_example(injected::RandomDraw& draw,
-                                     const injected::ExampleConditions& conditions) {
-  std::vector<double> change_kg_m2;
-  double mean_kg_m2 = 0.0;
-  for (size_t k = 0; k < 3; ++k) {
-    const double own_kg_m2 = conditions.inertia_kg_m2[k][k];
-    change_kg_m2.push_back(0.01 * draw.uniform(-1.0, 1.0) * own_kg_m2);
-    mean_kg_m2 += own_kg_m2 / 3.0;
-  }
-  for (int k = 0; k < 3; ++k) change_kg_m2.push_back(0.005 * draw.uniform(-1.0, 1.0) * mean_kg_m2);
-  return {{delta.name, change_kg_m2}};
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -79,12 +58,6 @@ DisturbanceKind kind() {
                                    .scale = 0.03,
                                    .times_inertia = true}}}},
            .inertia_change_kg_m2 = inertia_change_kg_m2},
-      .injection = {.draw = draw_example,
-                    .alter = plain_change,
-                    .strength = delta.name,
-                    .step = 1e-6,
-                    .max_factor = 5.0,
-                    .pairs = true},
       .keys = {
           Key::numbers(
               "delta_kg_m2", {},

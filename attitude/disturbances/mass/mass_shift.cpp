@@ -1,7 +1,6 @@
 // Something slips: the same as static_unbalance, from one instant on.
 //
 // time_s: the instant. offset_m[3]: what the centre of mass moves by, body axes.
-#include <cmath>
 
 #include "attitude/disturbances/kind.h"
 
@@ -31,26 +30,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
       {scalar_parameter(settings, start), vector_parameter(settings, offset)}, Stage::mass);
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [start_s = effect.number(start.name),
-          offset_m = effect.triple(offset.name)](const Surroundings& s) {
-    return s.time_s >= start_s ? s.weight_at(offset_m) : Triple{};
-  };
-}
-
-std::vector<double> plain_jumps_s(const InjectedEffect& effect, double, double) {
-  return {effect.number(start.name)};
-}
-
-injected::EffectNumbers draw_example(injected::RandomDraw& draw,
-                                     const injected::ExampleConditions& conditions) {
-  const double time_s = draw.uniform(0.25, 0.65) * conditions.duration_s;
-  return {{start.name, {std::round(10.0 * time_s) / 10.0}},
-          {offset.name, injected::list(injected::times(2e-6, draw.direction()))}};
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -65,11 +44,6 @@ DisturbanceKind kind() {
                   EffectKey::vector(offset.name, 3e-6)}}},
            .needs = Requirement::gravity,
            .scan = Scan::instant},
-      .injection = {.draw = draw_example,
-                    .torque = plain_torque,
-                    .jumps_s = plain_jumps_s,
-                    .strength = offset.name,
-                    .pairs = true},
       .keys = {Key::uncertain("time_s", {}, "when"),
                Key::uncertain_vector("offset_m", "by what the centre of mass moves, body axes")}};
 }

@@ -20,14 +20,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<StaticUnbalance>({vector_parameter(settings, offset)}, Stage::mass);
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [offset_m = effect.triple(offset.name)](const Surroundings& s) {
-    return s.weight_at(offset_m);
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -39,10 +31,6 @@ DisturbanceKind kind() {
                    {{"the centre of mass lies elsewhere than stated, beyond the uncertainty stated",
                      {EffectKey::vector(offset.name, 5e-6)}}},
                .needs = Requirement::gravity},
-          .injection = {.draw = injected::random_direction(offset.name, 1e-6),
-                        .torque = plain_torque,
-                        .strength = offset.name,
-                        .step = 1e-8},
           .keys = {Key::uncertain_vector("offset_m",
                                          "r in T = m r × g, from the centre of rotation, body "
                                          "axes; a platform that stands stable has a negative z")}};

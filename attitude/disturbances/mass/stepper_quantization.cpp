@@ -72,7 +72,6 @@ DisturbanceKind kind() {
           .screening =
               {.reason_against =
                    "an offset of the centre of mass like any other: found as static_unbalance"},
-          .injection = {.reason_against = "an offset of the centre of mass like any other"},
           .budget = {.paper_figure = "stepper_torque_N_m"},
           .keys = joined(
               {moving_mass_keys(),

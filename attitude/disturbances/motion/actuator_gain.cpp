@@ -30,14 +30,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<CommonGain>({scalar_parameter(settings, common_gain)});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [error = effect.number(common_gain.name)](const Surroundings& s) {
-    return times(error, s.command_N_m);
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -51,13 +43,6 @@ DisturbanceKind kind() {
                     {"the actuators give more or less torque than commanded, each axis its own",
                      {EffectKey::vector(common_gain.name, 0.2)}}},
                .needs = Requirement::command},
-          .injection = {.draw = injected::either_sign(common_gain.name, 0.1),
-                        .torque = plain_torque,
-                        .strength = common_gain.name,
-                        .step = 1e-4,
-                        .max_factor = 4.0,
-                        .needs_commands = true,
-                        .pairs = true},
           .keys = {
               Key::uncertain(
                   "gain_error", {},

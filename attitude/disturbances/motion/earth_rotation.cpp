@@ -3,7 +3,6 @@
 // No parameters; the Earth's rate in lab axes comes from the environment's latitude. In the body's
 // axes Ω_B changes as −ω × Ω_B, so Euler's equations for the inertial rate, written for ω, gain
 // T = I (ω × Ω) − Ω × I ω − (ω + Ω) × I Ω.
-#include <cmath>
 
 #include "attitude/disturbances/kind.h"
 
@@ -27,13 +26,6 @@ Disturbance read(const Settings&, const DisturbanceContext&) {
   return make_disturbance<EarthRotation>({}, Stage::mass);
 }
 
-// The law again, for `prove`.
-void plain_change(const InjectedEffect&, injected::PlainPlatform& platform) {
-  constexpr double earth_rate_1_s = 7.292115e-5;
-  platform.earth_lab = {0.0, earth_rate_1_s * std::cos(platform.latitude_rad),
-                        earth_rate_1_s * std::sin(platform.latitude_rad)};
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -45,7 +37,6 @@ DisturbanceKind kind() {
                         {{"the laboratory turns with the Earth: the platform and the gyro feel it",
                           {}}},
                     .needs = Requirement::turning_laboratory},
-      .injection = {.draw = injected::nothing_to_draw(), .alter = plain_change},
       .sets = "the turning of the laboratory"};
 }
 

@@ -8,7 +8,6 @@
 //   accelerogram_file: a CSV with t_s, acceleration_x_m_s2, …_y_…, …_z_… in lab axes, at rest
 //     outside its time; the path is relative to the experiment's file.
 // The last two take scale (default 1). The floor moves without turning.
-#include <cmath>
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/motion/vibration.h"
@@ -122,24 +121,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
                                           phase_parameter(settings, phase)});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [amplitude_m_s2 = effect.triple(shaking.name), f_Hz = effect.number(frequency.name),
-          phi = effect.number(phase.name)](const Surroundings& s) {
-    const double now = std::sin(2.0 * pi * f_Hz * s.time_s + phi);
-    return times(-s.mass_kg * now,
-                 cross(s.offset_m, injected::to_body(s.attitude, amplitude_m_s2)));
-  };
-}
-
-injected::EffectNumbers draw_example(injected::RandomDraw& draw,
-                                     const injected::ExampleConditions& conditions) {
-  return {{shaking.name, injected::list(injected::times(0.05, draw.direction()))},
-          {frequency.name, {injected::tone_Hz(draw, conditions)}},
-          {phase.name, {draw.uniform(-3.1, 3.1)}}};
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -155,10 +136,6 @@ DisturbanceKind kind() {
                     .needs = Requirement::gravity,
                     .scan = Scan::frequency,
                     .fast = true},
-      .injection = {.draw = draw_example,
-                    .torque = plain_torque,
-                    .strength = shaking.name,
-                    .step = 1e-4},
       .keys = {
           Key::uncertain_vector("acceleration_m_s2",
                                 "a of a sine in T = −m r × a, nothing without an offset of mass; "

@@ -1,7 +1,6 @@
 // A sinusoidal torque in body axes: T = T₀ sin(2π f t + φ).
 //
 // torque_N_m[3], frequency_Hz, phase [rad] (or phase_deg; default 0).
-#include <cmath>
 
 #include "attitude/disturbances/kind.h"
 #include "attitude/disturbances/sinusoid.h"
@@ -28,22 +27,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
                                            phase_parameter(settings, phase)});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [size_N_m = effect.triple(amplitude.name), f_Hz = effect.number(frequency.name),
-          phi = effect.number(phase.name)](const Surroundings& s) {
-    return times(std::sin(2.0 * pi * f_Hz * s.time_s + phi), size_N_m);
-  };
-}
-
-injected::EffectNumbers draw_example(injected::RandomDraw& draw,
-                                     const injected::ExampleConditions& conditions) {
-  return {{amplitude.name, injected::list(injected::times(5e-5, draw.direction()))},
-          {frequency.name, {injected::tone_Hz(draw, conditions)}},
-          {phase.name, {draw.uniform(-3.1, 3.1)}}};
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -58,11 +41,6 @@ DisturbanceKind kind() {
                                                             -EffectKey::unbounded)}}},
                     .scan = Scan::frequency,
                     .fast = true},
-      .injection = {.draw = draw_example,
-                    .torque = plain_torque,
-                    .strength = amplitude.name,
-                    .step = 1e-8,
-                    .pairs = true},
       .keys = {Key::uncertain_vector("torque_N_m", "T₀ in T = T₀ sin(2π f t + φ), body axes"),
                Key::uncertain("frequency_Hz", tone_Hz, "f"),
                Key::uncertain_or("phase", 0.0, {}, "φ, rad; or `phase_deg`"),

@@ -19,14 +19,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<RotorMomentum>({vector_parameter(settings, momentum)});
 }
 
-// The law again, for `prove`.
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  using namespace injected;
-  return [h_N_m_s = effect.triple(momentum.name)](const Surroundings& s) {
-    return cross(h_N_m_s, s.rate);
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -36,11 +28,6 @@ DisturbanceKind kind() {
           .screening =
               {.parametrisations = {{"a spinning part on board couples the axes like a gyroscope",
                                      {EffectKey::vector(momentum.name, 5e-3)}}}},
-          .injection = {.draw = injected::random_direction(momentum.name, 2e-3),
-                        .torque = plain_torque,
-                        .strength = momentum.name,
-                        .step = 1e-7,
-                        .pairs = true},
           .keys = {Key::uncertain_vector(
               "momentum_N_m_s", "h in T = −ω × h, ω inertial; against the body, body axes")}};
 }

@@ -16,7 +16,6 @@
 #include <array>
 
 #include "attitude/disturbances/kind.h"
-#include "core/constants.h"
 
 namespace photorque::kinds::wheel_control {
 namespace {
@@ -131,7 +130,6 @@ DisturbanceKind kind() {
           .read = read,
           .screening = {.reason_against = "a controller is known to whoever switched it on; its "
                                           "torque stands in the commands"},
-          .injection = {.reason_against = "diagnose does not screen it"},
           .keys = {
               Key::uncertain("gain_N_m_per_rad", Range::not_negative(), "on the angle"),
               Key::uncertain("gain_N_m_s", Range::not_negative(), "on the rate"),

@@ -51,7 +51,6 @@ DisturbanceKind kind() {
                                        .lowest = 0.0,
                                        .times_inertia = true}}}},
                .needs = Requirement::wheel},
-          .injection = {.reason_against = "prove makes no recordings of the speed of a wheel"},
           .keys = {Key::uncertain("inertia_kg_m2", Range::not_negative(),
                                   "J in T = −J (Ω′ + ω × Ω), Ω the measured speeds "
                                   "(`wheel_x_rad_s` … in the recording), about a wheel's own axis: "

@@ -30,7 +30,6 @@ DisturbanceKind kind() {
                                               "speed",
                                               {EffectKey::not_negative(coefficient.name, 1e-2)}}},
                         .needs = Requirement::plane},
-          .injection = {.reason_against = "the laboratories of `prove` have no table to slide on"},
           .budget = {.reason_against = "a force, not a torque"},
           .keys = {Key::uncertain("coefficient_kg_m", Range::not_negative(), "k in F = −k |v| v")}};
 }

@@ -36,7 +36,6 @@ DisturbanceKind kind() {
                                               "speed",
                                               {EffectKey::not_negative(coefficient.name, 1e-3)}}},
                         .needs = Requirement::plane},
-          .injection = {.reason_against = "the laboratories of `prove` have no table to slide on"},
           .budget = {.reason_against = "a force, not a torque"},
           .keys = {Key::uncertain("coefficient", Range::not_negative(), "μ in F = −μ m g v/|v|")}};
 }

@@ -35,7 +35,6 @@ DisturbanceKind kind() {
                                               {EffectKey::not_negative(stiffness.name, 1e-2),
                                                {pull.name, {0.0, 0.0}, 1e-2}}}},
                         .needs = Requirement::plane},
-          .injection = {.reason_against = "the laboratories of `prove` have no table to slide on"},
           .budget = {.reason_against = "a force, not a torque"},
           .keys = {Key::uncertain("stiffness_N_per_m", Range::not_negative(), "k in F = f − k r"),
                    Key::numbers("pull_N", {}, "f at the lab's origin; it pulls to f/k")

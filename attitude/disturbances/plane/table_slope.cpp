@@ -32,7 +32,6 @@ DisturbanceKind kind() {
                                           "another constant force acts, which looks the same",
                                           {{slope.name, {0.0, 0.0}, 1e-3}}}},
                     .needs = Requirement::plane},
-      .injection = {.reason_against = "the laboratories of `prove` have no table to slide on"},
       .budget = {.reason_against = "a force, not a torque"},
       .keys = {Key::numbers("slope_rad", {}, "by which the table rises along lab x and y; small")
                    .of_size(2)

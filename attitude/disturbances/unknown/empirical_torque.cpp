@@ -63,8 +63,6 @@ DisturbanceKind kind() {
           .summary = "a torque that follows no known law, as a fit or a measurement gives it",
           .read = read,
           .screening = {.reason_against = "it is what diagnose fits where no known law will do"},
-          .injection = {.reason_against = "a function without a law; prove has unknown laws of its "
-                                          "own"},
           .keys = empirical_shape_keys()};
 }
 

@@ -6,7 +6,7 @@ make.py OUT [CASE ...]     CASE: light, draught, tilt, cell, nothing
 A tabletop on an air bearing swings and turns under nine lamps; an array of 6 x 3 cells in series, a bypass diode
 over every three, works at its highest maximum. Nothing here is the program's: the motion is Euler's equations by
 Runge and Kutta's formula, a lamp 19 points of its aperture, a cell 4 x 4 points, the circuit Newton's steps on
-the diode equation and the highest maximum the best of a fine grid, refined by a golden section.
+the diode equation and the highest maximum the best of a fine grid, refined by finer ones. Needs NumPy.
 """
 import gzip
 import json
@@ -16,6 +16,8 @@ import pathlib
 import random
 import struct
 import sys
+
+import numpy as np
 
 boltzmann, charge, planck, light_speed, gravity = 1.380649e-23, 1.602176634e-19, 6.62607015e-34, 299792458.0, 9.80665
 
@@ -104,35 +106,30 @@ def per_steradian():
 lamps = [((i - 1) * lamp_pitch[0], (j - 1) * lamp_pitch[1]) for j in range(3) for i in range(3)]
 aperture = [(x + dx, y + dy) for x, y in lamps for dx, dy in disc_points()]
 peak = per_steradian() * lamp_power / 19
-gauss4 = [(-0.861136311594053, 0.347854845137454), (-0.339981043584856, 0.652145154862546),
-          (0.339981043584856, 0.652145154862546), (0.861136311594053, 0.347854845137454)]
+
+
+def cell_points():
+    """Gauss's points of every cell on the plate, and their weights: arrays (cells, points, 2) and (points,)."""
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    x = (np.arange(columns)[:, None] + 0.5 + 0.5 * nodes - columns / 2) * side
+    y = (np.arange(rows)[:, None] + 0.5 + 0.5 * nodes - rows / 2) * side
+    x, y = np.broadcast_arrays(x[None, :, :, None], y[:, None, None, :])
+    return np.stack((x, y), axis=-1).reshape(rows * columns, 16, 2), 0.25 * np.outer(weights, weights).ravel()
+
+
+points_m, point_weights = cell_points()
 
 
 def cells_light(q):
     """Mean irradiance of each cell [W/m2], lamps at full power."""
-    m = matrix(q)
-    normal = (m[0][2], m[1][2], m[2][2])
-    width = 4 * math.log(2) / fwhm ** 2
-    all_cells = []
-    for row in range(rows):
-        for column in range(columns):
-            mean = 0.0
-            for gx, wx in gauss4:
-                for gy, wy in gauss4:
-                    x = (column + 0.5 + 0.5 * gx - columns / 2) * side
-                    y = (row + 0.5 + 0.5 * gy - rows / 2) * side
-                    p = times(m, (x, y, height))
-                    sum_here = 0.0
-                    for ax, ay in aperture:
-                        dx, dy, dz = p[0] - ax, p[1] - ay, p[2] - lamp_height
-                        r2 = dx * dx + dy * dy + dz * dz
-                        r = math.sqrt(r2)
-                        angle = math.atan2(math.hypot(dx, dy), -dz)
-                        arrives = -(normal[0] * dx + normal[1] * dy + normal[2] * dz) / r
-                        sum_here += math.exp(-width * angle * angle) * arrives / r2
-                    mean += 0.25 * wx * wy * peak * sum_here
-            all_cells.append(mean)
-    return all_cells
+    m = np.array(matrix(q))
+    places = points_m @ m[:, :2].T + height * m[:, 2]
+    away = places[:, :, None] - np.array([(x, y, lamp_height) for x, y in aperture])
+    r = np.sqrt(np.sum(away * away, axis=-1))
+    angle = np.arctan2(np.hypot(away[..., 0], away[..., 1]), -away[..., 2])
+    arrives = -(away @ m[:, 2]) / r
+    light = peak * np.sum(np.exp(-4 * math.log(2) * (angle / fwhm) ** 2) * arrives / r**2, axis=-1)
+    return (light @ point_weights).tolist()
 
 
 # The circuit.
@@ -140,12 +137,13 @@ thermal = cell["ideality"] * boltzmann * temperature / charge
 
 
 def diode_V(dark):
-    v = thermal * math.log1p(max(dark, 0.0) / cell["saturation"])
+    """The voltages at which diode and shunt take the currents `dark`, by Newton's steps."""
+    v = thermal * np.log1p(np.maximum(dark, 0.0) / cell["saturation"])
     for _ in range(80):
-        grown = cell["saturation"] * math.exp(v / thermal)
+        grown = cell["saturation"] * np.exp(v / thermal)
         step = (grown - cell["saturation"] + v / cell["shunt"] - dark) / (grown / thermal + 1 / cell["shunt"])
-        v -= step
-        if abs(step) < 1e-13:
+        v = v - step
+        if np.max(np.abs(step)) < 1e-13:
             break
     return v
 
@@ -162,35 +160,24 @@ order = serpentine()
 
 
 def voltage(photocurrents, current):
-    total = 0.0
-    for first in range(0, len(order), 3):
-        v = sum(diode_V(photocurrents[c] - current) - current * cell["series"] for c in order[first:first + 3])
-        total += max(v, -drop)
-    return total
+    """Of the string at each of the currents; a bypass diode over every three cells."""
+    current = np.asarray(current, dtype=float)
+    each = diode_V(np.asarray(photocurrents)[order][:, None] - current) - current * cell["series"]
+    return np.maximum(each.reshape(-1, 3, current.size).sum(axis=1), -drop).sum(axis=0)
 
 
 def maximum(photocurrents):
-    if max(photocurrents) <= 0.0:
-        return 0.0, 0.0
+    """Voltage and current at the highest maximum: the best of a fine grid, refined by grids about it."""
     top, steps = max(photocurrents), 60
-    grid = [top * (k + 1) / steps for k in range(steps)]
-    powers = [i * voltage(photocurrents, i) for i in grid]
-    best = max(range(steps), key=powers.__getitem__)
-    low, high = grid[best] - top / steps, grid[best] + top / steps
-    golden = 0.5 * (math.sqrt(5) - 1)
-    a, b = high - golden * (high - low), low + golden * (high - low)
-    pa, pb = a * voltage(photocurrents, a), b * voltage(photocurrents, b)
+    if top <= 0.0:
+        return 0.0, 0.0
+    low, high = 0.0, top
     while high - low > 1e-9:
-        if pa > pb:
-            high, b, pb = b, a, pa
-            a = high - golden * (high - low)
-            pa = a * voltage(photocurrents, a)
-        else:
-            low, a, pa = a, b, pb
-            b = low + golden * (high - low)
-            pb = b * voltage(photocurrents, b)
+        grid = np.linspace(low, high, steps + 1)
+        best = int(np.argmax(grid * voltage(photocurrents, grid)))
+        low, high = grid[max(best - 1, 0)], grid[min(best + 1, steps)]
     current = 0.5 * (low + high)
-    return voltage(photocurrents, current), current
+    return float(voltage(photocurrents, [current])[0]), float(current)
 
 
 def shine(t, pattern):

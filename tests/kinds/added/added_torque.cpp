@@ -19,12 +19,6 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
   return make_disturbance<AddedTorque>({scalar_parameter(settings, growth)});
 }
 
-injected::PlainTorque plain_torque(const InjectedEffect& effect) {
-  return [size_N_m = effect.number(growth.name)](const injected::Surroundings& s) {
-    return injected::Triple{size_N_m * s.charge_Ah, 0.0, 0.0};
-  };
-}
-
 }  // namespace
 
 DisturbanceKind kind() {
@@ -33,11 +27,7 @@ DisturbanceKind kind() {
           .read = read,
           .screening = {.parametrisations = {{"something grows with the charge drawn",
                                               {EffectKey::number(growth.name, 1e-4)}}},
-                        .needs = Requirement::charge},
-          .injection = {.draw = injected::either_sign(growth.name, 1e-4),
-                        .torque = plain_torque,
-                        .strength = growth.name,
-                        .step = 1e-8}};
+                        .needs = Requirement::charge}};
 }
 
 }  // namespace photorque::kinds::added_torque
