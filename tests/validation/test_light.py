@@ -272,6 +272,19 @@ class CasesOfLight(unittest.TestCase):
             if recipe.has_strength:
                 self.assertLess(judge.gain([recipe.at(1e-6)]), 0.01 * gain, kind)
 
+    def test_scan_sees_a_shaded_cell_and_the_gain(self):
+        _, world, _, _, recordings = drawn_setting(5, "detector_gain")
+        rows = thinned(recordings["scan1"])
+        before = readings.read(world, rows)
+        effects.act(effects.Effect("cell_shaded", 0, {"factor": 0.5}), world)
+        effects.act(effects.Effect("detector_gain", None, {"factor": 1.1}), world)
+        ratio = readings.read(world, rows) / before
+        plate, circuit = world.room.plate, world.circuit
+        edge = [(plate.u_high_m - plate.u_low_m) / circuit.columns, (plate.v_high_m - plate.v_low_m) / circuit.rows]
+        on_first = (rows.u_m < plate.u_low_m + edge[0]) & (rows.v_m < plate.v_low_m + edge[1])
+        self.assertTrue(on_first.any() and not on_first.all())
+        np.testing.assert_allclose(ratio, np.where(on_first, 0.55, 1.1), rtol=1e-12)
+
     def test_trapped_tracker_holds_the_second_maximum(self):
         room = Room(PLATE, [lamp_above(power_W=900.0)])
         circuit = Circuit(2, 1, cell_light=np.array([1.0, 0.4]), cell_area_m2=0.02)
