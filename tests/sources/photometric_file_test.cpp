@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 using test::samples;
+using test::table_direction;
 
 PhotometricFile read_sample_table(const fs::path& path) {
   return read_photometric(read_file(path), path.filename().string());

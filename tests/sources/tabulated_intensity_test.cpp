@@ -12,6 +12,8 @@
 namespace photorque {
 namespace {
 
+using test::table_direction;
+
 IntensityTable axial(double step_rad, double end_rad, const std::function<double(double)>& f) {
   IntensityTable table;
   const auto steps = static_cast<int>(std::lround(end_rad / step_rad));
