@@ -1,4 +1,4 @@
-// A torque surface looked up at eight attitudes, with derivatives where they are asked for.
+// A wrench table made smooth, with derivatives: the torque and its slopes between the nodes.
 #pragma once
 
 #include <array>
@@ -9,6 +9,8 @@
 #include "core/wrench_table.h"
 
 namespace photorque {
+
+// A torque surface looked up at eight attitudes, with derivatives where they are asked for.
 
 // f(x, y) with its derivatives, from lanes of numbers.
 inline Lanes combine_slopes(const Lanes&, const Lanes&, const Lanes& f, const Lanes&,
