@@ -12,10 +12,6 @@ namespace photorque {
 
 namespace {
 
-double cube(double x) {
-  return x * x * x;
-}
-
 // ∫ sin³θ from 0 to θ, the closed form of eq. 17; the half angle keeps its digits for small θ.
 double integral_sin_cubed(double theta) {
   const double s = std::sin(0.5 * theta);
