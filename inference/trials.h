@@ -1,4 +1,4 @@
-// The best of many trials, fitted with more patience than all of them could be.
+// What rounds of the search share: fits of the best trials, runs in fewer samples or in pieces.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,8 @@
 #include "inference/domain.h"
 
 namespace photorque::inference {
+
+// The best of many trials, fitted with more patience than all of them could be.
 
 // Until a fit converges: one that is given up early makes whatever goes on from it seem to gain.
 inline Effort patient(const Thresholds& limits) {

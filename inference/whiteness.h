@@ -1,4 +1,4 @@
-// Whether what is left of a fit is noise: its size at the finest scale and over longer ones.
+// Tests of what is left of a fit: whether it is noise, and whether differences lie above zero.
 #pragma once
 
 #include <cstdint>

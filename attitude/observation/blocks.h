@@ -1,4 +1,4 @@
-// The instants at which a model is asked for what the mean over a block should be.
+// Rows averaged into blocks, and the instants at which a model is evaluated for their means.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,8 @@
 #include "attitude/observation/observation.h"
 
 namespace photorque {
+
+// The instants at which a model is asked for what the mean over a block should be.
 
 // How fast the platform is seen to turn at most: by the gyro, or from one attitude to the next; 0.1
 // at least [rad/s].

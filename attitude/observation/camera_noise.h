@@ -1,4 +1,4 @@
-// How likely an angle and its rate, as a camera and a gyro read them, are under some noise.
+// The noise of the camera, by the likelihood of its angles and the rates of a gyro.
 #pragma once
 
 #include <vector>
@@ -7,6 +7,8 @@
 #include "inference/estimator/thresholds.h"
 
 namespace photorque {
+
+// How likely an angle and its rate, as a camera and a gyro read them, are under some noise.
 
 // What is assumed of one axis. The angle's third derivative is white noise (Wiener torque), so that
 // any smooth torque is allowed, and none is preferred once `roughness` is large.

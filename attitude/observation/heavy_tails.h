@@ -1,4 +1,4 @@
-// How far each reading is from a smooth curve through its neighbours.
+// Noise whose large errors are more frequent than those of a normal distribution.
 #pragma once
 
 #include <array>
@@ -10,6 +10,8 @@
 #include "inference/estimator/thresholds.h"
 
 namespace photorque {
+
+// How far each reading is from a smooth curve through its neighbours.
 
 // One channel of one run, the readings alone, in order of time.
 struct Deviations {
@@ -40,8 +42,6 @@ double robust_level(const std::vector<Deviations>& runs);
 // Whether neighbouring deviations hang together no more than those of white noise do through a
 // curve of their own: what is left is noise, not motion. Sizes are cut at a few `level`.
 bool are_independent(const std::vector<Deviations>& runs, double level);
-
-// Noise whose large errors are more frequent than a normal distribution's.
 
 // Student's t distribution of a channel's errors.
 struct HeavyTail {

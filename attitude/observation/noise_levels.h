@@ -1,4 +1,4 @@
-// The noise of one channel from its own readings, where no other instrument checks it.
+// Levels of noise: of single channels, and with what a model leaves counted as noise.
 #pragma once
 
 #include <optional>
@@ -10,6 +10,8 @@
 #include "inference/estimator/thresholds.h"
 
 namespace photorque {
+
+// The noise of one channel from its own readings, where no other instrument checks it.
 
 // Standard deviation of one reading of a channel (Observation::rows_of), from divided third
 // differences of neighbouring readings, which motion that is smooth from one to the next hardly

@@ -1,4 +1,4 @@
-// Readings with correlated noise turned into independent ones of unit variance.
+// What a model predicts for an observation, and residuals made independent by whitening.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +10,8 @@
 #include "inference/estimator/parameter.h"
 
 namespace photorque {
+
+// Readings with correlated noise turned into independent ones of unit variance.
 
 // Of one channel, block after block in order of time: what the blocks before lead to expect is
 // subtracted, and the rest divided by its standard deviation. Noise is white, plus a part whose
@@ -66,10 +68,8 @@ MeanOfCorrelated mean_of_correlated(double n, double steps);
 // Between the readings of a channel within a block [s]; 0 where it has none.
 double reading_interval_s(const Observation& seen, int channel);
 
-// What a model predicts for an observation, beside what was seen.
-
-// The residuals of a block by channel (recordings/columns.h): attitude about lab x, y, z, gyro x, y,
-// z, scalars; NaN where nothing was measured.
+// The residuals of a block by channel (recordings/columns.h): attitude about lab x, y, z, gyro x,
+// y, z, scalars; NaN where nothing was measured.
 using WhiteRow = Eigen::Matrix<double, channel_count, 1>;
 
 struct Prediction {

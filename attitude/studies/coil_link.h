@@ -1,11 +1,4 @@
-// Circular current filaments anywhere in space: field, mutual inductance, force and torque, by
-// complete elliptic integrals on one circle and quadrature round the other.
-//
-// Source of the field and the vector potential: W. R. Smythe, Static and Dynamic Electricity, 3rd
-// ed. (1968), sec. 7.10. The mutual inductance is the circulation of the potential, the one
-// integral of S. Babic and others, "Mutual inductance calculation between circular filaments
-// arbitrarily positioned in space: alternative to Grover's formula", IEEE Trans. Magn. 46 (2010)
-// 3591; coaxial circles have Maxwell's closed form (Treatise, art. 701). Thin wires in vacuum.
+// Power through coils: fields of circular filaments, eddy currents, the link of two resonant coils.
 #pragma once
 
 #include <complex>
@@ -14,6 +7,15 @@
 #include "core/transform.h"
 
 namespace photorque {
+
+// Circular current filaments anywhere in space: field, mutual inductance, force and torque, by
+// complete elliptic integrals on one circle and quadrature round the other.
+//
+// Source of the field and the vector potential: W. R. Smythe, Static and Dynamic Electricity, 3rd
+// ed. (1968), sec. 7.10. The mutual inductance is the circulation of the potential, the one
+// integral of S. Babic and others, "Mutual inductance calculation between circular filaments
+// arbitrarily positioned in space: alternative to Grover's formula", IEEE Trans. Magn. 46 (2010)
+// 3591; coaxial circles have Maxwell's closed form (Treatise, art. 701). Thin wires in vacuum.
 
 struct CircularFilament {
   Vec3 centre_m = Vec3::Zero();

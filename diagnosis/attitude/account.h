@@ -1,4 +1,4 @@
-// Numbers of one key that are known together, and none of them by itself.
+// What was found, in words and numbers for the reader of a diagnosis.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace photorque {
 
+// Numbers of one key that are known together, and none of them by itself.
+
 // Of three numbers with their covariance (the squares of their unit), of which none is beyond twice
 // its standard error: the principal combination that is furthest from zero in standard errors, its
 // largest coefficient 1, as "x − 0.99 z = (4.4 ± 0.1)×10⁻¹⁰". Empty where none is beyond four, or
 // where a number is known by itself.
 std::string known_together(const Vec3& value, const Mat3& covariance);
-
-// Puts what was found into words and numbers for the reader of a diagnosis.
 
 // The effects of the chosen trial, each with the probability that its kind acts.
 std::vector<FoundEffect> found_effects(const inference::Decision& decision,

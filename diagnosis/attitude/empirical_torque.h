@@ -1,4 +1,4 @@
-// A fitted function without a law as a short formula, and what physics it looks like.
+// A fitted law without a name, as numbers against its variable and as a short formula.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +10,8 @@
 #include "diagnosis/diagnosis.h"
 
 namespace photorque {
+
+// A fitted function without a law as a short formula, and what physics it looks like.
 
 // "(4.41 ± 0.02)×10⁻⁶", the value to the two digits that the error has; without an error that is
 // above 0 and finite, the value alone.

@@ -1,4 +1,4 @@
-// Whether recordings of a free body are of one body at all.
+// What the rates of free bodies say of the recordings: different bodies, a wrong clock.
 #pragma once
 
 #include <vector>
@@ -7,6 +7,8 @@
 #include "diagnosis/diagnosis.h"
 
 namespace photorque {
+
+// Whether recordings of a free body are of one body at all.
 
 // The bodies that the recordings, fitted and held out, are of: each recording alone gives its
 // moments of inertia up to their scale (attitude/estimation/free_inertia.h), and two recordings are

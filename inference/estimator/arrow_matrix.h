@@ -1,4 +1,4 @@
-// What a least-squares step needs to know of the data.
+// The normal equations of least squares over several runs.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -7,6 +7,8 @@
 #include <vector>
 
 namespace photorque::inference {
+
+// What a least-squares step needs to know of the data.
 
 // Residuals are r = (measured − predicted)/noise, so that good ones have unit variance, and slopes
 // J = ∂(predicted/noise)/∂θ: a step δ turns r into r − J δ, to first order.

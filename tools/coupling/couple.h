@@ -1,4 +1,4 @@
-// The file that a run which takes long keeps its state in, so that it can be broken off.
+// Runs in which light, power and motion act on each other, and the file that keeps their state.
 #pragma once
 
 #include <chrono>
@@ -12,6 +12,8 @@
 #include "tools/runs/console.h"
 
 namespace photorque {
+
+// The file that a run which takes long keeps its state in, so that it can be broken off.
 
 // A line of text for each of: format, width of the table of light, hash of that and of all that the
 // run follows from, hash of the state; then the state. Written whole or not at all, over the last
@@ -42,8 +44,6 @@ class CheckpointFile {
   std::chrono::steady_clock::duration every_;
   std::chrono::steady_clock::time_point next_;
 };
-
-// From an experiment with light and a platform to a run in which they act on each other.
 
 // A run and what ran beside it.
 struct CoupledResult {

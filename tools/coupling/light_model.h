@@ -1,4 +1,4 @@
-// What an experiment says about light in a run of the attitude: the table [light].
+// The light of a run of the attitude: the table [light] and what it does at any attitude.
 #pragma once
 
 #include <functional>
@@ -15,6 +15,8 @@
 #include "tools/runs/array_power.h"
 
 namespace photorque {
+
+// What an experiment says about light in a run of the attitude: the table [light].
 
 // [light]
 struct LightSettings {

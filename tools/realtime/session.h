@@ -1,4 +1,4 @@
-// What an experiment says about a run in real time: the table [serve].
+// A run in real time with its client: the table [serve] and the session that serves it.
 #pragma once
 
 #include <functional>
@@ -13,6 +13,8 @@
 #include "tools/realtime/udp.h"
 
 namespace photorque {
+
+// What an experiment says about a run in real time: the table [serve].
 
 struct ServeSettings {
   enum class Mode {
@@ -43,7 +45,6 @@ struct ServeSettings {
 ServeSettings read_serve(const Settings& root);
 
 // A run in real time with its client: at every tick a measurement goes out and commands come in.
-
 class Session {
  public:
   // `seed` of the simulated links; `start_s` is the run's initial time.

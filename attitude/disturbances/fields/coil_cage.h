@@ -1,4 +1,4 @@
-// Currents as magnets: their dipole and their field. Source: eq. 26–28, Biot and Savart.
+// Currents as magnets: their dipole, their field, and cages of coils. Source: eq. 26–28.
 #pragma once
 
 #include <array>

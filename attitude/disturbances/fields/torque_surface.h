@@ -1,4 +1,4 @@
-// A torque surface looked up at eight attitudes, with derivatives where they are asked for.
+// A wrench table made smooth, with derivatives: the torque and its slopes between the nodes.
 #pragma once
 
 #include <array>

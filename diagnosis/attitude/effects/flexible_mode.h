@@ -1,5 +1,4 @@
-// Screening for appendages that swing fast, without propagating the platform again for each
-// frequency.
+// Appendages that swing: screening, and starts for their frequency and axis.
 #pragma once
 
 #include "attitude/observation/prediction.h"
@@ -7,6 +6,9 @@
 #include "diagnosis/attitude/effects/screen.h"
 
 namespace photorque {
+
+// Screening for appendages that swing fast, without propagating the platform again for each
+// frequency.
 
 // One run propagated along a fit.
 struct PropagatedRun {

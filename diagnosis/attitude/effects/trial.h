@@ -1,5 +1,4 @@
-// The effects that may be missing: every kind of disturbance that a recording can reveal, with what
-// is known about its parameters before looking. What is known stands in the kinds' own files.
+// The effects that may be missing, and models that contain some of them, fitted in full.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +12,9 @@
 #include "inference/domain.h"
 
 namespace photorque {
+
+// The effects that may be missing: every kind of disturbance that a recording can reveal, with what
+// is known about its parameters before looking. What is known stands in the kinds' own files.
 
 // One parametrisation of a kind.
 struct Effect {
