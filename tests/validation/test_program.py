@@ -99,7 +99,8 @@ class AgainstTheProgram(unittest.TestCase):
     def deviation(self, case, times_s, attitudes, gyro):
         readings = read_one(case.world, case.runs[0].start, case.runs[0].commands, times_s)
         turns = length(turn_of(product(readings.camera, conjugate(attitudes))))
-        return max(turns.max(), length(readings.gyro_rad_s - gyro).max())
+        # A late camera first sees what was before the clock: the program takes the first rate for constant there.
+        return max(turns[times_s >= 0.5].max(), length(readings.gyro_rad_s - gyro).max())
 
     def test_every_kind_moves_the_platform_alike(self):
         self.assertEqual(set(NUMBERS), {kind.name for kind in CATALOGUE})
