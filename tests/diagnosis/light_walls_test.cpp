@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "diagnosis/light/clean.h"
+#include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/model/illumination.h"
 #include "diagnosis/light/model/run.h"
 #include "scenes/experiment/experiment.h"
