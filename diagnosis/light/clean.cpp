@@ -1,4 +1,4 @@
-#include "diagnosis/light/clean.h"
+#include "diagnosis/light/diagnose.h"
 
 #include <Eigen/QR>
 #include <algorithm>

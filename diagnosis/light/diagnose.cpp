@@ -6,7 +6,6 @@
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "diagnosis/light/account.h"
-#include "diagnosis/light/clean.h"
 #include "diagnosis/light/domain.h"
 #include "diagnosis/verdict.h"
 #include "inference/decide.h"

@@ -12,6 +12,7 @@
 #include "photovoltaics/fit/parts.h"
 
 namespace photorque {
+namespace even_light {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -165,8 +166,10 @@ double rms_A(std::span<const IvSweep> sweeps, const VectorXd& x) {
 }
 
 }  // namespace
+}  // namespace even_light
 
 SweepFit fit_sweeps(std::span<const IvSweep> sweeps, const SweepNoise& noise) {
+  using namespace even_light;
   if (sweeps.empty()) throw InputError({}, "curves", "none", "at least one sweep");
   for (const IvSweep& sweep : sweeps) check_sweep(sweep);
   const inference::Fit best = fit_rounds(sweeps, noise, start_from(sweeps[0], noise), 4);

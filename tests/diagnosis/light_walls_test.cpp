@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/constants.h"
-#include "diagnosis/light/clean.h"
+#include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/model/illumination.h"
 #include "diagnosis/light/model/run.h"
 #include "scenes/experiment/experiment.h"

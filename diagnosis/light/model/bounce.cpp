@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "diagnosis/light/model/bounce.h"
 #include "diagnosis/light/model/illumination.h"
 
 namespace photorque {

@@ -15,7 +15,6 @@
 #include <memory>
 #include <optional>
 
-#include "diagnosis/light/model/bounce.h"
 #include "diagnosis/light/model/illumination.h"
 #include "diagnosis/light/model/recording.h"
 #include "photovoltaics/network/curve.h"

@@ -1,4 +1,4 @@
-#include "diagnosis/light/module/hypothesis.h"
+#include "diagnosis/light/module/fit.h"
 
 #include <algorithm>
 #include <cmath>
