@@ -174,11 +174,6 @@ Key Key::range_that_varies() && {
   return std::move(*this);
 }
 
-Key Key::read_by(std::vector<std::string> verbs) && {
-  commands = std::move(verbs);
-  return std::move(*this);
-}
-
 std::vector<Key> joined(std::initializer_list<std::vector<Key>> lists) {
   std::vector<Key> all;
   for (const std::vector<Key>& list : lists) all.insert(all.end(), list.begin(), list.end());

@@ -66,7 +66,6 @@ struct Key {
   std::string usually = {};                    // the default in words, where it is no constant
   unsigned forms = 0;                          // of Type::other
   std::vector<Key> keys = {};                  // of tables
-  std::vector<std::string> commands = {};      // of the tables of a file: who reads them
 
   // As the accessors of Settings: same names, same order. Defaults of numbers are SI.
   static Key number(std::string name, Range range, std::string what);
@@ -103,7 +102,6 @@ struct Key {
   Key one_or_several() &&;
   Key of_size(size_t count) &&;
   Key range_that_varies() &&;
-  Key read_by(std::vector<std::string> verbs) &&;
 };
 
 // Several lists of keys one after the other.
