@@ -15,8 +15,8 @@
 
 namespace photorque {
 
-class FluxMapReceiver;    // receivers/maps/flux_map.h
-class TorqueMapReceiver;  // receivers/maps/torque_map.h
+class FluxMapReceiver;    // receivers/flux_map.h
+class TorqueMapReceiver;  // receivers/torque_map.h
 class WrenchReceiver;     // receivers/wrench/wrench.h
 
 // A receiver as its kind made it, with handles of its own type to those that other parts of the

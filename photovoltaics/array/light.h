@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "raytrace/receiver.h"
-#include "receivers/maps/flux_map.h"
+#include "receivers/flux_map.h"
 
 namespace photorque {
 

@@ -1,6 +1,6 @@
 // fit_cell(): the parameters of a solar cell from measurements.
 #include "python/bindings/bind.h"
-#include "python/bindings/exchange/call.h"
+#include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
 #include "python/bindings/results.h"
 #include "tools/verbs/fit_cell.h"

@@ -2,7 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "python/bindings/bind.h"
-#include "python/bindings/exchange/call.h"
+#include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
 #include "tools/verbs/check.h"
 

@@ -3,9 +3,9 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "core/files.h"
+#include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
-#include "python/bindings/exchange/arrays.h"
-#include "python/bindings/exchange/call.h"
+#include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
@@ -90,8 +90,8 @@ void bind_diagnosis(py::module_& module) {
           [](const DiagnosisHandle& run, const std::filesystem::path& path) {
             const py::gil_scoped_release release;
             write_file_whole(
-                path, interactive_report_html(run.diagnosis, run.provenance, run.of_light, run.options,
-                                              head_of(run.options, "diagnose")));
+                path, interactive_report_html(run.diagnosis, run.provenance, run.of_light,
+                                              run.options, head_of(run.options, "diagnose")));
             return path.string();
           },
           py::arg("path"),

@@ -4,7 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "core/errors.h"
-#include "python/bindings/exchange/document.h"
+#include "python/bindings/document.h"
 #include "scenes/experiment/toml.h"
 
 namespace photorque::python {

@@ -1,11 +1,11 @@
 // trace() and power(): irradiance, radiation force and torque, the solar array.
 #include <pybind11/stl.h>
 
+#include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
-#include "python/bindings/exchange/arrays.h"
-#include "python/bindings/exchange/call.h"
+#include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
-#include "python/bindings/own/lamp.h"
+#include "python/bindings/lamp.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/verbs/power.h"

@@ -5,7 +5,7 @@
 #include "core/provenance.h"
 #include "python/bindings/bind.h"
 #include "python/bindings/experiment.h"
-#include "python/bindings/own/lamp.h"
+#include "python/bindings/lamp.h"
 #include "python/bindings/results.h"
 
 PYBIND11_MODULE(_photorque, module) {

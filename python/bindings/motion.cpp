@@ -1,13 +1,13 @@
 // propagate(): the platform through its disturbances and in its light.
+#include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
-#include "python/bindings/exchange/arrays.h"
-#include "python/bindings/exchange/call.h"
+#include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
-#include "python/bindings/own/torque.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
-#include "tools/pages/pages.h"
+#include "python/bindings/torque.h"
 #include "tools/coupling/propagate.h"
+#include "tools/pages/pages.h"
 
 namespace photorque::python {
 namespace {

@@ -6,9 +6,9 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "python/bindings/bind.h"
-#include "python/bindings/exchange/call.h"
+#include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
-#include "python/bindings/own/lamp.h"
+#include "python/bindings/lamp.h"
 #include "python/bindings/results.h"
 
 namespace photorque::python {

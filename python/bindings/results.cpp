@@ -1,7 +1,7 @@
 #include "python/bindings/results.h"
 
 #include "core/errors.h"
-#include "python/bindings/exchange/arrays.h"
+#include "python/bindings/arrays.h"
 
 namespace photorque::python {
 namespace {

@@ -4,7 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "python/bindings/bind.h"
-#include "python/bindings/exchange/call.h"
+#include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
 #include "python/bindings/results.h"
 #include "tools/verbs/attitude/camera.h"

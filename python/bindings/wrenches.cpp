@@ -1,9 +1,9 @@
 // torque_map(): the wrench of light over attitudes, or over directions of light.
+#include "python/bindings/arrays.h"
 #include "python/bindings/bind.h"
-#include "python/bindings/exchange/arrays.h"
-#include "python/bindings/exchange/call.h"
+#include "python/bindings/call.h"
 #include "python/bindings/experiment.h"
-#include "python/bindings/own/lamp.h"
+#include "python/bindings/lamp.h"
 #include "python/bindings/pages.h"
 #include "python/bindings/results.h"
 #include "tools/pages/pages.h"

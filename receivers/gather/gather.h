@@ -13,8 +13,8 @@
 #include <span>
 
 #include "raytrace/tracing/tracer.h"
-#include "receivers/maps/flux_map.h"
-#include "receivers/maps/torque_map.h"
+#include "receivers/flux_map.h"
+#include "receivers/torque_map.h"
 
 namespace photorque {
 

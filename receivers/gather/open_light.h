@@ -9,8 +9,8 @@
 
 #include <span>
 #include <unordered_map>
+#include "receivers/flux_map.h"
 #include "receivers/gather/quadrature.h"
-#include "receivers/maps/flux_map.h"
 
 namespace photorque {
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "core/rotations/sphere_series.h"
+#include "core/numerics/sphere_series.h"
 #include "core/wrench.h"
 
 namespace photorque {

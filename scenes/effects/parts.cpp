@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/errors.h"
-#include "receivers/maps/flux_map.h"
+#include "receivers/flux_map.h"
 
 namespace photorque {
 namespace {

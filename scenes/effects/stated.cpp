@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/text/format.h"
 #include "scenes/effects/kind.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 
 namespace photorque {
 namespace {

@@ -11,7 +11,7 @@
 #include "scenes/experiment/doubts.h"
 #include "scenes/gltf/lights.h"
 #include "scenes/gltf/reader.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 
 namespace photorque {
 namespace {

@@ -5,7 +5,7 @@
 #include "receivers/kind.h"
 #include "scenes/experiment/experiment.h"
 #include "scenes/surfaces/settings.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 
 namespace photorque {
 namespace {

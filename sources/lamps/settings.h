@@ -9,7 +9,7 @@
 #include "core/settings/settings.h"
 #include "core/spectrum.h"
 #include "core/transform.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 #include "sources/profiles/angular_profile.h"
 
 namespace photorque {

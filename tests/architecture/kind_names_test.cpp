@@ -22,7 +22,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"attitude/studies/balance.cpp", {"static_unbalance"}},
     // A chart and a key of diagnosis.json that had this name before the kind.
     {"tools/pages/charts.cpp", {"empirical_torque"}},
-    {"diagnosis/report/json.cpp", {"empirical_torque"}},
+    {"diagnosis/json.cpp", {"empirical_torque"}},
     // What motion and light share is this very kind.
     {"diagnosis/light/together.cpp", {"gravity_tilt"}},
     // Kinds of the same form, named by one of the two.

@@ -29,7 +29,7 @@ const std::multimap<std::string, std::string> only_place = {
     {"ceres/tiny_solver.h", "attitude/camera"},
     {"pybind11", "python"},
     {"hdf5.h", "images/writers"},
-    {"sqlite3.h", "tools/sweeps/store"},
+    {"sqlite3.h", "tools/sweeps"},
     {"nlopt", "tools/sweeps"},
 };
 

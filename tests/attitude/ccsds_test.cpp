@@ -6,8 +6,8 @@
 #include <map>
 #include <sstream>
 
-#include "attitude/ccsds/aem.h"
 #include "attitude/environment/epoch.h"
+#include "attitude/recordings/aem.h"
 #include "core/errors.h"
 #include "tests/outside.h"
 

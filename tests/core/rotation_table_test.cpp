@@ -7,7 +7,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/random.h"
-#include "core/rotations/table.h"
+#include "core/numerics/table.h"
 #include "core/transform.h"
 
 namespace photorque {

@@ -1,5 +1,5 @@
 // Functions of a direction as spherical harmonics.
-#include "core/rotations/sphere_series.h"
+#include "core/numerics/sphere_series.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "diagnosis/attitude/account.h"
 #include "diagnosis/attitude/effects/scan.h"
 #include "diagnosis/attitude/empirical_torque.h"
-#include "diagnosis/report/improved.h"
+#include "diagnosis/improved.h"
 #include "scenes/experiment/toml.h"
 #include "tests/diagnosis/rigid_body_recording.h"
 

@@ -1,5 +1,5 @@
 // improved.toml: what the user wrote, and what was found, read back by the program itself.
-#include "diagnosis/report/improved.h"
+#include "diagnosis/improved.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

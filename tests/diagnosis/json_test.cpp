@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "diagnosis/report/json.h"
+#include "diagnosis/json.h"
 #include "tests/diagnosis/sample_diagnosis.h"
 
 namespace photorque {

@@ -1,4 +1,4 @@
-#include "images/scene/picture.h"
+#include "images/drawing/picture.h"
 
 #include <gtest/gtest.h>
 

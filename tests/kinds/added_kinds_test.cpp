@@ -10,7 +10,7 @@
 #include "diagnosis/attitude/effects/trial.h"
 #include "images/writers/product.h"
 #include "receivers/kind.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 #include "tests/attitude/disturbance_bench.h"
 #include "tests/kinds/kind_table.h"
 

@@ -1,5 +1,5 @@
 // The power system step by step: against closed forms for constant light and load.
-#include "photovoltaics/supply/supply.h"
+#include "photovoltaics/array/supply.h"
 
 #include <gtest/gtest.h>
 

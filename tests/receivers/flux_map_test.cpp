@@ -1,4 +1,4 @@
-#include "receivers/maps/flux_map.h"
+#include "receivers/flux_map.h"
 
 #include <random>
 

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "receivers/maps/flux_map.h"
-#include "sources/kind.h"
+#include "receivers/flux_map.h"
+#include "sources/lamps/kind.h"
 #include "tests/raytrace/test_scenes.h"
 
 namespace photorque::testing {

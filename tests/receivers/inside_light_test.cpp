@@ -1,5 +1,5 @@
 // Light that gets into closed bodies: a box of 1 m in parallel light of 1 W/m², by area alone.
-#include "receivers/maps/inside_light.h"
+#include "receivers/inside_light.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "receivers/maps/torque_map.h"
+#include "receivers/torque_map.h"
 
 #include "raytrace/tracing/tracer.h"
 #include "receiver_scenes.h"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "raytrace/tracing/tracer.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 #include "tests/raytrace/test_scenes.h"
 
 namespace photorque {

@@ -11,7 +11,7 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "core/numerics/random.h"
-#include "receivers/maps/flux_map.h"
+#include "receivers/flux_map.h"
 #include "scenes/experiment/experiment.h"
 #include "scenes/gltf/writer.h"
 

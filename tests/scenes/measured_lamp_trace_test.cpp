@@ -10,7 +10,7 @@
 #include "core/provenance.h"
 #include "raytrace/tracing/tracer.h"
 #include "scenes/experiment/experiment.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 #include "sources/photometry/file.h"
 #include "tests/raytrace/test_scenes.h"
 #include "tests/sources/ies_writer.h"

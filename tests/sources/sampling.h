@@ -13,7 +13,7 @@
 #include "core/numerics/random.h"
 #include "core/settings/settings.h"
 #include "raytrace/emitter.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 #include "sources/photometry/ray_set.h"
 #include "sources/profiles/tabulated_intensity.h"
 #include "tests/outside.h"

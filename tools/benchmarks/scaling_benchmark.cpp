@@ -12,7 +12,7 @@
 
 #include "core/constants.h"
 #include "receivers/gather/gather.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 #include "tools/benchmarks/benchmark_scene.h"
 
 namespace photorque {

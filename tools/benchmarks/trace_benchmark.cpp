@@ -15,10 +15,10 @@
 #include "core/parallel.h"
 #include "raytrace/tracing/find_hits.h"
 #include "raytrace/tracing/shadow.h"
+#include "receivers/flux_map.h"
 #include "receivers/gather/gather.h"
-#include "receivers/maps/flux_map.h"
 #include "scenes/experiment/experiment.h"
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 #include "tools/benchmarks/benchmark_scene.h"
 
 namespace photorque {

@@ -8,7 +8,7 @@
 
 #include "attitude/propagation/power_history.h"
 #include "attitude/propagation/run.h"
-#include "photovoltaics/supply/supply.h"
+#include "photovoltaics/array/supply.h"
 #include "tools/coupling/light_model.h"
 
 namespace photorque {

@@ -9,8 +9,8 @@
 
 #include "attitude/disturbances/fields/light_pressure.h"
 #include "attitude/model/platform.h"
-#include "core/rotations/table.h"
-#include "photovoltaics/supply/supply.h"
+#include "core/numerics/table.h"
+#include "photovoltaics/array/supply.h"
 #include "scenes/experiment/experiment.h"
 #include "tools/runs/array_power.h"
 

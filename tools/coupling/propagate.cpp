@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "attitude/ccsds/aem.h"
+#include "attitude/recordings/aem.h"
 #include "core/constants.h"
 #include "tools/coupling/report.h"
 #include "tools/coupling/table_cache.h"

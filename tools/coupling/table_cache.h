@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "core/rotations/table.h"
+#include "core/numerics/table.h"
 #include "core/settings/settings.h"
 
 namespace photorque {

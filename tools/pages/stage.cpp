@@ -8,8 +8,8 @@
 #include "core/constants.h"
 #include "images/browser/content.h"
 #include "raytrace/tracing/view.h"
-#include "receivers/maps/torque_map.h"
 #include "receivers/surface_grid.h"
+#include "receivers/torque_map.h"
 
 namespace photorque {
 namespace {

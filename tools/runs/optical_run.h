@@ -10,8 +10,8 @@
 
 #include "core/product.h"
 #include "core/provenance.h"
-#include "receivers/maps/flux_map.h"
-#include "receivers/maps/inside_light.h"
+#include "receivers/flux_map.h"
+#include "receivers/inside_light.h"
 #include "receivers/wrench/wrench.h"
 #include "scenes/experiment/experiment.h"
 #include "tools/runs/console.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/sweeps/outcome.h"
 #include "tools/sweeps/plan.h"
-#include "tools/sweeps/store/outcome.h"
 
 namespace photorque {
 

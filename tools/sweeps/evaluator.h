@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tools/sweeps/designs.h"
+#include "tools/sweeps/engine.h"
 #include "tools/sweeps/plan.h"
-#include "tools/sweeps/store/engine.h"
 #include "tools/sweeps/tolerances.h"
 
 namespace photorque {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/settings/settings.h"
-#include "tools/sweeps/store/outcome.h"
+#include "tools/sweeps/outcome.h"
 
 namespace photorque {
 

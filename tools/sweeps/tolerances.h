@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/product.h"
+#include "tools/sweeps/identity.h"
 #include "tools/sweeps/plan.h"
-#include "tools/sweeps/store/identity.h"
 
 namespace photorque {
 

@@ -11,7 +11,7 @@
 #include "receivers/wrench/table_product.h"
 #include "tools/pages/pages.h"
 #include "tools/runs/array_power.h"
-#include "tools/sunlight/direction_map.h"
+#include "tools/runs/direction_map.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque {

@@ -6,7 +6,7 @@
 
 #include "core/files.h"
 #include "raytrace/tracing/tracer.h"
-#include "receivers/maps/flux_map.h"
+#include "receivers/flux_map.h"
 #include "sources/photometry/ray_set.h"
 #include "tools/pages/pages.h"
 #include "tools/runs/published.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "attitude/model/disturbance.h"
-#include "core/rotations/table.h"
+#include "core/numerics/table.h"
 
 namespace photorque {
 

@@ -1,6 +1,6 @@
 // Fuzz target: any bytes as a CCSDS attitude ephemeris message; its attitudes, and the message
 // written and read again.
-#include "attitude/ccsds/aem.h"
+#include "attitude/recordings/aem.h"
 
 #include "tests/fuzz/target.h"
 

@@ -1,5 +1,5 @@
 // Fuzz target: any bytes as a table of light over attitude that an earlier run kept.
-#include "core/rotations/table.h"
+#include "core/numerics/table.h"
 
 #include <array>
 

@@ -2,7 +2,7 @@
 // now and then its runs taken over, its table of designs and a copy.
 #include "core/files.h"
 #include "tests/fuzz/target.h"
-#include "tools/sweeps/store/database.h"
+#include "tools/sweeps/database.h"
 
 namespace {
 

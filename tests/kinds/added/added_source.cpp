@@ -1,5 +1,5 @@
 // A kind of source that the program does not have.
-#include "sources/kind.h"
+#include "sources/lamps/kind.h"
 
 namespace photorque::kinds::added_source {
 namespace {

@@ -12,18 +12,18 @@
 #include "core/files.h"
 #include "diagnosis/attitude/diagnose.h"
 #include "diagnosis/guess/guess.h"
+#include "diagnosis/improved.h"
+#include "diagnosis/json.h"
 #include "diagnosis/light/beliefs.h"
 #include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/module/diagnose.h"
 #include "diagnosis/light/together.h"
-#include "diagnosis/report/improved.h"
-#include "diagnosis/report/json.h"
 #include "images/drawing/map.h"
 #include "images/drawing/plot.h"
 #include "images/writers/staged_files.h"
 #include "scenes/experiment/toml.h"
-#include "tools/runs/attitude_run.h"
 #include "tools/pages/pages.h"
+#include "tools/runs/attitude_run.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque {
@@ -411,9 +411,10 @@ void run(const Options& options, const Program&) {
   const DiagnosisRun run = run_diagnose(options, options.recordings, options.holdouts, console);
   print_diagnosis(console, run.diagnosis);
   const std::string report =
-      options.page ? interactive_report_html(run.diagnosis, run.provenance, run.of_light, options,
-                                             page_head(options, options.recordings, options.holdouts))
-                   : run.report();
+      options.page
+          ? interactive_report_html(run.diagnosis, run.provenance, run.of_light, options,
+                                    page_head(options, options.recordings, options.holdouts))
+          : run.report();
   write_diagnosis(run, report, options.out_folder());
   console.line("Results in " + options.out_folder().string());
   if (!options.json) return;

@@ -1,0 +1,400 @@
+#include "attitude/recordings/aem.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "attitude/environment/epoch.h"
+#include "attitude/recordings/text_lines.h"
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/text/parse.h"
+
+namespace photorque {
+
+namespace {
+
+constexpr std::string_view start = "_START", stop = "_STOP", comment = "COMMENT";
+
+KvnItem parse_assignment(std::string_view line, size_t equals) {
+  KvnItem item;
+  item.kind = KvnItem::Kind::assignment;
+  item.key = trimmed(line.substr(0, equals));
+  std::string_view value = trimmed(line.substr(equals + 1));
+  const size_t bracket = value.rfind('[');
+  if (value.ends_with(']') && bracket != std::string_view::npos) {
+    item.unit = trimmed(value.substr(bracket + 1, value.size() - bracket - 2));
+    value = trimmed(value.substr(0, bracket));
+  }
+  item.value = value;
+  return item;
+}
+
+// Reads a block's lines up to its end.
+class Parser {
+ public:
+  explicit Parser(const std::filesystem::path& path) : path_(path), lines_(path) {}
+
+  KvnItem read() {
+    KvnItem message = kvn_block("");
+    fill(message, 0);
+    return message;
+  }
+
+ private:
+  InputError error(const std::string& found, const std::string& expected) const {
+    return {{path_.string(), static_cast<int>(lines_.number())}, "", found, expected};
+  }
+
+  void fill(KvnItem& block, int depth) {
+    constexpr int deepest = 8;
+    if (depth > deepest) throw error("blocks within blocks within blocks", "a CCSDS message");
+    std::string_view raw;
+    while (lines_.next(raw)) {
+      const std::string_view line = trimmed(raw);
+      if (line.empty()) continue;
+      if (line.find('=') == std::string_view::npos && line.ends_with(stop)) {
+        if (block.key + std::string(stop) == line) return;
+        throw error(std::string(line), block.key.empty() ? "a block" : block.key + "_STOP");
+      }
+      block.items.push_back(parse(line, block, depth));
+    }
+    if (!block.key.empty()) throw error("the end of the file", block.key + std::string(stop));
+  }
+
+  KvnItem parse(std::string_view line, const KvnItem& block, int depth) {
+    const int number = static_cast<int>(lines_.number());
+    const auto located = [number](KvnItem item) {
+      item.line = number;
+      return item;
+    };
+    if (line.starts_with(comment) &&
+        (line.size() == comment.size() || line[comment.size()] == ' ' ||
+         line[comment.size()] == '\t')) {
+      return located(kvn_comment(std::string(trimmed(line.substr(comment.size())))));
+    }
+    const size_t equals = line.find('=');
+    if (equals != std::string_view::npos) return located(parse_assignment(line, equals));
+    if (line.ends_with(start)) {
+      KvnItem inner = located(kvn_block(std::string(line.substr(0, line.size() - start.size()))));
+      fill(inner, depth + 1);
+      return inner;
+    }
+    if (block.key.empty()) throw error("\"" + std::string(line) + "\"", "a keyword = value");
+    return located(kvn_data(std::string(line)));
+  }
+
+  std::filesystem::path path_;
+  TextLines lines_;
+};
+
+void append(std::string& text, const KvnItem& block) {
+  size_t widest = 0;
+  for (const KvnItem& item : block.items) {
+    if (item.kind == KvnItem::Kind::assignment) widest = std::max(widest, item.key.size());
+  }
+  for (const KvnItem& item : block.items) {
+    switch (item.kind) {
+      case KvnItem::Kind::comment:
+        text += std::string(comment) + (item.value.empty() ? "" : " " + item.value) + "\n";
+        break;
+      case KvnItem::Kind::assignment:
+        text += item.key + std::string(widest - item.key.size(), ' ') + " = " + item.value;
+        text += (item.unit.empty() ? "" : " [" + item.unit + "]") + "\n";
+        break;
+      case KvnItem::Kind::data:
+        text += item.value + "\n";
+        break;
+      case KvnItem::Kind::block:
+        text += "\n" + item.key + std::string(start) + "\n";
+        append(text, item);
+        text += item.key + std::string(stop) + "\n";
+        break;
+    }
+  }
+}
+
+}  // namespace
+
+bool KvnItem::operator==(const KvnItem& other) const {
+  return kind == other.kind && key == other.key && value == other.value && unit == other.unit &&
+         items == other.items;
+}
+
+const std::string* KvnItem::find(std::string_view name) const {
+  for (const KvnItem& item : items) {
+    if (item.kind == Kind::assignment && item.key == name) return &item.value;
+  }
+  return nullptr;
+}
+
+KvnItem kvn_comment(const std::string& text) {
+  return {KvnItem::Kind::comment, "", text, "", {}, 0};
+}
+KvnItem kvn_assignment(const std::string& key, const std::string& value, const std::string& unit) {
+  return {KvnItem::Kind::assignment, key, value, unit, {}, 0};
+}
+KvnItem kvn_data(const std::string& line) {
+  return {KvnItem::Kind::data, "", line, "", {}, 0};
+}
+KvnItem kvn_block(const std::string& name) {
+  return {KvnItem::Kind::block, name, "", "", {}, 0};
+}
+
+KvnItem read_kvn(const std::filesystem::path& path) {
+  return Parser(path).read();
+}
+
+std::string kvn_text(const KvnItem& message) {
+  std::string text;
+  append(text, message);
+  return text;
+}
+
+void write_kvn(const std::filesystem::path& path, const KvnItem& message) {
+  write_file_whole(path, kvn_text(message));
+}
+
+std::vector<double> kvn_numbers(const std::vector<std::string_view>& words, size_t first,
+                                const std::filesystem::path& path, int line) {
+  std::vector<double> numbers;
+  for (size_t i = first; i < words.size(); ++i) {
+    numbers.push_back(require_number(words[i], {path.string(), line}, ""));
+  }
+  return numbers;
+}
+
+namespace {
+
+using Segment = AttitudeEphemeris::Segment;
+
+// Keywords of a segment's metadata in the order of the book.
+struct Keyword {
+  const char* name;
+  std::string Segment::*member;
+  bool required;
+};
+constexpr std::array<Keyword, 17> keywords = {{
+    {"OBJECT_NAME", &Segment::object_name, true},
+    {"OBJECT_ID", &Segment::object_id, true},
+    {"CENTER_NAME", &Segment::center_name, false},
+    {"REF_FRAME_A", &Segment::ref_frame_a, true},
+    {"REF_FRAME_B", &Segment::ref_frame_b, true},
+    {"ATTITUDE_DIR", &Segment::attitude_dir, true},
+    {"TIME_SYSTEM", &Segment::time_system, true},
+    {"START_TIME", &Segment::start_time, true},
+    {"USEABLE_START_TIME", &Segment::useable_start_time, false},
+    {"USEABLE_STOP_TIME", &Segment::useable_stop_time, false},
+    {"STOP_TIME", &Segment::stop_time, true},
+    {"ATTITUDE_TYPE", &Segment::attitude_type, true},
+    {"QUATERNION_TYPE", &Segment::quaternion_type, false},
+    {"EULER_ROT_SEQ", &Segment::euler_rot_seq, false},
+    {"RATE_FRAME", &Segment::rate_frame, false},
+    {"INTERPOLATION_METHOD", &Segment::interpolation_method, false},
+    {"INTERPOLATION_DEGREE", &Segment::interpolation_degree, false},
+}};
+
+class AemReader {
+ public:
+  explicit AemReader(const std::filesystem::path& path) : path_(path), message_(read_kvn(path)) {}
+
+  AttitudeEphemeris read() {
+    AttitudeEphemeris aem;
+    aem.version = required(message_, "CCSDS_AEM_VERS");
+    aem.creation_date = required(message_, "CREATION_DATE");
+    aem.originator = required(message_, "ORIGINATOR");
+    const KvnItem* meta = nullptr;
+    for (const KvnItem& item : message_.items) {
+      if (item.kind == KvnItem::Kind::comment) aem.comments.push_back(item.value);
+      if (item.kind != KvnItem::Kind::block) continue;
+      if (item.key == "META") {
+        meta = &item;
+      } else if (item.key == "DATA" && meta != nullptr) {
+        aem.segments.push_back(read_segment(*meta, item));
+        meta = nullptr;
+      } else {
+        throw error(item, item.key + "_START", "META_START and DATA_START in turn");
+      }
+    }
+    if (aem.segments.empty()) throw error(message_, "no segment", "META and DATA blocks");
+    return aem;
+  }
+
+ private:
+  InputError error(const KvnItem& at, const std::string& found, const std::string& expected) const {
+    return {{path_.string(), at.line}, "", found, expected};
+  }
+
+  std::string required(const KvnItem& block, const char* name) const {
+    const std::string* value = block.find(name);
+    if (value == nullptr) {
+      throw InputError({path_.string(), block.line}, name, "nothing", "a value");
+    }
+    return *value;
+  }
+
+  Segment read_segment(const KvnItem& meta, const KvnItem& data) const {
+    Segment segment;
+    for (const Keyword& keyword : keywords) {
+      const std::string* value = meta.find(keyword.name);
+      if (value != nullptr) {
+        segment.*keyword.member = *value;
+      } else if (keyword.required) {
+        required(meta, keyword.name);
+      }
+    }
+    for (const KvnItem& item : meta.items) {
+      if (item.kind == KvnItem::Kind::comment) segment.comments.push_back(item.value);
+      if (item.kind == KvnItem::Kind::assignment && !is_known(item.key)) {
+        throw error(item, item.key, "a keyword of AEM metadata");
+      }
+    }
+    if (segment.attitude_dir != "A2B" && segment.attitude_dir != "B2A") {
+      throw error(meta, segment.attitude_dir, "ATTITUDE_DIR = A2B or B2A");
+    }
+    size_t length = 0;
+    for (const KvnItem& item : data.items) {
+      if (item.kind == KvnItem::Kind::comment) continue;
+      if (item.kind != KvnItem::Kind::data) {
+        throw error(item, in_quotes(item.key), "rows of an epoch and numbers");
+      }
+      const std::vector<std::string_view> words = words_of(item.value);
+      segment.rows.push_back({std::string(words.front()), kvn_numbers(words, 1, path_, item.line)});
+      const size_t now = segment.rows.back().values.size();
+      if (length == 0) length = expected_length(segment, now);
+      if (now != length) {
+        throw error(item, std::to_string(now) + " numbers",
+                    std::to_string(length) + " after the epoch");
+      }
+    }
+    return segment;
+  }
+
+  static bool is_known(const std::string& key) {
+    for (const Keyword& keyword : keywords) {
+      if (key == keyword.name) return true;
+    }
+    return false;
+  }
+
+  // Types that are not read as attitudes have at least lines of one length.
+  static size_t expected_length(const Segment& segment, size_t first) {
+    if (segment.attitude_type == "QUATERNION") return 4;
+    if (segment.attitude_type == "EULER_ANGLE") return 3;
+    return first;
+  }
+
+  std::filesystem::path path_;
+  KvnItem message_;
+};
+
+InputError wrong(const std::string& key, const std::string& found, const std::string& expected) {
+  return {{}, key, found, expected};
+}
+
+// Rotations about the axes of `sequence` ("321" or "ZYX") in turn, each about the axes as the ones
+// before left them.
+Quat from_euler(const std::string& sequence, const std::vector<double>& angles_deg) {
+  Quat q = Quat::Identity();
+  if (sequence.size() != 3) throw wrong("EULER_ROT_SEQ", sequence, "three axes, as 321");
+  for (size_t i = 0; i < 3; ++i) {
+    const char c = sequence[i];
+    const int axis = c >= 'X' && c <= 'Z' ? c - 'X' : c - '1';
+    if (axis < 0 || axis > 2) throw wrong("EULER_ROT_SEQ", sequence, "three axes, as 321");
+    q = q * Quat(Eigen::AngleAxisd(angles_deg[i] * degree_rad, Vec3::Unit(axis)));
+  }
+  return q;
+}
+
+Quat to_quaternion(const Segment& segment, const AttitudeEphemeris::Row& row) {
+  const std::vector<double>& v = row.values;
+  if (segment.attitude_type == "EULER_ANGLE") return from_euler(segment.euler_rot_seq, v);
+  if (segment.attitude_type != "QUATERNION") {
+    throw wrong("ATTITUDE_TYPE", segment.attitude_type, "QUATERNION or EULER_ANGLE");
+  }
+  const bool first = segment.quaternion_type == "FIRST";
+  const Quat q = first ? Quat(v[0], v[1], v[2], v[3]) : Quat(v[3], v[0], v[1], v[2]);
+  if (!(std::abs(q.norm() - 1.0) < 0.01)) {
+    throw wrong(row.epoch, "a quaternion of norm " + shortest(q.norm()), "unit norm");
+  }
+  return q.normalized();
+}
+
+}  // namespace
+
+std::vector<Segment::Sample> Segment::attitudes() const {
+  std::vector<Sample> samples;
+  std::optional<Epoch> first;
+  for (const Row& row : rows) {
+    const std::optional<Epoch> epoch = parse_epoch(row.epoch);
+    if (!epoch) throw wrong("epoch", row.epoch, "a time as 2000-01-01T12:00:00");
+    if (!first) first = epoch;
+    const Quat q = to_quaternion(*this, row);
+    samples.push_back(
+        {epoch->seconds_since(*first), attitude_dir == "A2B" ? q : Quat(q.conjugate())});
+  }
+  return samples;
+}
+
+AttitudeEphemeris read_aem(const std::filesystem::path& path) {
+  return AemReader(path).read();
+}
+
+KvnItem to_kvn(const AttitudeEphemeris& aem) {
+  KvnItem message = kvn_block("");
+  message.items.push_back(kvn_assignment("CCSDS_AEM_VERS", aem.version));
+  for (const std::string& comment : aem.comments) message.items.push_back(kvn_comment(comment));
+  message.items.push_back(kvn_assignment("CREATION_DATE", aem.creation_date));
+  message.items.push_back(kvn_assignment("ORIGINATOR", aem.originator));
+  for (const Segment& segment : aem.segments) {
+    KvnItem meta = kvn_block("META");
+    for (const std::string& comment : segment.comments) meta.items.push_back(kvn_comment(comment));
+    for (const Keyword& keyword : keywords) {
+      const std::string& value = segment.*keyword.member;
+      if (!value.empty()) meta.items.push_back(kvn_assignment(keyword.name, value));
+    }
+    KvnItem data = kvn_block("DATA");
+    for (const AttitudeEphemeris::Row& row : segment.rows) {
+      std::string line = row.epoch;
+      for (const double x : row.values) line += " " + shortest(x);
+      data.items.push_back(kvn_data(line));
+    }
+    message.items.push_back(std::move(meta));
+    message.items.push_back(std::move(data));
+  }
+  return message;
+}
+
+void write_aem(const std::filesystem::path& path, const AttitudeEphemeris& aem) {
+  write_kvn(path, to_kvn(aem));
+}
+
+AttitudeEphemeris make_aem(const std::vector<PlatformState>& states, const std::string& epoch,
+                           const std::string& object_name, const std::string& creation_date) {
+  const std::optional<Epoch> zero = parse_epoch(epoch);
+  if (!zero) throw wrong("epoch", epoch, "a time as 2000-01-01T12:00:00");
+  AttitudeEphemeris aem;
+  aem.creation_date = creation_date;
+  aem.originator = "PHOTORQUE";
+  Segment segment;
+  segment.object_name = object_name;
+  segment.object_id = "NONE";
+  segment.center_name = "EARTH";
+  segment.ref_frame_a = "LAB";
+  segment.ref_frame_b = "SC_BODY_1";
+  segment.quaternion_type = "LAST";
+  segment.comments = {"LAB: x east, y north, z up; the quaternion rotates body vectors into it"};
+  for (const PlatformState& state : states) {
+    const Quat& q = state.lab_from_body;
+    segment.rows.push_back({epoch_text(zero->after(state.time_s)), {q.x(), q.y(), q.z(), q.w()}});
+  }
+  if (!segment.rows.empty()) {
+    segment.start_time = segment.rows.front().epoch;
+    segment.stop_time = segment.rows.back().epoch;
+  }
+  aem.segments.push_back(std::move(segment));
+  return aem;
+}
+
+}  // namespace photorque

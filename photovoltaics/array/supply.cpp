@@ -1,0 +1,268 @@
+#include "photovoltaics/array/supply.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photorque {
+namespace {
+
+// Of a lag towards 1 (on) or 0.
+double lagged(double from, bool on, double elapsed_s, double time_constant_s) {
+  const double target = on ? 1.0 : 0.0;
+  return target + (from - target) * std::exp(-elapsed_s / time_constant_s);
+}
+
+}  // namespace
+
+LampOutput::LampOutput(const LampDroop& droop, const LampSchedule& schedule, double start_s)
+    : droop_(droop) {
+  Stage stage{start_s, schedule.on_at_start, 0.0, 0.0};
+  for (const double time_s : schedule.time_s) {
+    if (time_s <= start_s) {
+      stage.on = !stage.on;
+      continue;
+    }
+    stages_.push_back(stage);
+    const double elapsed_s = time_s - stage.from_s;
+    stage.faded = lagged(stage.faded, stage.on, elapsed_s, droop_.time_constant_s);
+    stage.warm = lagged(stage.warm, stage.on, elapsed_s, droop_.rise_time_constant_s);
+    stage.from_s = time_s;
+    stage.on = !stage.on;
+    switches_s_.push_back(time_s);
+  }
+  stages_.push_back(stage);
+}
+
+double LampOutput::output(const Stage& stage, double time_s) const {
+  if (!stage.on) return 0.0;
+  const double elapsed_s = std::max(0.0, time_s - stage.from_s);
+  const double faded = lagged(stage.faded, true, elapsed_s, droop_.time_constant_s);
+  const double warm = lagged(stage.warm, true, elapsed_s, droop_.rise_time_constant_s);
+  return (1.0 - droop_.depth * faded) * (1.0 - droop_.roll_off_1_K * droop_.rise_K * warm);
+}
+
+double LampOutput::at(double time_s) const {
+  const auto after = std::ranges::upper_bound(stages_, time_s, {}, &Stage::from_s);
+  return output(after == stages_.begin() ? stages_.front() : *(after - 1), time_s);
+}
+
+namespace {
+
+// Curves are known at these temperatures and taken linearly in between: 3e-5 of the power.
+constexpr double temperature_step_K = 5.0;
+
+double lit(const std::vector<double>& photocurrent_A) {
+  return photocurrent_A.empty() ? 0.0 : *std::ranges::max_element(photocurrent_A);
+}
+
+}  // namespace
+
+// The array at one temperature, or between two.
+struct PowerSupply::Curves {
+  std::vector<ArrayCurve> curve;
+  std::vector<double> weight;
+
+  double open_circuit_V() const {
+    double sum = 0.0;
+    for (size_t i = 0; i < curve.size(); ++i) sum += weight[i] * curve[i].open_circuit_V();
+    return sum;
+  }
+  // Beyond the open circuit the converter's diode lets nothing back.
+  double current_A(double voltage_V) const {
+    double sum = 0.0;
+    for (size_t i = 0; i < curve.size(); ++i) {
+      if (voltage_V < curve[i].open_circuit_V()) sum += weight[i] * curve[i].current_A(voltage_V);
+    }
+    return sum;
+  }
+  ArrayPoint best() const {
+    double power_W = 0.0, voltage_V = 0.0;
+    for (size_t i = 0; i < curve.size(); ++i) {
+      const ArrayPoint point = curve[i].maximum_power();
+      power_W += weight[i] * point.power_W();
+      voltage_V += weight[i] * point.voltage_V;
+    }
+    return {voltage_V, voltage_V > 0.0 ? power_W / voltage_V : 0.0};
+  }
+};
+
+PowerSupply::PowerSupply(SupplyDesign design, double stored_J)
+    : design_(std::move(design)),
+      start_J_(stored_J),
+      stored_J_(stored_J),
+      start_K_(design_.heat ? design_.heat->air_K : design_.array.temperature_K),
+      temperature_K_(start_K_) {
+  for (const double area_m2 : design_.cell_area_m2) area_m2_ += area_m2;
+  full_ = design_.battery && stored_J_ >= design_.battery->capacity_J;
+  empty_ = design_.battery && stored_J_ <= 0.0;
+  if (design_.tracker && design_.max_photocurrent_A > 0.0) {
+    const std::vector<double> brightest(design_.cell_area_m2.size(), design_.max_photocurrent_A);
+    const CellTables tables =
+        cell_tables(design_.array, design_.cell_area_m2, design_.max_photocurrent_A);
+    control_.emplace(*design_.tracker,
+                     ArrayCurve(design_.array.wiring, tables, brightest).open_circuit_V());
+  }
+}
+
+// Temperature `index` · step, or index −1: that of the design.
+const CellTables& PowerSupply::tables_at(int index) {
+  const auto known = tables_.find(index);
+  if (known != tables_.end()) return known->second;
+  ArrayDesign warm = design_.array;
+  if (index >= 0) warm.temperature_K = temperature_step_K * index;
+  const std::vector<double> largest_A =
+      warmed(warm, std::vector(design_.cell_area_m2.size(), design_.max_photocurrent_A),
+             design_.array.temperature_K, warm.temperature_K);
+  return tables_
+      .emplace(index, cell_tables(warm, design_.cell_area_m2, std::ranges::max(largest_A)))
+      .first->second;
+}
+
+void PowerSupply::step(double time_s, double step_s, const Light& light, bool judge) {
+  state_ = {};
+  state_.light_W = light.on_cells_W;
+  double potential_W = 0.0;
+  if (lit(light.photocurrent_A) > 0.0) {
+    Curves curves;
+    const auto add = [&](int index, double weight) {
+      if (weight == 0.0) return;
+      const double kelvin = temperature_step_K * index;
+      const std::vector<double> current_A = index < 0 ? light.photocurrent_A
+                                                      : warmed(design_.array, light.photocurrent_A,
+                                                               design_.array.temperature_K, kelvin);
+      curves.curve.emplace_back(design_.array.wiring, tables_at(index), current_A);
+      curves.weight.push_back(weight);
+    };
+    if (design_.heat) {
+      const int below = static_cast<int>(std::floor(temperature_K_ / temperature_step_K));
+      const double fraction = temperature_K_ / temperature_step_K - below;
+      add(below, 1.0 - fraction);
+      add(below + 1, fraction);
+    } else {
+      add(-1, 1.0);
+    }
+    if (!control_ || judge) {
+      const ArrayPoint best = curves.best();
+      state_.best_W = best.power_W();
+      state_.voltage_V = best.voltage_V;
+    }
+    if (control_) {
+      state_.voltage_V = control_->voltage_V();
+      const double current_A = curves.current_A(state_.voltage_V);
+      potential_W = state_.voltage_V * current_A;
+      control_->observe({state_.voltage_V, current_A});
+      if (judge && light.on_cells_W > 0.0) best_per_light_ = state_.best_W / light.on_cells_W;
+      if (!judge) state_.best_W = std::max(potential_W, best_per_light_ * light.on_cells_W);
+    } else {
+      potential_W = state_.best_W;
+    }
+  } else if (control_) {
+    control_->observe({control_->voltage_V(), 0.0});
+  }
+  energies_.on_cells.add(light.on_cells_W * step_s);
+  energies_.best.add(state_.best_W * step_s);
+  take(time_s, step_s, potential_W);
+  warm(step_s);
+}
+
+// What converter, load and battery take of the power that the array can give.
+void PowerSupply::take(double time_s, double step_s, double potential_W) {
+  const double efficiency = design_.converter_efficiency;
+  if (!design_.battery) {
+    state_.array_W = potential_W;
+    state_.load_W = efficiency * potential_W;
+    energies_.array.add(potential_W * step_s);
+    energies_.load.add(efficiency * potential_W * step_s);
+    energies_.converter.add((1.0 - efficiency) * potential_W * step_s);
+    return;
+  }
+  const Battery& battery = *design_.battery;
+  const double surplus_W = efficiency * potential_W - design_.load_W;
+  // Until the battery is full or empty, and then as much as is needed or there is.
+  double first_s = step_s, array_J = 0.0, load_J = 0.0, into_J = 0.0, out_J = 0.0;
+  const double before_J = stored_J_;
+  const bool charges = surplus_W >= 0.0;
+  const double rate_W =
+      charges ? surplus_W * battery.charge_efficiency : surplus_W / battery.discharge_efficiency;
+  const double room_J = charges ? battery.capacity_J - stored_J_ : -stored_J_;
+  const bool reaches = rate_W != 0.0 && rate_W * step_s / room_J >= 1.0;
+  if (room_J == 0.0 && rate_W != 0.0) {
+    first_s = 0.0;
+  } else if (reaches) {
+    first_s = room_J / rate_W;
+  }
+  const double rest_s = step_s - first_s;
+  if (charges) {
+    into_J = surplus_W * first_s;
+    const double needed_W = design_.load_W / efficiency;
+    array_J = potential_W * first_s + needed_W * rest_s;
+    load_J = design_.load_W * step_s;
+    stored_J_ = rest_s > 0.0 || reaches ? battery.capacity_J : stored_J_ + rate_W * first_s;
+  } else {
+    out_J = -surplus_W * first_s;
+    array_J = potential_W * step_s;
+    load_J = design_.load_W * first_s + efficiency * potential_W * rest_s;
+    stored_J_ = rest_s > 0.0 || reaches ? 0.0 : stored_J_ + rate_W * first_s;
+  }
+  const auto tell = [&](bool& is, bool now, const char* begins, const char* ends) {
+    if (now != is) events_.push_back({now ? begins : ends, time_s + (now ? first_s : 0.0)});
+    is = now;
+  };
+  tell(full_, stored_J_ >= battery.capacity_J, "battery_full", "battery_not_full");
+  tell(empty_, stored_J_ <= 0.0, "battery_empty", "battery_not_empty");
+  energies_.array.add(array_J);
+  energies_.converter.add((1.0 - efficiency) * array_J);
+  energies_.load.add(load_J);
+  energies_.unserved.add(design_.load_W * step_s - load_J);
+  energies_.into_battery.add(into_J);
+  energies_.out_of_battery.add(out_J);
+  energies_.battery_loss.add(into_J * (1.0 - battery.charge_efficiency) +
+                             out_J * (1.0 / battery.discharge_efficiency - 1.0));
+  state_.array_W = array_J / step_s;
+  state_.load_W = load_J / step_s;
+  state_.battery_W = (stored_J_ - before_J) / step_s;
+}
+
+// C dT/dt = α E − P/A − h (T − T_air), exactly for constant powers over the step.
+void PowerSupply::warm(double step_s) {
+  if (!design_.heat) return;
+  const CellHeat& heat = *design_.heat;
+  energies_.reflected.add((1.0 - heat.absorptance) * state_.light_W * step_s);
+  const double heating_W = heat.absorptance * state_.light_W - state_.array_W;
+  const double end_K = heat.air_K + heating_W / (heat.convection_W_m2_K * area_m2_);
+  const double decays = step_s * heat.convection_W_m2_K / heat.capacity_J_m2_K;
+  const double excess_K = temperature_K_ - end_K;
+  const double mean_K = end_K - excess_K * std::expm1(-decays) / decays;
+  energies_.convected.add(heat.convection_W_m2_K * area_m2_ * (mean_K - heat.air_K) * step_s);
+  temperature_K_ = end_K + excess_K * std::exp(-decays);
+}
+
+SupplyClosure PowerSupply::closure() const {
+  const SupplyEnergies& e = energies_;
+  SupplyClosure closure;
+  const auto relative = [](double rest, double whole) {
+    return whole > 0.0 ? std::abs(rest) / whole : 0.0;
+  };
+  if (design_.heat) {
+    const double stored_J = design_.heat->capacity_J_m2_K * area_m2_ * (temperature_K_ - start_K_);
+    closure.cells = relative(
+        e.on_cells.value() - e.reflected.value() - e.array.value() - e.convected.value() - stored_J,
+        e.on_cells.value());
+  }
+  closure.bus = relative(e.array.value() + e.out_of_battery.value() - e.converter.value() -
+                             e.load.value() - e.into_battery.value(),
+                         e.array.value() + e.out_of_battery.value());
+  closure.battery =
+      relative(e.into_battery.value() - e.out_of_battery.value() - e.battery_loss.value() -
+                   (stored_J_ - start_J_),
+               std::max(e.into_battery.value() + e.out_of_battery.value(), std::abs(start_J_)));
+  return closure;
+}
+
+void PowerSupply::keep(Snapshot& snapshot) {
+  snapshot(stored_J_, temperature_K_, full_, empty_, best_per_light_, state_, energies_);
+  if (control_) snapshot(*control_);
+  snapshot.each(events_, [&](SupplyEvent& event) { snapshot(event.name, event.time_s); });
+}
+
+}  // namespace photorque

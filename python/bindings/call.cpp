@@ -1,0 +1,97 @@
+#include "python/bindings/call.h"
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+
+namespace photorque::python {
+
+struct Call::State {
+  std::filesystem::path experiment;
+  py::object progress, log;
+  std::thread::id caller = std::this_thread::get_id();
+  std::chrono::steady_clock::time_point last = {};
+  std::optional<py::error_already_set> raised = {};
+  std::atomic<bool> stopped = false;
+
+  // Reaches Call::run(), which puts what was raised in its place.
+  void go_on() const {
+    if (stopped) throw NumericalError("interrupted");
+  }
+
+  // With the lock held: signals, then one call; what is raised ends the run.
+  template <class Told>
+  void tell(const Told& told) {
+    try {
+      if (raised || PyErr_CheckSignals() != 0) {
+        if (!raised) raised.emplace();
+      } else {
+        told();
+      }
+    } catch (py::error_already_set& error) {
+      raised.emplace(std::move(error));
+    }
+    stopped = raised.has_value();
+    go_on();
+  }
+};
+
+Call::Call(std::filesystem::path experiment, py::object progress, py::object log)
+    : state_(std::make_shared<State>()) {
+  state_->experiment = std::move(experiment);
+  state_->progress = std::move(progress);
+  state_->log = std::move(log);
+}
+
+Call::~Call() = default;
+
+Console Call::console() const {
+  // Workers of the library report too: they neither wait for the lock nor hear signals, but stop
+  // with the caller.
+  const auto is_caller = [state = state_.get()] {
+    return std::this_thread::get_id() == state->caller;
+  };
+  ConsoleSinks sinks;
+  sinks.progress = [state = state_.get(), is_caller](const std::string& what, double fraction) {
+    if (!is_caller()) return state->go_on();
+    const auto now = std::chrono::steady_clock::now();
+    if (now - state->last < std::chrono::milliseconds(50) && fraction < 1.0) return;
+    state->last = now;
+    const py::gil_scoped_acquire lock;
+    state->tell([&] {
+      if (!state->progress.is_none()) state->progress(what, fraction);
+    });
+  };
+  sinks.line = [state = state_.get(), is_caller](const std::string& text) {
+    if (!is_caller()) return state->go_on();
+    const py::gil_scoped_acquire lock;
+    state->tell([&] {
+      if (!state->log.is_none()) state->log(text);
+    });
+  };
+  return Console(std::move(sinks));
+}
+
+Call::Failing Call::failing() const {
+  return [state = state_](py::error_already_set error) {
+    if (!state->raised) state->raised.emplace(std::move(error));
+    state->stopped = true;
+    state->go_on();
+  };
+}
+
+void Call::rethrow_python() const {
+  if (!state_->raised) return;
+  py::error_already_set error = std::move(*state_->raised);
+  state_->raised.reset();
+  throw error;
+}
+
+InputError Call::named(const InputError& error) const {
+  const std::string what = error.what();
+  if (error.names_file() || what.starts_with("--")) return error;
+  return InputError({state_->experiment.string()}, what, "", "");
+}
+
+}  // namespace photorque::python

@@ -1,0 +1,278 @@
+#include "tools/runs/direction_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/constants.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/parallel.h"
+#include "receivers/wrench/spad.h"
+#include "receivers/wrench/table_product.h"
+#include "tools/coupling/table_cache.h"
+
+namespace photorque {
+namespace {
+
+SunLight only_sun(const Experiment& experiment) {
+  const std::vector<Settings>& sources = experiment.file.sources;
+  const size_t lamps = sources.size() + experiment.file.further_beams.size();
+  if (lamps != 1 || sources.size() != 1 || sources[0].text("kind") != "sun") {
+    throw experiment.file.settings.error(
+        "torque_map",
+        "directions of light with " + std::to_string(lamps) +
+            (lamps == 1 ? " source that is no sun" : " sources"),
+        "one [[source]] of kind \"sun\" (lamps at a place have no single direction: use tilts)");
+  }
+  const double irradiance_W_m2 = sources[0].number_or("irradiance_W_m2", solar_irradiance_W_m2);
+  const Vec3 travel = experiment.beams[0].lab_from_emitter.rotation * Vec3::UnitZ();
+  return {-travel, irradiance_W_m2 / speed_of_light_m_s};
+}
+
+// The earlier node with the same direction, or this one: azimuths at a pole, and a full turn.
+size_t first_of_direction(const WrenchTable& table, size_t around, size_t polar) {
+  constexpr double same = 1e-12;
+  if (std::abs(table.polar_rad[polar]) > 0.5 * pi - same) return table.node(0, polar);
+  const double turn = table.around_rad[around] - table.around_rad[0];
+  return std::abs(turn - 2.0 * pi) < same ? table.node(0, polar) : table.node(around, polar);
+}
+
+// A node of the table, in their order.
+struct Direction {
+  size_t node, first;  // of the table; the earlier one with the same direction, or itself
+  size_t around, polar;
+  RigidTransform lab_from_body;
+};
+
+std::vector<Direction> directions_of(const WrenchTable& table, const DirectionGrid& grid,
+                                     const SunLight& sun) {
+  std::vector<Direction> all;
+  for (size_t a = 0; a < grid.azimuth_rad.size(); ++a) {
+    for (size_t e = 0; e < grid.elevation_rad.size(); ++e) {
+      const Vec3 towards_body = towards_light({grid.elevation_rad[e], grid.azimuth_rad[a]});
+      all.push_back({table.node(a, e), first_of_direction(table, a, e), a, e,
+                     sun.lab_from_body(towards_body)});
+    }
+  }
+  return all;
+}
+
+// Without what only a full, regular sphere has, format_spad() refuses: then there is no such file.
+bool covers_sphere(const WrenchTable& table) {
+  const auto spans = [](const std::vector<double>& axis, double half) {
+    return axis.size() > 1 && std::abs(axis.front() + half) < 1e-9 &&
+           std::abs(axis.back() - half) < 1e-9;
+  };
+  const auto regular = [](const std::vector<double>& axis) {
+    for (size_t i = 2; i < axis.size(); ++i) {
+      if (std::abs(axis[i] - 2.0 * axis[i - 1] + axis[i - 2]) > 1e-9) return false;
+    }
+    return true;
+  };
+  return spans(table.around_rad, pi) && spans(table.polar_rad, 0.5 * pi) &&
+         regular(table.around_rad) && regular(table.polar_rad);
+}
+
+// The longest of these vectors; its error is that of the component along it.
+Estimate longest(const std::vector<Vec3>& vectors, const std::vector<Vec3>& errors) {
+  Estimate result;
+  for (size_t i = 0; i < vectors.size(); ++i) {
+    const double length = vectors[i].norm();
+    if (length <= result.value) continue;
+    result = {length, (vectors[i] / length).cwiseProduct(errors[i]).norm()};
+  }
+  return result;
+}
+
+void print_summary(const Console& console, const WrenchTable& table, const SunLight& sun) {
+  const Estimate force_N = longest(table.force_body_N, table.force_error_N);
+  const Estimate torque_N_m = longest(table.torque_body_N_m, table.torque_error_N_m);
+  const auto over_pressure = [&](const Estimate& e) {
+    return Estimate{e.value / sun.pressure_Pa, e.standard_error / sun.pressure_Pa};
+  };
+  console.heading("Light pressure over " + std::to_string(table.nodes()) + " directions");
+  console.line("  torques are about the origin of the body frame (of the model's file)");
+  console.line("  largest force    " + show(force_N, "N") + ", over pressure " +
+               show(over_pressure(force_N), "m2"));
+  console.line("  largest torque   " + show(torque_N_m, "N m") + ", over pressure " +
+               show(over_pressure(torque_N_m), "m3"));
+  double worst_N_m = 0.0;
+  for (const Vec3& error : table.torque_error_N_m) {
+    worst_N_m = std::max(worst_N_m, error.cwiseAbs().maxCoeff());
+  }
+  console.line("  standard errors of torques are at most " +
+               show(worst_N_m / std::max(torque_N_m.value, 1e-300)) + " of the largest torque");
+  console.line("  mean push along the light's travel over all directions " +
+               show(mean_push_N(table) / sun.pressure_Pa) + " m2");
+}
+
+// What is done already, one direction after another; kept in a file now and then.
+class DoneDirections {
+ public:
+  DoneDirections(const OpticalRun& run, const Console& console, CheckpointFile* file)
+      : console_(console), file_(file) {
+    if (file_ == nullptr) return;
+    identity_ =
+        table_cache_version() + "torque-map, seed " + std::to_string(run.provenance().seed) + "\n";
+    for (const auto& [name, hash] : run.provenance().inputs) identity_ += name + " " + hash + "\n";
+    const std::optional<CheckpointFile::Kept> kept = file_->read(identity_);
+    if (!kept) return;
+    Snapshot snapshot(kept->state);
+    keep(snapshot);
+    if (!snapshot.is_whole()) {
+      throw InputError({file_->path().string()}, "", "a damaged checkpoint",
+                       "a checkpoint of this run (another --out, or none there, begins anew)");
+    }
+    console_.line("goes on from " + file_->path().string() + ": " + std::to_string(all_.size()) +
+                  " directions are done");
+  }
+
+  size_t count() const { return all_.size(); }
+  const DirectionWrench& operator[](size_t i) const { return all_[i]; }
+  void add(std::vector<DirectionWrench> more) {
+    std::ranges::move(more, std::back_inserter(all_));
+    if (file_ == nullptr || !file_->due()) return;
+    Snapshot snapshot;
+    keep(snapshot);
+    try {
+      file_->write(identity_, 0.0, snapshot.bytes());
+    } catch (const InputError& error) {  // a disk that is full for a while
+      console_.line("note: no checkpoint: " + std::string(error.what()));
+    }
+  }
+
+ private:
+  void keep(Snapshot& snapshot) {
+    snapshot.each(all_, [&](DirectionWrench& one) { snapshot(one); });
+  }
+
+  const Console& console_;
+  CheckpointFile* file_;
+  std::string identity_;
+  std::vector<DirectionWrench> all_;
+};
+
+// Finds what is not done yet, so many at a time, each on one thread: a direction is too short to
+// share out.
+void find_all(const LightDirections& light, const std::vector<Direction>& distinct,
+              const Console& console, int threads, DoneDirections& done) {
+  constexpr size_t block = 64;
+  const auto progress = console.progress("directions");
+  const WallTime wall;
+  const size_t before = done.count();
+  while (done.count() < distinct.size()) {
+    const size_t from = done.count();
+    std::vector<DirectionWrench> found(std::min(block, distinct.size() - from));
+    parallel_for(found.size(), threads,
+                 [&](size_t i) { found[i] = light.at(distinct[from + i].lab_from_body); });
+    done.add(std::move(found));
+    if (progress) {
+      progress(static_cast<double>(done.count()) / static_cast<double>(distinct.size()));
+    }
+    const double left_s = wall.elapsed_s() * static_cast<double>(distinct.size() - done.count()) /
+                          static_cast<double>(done.count() - before);
+    console.note_progress("directions: " + std::to_string(done.count()) + " of " +
+                          std::to_string(distinct.size()) + " done, about " +
+                          show(std::ceil(left_s)) + " s to go");
+  }
+  console.done();
+}
+
+// Every node in their order, as a trace shows it; what the same direction gave before is not traced
+// again.
+void show_nodes(const OpticalRun& run, const std::vector<Direction>& all, size_t nodes,
+                const NodeWatch& watch) {
+  constexpr uint64_t enough = 1 << 16;  // rays, to paint a scene with
+  std::map<size_t, OpticalResult> earlier;
+  for (const Direction& one : all) {
+    if (one.first != one.node) {
+      watch({run, nodes, one.lab_from_body, earlier.at(one.first)});
+      continue;
+    }
+    const ExperimentFile& file = run.experiment().file;
+    const OpticalResult result = run.run(
+        one.lab_from_body, {}, std::min(file.torque_map_rays.value_or(file.trace.rays), enough));
+    watch({run, nodes, one.lab_from_body, result});
+    if (one.around == 0) earlier.emplace(one.node, result);
+  }
+}
+
+}  // namespace
+
+RigidTransform SunLight::lab_from_body(const Vec3& towards_body) const {
+  return {Quat::FromTwoVectors(towards_body, towards_lab), Vec3::Zero()};
+}
+
+std::vector<RigidTransform> fresh_directions(size_t count, const SunLight& sun) {
+  constexpr double golden_rad = 2.39996322972865332;
+  std::vector<RigidTransform> attitudes;
+  for (size_t i = 0; i < count; ++i) {
+    const double height = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const TableAngles angles{std::asin(height), golden_rad * (static_cast<double>(i) + 0.3)};
+    attitudes.push_back(sun.lab_from_body(towards_light(angles)));
+  }
+  return attitudes;
+}
+
+double largest_torque_N_m(const WrenchTable& table) {
+  double largest_N_m = 0.0;
+  for (const Vec3& torque : table.torque_body_N_m)
+    largest_N_m = std::max(largest_N_m, torque.norm());
+  return largest_N_m;
+}
+
+DirectionMap map_over_directions(const Console& console, const OpticalRun& run, int threads,
+                                 const NodeWatch& watch, CheckpointFile* checkpoint) {
+  const DirectionGrid& grid = *run.experiment().file.light_directions;
+  const SunLight sun = only_sun(run.experiment());
+  WrenchTable table = make_wrench_table(WrenchTable::Angles::azimuth_elevation, grid.elevation_rad,
+                                        grid.azimuth_rad);
+  const bool whole = covers_sphere(table);
+  const WallTime wall;
+  const std::vector<Direction> all = directions_of(table, grid, sun);
+  std::vector<Direction> distinct;
+  std::vector<size_t> place(table.nodes());  // of a node's direction among the distinct ones
+  for (const Direction& one : all) {
+    if (one.first == one.node) distinct.push_back(one);
+    place[one.node] = one.first == one.node ? distinct.size() - 1 : place[one.first];
+  }
+  std::unique_ptr<LightDirections> light = sunlit_directions(run, sun, table.about_body_m, threads);
+  if (!light) light = traced_directions(run, sun, table.about_body_m);
+  DoneDirections done(run, console, checkpoint);
+  find_all(*light, distinct, console, threads, done);
+
+  uint64_t rays = 0;
+  Warnings warnings;
+  for (size_t i = 0; i < distinct.size(); ++i) {
+    rays += done[i].rays;
+    warnings.add(done[i].warnings,
+                 "azimuth " + show(stated_deg(grid.azimuth_rad[distinct[i].around])) +
+                     " deg, elevation " + show(stated_deg(grid.elevation_rad[distinct[i].polar])) +
+                     " deg");
+  }
+  std::vector<DirectionWrench> found;
+  for (size_t node = 0; node < table.nodes(); ++node) found.push_back(done[place[node]]);
+  std::vector<std::string> doubts;
+  light->fill(table, found, whole, console, threads, doubts);
+  warnings.add(doubts, "the table");
+  if (watch) show_nodes(run, all, table.nodes(), watch);
+  const double wall_s = wall.elapsed_s();
+  print_summary(console, table, sun);
+
+  warnings.print(console);
+  RunResult result{
+      wrench_table_product(table, "body"), warnings.into(run.provenance()), {wall_s, rays}};
+  if (whole) {
+    const std::string body = run.experiment().file.path.stem().string();
+    const SpadFile spad{body, scaled(table, 1.0 / sun.pressure_Pa), true};
+    result.files.push_back(
+        {body + ".spo",
+         [text = format_spad(spad, run.provenance().one_line())](
+             const std::filesystem::path& path) { write_file_whole(path, text); },
+         "force and torque over pressure in the SPAD layout"});
+  }
+  return {std::move(table), std::move(result)};
+}
+
+}  // namespace photorque

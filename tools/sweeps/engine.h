@@ -1,0 +1,81 @@
+// The runs that a sweep asks for: from its database, or made now and kept there.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/sweeps/claims.h"
+#include "tools/sweeps/database.h"
+#include "tools/sweeps/identity.h"
+
+namespace photorque {
+
+// Where a sweep keeps what it found, below its output folder. A shard has a database of its own,
+// because shards may run on several machines, and SQLite shares a file among the processes of one
+// only; what a shard has finished stands beside it as a copy that no one writes to any more.
+struct SweepFiles {
+  std::filesystem::path folder;
+  std::filesystem::path database() const { return folder / "designs.sqlite"; }
+  std::filesystem::path shard(size_t number, size_t count) const;       // shards/3-of-8.sqlite
+  std::filesystem::path done_shard(size_t number, size_t count) const;  // shards/3-of-8.done.sqlite
+  // Those that are there; with `unfinished` also databases of shards that did not come to an end.
+  std::vector<std::filesystem::path> shards(bool unfinished) const;
+};
+
+class RunEngine {
+ public:
+  struct Task {
+    RunOptions options;
+    std::string command;
+    std::filesystem::path database;
+    // Runs the command and gives its figures; throws what goes wrong.
+    std::function<std::vector<Figure>(const RunOptions&)> run;
+    // Called with the figures of the first run that succeeds.
+    std::function<void(const std::vector<Figure>&)> first = {};
+  };
+  explicit RunEngine(Task task);
+  ~RunEngine();
+  RunEngine(const RunEngine&) = delete;
+  RunEngine& operator=(const RunEngine&) = delete;
+
+  // What these runs gave, in order; makes those that are not kept, those that failed before once
+  // more, and waits for those that another process is at. `made` may be empty.
+  std::vector<RunOutcome> outcomes(std::span<const Changes> runs,
+                                   const std::function<void(double)>& progress = {});
+  // The same without making any: nothing where there is none.
+  std::vector<std::optional<RunOutcome>> kept_outcomes(std::span<const Changes> runs);
+
+  size_t made() const { return made_; }
+  size_t kept() const { return kept_; }
+
+  // The database, made if absent.
+  RunDatabase& database();
+  bool has_database() const { return database_ != nullptr; }
+  Claims::Claim wait_for_others(const std::string& name) { return claims_->wait_for(name); }
+  RunIdentity& identity() { return identity_; }
+
+ private:
+  bool settle(const Changes& changes, RunOutcome& outcome);
+  std::optional<RunOutcome> stored(const std::string& hash);
+  RunOutcome make(const Changes& changes);
+  void keep(RunRecord record);
+
+  Task task_;
+  RunIdentity identity_;
+  FigureNames names_;
+  std::filesystem::path claims_path_;
+  std::unique_ptr<Claims> claims_;
+  std::unique_ptr<RunDatabase> database_;          // null until there is something to keep
+  std::set<std::string> failed_before_;            // to be made again
+  std::map<std::string, RunRecord> not_kept_yet_;  // failures before the first success
+  size_t made_ = 0, kept_ = 0;
+};
+
+}  // namespace photorque

@@ -1,0 +1,105 @@
+#include "tools/sweeps/identity.h"
+
+#include "core/files.h"
+#include "core/provenance.h"
+#include "scenes/experiment/named_files.h"
+#include "scenes/experiment/toml.h"
+
+namespace photorque {
+namespace {
+
+namespace fs = std::filesystem;
+
+void name_files_from(SettingsNode& node, const fs::path& from, const fs::path& to) {
+  if (auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    for (auto& [key, item] : *table) name_files_from(item, from, to);
+  } else if (auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
+    for (SettingsNode& item : *items) name_files_from(item, from, to);
+  } else if (auto* text = std::get_if<std::string>(&node.value)) {
+    const fs::path file = named_file(from, *text);
+    if (file.empty() || fs::path(*text).is_absolute()) return;
+    *text = fs::absolute(file).lexically_normal().lexically_proximate(to).generic_string();
+  }
+}
+
+}  // namespace
+
+RunIdentity::RunIdentity(RunOptions options, std::string command)
+    : options_(std::move(options)),
+      command_(std::move(command)),
+      root_(parse_toml(options_.experiment_text(), options_.experiment.string())),
+      folder_(options_.experiment.parent_path()) {
+  const Provenance build = build_provenance();
+  program_ = build.version + " " + build.git_hash;
+}
+
+SettingsNode RunIdentity::changed(const Changes& changes) const {
+  RunOptions run = options_;
+  run.overrides.insert(run.overrides.end(), changes.begin(), changes.end());
+  SettingsNode root = root_;
+  for (const std::string& assignment : run.all_overrides()) apply_override(root, assignment);
+  std::get<SettingsNode::Table>(root.value).erase("sweep");
+  return root;
+}
+
+// A file that changes while a sweep runs counts as it was when it was first asked for.
+std::string RunIdentity::content_of_file(const fs::path& path) {
+  std::error_code failure;
+  const auto time = fs::last_write_time(path, failure).time_since_epoch().count();
+  const std::string key = path.string() + '\n' + std::to_string(fs::file_size(path, failure)) +
+                          '\n' + std::to_string(time);
+  const auto [at, is_new] = files_.try_emplace(key);
+  if (!is_new) return at->second;
+  const std::string bytes = read_file(path);
+  std::string all = content_hash(bytes);
+  for (const fs::path& file : files_named_in(path, bytes)) all += content_of_file(file);
+  return files_[key] = content_hash(all);
+}
+
+std::string RunIdentity::content(const SettingsNode& node) {
+  if (const auto* table = std::get_if<SettingsNode::Table>(&node.value)) {
+    std::string all = "{";
+    for (const auto& [key, value] : *table) {
+      all += std::to_string(key.size()) + ':' + key + '=' + content(value) + ';';
+    }
+    return all + '}';
+  }
+  if (const auto* items = std::get_if<SettingsNode::Array>(&node.value)) {
+    std::string all = "[";
+    for (const SettingsNode& item : *items) all += content(item) + ',';
+    return all + ']';
+  }
+  if (const auto* text = std::get_if<std::string>(&node.value)) {
+    const fs::path file = named_file(folder_, *text);
+    return std::to_string(text->size()) + ':' + *text +
+           (file.empty() ? "" : "@" + content_of_file(file));
+  }
+  // 3 is 3.0.
+  if (const auto* whole = std::get_if<int64_t>(&node.value)) {
+    return toml_value({static_cast<double>(*whole), {}});
+  }
+  return toml_value(node);
+}
+
+std::string RunIdentity::of(const Changes& changes) {
+  return content_hash(command_ + '\n' + program_ + '\n' + content(changed(changes)));
+}
+
+SettingsNode RunIdentity::value(const Changes& changes, const std::string& key) const {
+  const SettingsNode root = changed(changes);
+  const SettingsNode* found = find_setting(root, key);
+  if (found == nullptr) {
+    throw InputError({options_.experiment.string()}, key, "nothing",
+                     "a value to start from, in the same unit");
+  }
+  return *found;
+}
+
+std::string RunIdentity::experiment(const Changes& changes, const std::string& head,
+                                    const fs::path& folder) const {
+  SettingsNode root = changed(changes);
+  name_files_from(root, folder_, fs::absolute(folder).lexically_normal());
+  return head + toml_document(std::get<SettingsNode::Table>(root.value));
+}
+
+}  // namespace photorque
