@@ -1,4 +1,4 @@
-#include "images/drawing/picture.h"
+#include "images/scene/picture.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "images/drawing/picture.h"
+#include "images/scene/picture.h"
 #include "images/writers/staged_files.h"
 #include "raytrace/tracing/view.h"
 #include "tools/verbs/verb.h"

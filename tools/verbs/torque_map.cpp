@@ -9,9 +9,9 @@
 #include "core/constants.h"
 #include "core/errors.h"
 #include "receivers/wrench/table_product.h"
+#include "tools/coupling/direction_map.h"
 #include "tools/pages/pages.h"
 #include "tools/runs/array_power.h"
-#include "tools/runs/direction_map.h"
 #include "tools/verbs/verb.h"
 
 namespace photorque {

@@ -1,4 +1,4 @@
-#include "images/drawing/picture.h"
+#include "images/scene/picture.h"
 
 #include "core/errors.h"
 #include "images/drawing/page_layout.h"

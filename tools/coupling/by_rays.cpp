@@ -3,7 +3,7 @@
 
 #include "core/constants.h"
 #include "core/parallel.h"
-#include "tools/runs/direction_map.h"
+#include "tools/coupling/direction_map.h"
 
 namespace photorque {
 namespace {

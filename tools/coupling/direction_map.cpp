@@ -1,4 +1,4 @@
-#include "tools/runs/direction_map.h"
+#include "tools/coupling/direction_map.h"
 
 #include <algorithm>
 #include <cmath>
