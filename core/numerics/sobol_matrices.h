@@ -1,4 +1,4 @@
-// The generator matrices and the scrambling behind sobol.h; for its files only.
+// The generator matrices and the scrambling behind the Sobol points of random.h; for its files only.
 #pragma once
 
 #include <bit>

@@ -4,7 +4,6 @@
 #include "core/text/format.h"
 #include "images/drawing/page_layout.h"
 #include "images/drawing/plot.h"
-#include "images/writers/kind.h"
 
 namespace photorque {
 namespace {

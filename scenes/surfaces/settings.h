@@ -31,7 +31,7 @@ using SurfaceFiles = std::function<std::optional<std::string>(const std::string&
 //   more left out                 they are zero, if the others sum to 1; else an error.
 // The fractions returned sum to 1 to rounding. Further keys, all optional:
 //   roughness            (0, 1], as in glTF: the specular fraction leaves by
-//   raytrace/surfaces/mirrors.h slope_error_mrad     (0, 200]: … by slope_error.h there
+//   raytrace/surfaces/mirrors.h slope_error_mrad     (0, 200]: … by slope_error() there
 //   refractive_index     [1, 10]: glass in front, glass.h; the fractions are those behind it.
 //   Beneath
 //                        glass either diffuse, specular or transmittance is positive, roughness

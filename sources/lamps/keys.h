@@ -1,4 +1,4 @@
-// The keys that several kinds of source share, as they are declared; settings.h and measured.h read
+// The keys that several kinds of source share, as they are declared; settings.h and ray_file.h read
 // them.
 #pragma once
 

@@ -126,9 +126,11 @@ TEST(Documents, CommandsExistAndEachHasARow) {
   static const std::regex row(R"(\n\| `([a-z-]+)` \|)");
   std::set<std::string> verbs;
   for (const std::string& word : kinds_of("tools")) {
-    std::string verb = fs::path(word).filename().string();
-    std::replace(verb.begin(), verb.end(), '_', '-');
-    verbs.insert(verb);
+    static const std::regex name(R"rx(\nVerb kind\(\) \{\s+return \{"([a-z-]+)")rx");
+    const std::vector<std::string> names =
+        matches(text_of(root / "tools" / (word + ".cpp")), name, 1);
+    ASSERT_EQ(names.size(), 1u) << word;
+    verbs.insert(names.front());
   }
   ASSERT_GE(verbs.size(), 10u);
   for (const fs::path& document : documents()) {

@@ -18,7 +18,7 @@
 namespace photorque {
 
 class Interruption;  // tools/runs/output_folder.h
-struct PageHead;     // tools/pages/runs.h
+struct PageHead;     // tools/pages/pages.h
 struct Verb;
 
 // What every command line may say: photorque VERB EXPERIMENT [--set KEY=VALUE …] [--out DIR] …

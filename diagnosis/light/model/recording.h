@@ -2,7 +2,7 @@
 // array under a tracker. The header of a file tells which of the three it is.
 //
 // CSV (also .csv.gz), columns in any order, comments from # on. Rows that cannot be read are left
-// out and counted; wild readings are found later, against a model (diagnosis/light/clean.h).
+// out and counted; wild readings are found later, against a model (diagnosis/light/diagnose.h).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // A recording as the forward model sees it: what it would read if a state were true.
 //
-// From the state follow, one after the other, each lamp's light on every place (field.h), the
+// From the state follow, one after the other, each lamp's light on every place, the
 // signals (readings of a scan; photocurrents of every cell at every instant), and the residuals,
 // whitened by their noise:
 //   scan    (measured − predicted)/σ

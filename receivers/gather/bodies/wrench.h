@@ -1,7 +1,7 @@
 // The wrench of direct light on whole bodies, gathered from the surfaces' side.
 //
 // A facet above which nothing of the scene lies takes the momentum that arrives there and leaves at
-// first contact (first_contact.h) in closed form, or by quadrature under a lamp that is near.
+// first contact (FirstContact) in closed form, or by quadrature under a lamp that is near.
 // Towards all others go shadow rays, the more the more their light counts; where none is stopped,
 // the facet is as if it were open, so that noise comes from the edges of shadows alone. What
 // bounces is for rays.
