@@ -55,12 +55,24 @@ class Judge:
             self.known_slopes[key] = np.column_stack(columns)
         return self.known_slopes[key]
 
-    def left(self, kept, rivals, target):
-        """The chi² that remains of `target` when the numbers of `rivals` are fitted beside `kept`
-        (Levenberg and Marquardt within the bounds)."""
+    def left(self, kept, rivals, target, near):
+        """The chi² that remains of `target` when the numbers of `rivals` are fitted beside `kept`. A share of
+        light starts from less too: a cell shows little until it limits its string."""
+        best = self._fit(kept, rivals, target, None)
+        if rivals[-1].kind in ("cell_shaded", "cell_degraded", "led_derated"):
+            for share in (0.4, 0.1):
+                best = best if best < near else min(best, self._fit(kept, rivals, target, share))
+        return best
+
+    def _fit(self, kept, rivals, target, last):
+        """The fit by Levenberg's and Marquardt's method within the bounds; `last` is where the last number
+        starts."""
         x, step, low, high = (
             np.array([n for r in rivals for n in getattr(r, name)]) for name in ("neutral", "step", "low", "high")
         )
+
+        if last is not None:
+            x[-1] = last
 
         def read(at):
             world, first = kept.copy(), 0
@@ -74,7 +86,7 @@ class Judge:
         for iteration in range(8):
             if len(x) == 0 or best <= 1.0:
                 break
-            if iteration == 0 and kept is self.world and all(rival.neutral for rival in rivals):
+            if iteration == 0 and last is None and kept is self.world and all(rival.neutral for rival in rivals):
                 jacobian = np.column_stack([self.slopes(rival) for rival in rivals])
             else:
                 by = np.where((x + step > high) | (x + step < low), -step, step)
@@ -127,7 +139,7 @@ class Judge:
         rivals = self.rivals()
         alone = float(np.sum((target - self.nominal) ** 2))
         for rival in rivals:
-            remains = self.left(self.world, [rival], target)
+            remains = self.left(self.world, [rival], target, near)
             alone = min(alone, remains)
             if remains < near:
                 accept([rival.kind], rival)
@@ -135,7 +147,7 @@ class Judge:
             same = [r for r in rivals if (r.kind, r.index) == (effect.kind, effect.index) and r.neutral]
             kept = self.world if same else self.with_effects([effect])
             for rival in rivals:
-                if rival.kind != effect.kind and self.left(kept, [*same, rival], target) < near:
+                if rival.kind != effect.kind and self.left(kept, [*same, rival], target, near) < near:
                     accept([effect.kind, rival.kind], rival)
         if "scan" in self.kinds:  # a box over one cell is a shade over it
             for kinds in [n for n in names if "cell_shaded" in n]:
