@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "diagnosis/light/scan.h"
+#include "scenes/effects/stated.h"
 
 namespace photorque {
 namespace {
