@@ -133,9 +133,10 @@ def _replay(case, blind, how):
     noise, rate_Hz = recorded_case(case)
     # Without the camera's own noise, which would be added to that of the recording, and so closely that the rate is as
     # good as constant between two rows.
-    result = run_child(how.program, ["propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads", "1",
-                                     "--set", "sensors.camera.noise_arcsec=[0, 0, 0]",
-                                     "--set", f"propagate.output_rate_Hz={10.0 * rate_Hz:.6f}"], blind, how.longest_s)  # fmt: skip
+    words = ["propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads", "1"]
+    words += ["--set", "sensors.camera.noise_arcsec=[0, 0, 0]"]
+    words += ["--set", f"propagate.output_rate_Hz={10.0 * rate_Hz:.6f}"]
+    result = run_child(how.program, words, blind, how.longest_s)
     replay = {"replay_status": result.status}
     if result.status == 0:
         found = found_noise_arcsec(read_json(blind / "diagnosis" / "diagnosis.json"), noise)
