@@ -41,7 +41,7 @@ class Result:
 
 def run_child(program, arguments, folder, longest_s):
     """Runs a program in a folder, its standard output thrown away. It is stopped after longest_s of CPU time, or thirty
-    times as long whatever it does."""
+    times as long whatever it does. KeyboardInterrupt where a signal from outside ended it."""
     with tempfile.TemporaryFile() as errors:
         process = subprocess.Popen([str(program), *arguments], cwd=folder, stdout=subprocess.DEVNULL, stderr=errors)
         whole_s = math.ceil(longest_s)
@@ -56,6 +56,8 @@ def run_child(program, arguments, folder, longest_s):
         process.returncode = os.waitstatus_to_exitcode(wait_status)
         errors.seek(0)
         text = errors.read(4096).decode(errors="replace")
+    if process.returncode in (-signal.SIGINT, -signal.SIGTERM, 128 + signal.SIGINT, 128 + signal.SIGTERM):
+        raise KeyboardInterrupt  # somebody ends the benchmark: this is no answer
     processor_s = used.ru_utime + used.ru_stime
     if process.returncode < 0:
         is_over = -process.returncode == signal.SIGXCPU or processor_s >= longest_s
@@ -133,9 +135,10 @@ def _replay(case, blind, how):
     noise, rate_Hz = recorded_case(case)
     # Without the camera's own noise, which would be added to that of the recording, and so closely that the rate is as
     # good as constant between two rows.
-    result = run_child(how.program, ["propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads", "1",
-                                     "--set", "sensors.camera.noise_arcsec=[0, 0, 0]",
-                                     "--set", f"propagate.output_rate_Hz={10.0 * rate_Hz:.6f}"], blind, how.longest_s)  # fmt: skip
+    words = ["propagate", "diagnosis/improved.toml", "--out", "replay", "--quiet", "--threads", "1"]
+    words += ["--set", "sensors.camera.noise_arcsec=[0, 0, 0]"]
+    words += ["--set", f"propagate.output_rate_Hz={10.0 * rate_Hz:.6f}"]
+    result = run_child(how.program, words, blind, how.longest_s)
     replay = {"replay_status": result.status}
     if result.status == 0:
         found = found_noise_arcsec(read_json(blind / "diagnosis" / "diagnosis.json"), noise)

@@ -212,6 +212,8 @@ class Replays(unittest.TestCase):
         self.assertIn("stopped after 1 s", stopped.errors)
         failed = blind_run.run_child("/bin/sh", ["-c", "echo why >&2; exit 3"], "/", 10.0)
         self.assertEqual((failed.status, failed.errors), (3, "why\n"))
+        with self.assertRaises(KeyboardInterrupt):
+            blind_run.run_child("/bin/sh", ["-c", "kill -TERM $$"], "/", 10.0)
 
 
 class Plans(unittest.TestCase):
