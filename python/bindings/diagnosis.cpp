@@ -100,7 +100,7 @@ void bind_diagnosis(py::module_& module) {
           "write",
           [](const DiagnosisHandle& run, const std::filesystem::path& folder) {
             const py::gil_scoped_release release;
-            write_diagnosis(run, report_html(run), folder);
+            write_diagnosis(run, run.report(), folder);
           },
           py::arg("folder"), "Writes diagnosis.json, improved.toml and report.html.");
   module.def("diagnose", &diagnose_recordings, py::arg("experiment"), py::arg("recordings"),
