@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const fs::path scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
+const fs::path shipped_scenes = fs::path(PHOTORQUE_SOURCE_DIR) / "scenes";
 const std::string every = " --checkpoint 0.0005";  // 30 ms
 
 class CheckpointCommand : public CommandTest {
@@ -70,7 +70,7 @@ class CheckpointCommand : public CommandTest {
 };
 
 TEST_F(CheckpointCommand, KilledRunsEndAsIfTheyHadNotBeen) {
-  const std::string run_it = "propagate " + (scenes / "stasis/attitude.toml").string() +
+  const std::string run_it = "propagate " + (shipped_scenes / "stasis/attitude.toml").string() +
                              " --set propagate.duration_s=1200";
   ASSERT_EQ(run(run_it + " --out " + at("whole")).status, 0);
   kill_until_done(run_it, 6, 700);
@@ -83,7 +83,7 @@ TEST_F(CheckpointCommand, KilledRunsEndAsIfTheyHadNotBeen) {
 TEST_F(CheckpointCommand, KilledTorqueMapsEndAsIfTheyHadNotBeen) {
   for (const std::string direct : {"rays", "auto"}) {
     const std::string run_it =
-        "torque-map " + (scenes / "spacecraft/light_pressure.toml").string() +
+        "torque-map " + (shipped_scenes / "spacecraft/light_pressure.toml").string() +
         " --set torque_map.azimuth_step_deg=20 --set torque_map.elevation_step_deg=20"
         " --set torque_map.rays=4096 --set 'trace.direct=\"" +
         direct + "\"'";
@@ -99,7 +99,7 @@ TEST_F(CheckpointCommand, KilledTorqueMapsEndAsIfTheyHadNotBeen) {
 // Light that is traced at every exchange, tracker, battery and cells that warm up.
 TEST_F(CheckpointCommand, KilledRunsInLightEndAsIfTheyHadNotBeen) {
   const std::string run_it =
-      "propagate " + (scenes / "stasis/day.toml").string() +
+      "propagate " + (shipped_scenes / "stasis/day.toml").string() +
       " --set propagate.duration_s=40 --set 'light.mode=\"trace\"' --set light.rays=1024";
   ASSERT_EQ(run(run_it + " --out " + at("whole")).status, 0);
   kill_until_done(run_it, 4, 3000);
@@ -109,8 +109,8 @@ TEST_F(CheckpointCommand, KilledRunsInLightEndAsIfTheyHadNotBeen) {
 }
 
 TEST_F(CheckpointCommand, StateOfAnotherRunIsRefused) {
-  fs::copy_file(scenes / "stasis/attitude.toml", at("e.toml"));
-  fs::copy_file(scenes / "stasis/light_torque.csv", at("light_torque.csv"));
+  fs::copy_file(shipped_scenes / "stasis/attitude.toml", at("e.toml"));
+  fs::copy_file(shipped_scenes / "stasis/light_torque.csv", at("light_torque.csv"));
   const std::string short_run = " --set propagate.duration_s=900 --out " + at("o") + every;
   for (int i = 0; i < 100 && !fs::exists(at("o/propagate.checkpoint")); ++i) {
     killed_after("propagate " + at("e.toml") + short_run, std::chrono::milliseconds(250 + 20 * i));
@@ -129,11 +129,11 @@ TEST_F(CheckpointCommand, StateOfAnotherRunIsRefused) {
   expect_refused(" --seed 5", another);
   std::ofstream(at("light_torque.csv"), std::ios::app) << "# one line more\n";
   expect_refused("", another);
-  fs::copy_file(scenes / "stasis/light_torque.csv", at("light_torque.csv"),
+  fs::copy_file(shipped_scenes / "stasis/light_torque.csv", at("light_torque.csv"),
                 fs::copy_options::overwrite_existing);
   std::ofstream(at("e.toml"), std::ios::app) << "# one line more\n";
   expect_refused("", another);
-  fs::copy_file(scenes / "stasis/attitude.toml", at("e.toml"),
+  fs::copy_file(shipped_scenes / "stasis/attitude.toml", at("e.toml"),
                 fs::copy_options::overwrite_existing);
   std::string damaged = state;
   damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
@@ -145,7 +145,7 @@ TEST_F(CheckpointCommand, StateOfAnotherRunIsRefused) {
 
 TEST_F(CheckpointCommand, TakesMinutesAboveZero) {
   for (const char* minutes : {"0", "-1", "soon"}) {
-    const Outcome got = run("propagate " + (scenes / "stasis/attitude.toml").string() +
+    const Outcome got = run("propagate " + (shipped_scenes / "stasis/attitude.toml").string() +
                             " --checkpoint " + minutes + " --out " + at("o"));
     EXPECT_EQ(got.status, 2);
     EXPECT_THAT(got.err, HasSubstr("expected a number of minutes > 0"));

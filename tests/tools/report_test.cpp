@@ -19,7 +19,7 @@ using testing::Not;
 using testing::Pointwise;
 
 std::string report(const Diagnosis& d) {
-  return report_html({d, build_provenance(), "lab/experiment.toml", "", false});
+  return report_html(d, build_provenance(), "experiment");
 }
 
 size_t occurrences(const std::string& text, const std::string& of) {

@@ -380,9 +380,8 @@ std::string report_html(const Diagnosis& diagnosis, const Provenance& provenance
   const std::string footer =
       report_text::tag("footer", report_text::tag("p", xml_text(provenance.one_line())));
   return text_page_html("Diagnosis of " + title, provenance,
-                        report_findings(diagnosis, title) +
-                            report_text::readings(diagnosis) + report_evidence(diagnosis) +
-                            footer);
+                        report_findings(diagnosis, title) + report_text::readings(diagnosis) +
+                            report_evidence(diagnosis) + footer);
 }
 
 }  // namespace photorque
