@@ -1,4 +1,5 @@
-// The generator matrices and the scrambling behind the Sobol points of random.h; for its files only.
+// The generator matrices and the scrambling behind the Sobol points of random.h; for its files
+// only.
 #pragma once
 
 #include <bit>

@@ -122,7 +122,8 @@ class OpenTorque {
                std::span<double> bound_N_m) const {
     const double area_m2 = plane_.patches().of(bin)[0].area_m2;
     for (size_t axis = 0; axis < torque_axes; ++axis) {
-      torque_N_m[bin * torque_axes + axis] += area_m2 * density_N_m[static_cast<Eigen::Index>(axis)];
+      torque_N_m[bin * torque_axes + axis] +=
+          area_m2 * density_N_m[static_cast<Eigen::Index>(axis)];
       bound_N_m[bin * torque_axes + axis] += area_m2 * error_N_m;
     }
   }
@@ -160,7 +161,8 @@ class OpenTorque {
       }
       const double area_m2 = patch.area_m2 * (patch.triangle ? 2.0 : 1.0);
       for (size_t axis = 0; axis < torque_axes; ++axis) {
-        torque_N_m[bin * torque_axes + axis] += area_m2 * mean.value[static_cast<Eigen::Index>(axis)];
+        torque_N_m[bin * torque_axes + axis] +=
+            area_m2 * mean.value[static_cast<Eigen::Index>(axis)];
         bound_N_m[bin * torque_axes + axis] += area_m2 * (mean.error + 2.0 * inner_error);
       }
     }

@@ -368,7 +368,8 @@ TEST(Rooms, UnitsOfKeysAreConvertedInSettingsAlone) {
 // One word in the folder's list is one file, and every kind's file is in the list. No two kinds
 // share a namespace: linkers do not see return types and would quietly take either function.
 TEST(Rooms, EveryKindIsListedOnce) {
-  static const std::regex kind_namespace(R"(namespace (?:photorque::)?((?:kinds|verbs)::([a-z0-9_]+)) \{)");
+  static const std::regex kind_namespace(
+      R"(namespace (?:photorque::)?((?:kinds|verbs)::([a-z0-9_]+)) \{)");
   std::set<std::string> names;
   for (const std::string& folder : top_folders) {
     const std::string list = text_of(root / folder / "CMakeLists.txt");

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/errors.h"
-#include "tools/realtime/session.h"
 #include "tools/coupling/propagate.h"
+#include "tools/realtime/session.h"
 #include "tools/runs/attitude_run.h"
 
 namespace photorque {

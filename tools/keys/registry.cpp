@@ -75,25 +75,11 @@ std::vector<Key> with_errors_of_lamps(std::vector<Key> tables) {
 
 std::vector<Key> experiment_keys() {
   return joined({with_errors_of_lamps(scene_tables()),
-                 {with_errors_of_cells(array_table()),
-                  published_table(),
-                  effect_table(),
-                  light_table(),
-                  platform_table(),
-                  environment_table(),
-                  disturbance_table(),
-                  sensors_table(),
-                  propagate_table(),
-                  serve_table(),
-                  budget_table(),
-                  balance_table(),
-                  recording_table(),
-                  estimate_table(),
-                  camera_study_table(),
-                  supply_table(),
-                  sweep_table(),
-                  fit_table(),
-                  module_table()}});
+                 {with_errors_of_cells(array_table()), published_table(), effect_table(),
+                  light_table(), platform_table(), environment_table(), disturbance_table(),
+                  sensors_table(), propagate_table(), serve_table(), budget_table(),
+                  balance_table(), recording_table(), estimate_table(), camera_study_table(),
+                  supply_table(), sweep_table(), fit_table(), module_table()}});
 }
 
 }  // namespace photorque

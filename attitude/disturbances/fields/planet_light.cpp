@@ -10,10 +10,10 @@
 //
 // The planet's night side reflects nothing, so that an eclipse shows by itself; infrared stays.
 
+#include "attitude/environment/planet_light.h"
 #include "attitude/disturbances/fields/coil_cage.h"
 #include "attitude/disturbances/fields/torque_surface.h"
 #include "attitude/disturbances/kind.h"
-#include "attitude/environment/planet_light.h"
 #include "core/constants.h"
 
 namespace photorque::kinds::planet_light {
