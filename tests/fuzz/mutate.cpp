@@ -2,7 +2,7 @@
 // fed the files named on the command line (folders: all files in them) and mutations of each, the
 // same ones on every machine. Built with sanitizers, it stops at the first fault.
 //
-//   fuzz_rays [--mutations N] FILE_OR_FOLDER ...
+//   fuzz_READER [--mutations N] FILE_OR_FOLDER ...
 #include <algorithm>
 #include <array>
 #include <cstddef>
