@@ -1,6 +1,4 @@
 // photorque serve: the platform in real time beside hardware and programs.
-#include "tools/verbs/attitude/serve.h"
-
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -13,7 +11,7 @@
 #include "tools/runs/optical_run.h"
 #include "tools/verbs/verb.h"
 
-namespace photorque {
+namespace photorque::verbs::serve {
 namespace {
 
 constexpr double s_to_ns = 1e9;
@@ -68,8 +66,9 @@ Recording commands_recording(Schedule commands, double last_tick_s) {
   return recording;
 }
 
-}  // namespace
-
+// Propagates the experiment tick by tick with whoever connects ([serve]); prints the address before
+// it waits. The result holds what `propagate` gives, `commands.csv` and, of a paced run, the
+// statistics of its deadlines.
 RunResult serve_experiment(const RunOptions& options, const Console& console) {
   ServeSettings serve;
   std::shared_ptr<Session> session;
@@ -95,11 +94,6 @@ RunResult serve_experiment(const RunOptions& options, const Console& console) {
   result.files.push_back({"commands.csv", write, "what acted, for propagate.commands"});
   return result;
 }
-
-}  // namespace photorque
-
-namespace photorque::verbs::serve {
-namespace {
 
 void add_options(Command& command, CommandOptions& options) {
   command.add_experiment(options);
