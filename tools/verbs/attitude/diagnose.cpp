@@ -18,8 +18,6 @@
 #include "diagnosis/light/diagnose.h"
 #include "diagnosis/light/module/diagnose.h"
 #include "diagnosis/light/together.h"
-#include "images/drawing/map.h"
-#include "images/drawing/plot.h"
 #include "images/writers/staged_files.h"
 #include "scenes/experiment/toml.h"
 #include "tools/pages/pages.h"
