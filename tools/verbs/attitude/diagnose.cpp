@@ -345,7 +345,8 @@ void add_options(Command& command, Options& options) {
   command.add("--guess", options.guess,
               "Instead of an experiment: write one that fits the columns of these "
               "recordings (CSV), its assumptions marked");
-  command.add_page(options.page);
+  command.add("--page", options.page,
+              "Draw scene, maps and curves into report.html, to look at in a browser");
   command.mistake = [&options]() -> std::string {
     if (!options.guess.empty()) options.name = name_of_guess(options.guess);
     if (options.experiment.empty() != options.guess.empty()) return "";
