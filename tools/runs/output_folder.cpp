@@ -9,7 +9,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -36,17 +35,6 @@ bool take_lock(int descriptor, int how, bool patiently) {
 }
 
 constexpr int stop_waiting = SIGUSR2;  // from the destructor
-
-// Processes that this one started, whichever of its threads did.
-std::vector<pid_t> children() {
-  std::vector<pid_t> all;
-  std::error_code ignored;
-  for (const fs::directory_entry& task : fs::directory_iterator("/proc/self/task", ignored)) {
-    std::ifstream list(task.path() / "children");
-    for (pid_t child = 0; list >> child;) all.push_back(child);
-  }
-  return all;
-}
 
 }  // namespace
 
@@ -187,7 +175,6 @@ void Interruption::end(int signal) {
   clean(parent);
   int pipe_ends[2] = {-1, -1};
   const bool can_wait = ::pipe2(pipe_ends, O_CLOEXEC) == 0;
-  for (const pid_t child : children()) ::kill(child, SIGTERM);
   if (can_wait && ::fork() == 0) {
     for (const int shared : {0, 1, 2, pipe_ends[1]}) ::close(shared);
     char none = 0;
