@@ -39,8 +39,8 @@ class OutputFolder {
 //
 // Made first thing in main(), before other threads are, which inherit that they are not to be
 // interrupted: one thread waits for the signals, removes the temporary files of the folders in use,
-// stops the processes that were started, and lets the signal end the program, as whoever started it
-// expects. Signals that are ignored (nohup) stay so.
+// and lets the signal end the program, as whoever started it expects. Signals that are ignored
+// (nohup) stay so.
 class Interruption {
  public:
   Interruption();
