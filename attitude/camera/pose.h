@@ -23,7 +23,7 @@ struct FoundPose {
   int unknowns = 0;   // 3 about the centre, 6 free
 };
 
-// The pose with the least chi², by Levenberg and Marquardt's method (Ceres' TinySolver) from a
+// The pose with the least chi², by Levenberg and Marquardt's method from a
 // first pose, that of the image before. The first pose's rate says how rows of a rolling shutter
 // differ. Nothing where the markers are too few or it does not settle.
 std::optional<FoundPose> find_pose(const TrackingCamera& camera,

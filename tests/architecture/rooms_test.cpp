@@ -26,7 +26,6 @@ const std::multimap<std::string, std::string> only_place = {
     {"pugixml", "sources/photometry"},
     {"pugixml", "tools/fmi"},
     {"minizip/", "tools/fmi"},
-    {"ceres/tiny_solver.h", "attitude/camera"},
     {"pybind11", "python"},
     {"hdf5.h", "images/writers"},
     {"sqlite3.h", "tools/sweeps"},

@@ -126,7 +126,7 @@ TEST(MarkerPositions, TurnThePoseAsTheLawSays) {
   }
 }
 
-// The camera's own pose (Ceres, weighed by Fisher's information of every spot), about a known
+// The camera's own pose (weighed by Fisher's information of every spot), about a known
 // centre and free.
 TEST(MarkerPositions, TurnTheCamerasOwnPoseAsTheLawSays) {
   for (const bool knows_centre : {true, false}) {

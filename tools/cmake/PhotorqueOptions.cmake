@@ -24,6 +24,8 @@ if(PHOTORQUE_WERROR)
   add_compile_options(-Werror)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # The compiler collects garbage above 1 GB alone: a tenth less time for 0.3 GB more memory.
+  add_compile_options("SHELL:--param ggc-min-heapsize=1000000")
   # GCC 12 reports these inside Eigen's and the standard library's inlined code.
   add_compile_options(-Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread
                       -Wno-restrict -Wno-psabi)
