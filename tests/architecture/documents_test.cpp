@@ -126,7 +126,7 @@ TEST(Documents, CommandsExistAndEachHasARow) {
   static const std::regex row(R"(\n\| `([a-z-]+)` \|)");
   std::set<std::string> verbs;
   for (const std::string& word : kinds_of("tools")) {
-    static const std::regex name(R"rx(\nVerb kind\(\) \{\s+return \{"([a-z-]+)")rx");
+    static const std::regex name(R"rx(\nVerb kind\(\) \{\s+return \{\s*"([a-z-]+)")rx");
     const std::vector<std::string> names =
         matches(text_of(root / "tools" / (word + ".cpp")), name, 1);
     ASSERT_EQ(names.size(), 1u) << word;

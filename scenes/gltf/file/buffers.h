@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -12,14 +11,7 @@
 #include <vector>
 
 #include "scenes/gltf/file/fault.h"
-
-namespace photorque {
-
-// The bytes behind a relative path (percent decoded), or nothing. InputError where the path, or a
-// link on it, leads out of the model's folder and may not.
-using GltfOpen = std::function<std::optional<std::string>(const std::string& relative_path)>;
-
-}  // namespace photorque
+#include "scenes/gltf/file/open.h"
 
 namespace photorque::gltf {
 
