@@ -317,8 +317,10 @@ std::string plot_pdf(const Plot& plot, const Provenance& provenance, const PdfTe
 
 std::string plot_html(const Plot& plot) {
   require_consistent(plot);
+  // Half of the last tick's label is beyond the frame.
+  constexpr double half_label = 12.0;
   const PlotLayout layout = plot_layout(plot, {.left = 2.0,
-                                               .right = html_chart_width,
+                                               .right = html_chart_width - half_label,
                                                .top = 8.0,
                                                .min_axis_width = 64.0,
                                                .resolution = 1.0,
