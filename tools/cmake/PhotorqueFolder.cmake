@@ -40,12 +40,14 @@ function(photorque_precompiled target)
   endif()
 endfunction()
 
-# photorque_folder(NAME [FILES file ...] [WITHOUT path ...] [USES folder ...] [LINKS library ...] [ALONE file ...])
+# photorque_folder(NAME [FILES file ...] [WITHOUT path ...] [USES folder ...] [LINKS library ...] [ALONE file ...]
+#                  [BATCH_KB number])
 #   One static library photorque_NAME for a top-level folder: FILES, or every source below the folder
 #   but those whose path begins with one of WITHOUT. USES names the folders it may include (public), LINKS the outside libraries that only
-#   this folder may see (private), ALONE the files that cannot be compiled together with others.
+#   this folder may see (private), ALONE the files that cannot be compiled together with others,
+#   BATCH_KB the largest batch of sources.
 function(photorque_folder name)
-  cmake_parse_arguments(arg "" "" "FILES;WITHOUT;USES;LINKS;ALONE" ${ARGN})
+  cmake_parse_arguments(arg "" "BATCH_KB" "FILES;WITHOUT;USES;LINKS;ALONE" ${ARGN})
   if(NOT arg_FILES)
     file(GLOB_RECURSE arg_FILES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
     foreach(path IN LISTS arg_WITHOUT)
@@ -63,7 +65,7 @@ function(photorque_folder name)
   endforeach()
   target_link_libraries(${target} PRIVATE ${arg_LINKS})
   photorque_precompiled(${target})
-  photorque_unity(${target})
+  photorque_unity(${target} ${arg_BATCH_KB})
 endfunction()
 
 # photorque_kinds(FOLDER TYPE HEADER word ...)
