@@ -1,12 +1,8 @@
 # Files of one room (a folder that holds sources) are compiled together, in batches of at most
-# `max_kB`: most of a file's compile time goes into headers, which a batch reads once. Names in
+# `max_kB` (smaller in the rooms named after the target): most of a file's compile time goes into headers, which a batch reads once. Names in
 # anonymous namespaces must therefore differ within a room. OFF suits daily work on a few files.
 option(PHOTORQUE_UNITY "Compile the files of a room together" OFF)
 function(photorque_unity target)
-  set(max_kB 80)
-  if(ARGC GREATER 1)
-    set(max_kB ${ARGV1})
-  endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PHOTORQUE_UNITY} UNITY_BUILD_MODE GROUP)
   if(NOT PHOTORQUE_UNITY)
     return()
@@ -20,6 +16,10 @@ function(photorque_unity target)
     endif()
     cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE room)
     cmake_path(GET room PARENT_PATH room)
+    set(max_kB 80)
+    if(room IN_LIST ARGN)
+      set(max_kB 30)
+    endif()
     string(MAKE_C_IDENTIFIER "${room}" room)
     file(SIZE ${path} bytes)
     math(EXPR sum_${room} "0${sum_${room}} + ${bytes}")
@@ -41,13 +41,13 @@ function(photorque_precompiled target)
 endfunction()
 
 # photorque_folder(NAME [FILES file ...] [WITHOUT path ...] [USES folder ...] [LINKS library ...] [ALONE file ...]
-#                  [BATCH_KB number])
+#                  [QUICK room ...])
 #   One static library photorque_NAME for a top-level folder: FILES, or every source below the folder
 #   but those whose path begins with one of WITHOUT. USES names the folders it may include (public), LINKS the outside libraries that only
 #   this folder may see (private), ALONE the files that cannot be compiled together with others,
-#   BATCH_KB the largest batch of sources.
+#   QUICK the rooms with smaller batches, whose files change often.
 function(photorque_folder name)
-  cmake_parse_arguments(arg "" "BATCH_KB" "FILES;WITHOUT;USES;LINKS;ALONE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "FILES;WITHOUT;USES;LINKS;ALONE;QUICK" ${ARGN})
   if(NOT arg_FILES)
     file(GLOB_RECURSE arg_FILES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
     foreach(path IN LISTS arg_WITHOUT)
@@ -65,7 +65,7 @@ function(photorque_folder name)
   endforeach()
   target_link_libraries(${target} PRIVATE ${arg_LINKS})
   photorque_precompiled(${target})
-  photorque_unity(${target} ${arg_BATCH_KB})
+  photorque_unity(${target} ${arg_QUICK})
 endfunction()
 
 # photorque_kinds(FOLDER TYPE HEADER word ...)
