@@ -42,11 +42,11 @@ struct LawfulStretch {
 };
 
 // The longest part of the rows [first, last) between breaks. A torque that depends on angle and
-// rate cannot change its rate's slope at once while both go on as before; such a break is told by
-// straight lines through the rates on both sides, over 12 rows and more, whose slopes differ by
-// half of the larger one, by ten standard errors and by eight times what is usual in the recording.
-// A rate that vanishes or changes its sign is no break (dry friction does that), and where commands
-// or measured wheels act none is looked for.
+// rate cannot change its rate's slope at once while both go on as before; such a break is
+// identified by straight lines through the rates on both sides, over 12 rows and more, whose slopes
+// differ by half of the larger one, by ten standard errors and by eight times what is usual in the
+// recording. A rate that vanishes or changes its sign is no break (dry friction does that), and
+// where commands or measured wheels act none is looked for.
 LawfulStretch lawful_stretch(const Observation& rows, const Vec3& axis, size_t first, size_t last);
 
 }  // namespace photorque

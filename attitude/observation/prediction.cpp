@@ -57,7 +57,7 @@ Whitening::Gain Whitening::gain(double time_s, double rows) {
   constexpr double longest_means = 20.0;
   const double steps = std::min(interval_s_ / time_s_, longest_means / std::max(1.0, rows));
   const MeanOfCorrelated mean = mean_of_correlated(rows, steps);
-  // A reading that counts for less than one has so much more noise of its own.
+  // A reading with a weight below one has correspondingly more independent noise.
   const double own = white_variance_ / rows +
                      (rows < 1.0 ? (1.0 / rows - 1.0) * coloured_variance_ : 0.0) +
                      coloured_variance_ * mean.variance;

@@ -35,7 +35,7 @@ std::string formula_of(std::string_view sequence);
 //
 // Channels 0 to 2 are the attitude about lab x, y and z, 3 to 5 the gyro about body x, y and z.
 // Those behind them are one number each, for recordings that hold less than an attitude or three
-// rates: each has a law of its own, which says what an attitude and a rate would read.
+// rates: each has a function that computes its reading from an attitude and a rate.
 
 inline constexpr int vector_channels = 6;
 

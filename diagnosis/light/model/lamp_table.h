@@ -23,7 +23,6 @@ class LampTable {
   // As DiscLight::irradiance_W_m2.
   double irradiance_W_m2(const Vec3& point_m, const Vec3& normal) const;
   double radius_m() const { return light_->radius_m(); }
-  bool is_tabulated() const { return !nodes_.empty(); }
 
  private:
   static constexpr size_t terms = 6;  // of the polynomial in (R/h)²

@@ -51,7 +51,6 @@ class LightRun {
   size_t rows() const { return recording_.rows(); }
   // Residuals, and which row and channel each belongs to.
   size_t samples() const { return sample_row_.size(); }
-  const std::vector<size_t>& sample_row() const { return sample_row_; }
   const std::vector<int>& sample_channel() const { return sample_channel_; }
   // "irradiance_W_m2", "current_A", "array_voltage_V", …, by channel.
   const std::vector<std::string>& channels() const { return channels_; }
@@ -105,7 +104,6 @@ class LightRun {
 
   // Where each output is, and when.
   const std::vector<Circumstance>& circumstances() const { return circumstances_; }
-  size_t output_of_row(size_t row) const { return first_output_[row]; }
   // The array under the light of a row.
   ArrayCurve curve(const LightState& state, const std::vector<double>& signals, size_t row) const;
 
