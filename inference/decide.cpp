@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 namespace photorque::inference {
@@ -102,6 +103,15 @@ class Judge {
     return std::includes(all.begin(), all.end(), some.begin(), some.end());
   }
 
+  // Whether `other` has all names of `trial` but one, and another known effect in its place.
+  bool exchanges_one(size_t trial, size_t other) const {
+    const auto ours = names_of(trial), theirs = names_of(other);
+    std::vector<std::string> shared;
+    std::set_intersection(ours.begin(), ours.end(), theirs.begin(), theirs.end(),
+                          std::back_inserter(shared));
+    return ours.size() == theirs.size() && shared.size() + 1 == ours.size() && !is_empirical(other);
+  }
+
   std::multiset<std::string> names_of(size_t trial) const {
     std::multiset<std::string> names;
     for (const size_t c : trials_[trial].candidates) names.insert(all_[c].name);
@@ -116,10 +126,14 @@ class Judge {
            std::includes(all.begin(), all.end(), fewer.begin(), fewer.end());
   }
 
-  // Whether `whole` beats `part` by the full threshold, and does not predict worse.
+  // Whether `whole` beats `part` by the full threshold, does not predict worse, and does not lead
+  // away from what was held out.
   bool is_missed(size_t part, size_t whole) const {
     const Explanation &a = trials_[part], &b = trials_[whole];
     if (b.log_evidence < a.log_evidence + limits_.min_log_odds) return false;
+    const auto &before = a.holdout_chi2_per_sample, &after = b.holdout_chi2_per_sample;
+    if (before && after && *after > limits_.max_held_out_growth * std::max(1.0, *before))
+      return false;
     if (!a.predictive || !b.predictive) return true;
     return b.predictive->log_score > a.predictive->log_score - limits_.max_predictive_loss;
   }
@@ -179,6 +193,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     const bool law_does = only_empirical && judge.predicts(empirical) &&
                           judge.predicts_far_better(empirical) &&
                           excess_sigma(empirical) < limits.max_excess_sigma;
+    d.leaves_more = !law_does;
     if (law_does) d.beside_law = judge.indispensable(empirical);
     // The law is an approximation, and several effects take up together what it leaves.
     if (d.beside_law.size() > 1) d.beside_law.clear();
@@ -199,12 +214,17 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   // More than these is not said, though more may act.
   d.confidence =
       probability_of(d.probability, [&](size_t i) { return judge.has_names_of(named, i); });
-  const bool is_weak = d.confidence < limits.min_confidence_of_weak_name &&
+  const double of_group = probability_of(d.probability, [&](size_t i) {
+    return judge.has_names_of(named, i) || judge.exchanges_one(named, i);
+  });
+  const bool is_likely = of_group >= limits.min_probability;
+  // What only the recordings and what was held out show together.
+  const bool is_weak = d.confidence < limits.min_probability &&
                        !judge.is_significant(named, trials[named].significance);
   d.undecided = is_weak && judge.predicts(0);
   if (d.undecided) {
     d.confidence = 1.0 - d.confidence;
-  } else if (is_weak) {
+  } else if (is_weak || !is_likely) {
     // Something acts beyond doubt, and of several explanations none is much likelier than the rest.
     // What they share may be an error that they share: nothing is named.
     d.finding = Finding::unknown;

@@ -19,6 +19,8 @@ struct Decision {
   // Nothing missing only because what shows has no name: the runs and what was held out show it
   // together, neither does alone, and no candidate is much likelier than all others.
   bool undecided = false;
+  // More is left beside the chosen model than noise.
+  bool leaves_more = false;
   size_t chosen = 0;      // index of the trial whose model is kept
   size_t best_named = 0;  // of the best trial without empirical candidates; 0: nominal
   // Why something unknown acts, for a person: "the held-out recording is not predicted".

@@ -16,13 +16,15 @@ class Search {
     trials_.push_back(nominal);
   }
 
-  std::vector<Trial> run() {
+  // `near`: where the rounds begin, fitted to the runs; nullptr: about the nominal model.
+  std::vector<Trial> run(const Trial* near = nullptr) {
     const Trial nominal = trials_.front();
+    if (near != nullptr) return about(nominal, *near);
     Trial from = nominal;
     if (has_diverged(nominal, limits_)) {
-      auto [pieces, near] = near_pieces(domain_, nominal, runs_);
+      auto [pieces, parted] = near_pieces(domain_, nominal, runs_);
       if (pieces.pieces == 1) return about(nominal, from);
-      for (Trial& t : by_pieces(nominal, pieces, near)) trials_.push_back(std::move(t));
+      for (Trial& t : by_pieces(nominal, pieces, parted)) trials_.push_back(std::move(t));
       // Nothing can be predicted about a prediction that is elsewhere. One that pieces led to the
       // readings, all but a part that is still unknown or noise that is more than stated, says
       // more.
@@ -117,11 +119,12 @@ class Search {
   std::vector<Trial> trials_;
 };
 
-// All trials that were fitted, the nominal model first.
+// All trials that were fitted, the nominal model first; `near` as in Search::run().
 template <Domain D>
 std::vector<typename D::Trial> search(const D& domain, const typename D::Trial& nominal,
-                                      const std::vector<typename D::Run>& runs, int threads = 0) {
-  return Search<D>(domain, nominal, runs, threads).run();
+                                      const std::vector<typename D::Run>& runs, int threads = 0,
+                                      const typename D::Trial* near = nullptr) {
+  return Search<D>(domain, nominal, runs, threads).run(near);
 }
 
 }  // namespace photorque::inference

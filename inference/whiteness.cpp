@@ -69,22 +69,33 @@ std::vector<size_t> outliers(const std::vector<double>& residuals,
   return found;
 }
 
-double signed_rank_sigma(const std::vector<double>& differences) {
-  std::vector<double> x;
+double mean_sigma(std::vector<double> differences) {
+  if (differences.size() < 3) return 0.0;
+  std::vector<double> sizes;
+  double largest = 0.0;
   for (const double d : differences) {
-    if (d != 0.0 && !std::isnan(d)) x.push_back(d);
+    if (std::isfinite(d)) largest = std::max(largest, std::abs(d));
   }
-  if (x.empty()) return 0.0;
-  std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  double above = 0.0;
-  for (size_t first = 0, last = 0; first < x.size(); first = last) {
-    last = first;
-    while (last < x.size() && std::abs(x[last]) == std::abs(x[first])) ++last;
-    const double rank = 0.5 * static_cast<double>(first + 1 + last);
-    for (size_t i = first; i < last; ++i) above += x[i] > 0.0 ? rank : 0.0;
+  // An explanation that cannot be evaluated is as bad as the worst that can.
+  if (largest == 0.0) largest = 1.0;
+  for (double& d : differences) {
+    d = std::clamp(d, -largest, largest);
+    sizes.push_back(std::abs(d));
   }
-  const auto n = static_cast<double>(x.size());
-  return (above - n * (n + 1.0) / 4.0) / std::sqrt(n * (n + 1.0) * (2.0 * n + 1.0) / 24.0);
+  const double most = 3.0 * median(std::move(sizes));
+  const auto n = static_cast<double>(differences.size());
+  double sum = 0.0, squares = 0.0;
+  for (double& d : differences) {
+    d = std::clamp(d, -most, most);
+    sum += d;
+    squares += d * d;
+  }
+  const double mean = sum / n, variance = (squares / n - mean * mean) * n / (n - 1.0);
+  if (mean == 0.0) return 0.0;
+  const double freedom = n - 1.0, t = mean / std::sqrt(std::max(variance, 1e-300) / n);
+  const double normal = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0) *
+                        std::sqrt(freedom * std::log1p(t * t / freedom));
+  return std::copysign(normal, t);
 }
 
 }  // namespace photorque::inference

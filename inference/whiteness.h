@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "inference/estimator/thresholds.h"
@@ -26,13 +25,12 @@ Whiteness whiteness(const std::vector<ChannelResiduals>& runs, const Thresholds:
 // noise, and far more than most readings do.
 std::vector<size_t> outliers(const std::vector<double>& residuals, const Thresholds::Noise& limits);
 
-// Whether differences lie above zero, whatever their distribution.
+// Whether differences lie above zero.
 
-// Wilcoxon's signed-rank statistic (F. Wilcoxon, Biometrics Bulletin 1 (1945) 80) in its standard
-// errors: Σ of the ranks of the sizes of those above zero, less its mean n (n + 1)/4, over
-// √(n (n + 1) (2n + 1)/24). Of differences that lie about zero symmetrically it is standard normal,
-// to a few per cent from n = 20 on. Zeros are left out; equal sizes share the mean of their ranks.
-// 0 where nothing is left.
-double signed_rank_sigma(const std::vector<double>& differences);
+// The mean of some differences in its standard errors, as those of a normal variable: Student's t
+// turned into a normal deviate of about the same probability (D. L. Wallace, Annals of Mathematical
+// Statistics 30 (1959) 1121). A difference beyond three times the median size counts as that much,
+// so that no single one decides. 0 for fewer than three.
+double mean_sigma(std::vector<double> differences);
 
 }  // namespace photorque::inference

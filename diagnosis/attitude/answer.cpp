@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <optional>
 
 #include "attitude/estimation/fit.h"
 #include "attitude/observation/noise_levels.h"
 #include "attitude/propagation/run.h"
 #include "diagnosis/attitude/account.h"
+#include "diagnosis/attitude/beside_the_rest.h"
 #include "diagnosis/attitude/domain.h"
 #include "diagnosis/attitude/holdout.h"
 #include "diagnosis/attitude/locate.h"
@@ -16,6 +17,46 @@
 #include "inference/weigh.h"
 
 namespace photorque {
+
+void tell(const DiagnoseOptions& options, const std::string& what) {
+  if (options.progress) options.progress(what);
+}
+
+namespace {
+
+bool is_among(const Candidate& c, Among among) {
+  const bool is_torque = !c.empirical() && c.start.stage != Stage::measurement;
+  return among == Among::all || (c.is_linear() && (is_torque || among == Among::unscanned));
+}
+
+}  // namespace
+
+Answer searched(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
+                const DiagnoseOptions& options, Among among, const Trial* near) {
+  Answer a;
+  a.all = all_candidates(nominal, data.train, options.limits);
+  // Those of the narrower choice first, so that a trial of theirs means the same among more.
+  for (const Among first : {Among::unscanned, Among::torques}) {
+    std::ranges::stable_partition(a.all.list,
+                                  [&](const Candidate& c) { return is_among(c, first); });
+  }
+  std::erase_if(a.all.list, [&](const Candidate& c) { return !is_among(c, among); });
+  const AttitudeDomain domain(a.all);
+  const Trial base = nominal_trial(nominal_fit, a.all);
+  std::optional<Trial> begin;
+  if (near != nullptr) begin = domain.refit(*near, data.train, near->fit.best.runs, {});
+  a.trials =
+      inference::search(domain, base, data.train, options.threads, begin ? &*begin : nullptr);
+  a.depends_on = dependences(a.trials, a.all);
+  tell(options, "comparing with what was held out");
+  inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
+  const auto excess = [&](size_t trial) {
+    return domain.excess_sigma(a.trials[trial], data.train);
+  };
+  a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), excess,
+                                 options.limits.decision);
+  return a;
+}
 
 namespace {
 
@@ -50,202 +91,78 @@ void keep_what_predicts(const RecordedData& data, const Thresholds& limits, Answ
                                    "held out";
 }
 
-}  // namespace
-
-void tell(const DiagnoseOptions& options, const std::string& what) {
-  if (options.progress) options.progress(what);
-}
-
-Answer explain(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
-               const DiagnoseOptions& options, Among among) {
-  Answer a;
-  a.all = all_candidates(nominal, data.train, options.limits);
-  if (among == Among::unscanned) {
-    std::erase_if(a.all.list, [](const Candidate& c) { return !c.is_linear(); });
-  }
-  if (among == Among::plain_physics) {
-    std::erase_if(a.all.list, [](const Candidate& c) {
-      return c.empirical() || !c.is_linear() || c.start.stage == Stage::measurement;
-    });
-  }
-  const AttitudeDomain domain(a.all);
+// The answer with the noise that the readings show about what explains them.
+Answer at_noise_of_readings(const NominalModel& nominal, RecordedData& data,
+                            const DiagnoseOptions& options, Fit& nominal_fit, const Trial* near) {
   tell(options, "fitting every effect of the catalogue");
-  a.trials =
-      inference::search(domain, nominal_trial(nominal_fit, a.all), data.train, options.threads);
-  a.depends_on = dependences(a.trials, a.all);
-  tell(options, "comparing with what was held out");
-  inference::weigh_with_held_out(domain, data.train, data.held, options.threads, a.trials);
-  const auto excess = [&](size_t trial) {
-    return domain.excess_sigma(a.trials[trial], data.train);
-  };
-  a.decision = inference::decide({a.trials.begin(), a.trials.end()}, domain.candidates(), excess,
-                                 options.limits.decision);
-  if (among == Among::all && a.decision.finding == inference::Finding::unknown) {
-    Trial& chosen = a.trials[a.decision.chosen];
-    chosen = refined_in_time(chosen, a.all, data.train);
-    keep_what_predicts(data, options.limits, a);
-  }
-  return a;
+  Answer a = searched(nominal, nominal_fit, data, options, Among::all, near);
+  if (!settle_again(a.chosen().fit, options.limits, data)) return a;
+  tell(options, "again, with the noise that was found");
+  nominal_fit = fit(nominal_fit.best, data.train);
+  return searched(nominal, nominal_fit, data, options, Among::all, near);
 }
 
-Answer unexplained(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
-                   const Thresholds& limits) {
-  Answer a;
-  a.all = all_candidates(nominal, data.train, limits);
-  a.trials = {nominal_trial(nominal_fit, a.all)};
-  a.decision.finding = inference::Finding::unknown;
-  a.decision.confidence = limits.decision.structure_confidence;
-  a.decision.because = "the nominal model leaves structure in the recording";
-  a.decision.probability = {1.0};
-  return a;
+// Whether a law without a name describes the recordings far better than known physics.
+bool law_is_far_better(const Answer& a, const Thresholds& limits) {
+  const bool is_law = a.decision.chosen != a.decision.best_named;
+  const double law = a.chosen().fit.chi2_per_sample(),
+               known = a.trials[a.decision.best_named].fit.chi2_per_sample();
+  return is_law && law < limits.discrepancy.max_fraction_of_law * known;
 }
 
-namespace {
-
-void use_noise(const NoiseLevels& noise, RecordedData& data) {
-  for (auto* runs : {&data.train, &data.held}) {
-    for (Observation& seen : *runs) seen.noise = noise;
-  }
+// The law in time of what stays unexplained, in detail.
+void describe(const RecordedData& data, const DiagnoseOptions& options, Answer& a) {
+  if (a.decision.finding != inference::Finding::unknown) return;
+  Trial& chosen = a.trials[a.decision.chosen];
+  chosen = refined_in_time(chosen, a.all, data.train);
+  keep_what_predicts(data, options.limits, a);
 }
 
-bool contains(const std::vector<size_t>& all, const std::vector<size_t>& some) {
-  const std::set<size_t> in(all.begin(), all.end());
-  return std::all_of(some.begin(), some.end(), [&](size_t c) { return in.count(c) > 0; });
+void leave_unexplained(inference::Decision& decision) {
+  decision.finding = inference::Finding::unknown;
+  decision.because = "what is left is far more than the noise of the readings";
 }
 
-// Whether nothing that physics allows predicts what was held out better without these names.
-bool predicts_best(const std::vector<Trial>& trials, const Trial& named) {
-  return std::none_of(trials.begin(), trials.end(), [&](const Trial& t) {
-    return t.objection.empty() && !contains(t.candidates, named.candidates) &&
-           t.holdout_chi2_per_sample && *t.holdout_chi2_per_sample < *named.holdout_chi2_per_sample;
-  });
-}
-
-// Of the best names those that what was held out misses: without any one of them it would be
-// predicted worse by the factor that makes a name. What is left is no noise, and an effect that
-// bends a little with it gains evidence where it does not act.
-void drop_what_held_out_does_not_miss(const Thresholds& limits, Answer& a) {
-  size_t& best = a.decision.best_named;
-  const bool is_chosen = a.decision.chosen == best;
-  for (bool drops = best != 0; drops;) {
-    const Trial& whole = a.trials[best];
-    size_t fewer = best;
-    for (size_t i = 1; i < a.trials.size(); ++i) {
-      const Trial& part = a.trials[i];
-      const bool has_one_less = part.candidates.size() + 1 == whole.candidates.size() &&
-                                contains(whole.candidates, part.candidates);
-      if (!has_one_less || !part.objection.empty() || !part.holdout_chi2_per_sample ||
-          !whole.holdout_chi2_per_sample ||
-          *whole.holdout_chi2_per_sample <
-              limits.decision.max_held_out_fraction * *part.holdout_chi2_per_sample) {
-        continue;
-      }
-      if (fewer == best || part.log_evidence > a.trials[fewer].log_evidence) fewer = i;
-    }
-    drops = fewer != best;
-    best = fewer;
-  }
-  if (is_chosen) a.decision.chosen = best;
-}
-
-// Whether known physics is part of the answer: it predicts what was held out far better than the
-// nominal model, and where a law without a name explains more, it does so beside the same names.
-// What was held out may hold more of the rest than what was fitted, which no distribution
-// foretells: then the names have to predict better by a factor still larger, and best of all;
-// nothing is added so to names that were `found` before.
-bool has_names(const Answer& a, bool found, const Thresholds& limits) {
-  const inference::Decision& decision = a.decision;
-  if (decision.best_named == 0) return false;
-  const Trial &named = a.trials[decision.best_named], &chosen = a.chosen();
-  const auto& nominal_held = a.trials.front().holdout_chi2_per_sample;
-  const auto& named_held = named.holdout_chi2_per_sample;
-  if (!nominal_held || !named_held || std::isnan(*named_held) ||
-      !(*named_held < limits.decision.max_held_out_fraction * *nominal_held)) {
-    return false;
-  }
-  if (decision.finding == inference::Finding::named) return true;
-  if (decision.chosen == decision.best_named) {
-    return !found && *named_held < limits.decision.max_uncovered_fraction * *nominal_held &&
-           predicts_best(a.trials, named);
-  }
-  return chosen.candidates.size() > named.candidates.size() &&
-         contains(chosen.candidates, named.candidates);
-}
-
-// χ² of what was held out against the noise that `data` has, whatever that is.
-double held_chi2(const Fit& fit, const RecordedData& data, const Thresholds& limits) {
-  return propagate_model(fit, data.held, limits).chi2;
-}
-
-// The names with parameters and errors by what is left beside them. The less is left, the more the
-// readings weigh against what was stated; so it goes on as long as what was held out gains by it.
-void refit_beside_the_rest(const NoiseLevels& own, RecordedData data, const Thresholds& limits,
-                           Answer& answer) {
-  constexpr int most_rounds = 6;
-  Trial& named = answer.trials[answer.decision.chosen];
-  const auto rest = [&](Remainder remainder) {
-    return with_discrepancy(residuals_of(named.fit, data.train), data.train, own, remainder);
-  };
-  for (int round = 0; round < most_rounds; ++round) {
-    use_noise(rest(Remainder::white), data);
-    const Trial again = refit(named, answer.all, data.train, named.fit.best.runs);
-    if (!std::isfinite(again.fit.chi2) || !again.objection.empty() ||
-        !(held_chi2(again.fit, data, limits) < 0.9 * held_chi2(named.fit, data, limits))) {
-      break;
-    }
-    named.fit = again.fit;
-  }
-  use_noise(rest(Remainder::correlated), data);
-  const Trial again = refit(named, answer.all, data.train, named.fit.best.runs);
-  if (std::isfinite(again.fit.chi2)) named.fit = again.fit;
-}
-
-// The nominal model fitted with all that it leaves counted as noise, which `data` then has.
-Fit fit_in_the_rough(const NominalModel& nominal, const NoiseLevels& own, const Thresholds& limits,
-                     RecordedData& data) {
-  use_noise(patient_noise(data.train, own), data);
-  Fit fitted = fit_nominal(nominal, data.train, limits);
-  if (!std::isfinite(fitted.chi2)) return fitted;
-  use_noise(with_discrepancy(residuals_of(fitted, data.train), data.train, own, Remainder::white),
-            data);
-  return fit_nominal(nominal, data.train, limits);
+// On an air bearing, and wherever attitude or place is seen, the whole search is worth its time.
+bool is_watched(const NominalModel& nominal, const RecordedData& data) {
+  const Observation& seen = data.train.front();
+  return nominal.model.platform.has_air_bearing() || seen.sees_attitude() ||
+         (seen.has(Scalar::position_x) && seen.has(Scalar::position_y));
 }
 
 }  // namespace
 
-Answer explained_in_the_rough(const NominalModel& nominal, RecordedData data,
-                              const DiagnoseOptions& options) {
-  const NoiseLevels own = data.train.front().noise;
-  const Fit fitted = fit_in_the_rough(nominal, own, options.limits, data);
-  tell(options, "describing what acts, with the rest counted as noise");
-  return explain(nominal, fitted, data, options, Among::unscanned);
-}
-
-std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData data,
-                                            const DiagnoseOptions& options) {
-  constexpr int most_steps = 4;
-  const NoiseLevels own = data.train.front().noise;
-  std::optional<Answer> best;
-  use_noise(patient_noise(data.train, own), data);
-  Fit left_by = fit_nominal(nominal, data.train, options.limits);
-  for (int step = 0; step < most_steps && std::isfinite(left_by.chi2); ++step) {
-    const NoiseLevels noise =
-        with_discrepancy(residuals_of(left_by, data.train), data.train, own, Remainder::white);
-    if (step > 0 && !is_quieter(noise, data.train.front().noise)) break;
-    use_noise(noise, data);
-    tell(options, "naming what stands out, with the rest counted as noise");
-    Answer next = explain(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
-                          Among::plain_physics);
-    drop_what_held_out_does_not_miss(options.limits, next);
-    const bool named = has_names(next, best.has_value(), options.limits);
-    if (!named && (best || next.decision.best_named == 0)) break;
-    left_by = next.trials[next.decision.best_named].fit;
-    if (!named) continue;
-    next.decision.chosen = next.decision.best_named;
-    best = std::move(next);
+Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
+               Fit& nominal_fit) {
+  const Thresholds& limits = options.limits;
+  // A machine of which little is known, far from its recording: a search at the noise of the
+  // readings would find nothing but ways of bending what is believed.
+  const bool is_far = !is_watched(nominal, data) &&
+                      !(nominal_fit.chi2_per_sample() < limits.diverged_chi2_per_sample);
+  Answer fine;
+  if (!is_far) {
+    fine = at_noise_of_readings(nominal, data, options, nominal_fit, nullptr);
+    if (!fine.decision.leaves_more || law_is_far_better(fine, limits)) {
+      describe(data, options, fine);
+      return fine;
+    }
   }
-  if (best) refit_beside_the_rest(own, data, options.limits, *best);
-  return best;
+  RecordedData rough = data;
+  std::optional<Answer> named = named_beside_the_rest(nominal, rough, options);
+  if (named && is_far && leaves_only_noise(named->chosen().fit, data)) {
+    return at_noise_of_readings(nominal, data, options, nominal_fit, &named->chosen());
+  }
+  if (named) return std::move(*named);
+  if (!is_far) {
+    describe(data, options, fine);
+    return fine;
+  }
+  tell(options, "describing what acts, with the rest counted as noise");
+  Answer described = searched(nominal, fit_nominal(nominal, rough.train, limits), rough, options,
+                              Among::unscanned, nullptr);
+  described.rest_is_noise = true;
+  leave_unexplained(described.decision);
+  return described;
 }
 
 }  // namespace photorque

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "diagnosis/attitude/effects/trial.h"
@@ -18,39 +19,28 @@ struct Answer {
   // Before the runs held out count: in one that diverges there all explanations differ by chance.
   std::vector<Where::Dependence> depends_on;
   inference::Decision decision;
+  // What is left unexplained counted as noise.
+  bool rest_is_noise = false;
+  // Where it did and names came out: the names of the chosen trial stand beside it,
+  // each with the standard errors by which it predicts stretches better than its absence.
+  struct BesideTheRest {
+    size_t stretches = 0;
+    std::vector<double> sigma;                     // of each candidate of the chosen trial
+    std::vector<std::vector<std::string>> rivals;  // of each: what is not told from it
+  };
+  std::optional<BesideTheRest> beside = {};
 
   const Trial& chosen() const { return trials[decision.chosen]; }
 };
 
-// All candidates; those that need no scan for where to begin; of these the torques of the catalogue
-// alone, because instruments that are wrong enough stand in for anything.
-enum class Among { all, unscanned, plain_physics };
-
-// Score every effect, fit, compare, weigh with what was held out, decide.
-Answer explain(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
-               const DiagnoseOptions& options, Among among = Among::all);
-
-// The nominal model alone, and that it leaves more than noise.
-Answer unexplained(const NominalModel& nominal, const Fit& nominal_fit, const RecordedData& data,
-                   const Thresholds& limits);
-
-// What stands out although something unexplained is left, which counts as noise: at first all that
-// the nominal model leaves, then what the best explanation does, as long as names come out of it.
-// Under as little noise as that of the readings alone whatever is uncertain would give way to
-// anything.
-std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData data,
-                                            const DiagnoseOptions& options);
-
-// The one torque of the catalogue that predicts most stretches better than the nominal model, each
-// stretch from fits to others, where a recording has many of them: by ranks, because what is left
-// over is as irregular as it is. Nothing where none does beyond doubt.
-std::optional<Answer> named_over_stretches(const NominalModel& nominal, RecordedData data,
-                                           const DiagnoseOptions& options);
-
-// What describes the motion best, known or not, with all that the nominal model leaves counted as
-// noise: where the nominal model is far off and no names come out of it.
-Answer explained_in_the_rough(const NominalModel& nominal, RecordedData data,
-                              const DiagnoseOptions& options);
+// The answer to recordings about which the nominal model was fitted. Every effect is scored, the
+// best sets are fitted, compared, weighed with what was held out, and decided about with the noise
+// of the readings. Where more than noise is left, it counts as noise: as loud as what the best
+// explanation leaves, which is found anew until it falls no further. Names then have to predict
+// stretches, each from fits to others. `data` gains the noise that the readings show about the best
+// explanation, and `nominal_fit` is fitted with it.
+Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
+               Fit& nominal_fit);
 
 void tell(const DiagnoseOptions& options, const std::string& what);
 

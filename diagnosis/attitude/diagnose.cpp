@@ -34,7 +34,10 @@ Where where_they_part(const Fit& nominal_fit, const RecordedData& data,
 
 void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const RecordedData& data,
                         const DiagnoseOptions& options, Diagnosis& d) {
-  const auto& [all, trials, depends_on, decision] = answer;
+  const Candidates& all = answer.all;
+  const std::vector<Trial>& trials = answer.trials;
+  const std::vector<Where::Dependence>& depends_on = answer.depends_on;
+  const inference::Decision& decision = answer.decision;
   const Trial& chosen = answer.chosen();
   d.verdict = verdict_of(decision.finding);
   d.confidence = decision.confidence;
@@ -43,7 +46,13 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
     d.where.depends_on = depends_on;
     d.effects = found_effects(decision, trials, all);
   }
-  if (d.verdict == Verdict::unexplained) {
+  if (answer.beside) {
+    d.effects = found_effects(decision, trials, all);
+    for (size_t i = 0; i < d.effects.size(); ++i) {
+      d.effects[i].probability = decision.confidence;
+      d.effects[i].indistinguishable_from = answer.beside->rivals[i];
+    }
+  } else if (d.verdict == Verdict::unexplained) {
     d.where.depends_on = of_unknown_law(depends_on, chosen, all);
     d.empirical = empirical_torques(chosen, all, data.train);
     d.effects = effects_beside_law(decision, trials, all);
@@ -59,27 +68,13 @@ void say_what_was_found(const Answer& answer, const Fit& nominal_fit, const Reco
   d.because = decision.because;
 }
 
-void leave_unexplained(inference::Decision& decision) {
-  decision.finding = inference::Finding::unknown;
-  if (decision.because.empty()) {
-    decision.because = "what is left is far more than the noise of the readings";
-  }
-}
-
-// The names stand although the verdict is that something is left.
-void say_names_beside_the_rest(const Answer& answer, Diagnosis& d) {
-  d.effects = found_effects(answer.decision, answer.trials, answer.all);
-  d.empirical = {};
-  d.unnamed = {};
-  d.alternatives = alternatives(answer.decision, answer.trials, answer.all);
-  d.priors_refined = refined_priors(answer.chosen());
-}
-
 // Numbers and curves of the nominal and the chosen model, beside what was fitted and held out.
-void say_how_well(const Fit& before, const Trial& chosen, const RecordedData& data, bool is_lost,
+void say_how_well(const Fit& before, const Answer& answer, const RecordedData& data,
                   const Thresholds& limits, Diagnosis& d) {
-  // Where names stand beside the rest the fit counted that as noise; these numbers do not.
-  const Fit after = is_lost ? propagate_model(chosen.fit, data.train, limits) : chosen.fit;
+  const Trial& chosen = answer.chosen();
+  // Where the rest counted as noise it does not count here.
+  const Fit after =
+      answer.rest_is_noise ? propagate_model(chosen.fit, data.train, limits) : chosen.fit;
   d.chi2_per_sample_before = before.chi2_per_sample();
   d.chi2_per_sample_after = after.chi2_per_sample();
   d.samples = before.samples;
@@ -141,10 +136,6 @@ bool is_an_inertia(const Trial& chosen, size_t disturbance) {
   }
 }
 
-bool sees_place(const Observation& seen) {
-  return seen.has(Scalar::position_x) && seen.has(Scalar::position_y);
-}
-
 Replay replay_of(const Fit& fit, const Observation& seen) {
   Replay replay;
   replay.recording = seen.name;
@@ -176,47 +167,17 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   const NominalModel nominal = as_seen(stated, data);
   tell(options, "fitting the nominal model");
   Fit nominal_fit = settle(nominal, options.limits, data);
-  // On an air bearing, and wherever attitude or place is seen, the whole search is worth its time.
-  const bool is_watched = stated.model.platform.has_air_bearing() ||
-                          data.train.front().sees_attitude() || sees_place(data.train.front());
-  // A machine of which little is known, far from its recording: a search at the noise of the
-  // readings would find nothing but ways of bending what is believed.
-  const bool is_lost =
-      !is_watched && !(nominal_fit.chi2_per_sample() < options.limits.diverged_chi2_per_sample);
-  std::optional<Answer> named, of_stretches;
-  if (is_lost) named = named_beside_the_rest(nominal, data, options);
-  if (is_lost && !named) named = of_stretches = named_over_stretches(nominal, data, options);
-  Answer answer = named     ? unexplained(nominal, nominal_fit, data, options.limits)
-                  : is_lost ? explained_in_the_rough(nominal, data, options)
-                            : explain(nominal, nominal_fit, data, options);
-  if (!is_lost && settle_again(answer.chosen().fit, options.limits, data)) {
-    tell(options, "again, with the noise that was found");
-    nominal_fit = fit(nominal_fit.best, data.train);
-    answer = explain(nominal, nominal_fit, data, options);
-  }
-  if (!is_lost) {
+  Answer answer = explain(nominal, data, options, nominal_fit);
+  if (!answer.rest_is_noise) {
     Trial& chosen = answer.trials[answer.decision.chosen];
     chosen = within_physics(chosen, answer.all, data.train);
   }
   Diagnosis d;
-  // What counted as noise there is far more than the noise of the readings.
-  if (is_lost) leave_unexplained(answer.decision);
   say_what_was_found(answer, nominal_fit, data, options, d);
-  if (d.verdict == Verdict::unexplained && !is_watched && !is_lost) {
-    named = named_beside_the_rest(nominal, data, options);
-  }
-  if (d.verdict == Verdict::unexplained && !is_lost && !named && d.effects.empty()) {
-    named = of_stretches = named_over_stretches(nominal, data, options);
-  }
-  if (of_stretches) d.because += "; " + of_stretches->decision.because;
-  if (named) {
-    answer = std::move(*named);
-    say_names_beside_the_rest(answer, d);
-  }
   if (nominal.uncertain_inertia && is_an_inertia(answer.chosen(), *nominal.uncertain_inertia)) {
     d.unnamed.push_back(as_fitted(answer.chosen(), *nominal.uncertain_inertia));
   }
-  say_how_well(nominal_fit, answer.chosen(), data, is_lost || named, options.limits, d);
+  say_how_well(nominal_fit, answer, data, options.limits, d);
   d.warnings = warnings_of(data, answer.decision);
   for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);

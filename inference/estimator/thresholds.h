@@ -191,32 +191,44 @@ struct Thresholds {
     // Log evidence that a name may cost in predicting them: an effect that shows in the train runs
     // alone predicts nothing.
     double max_predictive_loss = 2.0;
+    // χ² of what was held out, as the fitted parameters alone predict it, over that without a name
+    // (or over noise), beyond which it is no name.
+    double max_held_out_growth = 1.5;
     // Log evidence by which a law without a name needs the help of a known effect before that is
     // named: where the law is not quite right, an effect may take up what it leaves, and what it
     // can leave without being seen as structure is some tens.
     double min_log_odds_beside_law = 100.0;
-    // χ² of what was held out over that of the nominal model, below which names are said beside
-    // something that stays unexplained.
+    // χ² of what was held out over that of the nominal model, for a law without a name to describe
+    // it.
     double max_held_out_fraction = 0.5;
-    // The same where the predictive distribution did not cover what was held out.
-    double max_uncovered_fraction = 0.25;
     // Distance of a nominal value from what was stated of it [sigma], to be doubted and to be
     // contradicted.
     double doubtful_belief_sigma = 3.0, contradicted_belief_sigma = 5.0;
-    // Confidence, for a name that only the recordings and what was held out show together.
-    double min_confidence_of_weak_name = 0.7;
+    // Probability of the names, or of what is not told from them, to be said.
+    double min_probability = 0.7;
     // Residual structure [sigma], before the best physics is called insufficient; and the
     // confidence, at least, that something unknown acts then.
     double max_excess_sigma = 6.0, structure_confidence = 0.95;
   } decision;
 
-  // Names by how many stretches of a recording they predict, each from fits to the others.
-  struct OverStretches {
-    size_t min_stretches = 24;
-    // Standard errors of the ranks: over the nominal model, of some ten candidates once in a
-    // hundred by chance; over another candidate, to be told from it: 95 %.
+  // Names beside something that stays unexplained, which counts as noise.
+  struct Discrepancy {
+    // Stretches into which all recordings are cut, about, and the standard errors by which each
+    // name must predict them better than its absence; and by which one explanation is told from
+    // another: 95 %.
+    size_t stretches = 16;
     double min_sigma = 3.0, min_rival_sigma = 1.645;
-  } over_stretches;
+    // χ² of what was held out over that without the name, beyond which it is no name.
+    double max_held_growth = 1.1;
+    // Explanations that are held against each other on the stretches: the likeliest, and those that
+    // predict best what was held out.
+    size_t max_likeliest = 4, max_predicting = 3;
+    // χ² per sample of a law without a name over that of known physics, below which the law is the
+    // better description, however known physics stands out.
+    double max_fraction_of_law = 0.25;
+    // Rounds in which what is left is counted as noise, and what stands out of it is looked for.
+    int max_rounds = 4;
+  } discrepancy;
 
   // Where recording and nominal model part, for the report; no verdict depends on it.
   struct Location {

@@ -83,6 +83,42 @@ TEST(Decide, ANameThatPredictsWorseIsNotSaid) {
   EXPECT_EQ(decided(trials, mutant).chosen, 2u);
 }
 
+// A law without a name is a hundred times as likely, by less than it takes to say that there is
+// one: the name is a candidate and no more.
+TEST(Decide, ANameThatIsUnlikelyIsNotSaid) {
+  const std::vector<CandidateTraits> all = {{.name = "first"},
+                                            {.name = "law", .is_empirical = true}};
+  const std::vector<Explanation> trials = {
+      explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0), explanation({1}, 104.4, 1.0)};
+  const auto judged = [&](const Thresholds::Decision& limits) {
+    return decide(
+        trials, all, [](size_t) { return 0.0; }, limits);
+  };
+  Thresholds::Decision limits;
+  EXPECT_EQ(judged(limits).finding, Finding::unknown);
+  EXPECT_NEAR(judged(limits).confidence, 1.0 / (1.0 + std::exp(-4.4)), 1e-3);
+  limits.min_probability = 0.0;
+  EXPECT_EQ(judged(limits).finding, Finding::named);
+}
+
+// Two that explain as much are one answer: the first with the second in its place.
+TEST(Decide, ANameThatIsNotToldFromAnotherIsSaidWithIt) {
+  const Decision d = decided({explanation({}, 0.0, 40.0), explanation({0}, 100.0, 1.0),
+                              explanation({1}, 99.9, 1.0)});
+  EXPECT_EQ(d.finding, Finding::named);
+  EXPECT_NEAR(d.confidence, 1.0 / (1.0 + std::exp(-0.1)), 1e-6);
+}
+
+// Each name has to differ from nothing.
+TEST(Decide, ANameWithinItsErrorIsNotSaid) {
+  std::vector<Explanation> trials = {explanation({}, 0.0, 1.0), explanation({0}, 100.0, 1.0)};
+  trials[1].significance[0] = 3.9;
+  EXPECT_EQ(decided(trials).finding, Finding::nothing_missing);
+  Thresholds::Decision mutant;
+  mutant.min_significance = 3.0;
+  EXPECT_EQ(decided(trials, mutant).finding, Finding::named);
+}
+
 TEST(Decide, HopelessEvidenceHasAProbabilityAsWell) {
   const Decision d = decided({explanation({}, -1e300, 40.0), explanation({0}, -1e300, 1.0)});
   EXPECT_TRUE(std::isfinite(d.confidence));

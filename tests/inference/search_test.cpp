@@ -63,7 +63,7 @@ double false_alarms(double min_significance, int seeds) {
   Thresholds limits;
   limits.decision.min_significance = min_significance;
   limits.decision.min_log_odds = -100.0;
-  limits.decision.min_confidence_of_weak_name = 0.0;
+  limits.decision.min_probability = 0.0;
   limits.search.max_effects = 1;
   int alarms = 0;
   for (int seed = 0; seed < seeds; ++seed) {

@@ -315,6 +315,31 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   });
 }
 
+// Whether what slides goes straight on in every run, and ever more slowly; it may stop.
+bool only_slides_out(const AttitudeModel& model, const std::vector<Observation>& runs) {
+  return std::ranges::all_of(runs, [&](const Observation& seen) {
+    AttitudeModel bare = model;
+    bare.disturbances = {translation()};
+    const ReadMotion motion = read_motion(bare, seen);
+    const auto first =
+        static_cast<size_t>(Dynamics(bare).first_of_translation() - component::extra);
+    const auto velocity = [&](size_t i) {
+      return Vec2(motion.states[i].extra[first + 2], motion.states[i].extra[first + 3]);
+    };
+    // The velocities of places are those across an eighth of the run.
+    const size_t begin = motion.states.size() / 8, end = motion.states.size() - begin;
+    if (end <= begin + 1) return false;
+    const Vec2 start = velocity(begin), last = velocity(end - 1);
+    constexpr double along = 0.98, slower = 0.8, little = 0.02;
+    for (size_t i = begin; i < end; ++i) {
+      const Vec2 now = velocity(i);
+      const bool rests = now.norm() < little * start.norm();
+      if (!rests && now.dot(start) < along * now.norm() * start.norm()) return false;
+    }
+    return last.norm() < slower * start.norm();
+  });
+}
+
 // Whether a candidate of the size to be expected makes the motion depend on the attitude.
 bool needs_attitude(const Candidate& c, AttitudeModel model) {
   Disturbance acting = c.start;
@@ -410,6 +435,14 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
       std::erase_if(all.list, [](const Candidate& c) { return c.effect.how.steady; }) > 0) {
     all.remark =
         "it turns one way only: a torque that rubs cannot be told from any other that is steady";
+  }
+  if (context.platform.slides() && only_slides_out(nominal.model, runs) &&
+      std::erase_if(all.list, [](const Candidate& c) {
+        return c.effect.kind == "table_slope" || c.effect.kind == "sliding_spring";
+      }) > 0) {
+    all.remark =
+        "it slides straight on and only becomes slower: friction cannot be told from a slope or a "
+        "pull against the motion";
   }
   // Nobody knows the attitude.
   if (nominal.model.holds_attitude) {

@@ -102,8 +102,14 @@ std::string objection_to(const Trial& trial, const Candidates& all) {
   return sum_objection(trial.fit.best.model);
 }
 
+// Of the strengths under the first key that has any: without it the effect would be another one, as
+// a spring without stiffness is a slope.
 double significance(const Trial& trial, const Candidates& all, size_t which) {
   const Candidate& c = all[trial.candidates[which]];
+  const auto has_strength = std::ranges::find_if(c.start.parameters, [&](const Parameter& p) {
+    return c.is_strength(static_cast<size_t>(&p - c.start.parameters.data()));
+  });
+  if (has_strength == c.start.parameters.end()) return 0.0;
   const std::vector<Eigen::Index> where = shared_indices(trial, which);
   const Eigen::MatrixXd covariance = trial.fit.shared_posterior();
   std::vector<std::pair<Eigen::Index, double>> linear;
@@ -111,7 +117,8 @@ double significance(const Trial& trial, const Candidates& all, size_t which) {
   for (size_t p = 0; p < c.scale.size(); ++p) {
     if (!c.is_fitted(p)) continue;
     const Eigen::Index at = where[k++];
-    if (c.searched[p]) continue;
+    const bool is_other = !c.empirical() && c.start.parameters[p].key != has_strength->key;
+    if (c.searched[p] || is_other) continue;
     linear.emplace_back(
         at, trial.fit.best.model.disturbances[trial.disturbances[which]].parameters[p].value);
   }

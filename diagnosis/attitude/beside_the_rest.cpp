@@ -1,0 +1,257 @@
+#include "diagnosis/attitude/beside_the_rest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "attitude/estimation/fit.h"
+#include "attitude/observation/noise_levels.h"
+#include "attitude/propagation/run.h"
+#include "diagnosis/attitude/domain.h"
+#include "diagnosis/attitude/holdout.h"
+#include "diagnosis/attitude/stretches.h"
+
+namespace photorque {
+namespace {
+
+void use_noise(const NoiseLevels& noise, RecordedData& data) {
+  for (auto* runs : {&data.train, &data.held}) {
+    for (Observation& seen : *runs) seen.noise = noise;
+  }
+}
+
+// An explanation and how it predicts stretches, and what was held out from the fitted alone.
+struct Contender {
+  Trial trial;
+  std::vector<double> chi2;
+  double held_chi2 = inference::infinity;
+};
+
+// Explanations of one search held against each other by the stretches that they predict.
+class Contest {
+ public:
+  Contest(const Answer& answer, const RecordedData& data, int threads)
+      : answer_(answer),
+        limits_(answer.all.limits.discrepancy),
+        domain_(answer.all),
+        train_(data.train),
+        held_(data.held),
+        stretches_(domain_, data.train, data.held, limits_.stretches, threads) {}
+
+  size_t stretches() const { return stretches_.count(); }
+
+  // The explanation that predicts best, or one that is not told from that and simpler, without
+  // names that no stretch misses.
+  Contender winner() {
+    for (const size_t i : likely()) contenders_.push_back(contender(answer_.trials[i]));
+    const Contender* best = &contenders_.front();
+    for (const Contender& other : contenders_) {
+      if (gain_sigma(best->chi2, other.chi2) > limits_.min_rival_sigma) best = &other;
+    }
+    return pruned(*best);
+  }
+
+  // By how many standard errors each name of the winner predicts better than its absence.
+  const std::vector<double>& sigma() const { return sigma_; }
+
+  // The winner without one of its names, and without what is then not missed.
+  Contender without(const Contender& best, size_t which) {
+    return pruned(contender(trial_without(best.trial, which)));
+  }
+
+  // Names that an explanation has in the place of the `which`-th of `best`, without being told from
+  // it.
+  std::vector<std::string> rivals(const Contender& best, size_t which) const {
+    std::set<std::string> names;
+    for (const Contender& other : contenders_) {
+      std::vector<size_t> theirs = other.trial.candidates;
+      for (size_t i = 0; i < best.trial.candidates.size(); ++i) {
+        if (i != which) std::erase(theirs, best.trial.candidates[i]);
+      }
+      const bool is_exchanged = other.trial.candidates.size() == best.trial.candidates.size() &&
+                                theirs.size() == 1 && theirs[0] != best.trial.candidates[which];
+      if (is_exchanged && gain_sigma(other.chi2, best.chi2) < limits_.min_rival_sigma) {
+        names.insert(answer_.all[theirs[0]].label);
+      }
+    }
+    return {names.begin(), names.end()};
+  }
+
+ private:
+  // The likeliest that physics allows, and those that predict best what was held out; among them
+  // the nominal model.
+  std::vector<size_t> likely() const {
+    std::vector<size_t> order = inference::by_evidence(answer_.trials);
+    std::erase_if(order, [&](size_t i) {
+      return !answer_.trials[i].objection.empty() || !std::isfinite(answer_.trials[i].fit.chi2);
+    });
+    std::vector<size_t> by_held = order;
+    std::erase_if(by_held,
+                  [&](size_t i) { return !answer_.trials[i].holdout_chi2_per_sample.has_value(); });
+    std::ranges::stable_sort(by_held, {},
+                             [&](size_t i) { return *answer_.trials[i].holdout_chi2_per_sample; });
+    order.resize(std::min(order.size(), limits_.max_likeliest));
+    by_held.resize(std::min(by_held.size(), limits_.max_predicting));
+    for (const size_t i : by_held) {
+      if (std::ranges::find(order, i) == order.end()) order.push_back(i);
+    }
+    if (std::ranges::find(order, 0U) == order.end()) order.push_back(0);
+    return order;
+  }
+
+  Contender contender(const Trial& trial) const {
+    const double held = held_.empty() ? 0.0 : domain_.predict(trial, held_).fit.chi2;
+    return {trial, stretches_.chi2(trial), std::isnan(held) ? inference::infinity : held};
+  }
+
+  // By how many standard errors a name is missed by the stretches; not at all where it leads away
+  // from what was held out.
+  double missed(const Contender& without, const Contender& with) const {
+    if (with.held_chi2 > limits_.max_held_growth * without.held_chi2) return 0.0;
+    return gain_sigma(without.chi2, with.chi2);
+  }
+
+  Contender pruned(Contender best) {
+    while (!best.trial.candidates.empty()) {
+      std::vector<Contender> fewer;
+      sigma_.clear();
+      for (size_t i = 0; i < best.trial.candidates.size(); ++i) {
+        fewer.push_back(contender(trial_without(best.trial, i)));
+        sigma_.push_back(missed(fewer.back(), best));
+      }
+      const auto least = std::ranges::min_element(sigma_);
+      if (*least >= limits_.min_sigma) break;
+      best = std::move(fewer[static_cast<size_t>(least - sigma_.begin())]);
+    }
+    return best;
+  }
+
+  Trial trial_without(const Trial& trial, size_t which) const {
+    inference::Members<Start> members;
+    const auto terms = terms_of(trial);
+    for (size_t i = 0; i < terms.size(); ++i) {
+      if (i != which) members.push_back({terms[i], {}});
+    }
+    // Without it the rest may have to go far.
+    const inference::Effort growing{.windows = answer_.all.limits.fitting.diverged_windows};
+    return domain_.assemble(trial, members, train_, growing);
+  }
+
+  const Answer& answer_;
+  const Thresholds::Discrepancy& limits_;
+  AttitudeDomain domain_;
+  const std::vector<Observation>&train_, &held_;
+  Stretches stretches_;
+  std::vector<Contender> contenders_;
+  std::vector<double> sigma_;
+};
+
+// The trial with parameters and errors by what is left beside it, as correlated as that is. The
+// less is left, the more the readings weigh against what was stated; so it goes on as long as what
+// was held out gains by it.
+Trial fitted_beside_the_rest(const Trial& named, const Candidates& all, const NoiseLevels& own,
+                             RecordedData data) {
+  constexpr int most_rounds = 6;
+  Trial result = named;
+  const auto use_rest = [&](Remainder remainder) {
+    use_noise(with_discrepancy(residuals_of(result.fit, data.train), data.train, own, remainder),
+              data);
+  };
+  const auto held_chi2 = [&](const Trial& t) {
+    return propagate_model(t.fit, data.held, all.limits).chi2;
+  };
+  for (int round = 0; round < most_rounds; ++round) {
+    use_rest(Remainder::white);
+    const Trial again = refit(result, all, data.train, result.fit.best.runs);
+    if (!std::isfinite(again.fit.chi2) || !again.objection.empty() ||
+        !(held_chi2(again) < 0.9 * held_chi2(result))) {
+      break;
+    }
+    result = again;
+  }
+  use_rest(Remainder::correlated);
+  const Trial again = refit(result, all, data.train, result.fit.best.runs);
+  return std::isfinite(again.fit.chi2) ? again : result;
+}
+
+// Puts what won in the place of the chosen trial.
+void choose(const Contender& won, const Contest& contest, Answer& a) {
+  const auto twin = std::ranges::find_if(a.trials, [&](const Trial& t) {
+    return inference::same_candidates(t.candidates, won.trial.candidates);
+  });
+  a.decision.chosen = static_cast<size_t>(twin - a.trials.begin());
+  if (twin == a.trials.end()) {
+    a.trials.push_back(won.trial);
+    a.trials.back().log_evidence = a.trials.front().log_evidence;
+    a.decision.probability.push_back(0.0);
+  }
+  Trial& chosen = a.trials[a.decision.chosen];
+  const Trial weighed = chosen;
+  chosen = won.trial;
+  chosen.log_evidence = weighed.log_evidence;
+  chosen.predictive = weighed.predictive;
+  a.decision.best_named = a.decision.chosen;
+  a.beside.emplace().stretches = contest.stretches();
+  a.beside->sigma = contest.sigma();
+  for (size_t i = 0; i < chosen.candidates.size(); ++i) {
+    a.beside->rivals.push_back(contest.rivals(won, i));
+  }
+}
+
+// The verdict and its probability: of as many tries as there are candidates.
+void decide_beside_the_rest(Answer& a) {
+  a.rest_is_noise = true;
+  a.decision.finding = inference::Finding::unknown;
+  a.decision.beside_law.clear();
+  const double least = *std::ranges::min_element(a.beside->sigma);
+  const double by_chance = 0.5 * std::erfc(least / std::sqrt(2.0));
+  a.decision.confidence = std::max(0.0, 1.0 - static_cast<double>(a.all.size()) * by_chance);
+  a.decision.because = "more is left than the noise of the readings, and counts as noise";
+}
+
+}  // namespace
+
+bool leaves_only_noise(const Fit& fit, const RecordedData& data) {
+  constexpr double as_noise = 1.5;  // χ² per sample
+  const Fit at_readings = propagate_model(fit, data.train, {});
+  return at_readings.chi2_per_sample() < as_noise;
+}
+
+std::optional<Answer> named_beside_the_rest(const NominalModel& nominal, RecordedData& data,
+                                            const DiagnoseOptions& options) {
+  const NoiseLevels own = data.train.front().noise;
+  std::optional<Answer> best;
+  use_noise(patient_noise(data.train, own), data);
+  Fit left_by = fit_nominal(nominal, data.train, options.limits);
+  for (int round = 0; round < options.limits.discrepancy.max_rounds; ++round) {
+    if (!std::isfinite(left_by.chi2)) break;
+    const NoiseLevels noise =
+        with_discrepancy(residuals_of(left_by, data.train), data.train, own, Remainder::white);
+    if (round > 0 && !is_quieter(noise, data.train.front().noise)) break;
+    use_noise(noise, data);
+    tell(options, "naming what stands out, with the rest counted as noise");
+    Answer next = searched(nominal, fit_nominal(nominal, data.train, options.limits), data, options,
+                           Among::torques, nullptr);
+    Contest contest(next, data, options.threads);
+    Contender won = contest.winner();
+    Trial fitted = fitted_beside_the_rest(won.trial, next.all, own, data);
+    for (;;) {
+      const auto least = std::ranges::min_element(fitted.significance);
+      if (least == fitted.significance.end() ||
+          *least >= options.limits.decision.min_significance) {
+        break;
+      }
+      won = contest.without(won, static_cast<size_t>(least - fitted.significance.begin()));
+      fitted = fitted_beside_the_rest(won.trial, next.all, own, data);
+    }
+    left_by = won.trial.fit;
+    if (won.trial.candidates.empty() || !fitted.objection.empty()) break;
+    won.trial = std::move(fitted);
+    choose(won, contest, next);
+    decide_beside_the_rest(next);
+    best = std::move(next);
+  }
+  return best;
+}
+
+}  // namespace photorque

@@ -1,0 +1,96 @@
+#include "diagnosis/attitude/stretches.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "attitude/estimation/fit.h"
+#include "core/errors.h"
+#include "core/parallel.h"
+#include "diagnosis/attitude/holdout.h"
+#include "inference/whiteness.h"
+
+namespace photorque {
+namespace {
+
+constexpr size_t folds = 5;
+
+// Without the readings of these blocks.
+void leave_out(size_t first, size_t last, Observation& seen) {
+  for (size_t i = first; i < last; ++i) {
+    seen.attitude_rows[i] = 0.0;
+    seen.gyro_rows[i].setZero();
+    for (ScalarReadings& scalar : seen.scalar) {
+      if (!scalar.rows.empty()) scalar.rows[i] = 0.0;
+    }
+  }
+}
+
+}  // namespace
+
+Stretches::Stretches(const AttitudeDomain& domain, std::vector<Observation> train,
+                     std::vector<Observation> held, size_t wanted, int threads)
+    : domain_(domain), threads_(threads), runs_(std::move(train)), train_(runs_.size()) {
+  std::move(held.begin(), held.end(), std::back_inserter(runs_));
+  const size_t pieces = std::max<size_t>(3, (wanted + runs_.size() - 1) / runs_.size());
+  for (size_t run = 0; run < runs_.size(); ++run) {
+    const size_t blocks = runs_[run].blocks();
+    for (size_t piece = 0; piece < pieces; ++piece) {
+      const Stretch stretch{run, piece * blocks / pieces, (piece + 1) * blocks / pieces};
+      if (runs_[run].readings(stretch.first, stretch.last) > 0) stretches_.push_back(stretch);
+    }
+  }
+}
+
+std::vector<double> Stretches::chi2(const Trial& trial) const {
+  std::vector<double> result(stretches_.size(), inference::infinity);
+  const std::vector<Observation> held{runs_.begin() + static_cast<std::ptrdiff_t>(train_),
+                                      runs_.end()};
+  const Trial on_held = domain_.predict(trial, held);
+  if (!std::isfinite(on_held.fit.chi2)) return result;
+  std::vector<RunStart> begins = trial.fit.best.runs;
+  begins.insert(begins.end(), on_held.fit.best.runs.begin(), on_held.fit.best.runs.end());
+  parallel_for(folds, threads_, [&](size_t fold) {
+    std::vector<Observation> rest = runs_;
+    for (size_t i = fold; i < stretches_.size(); i += folds) {
+      const Stretch& s = stretches_[i];
+      leave_out(s.first, s.last, rest[s.run]);
+    }
+    const inference::Effort effort{.max_iterations = domain_.limits().fitting.brief_iterations};
+    const Trial others = domain_.refit(trial, rest, begins, effort);
+    if (!std::isfinite(others.fit.chi2)) return;
+    const std::vector<double> left_out = predicted(others, fold);
+    for (size_t k = 0; k < left_out.size(); ++k) result[fold + k * folds] = left_out[k];
+  });
+  return result;
+}
+
+std::vector<double> Stretches::predicted(const Trial& others, size_t fold) const {
+  std::vector<double> result;
+  try {
+    const std::vector<Prediction> residuals = residuals_of(others.fit, runs_);
+    for (size_t i = fold; i < stretches_.size(); i += folds) {
+      double sum = 0.0;
+      for (size_t block = stretches_[i].first; block < stretches_[i].last; ++block) {
+        for (const double r : residuals[stretches_[i].run].residual[block]) {
+          if (std::isfinite(r)) sum += r * r;
+        }
+      }
+      result.push_back(sum);
+    }
+  } catch (const NumericalError&) {
+    result.clear();
+  }
+  return result;
+}
+
+double gain_sigma(const std::vector<double>& chi2_of_worse,
+                  const std::vector<double>& chi2_of_better) {
+  std::vector<double> gains;
+  for (size_t i = 0; i < chi2_of_worse.size(); ++i) {
+    const double gain = 0.5 * (chi2_of_worse[i] - chi2_of_better[i]);
+    if (!std::isnan(gain)) gains.push_back(gain);
+  }
+  return inference::mean_sigma(std::move(gains));
+}
+
+}  // namespace photorque

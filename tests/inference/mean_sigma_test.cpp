@@ -1,0 +1,44 @@
+#include "inference/whiteness.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace photorque::inference {
+namespace {
+
+// Of 1 to 5 Student's t is 3/√(2.5/5) with four degrees of freedom, which is exceeded either way
+// with a probability of 0.01324: a normal number of 2.477 (tables of both distributions).
+TEST(MeanSigma, IsThatOfANormalNumber) {
+  EXPECT_NEAR(mean_sigma({1.0, 2.0, 3.0, 4.0, 5.0}), 2.477, 0.03);
+  EXPECT_NEAR(mean_sigma({-1.0, -2.0, -3.0, -4.0, -5.0}), -2.477, 0.03);
+  EXPECT_EQ(mean_sigma({1.0, 2.0}), 0.0);
+  EXPECT_EQ(mean_sigma({1.0, -1.0, 2.0, -2.0}), 0.0);
+}
+
+// Of noise it is normal: its mean square is 1, which of n draws scatters by √(2/n).
+TEST(MeanSigma, OfNoiseIsNormal) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  constexpr int draws = 4000;
+  double squares = 0.0;
+  for (int i = 0; i < draws; ++i) {
+    std::vector<double> x(16);
+    for (double& value : x) value = normal(random);
+    squares += std::pow(mean_sigma(x), 2);
+  }
+  EXPECT_NEAR(squares / draws, 1.0, 5.0 * std::sqrt(2.0 / draws) + 0.02);
+}
+
+TEST(MeanSigma, NoSingleOneDecides) {
+  std::vector<double> x(16, 1.0);
+  x[3] = -1e300;
+  EXPECT_GT(mean_sigma(x), 2.0);
+  x[3] = -std::numeric_limits<double>::infinity();
+  EXPECT_GT(mean_sigma(x), 2.0);
+}
+
+}  // namespace
+}  // namespace photorque::inference
