@@ -103,6 +103,10 @@ class Judge {
     return std::includes(all.begin(), all.end(), some.begin(), some.end());
   }
 
+  bool has_name(size_t trial, const std::string& name) const {
+    return names_of(trial).count(name) > 0;
+  }
+
   // Whether `other` has all names of `trial` but one, and another known effect in its place.
   bool exchanges_one(size_t trial, size_t other) const {
     const auto ours = names_of(trial), theirs = names_of(other);
@@ -143,16 +147,20 @@ class Judge {
   const Thresholds::Decision& limits_;
 };
 
-// Probability of each trial, those that are forbidden aside.
-std::vector<double> posterior(const std::vector<Explanation>& trials) {
+// Probability of each trial, those aside that are forbidden or have a name that does not differ
+// from nothing.
+std::vector<double> posterior(const std::vector<Explanation>& trials, const Judge& judge) {
+  const auto counts = [&](size_t i) {
+    return trials[i].objection.empty() && judge.is_significant(i);
+  };
   double best = -1e300;
-  for (const Explanation& t : trials) {
-    if (t.objection.empty()) best = std::max(best, t.log_evidence);
+  for (size_t i = 0; i < trials.size(); ++i) {
+    if (counts(i)) best = std::max(best, trials[i].log_evidence);
   }
   std::vector<double> p;
   double sum = 0.0;
-  for (const Explanation& t : trials) {
-    p.push_back(t.objection.empty() ? std::exp(t.log_evidence - best) : 0.0);
+  for (size_t i = 0; i < trials.size(); ++i) {
+    p.push_back(counts(i) ? std::exp(trials[i].log_evidence - best) : 0.0);
     sum += p.back();
   }
   for (double& x : p) x /= sum;
@@ -177,7 +185,7 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
   const Judge judge(trials, all, limits);
   const size_t named = judge.pruned(judge.best(false)), empirical = judge.best(true);
   Decision d;
-  d.probability = posterior(trials);
+  d.probability = posterior(trials, judge);
   d.best_named = named;
   const bool only_empirical =
       empirical != 0 &&
@@ -231,6 +239,11 @@ Decision decide(const std::vector<Explanation>& trials, const std::vector<Candid
     d.because = "several explanations are about as likely";
     d.chosen = named;
     d.confidence = 1.0 - d.confidence;
+    for (const size_t c : trials[named].candidates) {
+      const double acts =
+          probability_of(d.probability, [&](size_t i) { return judge.has_name(i, all[c].name); });
+      if (!is_weak && acts >= limits.min_probability) d.beside_law.push_back(c);
+    }
   } else {
     d.finding = Finding::named;
     d.chosen = named;

@@ -25,8 +25,9 @@ struct Decision {
   size_t best_named = 0;  // of the best trial without empirical candidates; 0: nominal
   // Why something unknown acts, for a person: "the held-out recording is not predicted".
   std::string because = {};
-  // Candidates of the chosen trial that act beyond doubt beside a law without a name, where such a
-  // law is the finding: whatever else was tried without it is far less likely. One at most.
+  // Candidates of the chosen trial that act although the finding is unknown: beside a law without a
+  // name, one at most, without which whatever else was tried is far less likely; and what several
+  // explanations that are about as likely have in common.
   std::vector<size_t> beside_law = {};
   std::vector<double> probability;  // of each trial
 };

@@ -15,16 +15,22 @@ double median(std::vector<double> values) {
 
 // What the neighbours of reading n lead to expect: the middle of what both sides and either side
 // alone say, so that one bad neighbour does not decide and a residual that runs away steadily is no
-// outlier. At an end the one side speaks alone.
+// outlier.
 double expected(const std::vector<double>& r, size_t n) {
   std::vector<double> says;
   const bool left = n >= 1, right = n + 1 < r.size();
-  if (left && right) says.push_back(0.5 * (r[n - 1] + r[n + 1]));
+  // At an end the neighbour, or the line through two of them: whichever is nearer, since residuals
+  // of motion that is not understood run away there.
+  if (!left || !right) {
+    const double one = left ? r[n - 1] : r[n + 1], two = left ? r[n - 2] : r[n + 2];
+    const double along = 2.0 * one - two;
+    return std::abs(r[n] - along) < std::abs(r[n] - one) ? along : one;
+  }
+  says.push_back(0.5 * (r[n - 1] + r[n + 1]));
   if (n >= 2) says.push_back(2.0 * r[n - 1] - r[n - 2]);
   if (n + 2 < r.size()) says.push_back(2.0 * r[n + 1] - r[n + 2]);
   if (n >= 2 && says.size() < 3) says.push_back(r[n - 2]);
   if (n + 2 < r.size() && says.size() < 3) says.push_back(r[n + 2]);
-  if (says.size() < 3) says.push_back(left ? r[n - 1] : r[n + 1]);
   return median(says);
 }
 

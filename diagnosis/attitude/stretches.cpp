@@ -31,7 +31,7 @@ Stretches::Stretches(const AttitudeDomain& domain, std::vector<Observation> trai
                      std::vector<Observation> held, size_t wanted, int threads)
     : domain_(domain), threads_(threads), runs_(std::move(train)), train_(runs_.size()) {
   std::move(held.begin(), held.end(), std::back_inserter(runs_));
-  const size_t pieces = std::max<size_t>(3, (wanted + runs_.size() - 1) / runs_.size());
+  const size_t pieces = (wanted + runs_.size() - 1) / runs_.size();
   for (size_t run = 0; run < runs_.size(); ++run) {
     const size_t blocks = runs_[run].blocks();
     for (size_t piece = 0; piece < pieces; ++piece) {
@@ -50,21 +50,32 @@ std::vector<double> Stretches::chi2(const Trial& trial) const {
   std::vector<RunStart> begins = trial.fit.best.runs;
   begins.insert(begins.end(), on_held.fit.best.runs.begin(), on_held.fit.best.runs.end());
   parallel_for(folds, threads_, [&](size_t fold) {
-    std::vector<Observation> rest = runs_;
-    for (size_t i = fold; i < stretches_.size(); i += folds) {
-      const Stretch& s = stretches_[i];
-      leave_out(s.first, s.last, rest[s.run]);
-    }
-    const inference::Effort effort{.max_iterations = domain_.limits().fitting.brief_iterations};
-    const Trial others = domain_.refit(trial, rest, begins, effort);
-    if (!std::isfinite(others.fit.chi2)) return;
-    const std::vector<double> left_out = predicted(others, fold);
+    const std::vector<double> left_out = predicted(trial, begins, fold);
     for (size_t k = 0; k < left_out.size(); ++k) result[fold + k * folds] = left_out[k];
   });
   return result;
 }
 
-std::vector<double> Stretches::predicted(const Trial& others, size_t fold) const {
+std::vector<double> Stretches::predicted(const Trial& trial, const std::vector<RunStart>& begins,
+                                         size_t fold) const {
+  std::vector<Observation> rest, whole;
+  std::vector<RunStart> begins_of_rest;
+  const bool are_runs = stretches_.size() == runs_.size();
+  for (size_t run = 0; run < runs_.size(); ++run) {
+    if (are_runs && run % folds == fold) {
+      whole.push_back(runs_[run]);
+      continue;
+    }
+    rest.push_back(runs_[run]);
+    begins_of_rest.push_back(begins[run]);
+  }
+  for (size_t i = fold; i < stretches_.size() && !are_runs; i += folds) {
+    leave_out(stretches_[i].first, stretches_[i].last, rest[stretches_[i].run]);
+  }
+  const inference::Effort effort{.max_iterations = domain_.limits().fitting.brief_iterations};
+  const Trial others = domain_.refit(trial, rest, begins_of_rest, effort);
+  if (!std::isfinite(others.fit.chi2)) return {};
+  if (are_runs) return domain_.predict(others, whole).fit.run_chi2;
   std::vector<double> result;
   try {
     const std::vector<Prediction> residuals = residuals_of(others.fit, runs_);

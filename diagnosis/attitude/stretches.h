@@ -13,7 +13,8 @@ namespace photorque {
 
 class Stretches {
  public:
-  // Every run in as many stretches as give about `wanted` in all, three at least.
+  // Every run in as many stretches as give about `wanted` in all; of more runs than that each is
+  // one, and only how it began is taken from it.
   Stretches(const AttitudeDomain& domain, std::vector<Observation> train,
             std::vector<Observation> held, size_t wanted, int threads);
 
@@ -28,7 +29,8 @@ class Stretches {
   struct Stretch {
     size_t run, first, last;  // blocks [first, last)
   };
-  std::vector<double> predicted(const Trial& others, size_t fold) const;
+  std::vector<double> predicted(const Trial& trial, const std::vector<RunStart>& begins,
+                                size_t fold) const;
 
   const AttitudeDomain& domain_;
   int threads_;

@@ -62,6 +62,27 @@ TEST(Pucks, FreelyTheyAreConsistent) {
   EXPECT_THAT(kinds_of(d), IsEmpty());
 }
 
+// Straight on and slower and slower by μ g: a slope or a spring would do as well, and neither is
+// said. The path carries a wave that no law has, ten times the noise, as a real table does.
+TEST(Pucks, WhatOnlySlidesOutIsBrakedByFriction) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0.0, 3e-4);
+  Channel x{"x_m", {}}, y{"y_m", {}};
+  constexpr double coefficient = 0.19, start_m_s = 1.5, interval_s = 0.005;
+  for (int i = 0; i < 150; ++i) {
+    const double t = interval_s * i;
+    const double way = start_m_s * t - 0.5 * coefficient * standard_gravity_m_s2 * t * t +
+                       3e-3 * std::sin(25.0 * t);
+    x.values.push_back(0.8 * way + noise(random));
+    y.values.push_back(0.6 * way + noise(random));
+  }
+  const Diagnosis d =
+      diagnose(machine(puck_toml), {{"slide.csv", recording_of(interval_s, {x, y})}}, {});
+  ASSERT_THAT(kinds_of(d), ElementsAre("sliding_friction"));
+  EXPECT_EQ(d.verdict, Verdict::unexplained);  // the wave is left
+  EXPECT_NEAR(parameter(d, "sliding_friction", "coefficient").value[0], coefficient, 0.02);
+}
+
 // A wall that it bounces off is a start anew, no force.
 TEST(Pucks, AWallIsNoForce) {
   Recording free = puck(0, 0, 0, 3);

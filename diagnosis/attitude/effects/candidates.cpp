@@ -13,6 +13,7 @@ namespace {
 // Of one run: a few states as they were read, and how much the rates changed.
 struct ReadMotion {
   std::vector<PlatformState> states;
+  std::vector<Vec2> velocity_m_s;  // of what slides, at each
   double acceleration_rad_s2 = 0.0;
   double acceleration_m_s2 = 0.0;  // of what slides
 };
@@ -80,6 +81,7 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
       const std::array<double, 4> place = place_at(seen, i, reach);
       std::copy(place.begin(), place.end(), state.extra.begin() + (translation - component::extra));
       const Vec3 velocity(place[2], place[3], 0.0);
+      motion.velocity_m_s.emplace_back(place[2], place[3]);
       slowest = slowest.cwiseMin(velocity);
       fastest = fastest.cwiseMax(velocity);
     }
@@ -321,18 +323,14 @@ bool only_slides_out(const AttitudeModel& model, const std::vector<Observation>&
     AttitudeModel bare = model;
     bare.disturbances = {translation()};
     const ReadMotion motion = read_motion(bare, seen);
-    const auto first =
-        static_cast<size_t>(Dynamics(bare).first_of_translation() - component::extra);
-    const auto velocity = [&](size_t i) {
-      return Vec2(motion.states[i].extra[first + 2], motion.states[i].extra[first + 3]);
-    };
+    const std::vector<Vec2>& velocity = motion.velocity_m_s;
     // The velocities of places are those across an eighth of the run.
-    const size_t begin = motion.states.size() / 8, end = motion.states.size() - begin;
+    const size_t begin = velocity.size() / 8, end = velocity.size() - begin;
     if (end <= begin + 1) return false;
-    const Vec2 start = velocity(begin), last = velocity(end - 1);
-    constexpr double along = 0.98, slower = 0.8, little = 0.02;
+    const Vec2 start = velocity[begin], last = velocity[end - 1];
+    constexpr double along = 0.95, slower = 0.8, little = 0.1;
     for (size_t i = begin; i < end; ++i) {
-      const Vec2 now = velocity(i);
+      const Vec2 now = velocity[i];
       const bool rests = now.norm() < little * start.norm();
       if (!rests && now.dot(start) < along * now.norm() * start.norm()) return false;
     }
