@@ -130,6 +130,12 @@ bool is_watched(const NominalModel& nominal, const RecordedData& data) {
          (seen.has(Scalar::position_x) && seen.has(Scalar::position_y));
 }
 
+// A body that turns about three axes has so many ways to bend what is believed of it that names
+// come out of anything.
+bool is_simple(const NominalModel& nominal) {
+  return nominal.model.platform.turns_about_one_axis() || nominal.model.platform.slides();
+}
+
 }  // namespace
 
 Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOptions& options,
@@ -142,7 +148,7 @@ Answer explain(const NominalModel& nominal, RecordedData& data, const DiagnoseOp
   Answer fine;
   if (!is_far) {
     fine = at_noise_of_readings(nominal, data, options, nominal_fit, nullptr);
-    if (!fine.decision.leaves_more || law_is_far_better(fine, limits)) {
+    if (!fine.decision.leaves_more || law_is_far_better(fine, limits) || !is_simple(nominal)) {
       describe(data, options, fine);
       return fine;
     }

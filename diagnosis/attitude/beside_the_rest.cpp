@@ -25,6 +25,7 @@ struct Contender {
   Trial trial;
   std::vector<double> chi2;
   double held_chi2 = inference::infinity;
+  double held_samples = 0.0;
 };
 
 // Explanations of one search held against each other by the stretches that they predict.
@@ -100,14 +101,19 @@ class Contest {
   }
 
   Contender contender(const Trial& trial) const {
-    const double held = held_.empty() ? 0.0 : domain_.predict(trial, held_).fit.chi2;
-    return {trial, stretches_.chi2(trial), std::isnan(held) ? inference::infinity : held};
+    const Trial held = domain_.predict(trial, held_);
+    const double chi2 = std::isnan(held.fit.chi2) ? inference::infinity : held.fit.chi2;
+    return {trial, stretches_.chi2(trial), chi2, static_cast<double>(held.fit.samples)};
   }
 
   // By how many standard errors a name is missed by the stretches; not at all where it leads away
   // from what was held out.
   double missed(const Contender& without, const Contender& with) const {
-    if (with.held_chi2 > limits_.max_held_growth * without.held_chi2) return 0.0;
+    constexpr double by_chance = 3.0;
+    const double scatter = std::sqrt(2.0 * with.held_samples);
+    if (with.held_chi2 > limits_.max_held_growth * without.held_chi2 + by_chance * scatter) {
+      return 0.0;
+    }
     return gain_sigma(without.chi2, with.chi2);
   }
 

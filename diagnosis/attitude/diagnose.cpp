@@ -111,6 +111,36 @@ std::vector<std::string> warnings_of(const RecordedData& data,
   return warnings;
 }
 
+// What the stretches say of every name that stands beside the rest.
+void say_what_stretches_say(const Answer& answer, Diagnosis& d) {
+  if (!answer.beside) return;
+  for (size_t i = 0; i < d.effects.size(); ++i) {
+    d.warnings.push_back(
+        written("%s: %zu stretches, each predicted from the others, are predicted "
+                "better with it than without it by %.1f standard errors",
+                d.effects[i].kind.c_str(), answer.beside->stretches, answer.beside->sigma[i]));
+  }
+}
+
+// Whether what was held out can say anything of the names, and of the noise.
+void say_what_held_out_tells(Diagnosis& d) {
+  constexpr double as_well = 0.9, too_quiet_sigma = -5.0;
+  const double before = d.holdout->chi2_per_sample_before, after = d.holdout->chi2_per_sample_after;
+  if (!d.effects.empty() && after > as_well * before) {
+    d.warnings.push_back(written(
+        "what was held out does not test the names: the nominal model predicts it as well (χ² per "
+        "sample %.3g, with the names %.3g)",
+        before, after));
+  }
+  const double sigma = (after - 1.0) * std::sqrt(0.5 * static_cast<double>(d.holdout->samples));
+  if (sigma < too_quiet_sigma) {
+    d.warnings.push_back(written(
+        "what was held out scatters less than the noise that was used (χ² per sample %.3g, %.0f "
+        "standard errors below 1): the noise is stated too large, or took up something that acts",
+        after, -sigma));
+  }
+}
+
 // Where nobody sees the attitude and nothing depends on it, it is not propagated.
 NominalModel as_seen(const NominalModel& stated, const RecordedData& data) {
   NominalModel nominal = stated;
@@ -179,6 +209,8 @@ Diagnosis diagnose(const NominalModel& stated, const std::vector<NamedRecording>
   }
   say_how_well(nominal_fit, answer, data, options.limits, d);
   d.warnings = warnings_of(data, answer.decision);
+  say_what_stretches_say(answer, d);
+  say_what_held_out_tells(d);
   for (const std::string& text : contradicted_beliefs(answer.chosen(), options.limits.decision)) {
     d.warnings.push_back(text);
   }

@@ -13,7 +13,6 @@ namespace {
 // Of one run: a few states as they were read, and how much the rates changed.
 struct ReadMotion {
   std::vector<PlatformState> states;
-  std::vector<Vec2> velocity_m_s;  // of what slides, at each
   double acceleration_rad_s2 = 0.0;
   double acceleration_m_s2 = 0.0;  // of what slides
 };
@@ -81,7 +80,6 @@ ReadMotion read_motion(const AttitudeModel& model, const Observation& seen) {
       const std::array<double, 4> place = place_at(seen, i, reach);
       std::copy(place.begin(), place.end(), state.extra.begin() + (translation - component::extra));
       const Vec3 velocity(place[2], place[3], 0.0);
-      motion.velocity_m_s.emplace_back(place[2], place[3]);
       slowest = slowest.cwiseMin(velocity);
       fastest = fastest.cwiseMax(velocity);
     }
@@ -317,24 +315,39 @@ bool only_slows_down(const std::vector<Observation>& runs, const Vec3& axis) {
   });
 }
 
-// Whether what slides goes straight on in every run, and ever more slowly; it may stop.
-bool only_slides_out(const AttitudeModel& model, const std::vector<Observation>& runs) {
-  return std::ranges::all_of(runs, [&](const Observation& seen) {
-    AttitudeModel bare = model;
-    bare.disturbances = {translation()};
-    const ReadMotion motion = read_motion(bare, seen);
-    const std::vector<Vec2>& velocity = motion.velocity_m_s;
-    // The velocities of places are those across an eighth of the run.
-    const size_t begin = velocity.size() / 8, end = velocity.size() - begin;
-    if (end <= begin + 1) return false;
-    const Vec2 start = velocity[begin], last = velocity[end - 1];
-    constexpr double along = 0.95, slower = 0.8, little = 0.1;
-    for (size_t i = begin; i < end; ++i) {
-      const Vec2 now = velocity[i];
-      const bool rests = now.norm() < little * start.norm();
-      if (!rests && now.dot(start) < along * now.norm() * start.norm()) return false;
+// Velocities of what slides across an eighth of the run, along lab x and y, from places alone.
+std::vector<Vec2> velocities_m_s(const Observation& seen) {
+  std::vector<Vec2> place_m, velocity;
+  std::vector<double> time_s;
+  const auto x = static_cast<size_t>(Scalar::position_x), y = x + 1;
+  for (size_t i = 0; i < seen.blocks(); ++i) {
+    if (!(seen.rows_of(i, vector_channels + static_cast<int>(x)) > 0.0) ||
+        !(seen.rows_of(i, vector_channels + static_cast<int>(y)) > 0.0)) {
+      continue;
     }
-    return last.norm() < slower * start.norm();
+    place_m.emplace_back(seen.scalar[x].value[i], seen.scalar[y].value[i]);
+    time_s.push_back(seen.time_s[i]);
+  }
+  const size_t reach = std::max<size_t>(1, place_m.size() / 8);
+  for (size_t i = reach; i + reach < place_m.size(); ++i) {
+    velocity.push_back((place_m[i + reach] - place_m[i - reach]) /
+                       (time_s[i + reach] - time_s[i - reach]));
+  }
+  return velocity;
+}
+
+// Whether what slides goes straight on in every run, and ever more slowly; it may stop.
+bool only_slides_out(const std::vector<Observation>& runs) {
+  return std::ranges::all_of(runs, [](const Observation& seen) {
+    const std::vector<Vec2> velocity = velocities_m_s(seen);
+    if (velocity.size() < 2) return false;
+    const Vec2 start = velocity.front();
+    constexpr double along = 0.95, slower = 0.8, little = 0.1;
+    return velocity.back().norm() < slower * start.norm() &&
+           std::ranges::all_of(velocity, [&](const Vec2& now) {
+             return now.norm() < little * start.norm() ||
+                    now.dot(start) > along * now.norm() * start.norm();
+           });
   });
 }
 
@@ -434,7 +447,7 @@ Candidates all_candidates(const NominalModel& nominal, const std::vector<Observa
     all.remark =
         "it turns one way only: a torque that rubs cannot be told from any other that is steady";
   }
-  if (context.platform.slides() && only_slides_out(nominal.model, runs) &&
+  if (context.platform.slides() && only_slides_out(runs) &&
       std::erase_if(all.list, [](const Candidate& c) {
         return c.effect.kind == "table_slope" || c.effect.kind == "sliding_spring";
       }) > 0) {
