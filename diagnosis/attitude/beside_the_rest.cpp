@@ -49,7 +49,9 @@ class Contest {
     for (const Contender& other : contenders_) {
       if (gain_sigma(best->chi2, other.chi2) > limits_.min_rival_sigma) best = &other;
     }
-    return pruned(*best);
+    const Contender won = pruned(*best);
+    const Contender& likelier = likeliest_like(won);
+    return &likelier == &won ? won : pruned(likelier);
   }
 
   // By how many standard errors each name of the winner predicts better than its absence.
@@ -115,6 +117,24 @@ class Contest {
       return 0.0;
     }
     return gain_sigma(without.chi2, with.chi2);
+  }
+
+  // Of the contenders that are not told from `won` and have no more names, the likeliest, or `won`.
+  const Contender& likeliest_like(const Contender& won) const {
+    const auto evidence = [&](const Contender& c) {
+      const auto twin = std::ranges::find_if(answer_.trials, [&](const Trial& t) {
+        return inference::same_candidates(t.candidates, c.trial.candidates);
+      });
+      return twin == answer_.trials.end() ? -inference::infinity : twin->log_evidence;
+    };
+    const Contender* best = &won;
+    for (const Contender& other : contenders_) {
+      const bool is_as_simple = !other.trial.candidates.empty() &&
+                                other.trial.candidates.size() <= won.trial.candidates.size();
+      const bool is_alike = gain_sigma(other.chi2, won.chi2) < limits_.min_rival_sigma;
+      if (is_as_simple && is_alike && evidence(other) > evidence(*best)) best = &other;
+    }
+    return *best;
   }
 
   Contender pruned(Contender best) {
