@@ -29,6 +29,7 @@ struct TypedKey {
   bool required = true;
   std::string_view usual = {};  // the default in words, where it is no constant
   bool completes = false;       // see Key, as for all of these
+  bool has_error = false;
   bool range_varies = false;
 
   constexpr operator std::string_view() const { return name; }
@@ -48,6 +49,10 @@ struct TypedKey {
       key.completes = true;
     });
   }
+  constexpr Self with_error() const {
+    return changed([](Self& key) { key.has_error = true; });
+  }
+  // The reader's depends on other keys: get(key.within(…)).
   constexpr Self range_that_varies() const {
     return changed([](Self& key) { key.range_varies = true; });
   }
@@ -65,6 +70,7 @@ struct TypedKey {
     key.required = key.required && required;
     key.usually = usual;
     key.completes = completes;
+    key.has_error = key.has_error || has_error;
     key.range_varies = range_varies;
     return key;
   }
@@ -86,6 +92,9 @@ struct NumberKey : TypedKey<NumberKey> {
   }
   constexpr NumberKey with_default(double otherwise_SI) const {
     return changed([otherwise_SI](NumberKey& key) { key.otherwise = otherwise_SI; });
+  }
+  constexpr NumberKey within(Range admitted) const {
+    return changed([admitted](NumberKey& key) { key.range = admitted; });
   }
 
   double read(const Settings& settings) const {
@@ -120,6 +129,12 @@ struct IntegerKey : TypedKey<IntegerKey> {
   constexpr IntegerKey(std::string_view key, int64_t usual_value, int64_t least, int64_t most,
                        std::string_view sentence)
       : TypedKey(key, sentence), otherwise(usual_value), low(least), high(most) {}
+  constexpr IntegerKey within(int64_t least, int64_t most) const {
+    return changed([least, most](IntegerKey& key) {
+      key.low = least;
+      key.high = most;
+    });
+  }
 
   int64_t read(const Settings& settings) const {
     return otherwise ? settings.integer_or(name, *otherwise, low, high)
