@@ -188,6 +188,7 @@ struct KeyOf {
                   int first_number = 0)
       : name(key), first(first_number), range(admitted), what(sentence), otherwise_SI(otherwise) {}
 
+  constexpr operator std::string_view() const { return name; }
   constexpr int end() const { return first + size; }
   // The table can do without it.
   constexpr KeyOf optional() const {

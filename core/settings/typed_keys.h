@@ -43,6 +43,10 @@ struct TypedKey {
       key.usual = words;
     });
   }
+  // The same key where its meaning is another.
+  constexpr Self meaning(std::string_view sentence) const {
+    return changed([sentence](Self& key) { key.what = sentence; });
+  }
   constexpr Self that_completes() const {
     return changed([](Self& key) {
       key.required = false;

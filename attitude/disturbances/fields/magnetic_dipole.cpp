@@ -8,7 +8,18 @@
 namespace photorque::kinds::magnetic_dipole {
 namespace {
 
-constexpr VectorKey moment{"dipole_A_m2"};
+constexpr auto moment =
+    VectorKey{"dipole_A_m2", "m in T = m × B, body axes; *or* the loops"}.optional();
+
+namespace key {
+
+constexpr NumberKey current{"current_A", {}, "right-handed about the area"};
+constexpr NumberKey turns{"turns", 1.0, Range::positive(), "of the loop"};
+constexpr auto area = Vec3Key{"area_m2", "normal times area, body axes; or `corners_m`"}.optional();
+constexpr auto corners = Vec3sKey{"corners_m", "at least three, body axes"}.optional();
+constexpr TablesKey loop{"loop", "current loops, summed"};
+
+}  // namespace key
 
 struct MagneticDipole final : TorqueLaw<MagneticDipole> {
   template <class T>
@@ -18,8 +29,8 @@ struct MagneticDipole final : TorqueLaw<MagneticDipole> {
 };
 
 PlacedParameters dipole(const Settings& settings) {
-  if (!settings.has("loop")) return vector_parameter(settings, moment);
-  const Vec3 sum_A_m2 = dipole_A_m2(read_current_loops(settings.tables("loop")));
+  if (!settings.has(key::loop)) return vector_parameter(settings, moment);
+  const Vec3 sum_A_m2 = dipole_A_m2(read_current_loops(settings.get(key::loop)));
   return fixed_parameter(moment.name, {sum_A_m2.data(), 3});
 }
 
@@ -30,25 +41,15 @@ Disturbance read(const Settings& settings, const DisturbanceContext&) {
 }  // namespace
 
 DisturbanceKind kind() {
-  return {
-      .name = "magnetic_dipole",
-      .summary = "current loops and remanent steel turn towards the ambient field",
-      .read = read,
-      .screening =
-          {.parametrisations =
-               {{"a residual magnetic dipole of the platform turns towards the ambient field",
-                 {EffectKey::vector(moment.name, 0.05)}}},
-           .needs = Requirement::field},
-      .keys = {
-          Key::uncertain_vector("dipole_A_m2", "m in T = m × B, body axes; *or* the loops")
-              .optional(),
-          Key::tables(
-              "loop",
-              {Key::number("current_A", {}, "right-handed about the area"),
-               Key::number_or("turns", 1.0, Range::positive(), "of the loop"),
-               Key::vector3("area_m2", "normal times area, body axes; or `corners_m`").optional(),
-               Key::vectors3("corners_m", "at least three, body axes").optional()},
-              "current loops, summed")}};
+  return {.name = "magnetic_dipole",
+          .summary = "current loops and remanent steel turn towards the ambient field",
+          .read = read,
+          .screening =
+              {.parametrisations =
+                   {{"a residual magnetic dipole of the platform turns towards the ambient field",
+                     {EffectKey::vector(moment.name, 0.05)}}},
+               .needs = Requirement::field},
+          .keys = {moment, key::loop.of({key::current, key::turns, key::area, key::corners})}};
 }
 
 }  // namespace photorque::kinds::magnetic_dipole
