@@ -16,6 +16,8 @@
 #include "diagnosis/light/module/design.h"
 #include "scenes/experiment/keys.h"
 #include "tools/keys/tables.h"
+#include "tools/realtime/session.h"
+#include "tools/supply/options.h"
 
 namespace photorque {
 namespace {

@@ -10,9 +10,7 @@ namespace photorque {
 Key array_table();      // tools/runs
 Key published_table();  // tools/runs
 Key light_table();      // tools/coupling
-Key serve_table();      // tools/realtime
 Key sweep_table();      // tools/sweeps
-Key supply_table();     // tools/supply
 Key fit_table();        // tools/verbs
 
 }  // namespace photorque
