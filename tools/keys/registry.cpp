@@ -15,8 +15,10 @@
 #include "diagnosis/light/keys.h"
 #include "diagnosis/light/module/design.h"
 #include "scenes/experiment/keys.h"
+#include "tools/coupling/light_model.h"
 #include "tools/keys/tables.h"
 #include "tools/realtime/session.h"
+#include "tools/runs/array_report.h"
 #include "tools/supply/options.h"
 
 namespace photorque {

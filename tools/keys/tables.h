@@ -7,9 +7,6 @@
 
 namespace photorque {
 
-Key array_table();      // tools/runs
-Key published_table();  // tools/runs
-Key light_table();      // tools/coupling
 Key sweep_table();      // tools/sweeps
 Key fit_table();        // tools/verbs
 
