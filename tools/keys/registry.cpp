@@ -16,6 +16,7 @@
 #include "diagnosis/light/module/design.h"
 #include "scenes/experiment/keys.h"
 #include "tools/coupling/light_model.h"
+#include "tools/keys/fit.h"
 #include "tools/keys/tables.h"
 #include "tools/realtime/session.h"
 #include "tools/runs/array_report.h"

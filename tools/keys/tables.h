@@ -8,6 +8,5 @@
 namespace photorque {
 
 Key sweep_table();      // tools/sweeps
-Key fit_table();        // tools/verbs
 
 }  // namespace photorque
