@@ -16,7 +16,7 @@ NumberKey::operator Key() const {
   return declared(std::move(key));
 }
 
-UncertainKey::operator Key() const {
+UncertainNumberKey::operator Key() const {
   return declared(otherwise
                       ? Key::uncertain_or(text_of(name), otherwise->value, range, text_of(what))
                       : Key::uncertain(text_of(name), range, text_of(what)));

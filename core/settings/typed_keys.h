@@ -108,14 +108,14 @@ struct NumberKey : TypedKey<NumberKey> {
 };
 
 // A number that may have a sigma.
-struct UncertainKey : TypedKey<UncertainKey> {
+struct UncertainNumberKey : TypedKey<UncertainNumberKey> {
   std::optional<Uncertain> otherwise;
   Range range;
 
-  constexpr UncertainKey(std::string_view key, Range admitted, std::string_view sentence)
+  constexpr UncertainNumberKey(std::string_view key, Range admitted, std::string_view sentence)
       : TypedKey(key, sentence), range(admitted) {}
-  constexpr UncertainKey(std::string_view key, Uncertain otherwise_SI, Range admitted,
-                         std::string_view sentence)
+  constexpr UncertainNumberKey(std::string_view key, Uncertain otherwise_SI, Range admitted,
+                               std::string_view sentence)
       : TypedKey(key, sentence), otherwise(otherwise_SI), range(admitted) {}
 
   Uncertain read(const Settings& settings) const {

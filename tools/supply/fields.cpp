@@ -36,11 +36,11 @@ namespace induction_key {
 constexpr NumberKey transmitter_height{"transmitter_height_m", -0.085, {}, "lab"};
 constexpr NumberKey receiver_height{"receiver_height_m", -0.02, {}, "body"};
 constexpr NumberKey frequency{"frequency_kHz", 1e5, Range::positive(), "of the current"};
-constexpr UncertainKey detuning{
+constexpr UncertainNumberKey detuning{
     "detuning", {0.0, 0.005}, {}, "of the frequency; the default is ± 0.005"};
-constexpr UncertainKey inverter_efficiency{
+constexpr UncertainNumberKey inverter_efficiency{
     "inverter_efficiency", {0.93, 0.02}, conversion_range, "the default is ± 0.02"};
-constexpr UncertainKey rectifier_efficiency{
+constexpr UncertainNumberKey rectifier_efficiency{
     "rectifier_efficiency", {0.95, 0.02}, conversion_range, "the default is ± 0.02"};
 constexpr NumberKey ball_radius{"ball_radius_m", 0.03175, Range::positive(), "of the bearing"};
 constexpr NumberKey ball_conductivity{"ball_conductivity_S_m", 2.5e7, Range::positive(),
@@ -55,23 +55,23 @@ namespace microwave_key {
 
 constexpr NumberKey frequency{"frequency_GHz", Range::positive(), "of the beam"};
 constexpr ChoiceKey plane{"plane", {"E", "H"}, 0, "in which it tilts"};
-constexpr UncertainKey transmitter_diameter{
+constexpr UncertainNumberKey transmitter_diameter{
     "transmitter_diameter_m", {0.4, 0.0}, Range::positive(), "of the aperture"};
-constexpr UncertainKey rectenna_side{
+constexpr UncertainNumberKey rectenna_side{
     "rectenna_side_m", {0.322, 0.0}, Range::positive(), "of the square on the platform"};
-constexpr UncertainKey distance{"distance_m", {1.0, 0.0}, Range::positive(), "between them"};
-constexpr UncertainKey height{
+constexpr UncertainNumberKey distance{"distance_m", {1.0, 0.0}, Range::positive(), "between them"};
+constexpr UncertainNumberKey height{
     "height_m", {0.0238, 0.0}, {}, "of the rectenna over the centre of rotation"};
-constexpr UncertainKey rectifier_efficiency{
+constexpr UncertainNumberKey rectifier_efficiency{
     "rectifier_efficiency", {0.82, 0.0}, conversion_range, "of its elements"};
-constexpr UncertainKey transmitter_efficiency{"transmitter_efficiency",
-                                              {0.6, 0.1},
-                                              conversion_range,
-                                              "of mains to beam; the default is ± 0.1"};
-constexpr UncertainKey mass{"mass_kg_m2",
-                            {2.0, 0.5},
-                            Range::not_negative(),
-                            "of the rectenna per area; the default is ± 0.5"};
+constexpr UncertainNumberKey transmitter_efficiency{"transmitter_efficiency",
+                                                    {0.6, 0.1},
+                                                    conversion_range,
+                                                    "of mains to beam; the default is ± 0.1"};
+constexpr UncertainNumberKey mass{"mass_kg_m2",
+                                  {2.0, 0.5},
+                                  Range::not_negative(),
+                                  "of the rectenna per area; the default is ± 0.5"};
 constexpr TablesKey microwave{"microwave", "a microwave beam"};
 
 }  // namespace microwave_key

@@ -47,7 +47,7 @@ struct SupplyOption {
 class UncertainInputs {
  public:
   // Reads a key that may be { value, sigma }; gives its index.
-  size_t add(const Settings& settings, const UncertainKey& key);
+  size_t add(const Settings& settings, const UncertainNumberKey& key);
   std::vector<Estimate> evaluate(
       const std::function<std::vector<double>(const std::vector<double>& at)>& f) const;
 

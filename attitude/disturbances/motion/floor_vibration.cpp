@@ -30,7 +30,7 @@ constexpr ScalarKey factor{"scale", 1.0, Range::not_negative(), "factor on the l
 
 namespace key {
 
-constexpr auto phase = UncertainKey{"phase_deg", {}, "instead of `phase`"}.optional();
+constexpr auto phase = UncertainNumberKey{"phase_deg", {}, "instead of `phase`"}.optional();
 constexpr NumbersKey frequency{"frequency_Hz", Range::positive(), "at least two, rising"};
 constexpr NumbersKey density{"density_m2_s3", Range::not_negative(),
                              "one-sided, the same along each axis"};

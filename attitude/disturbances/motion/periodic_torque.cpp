@@ -16,7 +16,7 @@ constexpr ScalarKey phase{"phase", 0.0, {}, "φ, rad; or `phase_deg`", frequency
 
 namespace key {
 
-constexpr auto phase = UncertainKey{"phase_deg", {}, "instead of `phase`"}.optional();
+constexpr auto phase = UncertainNumberKey{"phase_deg", {}, "instead of `phase`"}.optional();
 
 }  // namespace key
 
