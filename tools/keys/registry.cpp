@@ -6,9 +6,9 @@
 
 #include "attitude/camera/keys.h"
 #include "attitude/disturbances/kind.h"
-#include "attitude/environment/keys.h"
+#include "attitude/environment/environment.h"
 #include "attitude/filtering/keys.h"
-#include "attitude/model/keys.h"
+#include "attitude/model/platform.h"
 #include "attitude/propagation/keys.h"
 #include "attitude/recordings/keys.h"
 #include "attitude/studies/keys.h"
