@@ -133,6 +133,9 @@ struct IntegerKey : TypedKey<IntegerKey> {
   constexpr IntegerKey(std::string_view key, int64_t usual_value, int64_t least, int64_t most,
                        std::string_view sentence)
       : TypedKey(key, sentence), otherwise(usual_value), low(least), high(most) {}
+  constexpr IntegerKey with_default(int64_t usual_value) const {
+    return changed([usual_value](IntegerKey& key) { key.otherwise = usual_value; });
+  }
   constexpr IntegerKey within(int64_t least, int64_t most) const {
     return changed([least, most](IntegerKey& key) {
       key.low = least;
