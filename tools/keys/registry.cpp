@@ -17,10 +17,10 @@
 #include "scenes/experiment/keys.h"
 #include "tools/coupling/light_model.h"
 #include "tools/keys/fit.h"
-#include "tools/keys/tables.h"
 #include "tools/realtime/session.h"
 #include "tools/runs/array_report.h"
 #include "tools/supply/options.h"
+#include "tools/sweeps/keys.h"
 
 namespace photorque {
 namespace {
