@@ -50,14 +50,6 @@ constexpr TableKey sun{"sun", "where the Sun is, for `radiation_pressure`"};
 
 }  // namespace sun_key
 
-Key sun_table() {
-  using namespace sun_key;
-  return sun.of({direction, table, distance, date,
-                 orbit.of({semi_major_axis, eccentricity, inclination, ascending_node, perihelion,
-                           mean_anomaly, epoch}),
-                 pointing.of({axis, right_ascension, declination, roll})});
-}
-
 // IAU 1976, at J2000.
 constexpr double obliquity_rad = 23.4392911 * degree_rad;
 // Gauss's year: of a body without mass at 1 au.
@@ -318,6 +310,14 @@ double sunlit_fraction(const Vec3& satellite_m, const Vec3& sun_m, double planet
   return uncovered_fraction(std::asin(sun_radius_m / to_sun.norm()),
                             std::asin(std::min(1.0, planet_radius_m / to_planet.norm())),
                             separation);
+}
+
+Key sun_table() {
+  using namespace sun_key;
+  return sun.of({direction, table, distance, date,
+                 orbit.of({semi_major_axis, eccentricity, inclination, ascending_node, perihelion,
+                           mean_anomaly, epoch}),
+                 pointing.of({axis, right_ascension, declination, roll})});
 }
 
 }  // namespace photorque
