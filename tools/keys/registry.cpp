@@ -9,7 +9,7 @@
 #include "attitude/environment/environment.h"
 #include "attitude/filtering/keys.h"
 #include "attitude/model/platform.h"
-#include "attitude/propagation/keys.h"
+#include "attitude/propagation/run.h"
 #include "attitude/recordings/keys.h"
 #include "attitude/studies/keys.h"
 #include "diagnosis/light/keys.h"
