@@ -9,27 +9,21 @@ namespace photorque {
 namespace {
 
 namespace target_key {
-
-constexpr TextKey node{"node", "a node of the scene, with the nodes below it"};
-constexpr auto name = TextKey{"name", "of the results"}.usually("the node");
-
+constexpr TextKey node("node", "a node of the scene, with the nodes below it");
+constexpr TextKey name("name", "of the results", {.usually = "the node"});
 }  // namespace target_key
 
 namespace grid_key {
-
-constexpr auto bins = NumbersKey{"bins", {1.0, max_grid_bins}, "whole numbers: [along u, along v]"}
-                          .of_size(2)
-                          .optional();
-constexpr ChoiceKey over{
-    "over",
-    {{"plane", "a plane that fits the surface"}, {"uv", "the texture coordinates"}},
-    0,
-    "what the bins lie on"};
-constexpr ChoiceKey side{"side", {"front", "back", "both"}, "which side of the surface counts"};
-constexpr auto facing =
-    Vec3Key{"facing", "only faces turned towards this body direction; closed bodies need it"}
-        .usually("all faces");
-
+constexpr NumbersKey bins("bins", {1.0, max_grid_bins}, "whole numbers: [along u, along v]",
+                          {.optional = true, .size = 2});
+constexpr ChoiceKey over("over",
+                         {{"plane", "a plane that fits the surface"},
+                          {"uv", "the texture coordinates"}},
+                         0, "what the bins lie on");
+constexpr ChoiceKey side("side", {"front", "back", "both"}, "which side of the surface counts");
+constexpr Vec3Key facing("facing",
+                         "only faces turned towards this body direction; closed bodies need it",
+                         {.usually = "all faces"});
 }  // namespace grid_key
 
 // Every name that `node` could have been: the components of all paths.

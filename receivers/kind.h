@@ -72,7 +72,7 @@ std::vector<Key> target_or_all_keys(const std::string& otherwise_name);
 std::vector<Key> surface_grid_keys(Side default_side);
 
 // The point of torques.
-inline constexpr Vec3Key torque_point{
-    "about_m", {0.0, 0.0, 0.0}, "the point that torques are about, body axes"};
+inline constexpr Vec3Key torque_point("about_m", {0.0, 0.0, 0.0},
+                                      "the point that torques are about, body axes");
 
 }  // namespace photorque

@@ -96,15 +96,13 @@ Product TorqueMapReceiver::product(const BinSums& sums) const {
 
 namespace kinds::torque_map {
 
-constexpr ChoiceKey force_key{
+constexpr ChoiceKey force_key(
     "force",
     {{"momentum", "momentum in minus momentum out"},
      {"as_published",
-      "equation 29 of the paper as it stands: all light absorbed, and the "
-      "cosine, which the irradiance on a surface holds already, taken once more "
-      "([paper.md](paper.md))"}},
-    0,
-    "what light does to an element"};
+      "equation 29 of the paper as it stands: all light absorbed, and the cosine, which the "
+      "irradiance on a surface holds already, taken once more ([paper.md](paper.md))"}},
+    0, "what light does to an element");
 
 ReceiverKind kind() {
   return {"torque_map", "Torque of light per bin of a surface",

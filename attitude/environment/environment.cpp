@@ -9,36 +9,31 @@ namespace photorque {
 namespace {
 
 namespace environment_key {
-
 constexpr Range latitudes{-0.5 * pi, 0.5 * pi, false, false}, years{1900.0, 2035.0, false, false};
-constexpr NumberKey gravity{
+constexpr NumberKey gravity(
     "gravity_m_s2", standard_gravity_m_s2, Range::not_negative(),
-    "along lab −z; without it a free platform, and any with `[environment.sun]`, "
-    "feels no weight"};
-constexpr auto latitude =
-    NumberKey{"latitude_deg", latitudes, "for `earth_rotation`"}.usually("that of `igrf`, else 0");
-constexpr Vec3Key magnetic_field{
-    "magnetic_field_T", {0.0, 0.0, 0.0}, "lab axes: east, north, up; *or*"};
-constexpr auto date = OtherKey{"date", Key::a_number | Key::a_text | Key::a_date,
-                               "2025-06-30, the same in quotes, or 2025.5; 1900 … 2035"}
-                          .optional();
-constexpr auto date_year = NumberKey{"date_year", years, "instead of `date`"}.optional();
-constexpr NumberKey igrf_latitude{"latitude_deg", latitudes, "geodetic"};
-constexpr NumberKey longitude{"longitude_deg", {}, "east"};
-constexpr NumberKey height{"height_m", 0.0, {-12e3, 1e10, false, false}, "above the ellipsoid"};
-constexpr TableKey igrf{"igrf", "the field by IGRF-14"};
-constexpr NumberKey air_temperature{
-    "air_temperature_K", room_temperature_K, {100.0, 1000.0, false, false}, "of the air around"};
-constexpr NumberKey air_pressure{"air_pressure_Pa", room_pressure_Pa, Range::not_negative(),
-                                 "of the air around"};
-constexpr auto air_density =
-    NumberKey{"air_density_kg_m3", Range::not_negative(), "from the two above"}.usually(
-        "ideal gas, dry");
-constexpr auto air_viscosity =
-    NumberKey{"air_viscosity_Pa_s", Range::positive(), "from the temperature"}.usually(
-        "Sutherland's law");
-constexpr TableKey environment{"environment", "what surrounds the platform"};
-
+    "along lab −z; without it a free platform, and any with `[environment.sun]`, feels no weight");
+constexpr NumberKey latitude("latitude_deg", latitudes, "for `earth_rotation`",
+                             {.usually = "that of `igrf`, else 0"});
+constexpr Vec3Key magnetic_field("magnetic_field_T", {0.0, 0.0, 0.0},
+                                 "lab axes: east, north, up; *or*");
+constexpr OtherKey date("date", Key::a_number | Key::a_text | Key::a_date,
+                        "2025-06-30, the same in quotes, or 2025.5; 1900 … 2035",
+                        {.optional = true});
+constexpr NumberKey date_year("date_year", years, "instead of `date`", {.optional = true});
+constexpr NumberKey igrf_latitude("latitude_deg", latitudes, "geodetic");
+constexpr NumberKey longitude("longitude_deg", {}, "east");
+constexpr NumberKey height("height_m", 0.0, {-12e3, 1e10, false, false}, "above the ellipsoid");
+constexpr TableKey igrf("igrf", "the field by IGRF-14");
+constexpr NumberKey air_temperature("air_temperature_K", room_temperature_K,
+                                    {100.0, 1000.0, false, false}, "of the air around");
+constexpr NumberKey air_pressure("air_pressure_Pa", room_pressure_Pa, Range::not_negative(),
+                                 "of the air around");
+constexpr NumberKey air_density("air_density_kg_m3", Range::not_negative(), "from the two above",
+                                {.usually = "ideal gas, dry"});
+constexpr NumberKey air_viscosity("air_viscosity_Pa_s", Range::positive(), "from the temperature",
+                                  {.usually = "Sutherland's law"});
+constexpr TableKey environment("environment", "what surrounds the platform");
 }  // namespace environment_key
 
 // Specific gas constant of dry air, and Sutherland's law: see environment.h.

@@ -13,41 +13,34 @@ namespace photorque {
 namespace {
 
 namespace sun_key {
-
 constexpr Range declinations{-0.5 * pi, 0.5 * pi, false, false};
-constexpr auto direction =
-    Vec3Key{"direction", "towards the Sun, lab axes, any length; *or*"}.optional();
-constexpr auto table =
-    TextKey{"table",
-            "CSV: `t_s`, `sun_x`, `sun_y`, `sun_z`, towards the Sun, lab axes, any length; "
-            "*or*"}
-        .optional();
-constexpr NumberKey distance{"distance_au", astronomical_unit_m, Range::positive(),
-                             "of the Sun, with `direction` or `table`"};
-constexpr auto date =
-    TextKey{"date",
-            "calendar time of t = 0, \"2015-04-27T03:00\": the Sun moves as the orbit "
-            "says"}
-        .optional();
-constexpr NumberKey semi_major_axis{"semi_major_axis_au", Range::positive(), "of the ellipse"};
-constexpr NumberKey eccentricity{"eccentricity", 0.0, {0.0, 1.0, false, true}, "of the ellipse"};
-constexpr NumberKey inclination{"inclination_deg", 0.0, {}, "to the ecliptic of J2000"};
-constexpr NumberKey ascending_node{"ascending_node_deg", 0.0, {}, "longitude"};
-constexpr NumberKey perihelion{"perihelion_deg", 0.0, {}, "argument, from the node"};
-constexpr NumberKey mean_anomaly{"mean_anomaly_deg", {}, "at the epoch"};
-constexpr auto epoch = TextKey{"epoch", "of the mean anomaly"}.usually("`date`");
-constexpr auto orbit =
-    TableKey{"orbit", "of the spacecraft about the Sun, with `date`"}.usually("the Earth's");
-constexpr ChoiceKey axis{"axis", {"x", "y", "z"}, 2, "the lab axis that points"};
-constexpr NumberKey right_ascension{"right_ascension_deg", {}, "J2000"};
-constexpr NumberKey declination{"declination_deg", declinations, "J2000"};
-constexpr NumberKey roll{
-    "roll_deg", 0.0, {}, "of the next axis (y after x) about it, from celestial north"};
-constexpr auto pointing =
-    TableKey{"pointing", "where a lab axis points in the sky, with `date`"}.usually(
-        "lab axes are equatorial, J2000");
-constexpr TableKey sun{"sun", "where the Sun is, for `radiation_pressure`"};
-
+constexpr Vec3Key direction("direction", "towards the Sun, lab axes, any length; *or*",
+                            {.optional = true});
+constexpr TextKey table(
+    "table", "CSV: `t_s`, `sun_x`, `sun_y`, `sun_z`, towards the Sun, lab axes, any length; *or*",
+    {.optional = true});
+constexpr NumberKey distance("distance_au", astronomical_unit_m, Range::positive(),
+                             "of the Sun, with `direction` or `table`");
+constexpr TextKey date(
+    "date", "calendar time of t = 0, \"2015-04-27T03:00\": the Sun moves as the orbit says",
+    {.optional = true});
+constexpr NumberKey semi_major_axis("semi_major_axis_au", Range::positive(), "of the ellipse");
+constexpr NumberKey eccentricity("eccentricity", 0.0, {0.0, 1.0, false, true}, "of the ellipse");
+constexpr NumberKey inclination("inclination_deg", 0.0, {}, "to the ecliptic of J2000");
+constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "longitude");
+constexpr NumberKey perihelion("perihelion_deg", 0.0, {}, "argument, from the node");
+constexpr NumberKey mean_anomaly("mean_anomaly_deg", {}, "at the epoch");
+constexpr TextKey epoch("epoch", "of the mean anomaly", {.usually = "`date`"});
+constexpr TableKey orbit("orbit", "of the spacecraft about the Sun, with `date`",
+                         {.usually = "the Earth's"});
+constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the lab axis that points");
+constexpr NumberKey right_ascension("right_ascension_deg", {}, "J2000");
+constexpr NumberKey declination("declination_deg", declinations, "J2000");
+constexpr NumberKey roll("roll_deg", 0.0, {},
+                         "of the next axis (y after x) about it, from celestial north");
+constexpr TableKey pointing("pointing", "where a lab axis points in the sky, with `date`",
+                            {.usually = "lab axes are equatorial, J2000"});
+constexpr TableKey sun("sun", "where the Sun is, for `radiation_pressure`");
 }  // namespace sun_key
 
 // IAU 1976, at J2000.

@@ -9,7 +9,7 @@
 //   namespace photorque {
 //   namespace {
 //
-//   constexpr ScalarKey coefficient{"coefficient_N_m_s", Range::not_negative(), "c in T = −c ω"};
+//   constexpr ScalarKey coefficient("coefficient_N_m_s", Range::not_negative(), "c in T = −c ω");
 //
 //   // T = −c ω.
 //   struct BearingDrag final : TorqueLaw<BearingDrag> {
@@ -165,8 +165,8 @@ struct ExtraState {
 
 // A key of a law, and where its numbers stand among the law's parameters. A law names its keys in
 // their order,
-//   constexpr VectorKey torque_N_m{"torque_N_m", "amplitude, body axes"};
-//   constexpr ScalarKey frequency_Hz{"frequency_Hz", {0.0, 1e6}, "of it", torque_N_m.end()};
+//   constexpr VectorKey torque_N_m("torque_N_m", "amplitude, body axes");
+//   constexpr ScalarKey frequency_Hz("frequency_Hz", {0.0, 1e6}, "of it", torque_N_m.end());
 // reads them by these names, own[frequency_Hz], which costs no more than an index, and lists them
 // among the keys of its kind.
 template <int size>

@@ -27,15 +27,13 @@ void check_inertia(const Mat3& inertia_kg_m2, const InputLocation& where, const 
 namespace {
 
 namespace platform_key {
-
-constexpr NumberKey mass{"mass_kg", Range::positive(), "of all that turns"};
-constexpr OtherKey inertia{"inertia_kg_m2", Key::an_array | Key::a_table,
-                           "3 × 3, symmetric, positive, body axes, about the centre of rotation"};
+constexpr NumberKey mass("mass_kg", Range::positive(), "of all that turns");
+constexpr OtherKey inertia("inertia_kg_m2", Key::an_array | Key::a_table,
+                           "3 × 3, symmetric, positive, body axes, about the centre of rotation");
 // About the one axis that is free.
-constexpr auto inertia_about = OtherKey{inertia.name, Key::a_number | Key::an_array | Key::a_table,
-                                        "about that axis, or 3 × 3"}
-                                   .usually("1");
-constexpr ChoiceKey topology{
+constexpr OtherKey inertia_about(inertia.name, Key::a_number | Key::an_array | Key::a_table,
+                                 "about that axis, or 3 × 3", {.usually = "1"});
+constexpr ChoiceKey topology(
     "topology",
     {{"dumbbell", "two arms on an air bearing"},
      {"tabletop", "a plate on an air bearing"},
@@ -43,18 +41,16 @@ constexpr ChoiceKey topology{
      {"free", "no bearing"},
      {"one_axis", "bearings hold all but one axis"},
      {"planar", "slides on a table: x and y in the lab, and a turn about the vertical"}},
-    "what it is and what holds it"};
-constexpr ChoiceKey axis{"axis", {"x", "y", "z"}, 2, "the axis that is left"};
-constexpr auto tilt_limit =
-    NumberKey{"tilt_limit_deg", {0.0, pi, true, false}, "the bearing's stop: a run ends there"}
-        .usually("none");
-constexpr auto battery_capacity =
-    NumberKey{"battery_capacity_Ah", Range::positive(), "only says when the battery is empty"}
-        .usually("never empty");
-constexpr NumberKey battery_voltage{"battery_voltage_V", usual_battery_voltage_V, Range::positive(),
-                                    "nominal"};
-constexpr TableKey platform{"platform", "what turns"};
-
+    "what it is and what holds it");
+constexpr ChoiceKey axis("axis", {"x", "y", "z"}, 2, "the axis that is left");
+constexpr NumberKey tilt_limit("tilt_limit_deg", {0.0, pi, true, false},
+                               "the bearing's stop: a run ends there", {.usually = "none"});
+constexpr NumberKey battery_capacity("battery_capacity_Ah", Range::positive(),
+                                     "only says when the battery is empty",
+                                     {.usually = "never empty"});
+constexpr NumberKey battery_voltage("battery_voltage_V", usual_battery_voltage_V, Range::positive(),
+                                    "nominal");
+constexpr TableKey platform("platform", "what turns");
 }  // namespace platform_key
 
 // The table with value and sigma, or the platform's own.

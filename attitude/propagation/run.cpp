@@ -16,61 +16,49 @@ namespace {
 constexpr double max_run_s = 1e10;  // three centuries
 
 namespace propagate_key {
-
-constexpr NumberKey duration{"duration_s", 600.0, {0.0, max_run_s, true, false}, "of the run"};
-constexpr NumberKey output_rate{"output_rate_Hz", 10.0, Range::positive(),
-                                "rows of the recording, at most 2e7 in all"};
-constexpr IntegerKey history_rows{"history_rows", 20000, 2, 20'000'000,
-                                  "rows of `time_history.csv` at most"};
-constexpr NumberKey tolerance{
-    "tolerance", PropagationOptions{}.tolerance, {1e-13, 1e-3, false, false}, "of a step"};
-constexpr auto longest_step =
-    NumberKey{"longest_step_s", Range::positive(), "of the integrator"}.usually("none");
-constexpr NumberKey tick_rate{
-    "tick_rate_Hz",
-    0.0,
-    {0.0, 1e6, false, false},
-    "steps end at these ticks too and begin afresh, as those of a run in real time "
-    "do; 0: no ticks"};
-constexpr IntegerKey seed{"seed", 1, 0, INT64_MAX, "of the sensors' noise; also `--seed`"};
-constexpr NumberKey initial_tilt{"initial_tilt_deg",
-                                 0.0,
-                                 {0.0, pi, false, false},
-                                 "leans by the tilt towards the heading; *or*"};
-constexpr NumberKey initial_heading{"initial_heading_deg", 0.0, {}, "where it leans to"};
-constexpr auto initial_attitude =
-    NumbersKey{"initial_attitude", {}, "[w, x, y, z], lab from body, unit to 1e-3"}
-        .of_size(4)
-        .optional();
-constexpr Vec3Key initial_rate{"initial_rate_rad_s", {0.0, 0.0, 0.0}, "body axes"};
-constexpr auto initial_position =
-    NumbersKey{"initial_position_m", {}, "of a planar platform, lab x and y"}.of_size(2).usually(
-        "0, 0");
-constexpr auto initial_velocity =
-    NumbersKey{"initial_velocity_m_s", {}, "the same"}.of_size(2).usually("0, 0");
-constexpr NumberKey initial_charge{"initial_charge_Ah", 0.0, {}, "drawn before"};
-constexpr NumberKey initial_time{
-    "initial_time_s",
-    0.0,
-    {},
-    "of the first row; commands, measured series and laws in time count in it"};
-constexpr auto commands =
-    TextKey{"commands",
-            "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `battery_current_A`, "
-            "`led_current_A`, each row held until the next (zero-order hold); *or*"}
-        .usually("none");
-constexpr NumberKey time{"time_s", {}, "rising"};
-constexpr Vec3Key torque{"torque_N_m", {0.0, 0.0, 0.0}, "commanded, body axes"};
-constexpr NumberKey battery_current{"battery_current_A", 0.0, {}, "drawn"};
-constexpr auto led_current =
-    NumberKey{"led_current_A", Range::not_negative(), "of lamps; not given: they shine as ever"}
-        .optional();
-constexpr TablesKey command{"command", "each held until the next"};
-constexpr TextKey epoch{
+constexpr NumberKey duration("duration_s", 600.0, {0.0, max_run_s, true, false}, "of the run");
+constexpr NumberKey output_rate("output_rate_Hz", 10.0, Range::positive(),
+                                "rows of the recording, at most 2e7 in all");
+constexpr IntegerKey history_rows("history_rows", 20000, 2, 20'000'000,
+                                  "rows of `time_history.csv` at most");
+constexpr NumberKey tolerance("tolerance", PropagationOptions{}.tolerance,
+                              {1e-13, 1e-3, false, false}, "of a step");
+constexpr NumberKey longest_step("longest_step_s", Range::positive(), "of the integrator",
+                                 {.usually = "none"});
+constexpr NumberKey tick_rate("tick_rate_Hz", 0.0, {0.0, 1e6, false, false},
+                              "steps end at these ticks too and begin afresh, as those of a run in "
+                              "real time do; 0: no ticks");
+constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of the sensors' noise; also `--seed`");
+constexpr NumberKey initial_tilt("initial_tilt_deg", 0.0, {0.0, pi, false, false},
+                                 "leans by the tilt towards the heading; *or*");
+constexpr NumberKey initial_heading("initial_heading_deg", 0.0, {}, "where it leans to");
+constexpr NumbersKey initial_attitude("initial_attitude", {},
+                                      "[w, x, y, z], lab from body, unit to 1e-3",
+                                      {.optional = true, .size = 4});
+constexpr Vec3Key initial_rate("initial_rate_rad_s", {0.0, 0.0, 0.0}, "body axes");
+constexpr NumbersKey initial_position("initial_position_m", {}, "of a planar platform, lab x and y",
+                                      {.usually = "0, 0", .size = 2});
+constexpr NumbersKey initial_velocity("initial_velocity_m_s", {}, "the same",
+                                      {.usually = "0, 0", .size = 2});
+constexpr NumberKey initial_charge("initial_charge_Ah", 0.0, {}, "drawn before");
+constexpr NumberKey initial_time(
+    "initial_time_s", 0.0, {},
+    "of the first row; commands, measured series and laws in time count in it");
+constexpr TextKey commands(
+    "commands",
+    "CSV: `t_s` and any of `command_x_N_m`, `…_y_…`, `…_z_…`, `battery_current_A`, "
+    "`led_current_A`, each row held until the next (zero-order hold); *or*",
+    {.usually = "none"});
+constexpr NumberKey time("time_s", {}, "rising");
+constexpr Vec3Key torque("torque_N_m", {0.0, 0.0, 0.0}, "commanded, body axes");
+constexpr NumberKey battery_current("battery_current_A", 0.0, {}, "drawn");
+constexpr NumberKey led_current("led_current_A", Range::not_negative(),
+                                "of lamps; not given: they shine as ever", {.optional = true});
+constexpr TablesKey command("command", "each held until the next");
+constexpr TextKey epoch(
     "epoch", "2000-01-01T00:00:00",
-    "calendar time of t = 0, for `attitude.aem`; does not move `igrf` or `orbit`"};
-constexpr TableKey propagate{"propagate", "a run of the motion"};
-
+    "calendar time of t = 0, for `attitude.aem`; does not move `igrf` or `orbit`");
+constexpr TableKey propagate("propagate", "a run of the motion");
 }  // namespace propagate_key
 
 // [[disturbance]] alone: who reads the rest of the file complains about its keys.

@@ -16,44 +16,40 @@ namespace photorque {
 namespace {
 
 namespace budget_key {
-
 constexpr BearingDatasheet usual;
-constexpr auto source_to_cell =
-    NumberKey{"source_to_cell", Range::fraction(), "light on the cells over what is emitted"}
-        .usually("the paper's");
-constexpr auto conversion =
-    NumberKey{"conversion", Range::fraction(), "of light on the cells to power"}.usually(
-        "the paper's");
-constexpr auto power =
-    NumberKey{"power_W", Range::positive(), "of the array at zero tilt"}.usually("the paper's");
-constexpr auto power_at_30 =
-    NumberKey{"power_at_30_deg_W", Range::positive(), "of the array at 30 deg"}.usually(
-        "the paper's");
-constexpr auto torque_at_30 =
-    Vec3Key{"torque_at_30_deg_N_m", "of the light at 30 deg, body axes"}.usually("the paper's");
-constexpr TableKey light{"light", "what `power` printed, beside the paper's"};
-constexpr TextKey name{"name", "of the bearing"};
-constexpr NumberKey radius{"radius_m", Range::positive(), "of the ball"};
-constexpr NumberKey half_angle{"half_angle_deg", {0.0, 0.5 * pi, true, false}, "of the socket"};
-constexpr NumberKey gap{"gap_m", Range::positive(), "of the film"};
-constexpr NumberKey inlet{"inlet_Pa", Range::positive(), "absolute"};
-constexpr NumberKey load{"load_N", Range::positive(), "rated"};
-constexpr NumberKey drag{"drag_N_m", 0.0, Range::not_negative(), "0: not printed"};
-constexpr NumberKey drag_rate{"drag_rate_rpm", usual.drag_rate_rad_s, Range::positive(),
-                              "at which the drag was measured"};
-constexpr TablesKey bearing{"bearing", "a catalogue's bearing beside the paper's model"};
-constexpr NumberKey tilt{"tilt_deg", 0.0, {0.0, pi, false, false}, "attitude, as in `[propagate]`"};
-constexpr NumberKey heading{"heading_deg", 0.0, {}, "where it leans to"};
-constexpr NumberKey spin{"spin_rpm", 0.0, {}, "about the lab's vertical"};
-constexpr Vec3Key rate{"rate_rad_s", {0.0, 0.0, 0.0}, "body axes, added"};
-constexpr auto state_of_charge = NumberKey{"state_of_charge", Range::fraction(),
-                                           "below 1 needs `platform.battery_capacity_Ah`; *or*"}
-                                     .usually("1");
-constexpr NumberKey charge_drawn{"charge_drawn_Ah", 0.0, Range::not_negative(),
-                                 "since the battery was full"};
-constexpr NumberKey time{"time_s", 0.0, {}, "of laws in time"};
-constexpr TableKey budget{"budget", "the state at which torques are compared"};
-
+constexpr NumberKey source_to_cell("source_to_cell", Range::fraction(),
+                                   "light on the cells over what is emitted",
+                                   {.usually = "the paper's"});
+constexpr NumberKey conversion("conversion", Range::fraction(), "of light on the cells to power",
+                               {.usually = "the paper's"});
+constexpr NumberKey power("power_W", Range::positive(), "of the array at zero tilt",
+                          {.usually = "the paper's"});
+constexpr NumberKey power_at_30("power_at_30_deg_W", Range::positive(), "of the array at 30 deg",
+                                {.usually = "the paper's"});
+constexpr Vec3Key torque_at_30("torque_at_30_deg_N_m", "of the light at 30 deg, body axes",
+                               {.usually = "the paper's"});
+constexpr TableKey light("light", "what `power` printed, beside the paper's");
+constexpr TextKey name("name", "of the bearing");
+constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");
+constexpr NumberKey half_angle("half_angle_deg", {0.0, 0.5 * pi, true, false}, "of the socket");
+constexpr NumberKey gap("gap_m", Range::positive(), "of the film");
+constexpr NumberKey inlet("inlet_Pa", Range::positive(), "absolute");
+constexpr NumberKey load("load_N", Range::positive(), "rated");
+constexpr NumberKey drag("drag_N_m", 0.0, Range::not_negative(), "0: not printed");
+constexpr NumberKey drag_rate("drag_rate_rpm", usual.drag_rate_rad_s, Range::positive(),
+                              "at which the drag was measured");
+constexpr TablesKey bearing("bearing", "a catalogue's bearing beside the paper's model");
+constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi, false, false}, "attitude, as in `[propagate]`");
+constexpr NumberKey heading("heading_deg", 0.0, {}, "where it leans to");
+constexpr NumberKey spin("spin_rpm", 0.0, {}, "about the lab's vertical");
+constexpr Vec3Key rate("rate_rad_s", {0.0, 0.0, 0.0}, "body axes, added");
+constexpr NumberKey state_of_charge("state_of_charge", Range::fraction(),
+                                    "below 1 needs `platform.battery_capacity_Ah`; *or*",
+                                    {.usually = "1"});
+constexpr NumberKey charge_drawn("charge_drawn_Ah", 0.0, Range::not_negative(),
+                                 "since the battery was full");
+constexpr NumberKey time("time_s", 0.0, {}, "of laws in time");
+constexpr TableKey budget("budget", "the state at which torques are compared");
 }  // namespace budget_key
 
 constexpr double minute_s = 60.0, hour_s = 3600.0, day_s = 86400.0;

@@ -1,13 +1,13 @@
 // One constant for each key: its reader, the schema and the documents share it.
 //
-//   constexpr NumberKey tilt{"tilt_deg", 0.0, {0.0, pi}, "the body's z axis leans by this"};
+//   constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "the body's z axis leans by this");
 //
 //   settings.get(tilt)            its value in SI; the default where the user did not write it
 //   settings.has(tilt)            a key is its name where a name is expected
 //   Key::table("attitude", {tilt, heading}, "how the platform stands")      declares both
 //
-// Defaults and ranges are SI. A key without a default is required, unless it is optional() or
-// usually() something that is no constant: then it is read by get_or(), or by get() behind has().
+// Defaults and ranges are SI. A key without a default is required, unless its traits say otherwise:
+// then it is read by get_or(), or by get() behind has().
 #pragma once
 
 #include <algorithm>
@@ -22,60 +22,53 @@
 
 namespace photorque {
 
+// What else there is to a key: the members of Key.
+struct KeyTraits {
+  bool optional = false;          // the table can do without it
+  std::string_view usually = {};  // likewise: its default in words, where it is no constant
+  bool completes = false;
+  bool has_error = false;
+  bool several = false;  // Key::or_array; get() reads one, Settings::numbers() several
+  size_t size = 0;
+  bool varies = false;  // Key::range_varies; get(key.within(…)) reads it
+};
+
 // What keys of all types have.
 template <class Self>
 struct TypedKey {
   std::string_view name, what;
-  bool required = true;
-  std::string_view usual = {};  // the default in words, where it is no constant
-  bool completes = false;       // see Key, as for all of these
-  bool has_error = false;
-  bool range_varies = false;
+  KeyTraits traits;
 
   constexpr operator std::string_view() const { return name; }
 
+  // The same key where its meaning or its need is another.
+  constexpr Self meaning(std::string_view sentence) const {
+    return changed([=](Self& key) { key.what = sentence; });
+  }
   constexpr Self optional() const {
-    return changed([](Self& key) { key.required = false; });
+    return changed([](Self& key) { key.traits.optional = true; });
   }
   constexpr Self usually(std::string_view words) const {
-    return changed([words](Self& key) {
-      key.required = false;
-      key.usual = words;
-    });
-  }
-  // The same key where its meaning is another.
-  constexpr Self meaning(std::string_view sentence) const {
-    return changed([sentence](Self& key) { key.what = sentence; });
-  }
-  constexpr Self that_completes() const {
-    return changed([](Self& key) {
-      key.required = false;
-      key.completes = true;
-    });
-  }
-  constexpr Self with_error() const {
-    return changed([](Self& key) { key.has_error = true; });
-  }
-  // The reader's depends on other keys: get(key.within(…)).
-  constexpr Self range_that_varies() const {
-    return changed([](Self& key) { key.range_varies = true; });
+    return changed([=](Self& key) { key.traits.usually = words; });
   }
 
  protected:
-  constexpr TypedKey(std::string_view key, std::string_view sentence) : name(key), what(sentence) {}
+  constexpr TypedKey(std::string_view key, std::string_view sentence, const KeyTraits& own)
+      : name(key), what(sentence), traits(own) {}
   template <class Change>
   constexpr Self changed(Change change) const {
     Self copy = static_cast<const Self&>(*this);
     change(copy);
     return copy;
   }
-  // The same in the declaration.
   Key declared(Key key) const {
-    key.required = key.required && required;
-    key.usually = usual;
-    key.completes = completes;
-    key.has_error = key.has_error || has_error;
-    key.range_varies = range_varies;
+    key.required = key.required && !traits.optional && !traits.completes && traits.usually.empty();
+    key.usually = traits.usually;
+    key.completes = traits.completes;
+    key.has_error = key.has_error || traits.has_error;
+    key.or_array = traits.several;
+    key.size = traits.size;
+    key.range_varies = traits.varies;
     return key;
   }
 };
@@ -83,22 +76,18 @@ struct TypedKey {
 struct NumberKey : TypedKey<NumberKey> {
   std::optional<double> otherwise;
   Range range;
-  bool or_array = false;
 
-  constexpr NumberKey(std::string_view key, Range admitted, std::string_view sentence)
-      : TypedKey(key, sentence), range(admitted) {}
-  constexpr NumberKey(std::string_view key, double otherwise_SI, Range admitted,
-                      std::string_view sentence)
-      : TypedKey(key, sentence), otherwise(otherwise_SI), range(admitted) {}
-  // May be an array of them; get() reads one, Settings::numbers() several.
-  constexpr NumberKey one_or_several() const {
-    return changed([](NumberKey& key) { key.or_array = true; });
-  }
-  constexpr NumberKey with_default(double otherwise_SI) const {
-    return changed([otherwise_SI](NumberKey& key) { key.otherwise = otherwise_SI; });
+  constexpr NumberKey(std::string_view key, Range admitted, std::string_view sentence,
+                      const KeyTraits& own = {})
+      : TypedKey(key, sentence, own), range(admitted) {}
+  constexpr NumberKey(std::string_view key, double usual, Range admitted, std::string_view sentence,
+                      const KeyTraits& own = {})
+      : TypedKey(key, sentence, own), otherwise(usual), range(admitted) {}
+  constexpr NumberKey with_default(double usual) const {
+    return changed([=](NumberKey& key) { key.otherwise = usual; });
   }
   constexpr NumberKey within(Range admitted) const {
-    return changed([admitted](NumberKey& key) { key.range = admitted; });
+    return changed([=](NumberKey& key) { key.range = admitted; });
   }
 
   double read(const Settings& settings) const {
@@ -112,11 +101,12 @@ struct UncertainNumberKey : TypedKey<UncertainNumberKey> {
   std::optional<Uncertain> otherwise;
   Range range;
 
-  constexpr UncertainNumberKey(std::string_view key, Range admitted, std::string_view sentence)
-      : TypedKey(key, sentence), range(admitted) {}
-  constexpr UncertainNumberKey(std::string_view key, Uncertain otherwise_SI, Range admitted,
+  constexpr UncertainNumberKey(std::string_view key, Range admitted, std::string_view sentence,
+                               const KeyTraits& own = {})
+      : TypedKey(key, sentence, own), range(admitted) {}
+  constexpr UncertainNumberKey(std::string_view key, Uncertain usual, Range admitted,
                                std::string_view sentence)
-      : TypedKey(key, sentence), otherwise(otherwise_SI), range(admitted) {}
+      : TypedKey(key, sentence, {}), otherwise(usual), range(admitted) {}
 
   Uncertain read(const Settings& settings) const {
     return otherwise && !settings.has(name) ? *otherwise : settings.uncertain(name, range);
@@ -128,19 +118,17 @@ struct IntegerKey : TypedKey<IntegerKey> {
   std::optional<int64_t> otherwise;
   int64_t low, high;
 
-  constexpr IntegerKey(std::string_view key, int64_t least, int64_t most, std::string_view sentence)
-      : TypedKey(key, sentence), low(least), high(most) {}
-  constexpr IntegerKey(std::string_view key, int64_t usual_value, int64_t least, int64_t most,
-                       std::string_view sentence)
-      : TypedKey(key, sentence), otherwise(usual_value), low(least), high(most) {}
-  constexpr IntegerKey with_default(int64_t usual_value) const {
-    return changed([usual_value](IntegerKey& key) { key.otherwise = usual_value; });
+  constexpr IntegerKey(std::string_view key, int64_t least, int64_t most, std::string_view sentence,
+                       const KeyTraits& own = {})
+      : TypedKey(key, sentence, own), low(least), high(most) {}
+  constexpr IntegerKey(std::string_view key, int64_t usual, int64_t least, int64_t most,
+                       std::string_view sentence, const KeyTraits& own = {})
+      : TypedKey(key, sentence, own), otherwise(usual), low(least), high(most) {}
+  constexpr IntegerKey with_default(int64_t usual) const {
+    return changed([=](IntegerKey& key) { key.otherwise = usual; });
   }
   constexpr IntegerKey within(int64_t least, int64_t most) const {
-    return changed([least, most](IntegerKey& key) {
-      key.low = least;
-      key.high = most;
-    });
+    return changed([=](IntegerKey& key) { key.low = least, key.high = most; });
   }
 
   int64_t read(const Settings& settings) const {
@@ -153,9 +141,8 @@ struct IntegerKey : TypedKey<IntegerKey> {
 struct FlagKey : TypedKey<FlagKey> {
   bool otherwise;
 
-  constexpr FlagKey(std::string_view key, bool usual_value, std::string_view sentence)
-      : TypedKey(key, sentence), otherwise(usual_value) {}
-
+  constexpr FlagKey(std::string_view key, bool usual, std::string_view sentence)
+      : TypedKey(key, sentence, {}), otherwise(usual) {}
   bool read(const Settings& settings) const { return settings.flag_or(name, otherwise); }
   operator Key() const;
 };
@@ -163,11 +150,12 @@ struct FlagKey : TypedKey<FlagKey> {
 struct TextKey : TypedKey<TextKey> {
   std::optional<std::string_view> otherwise;
 
-  constexpr TextKey(std::string_view key, std::string_view sentence) : TypedKey(key, sentence) {}
-  constexpr TextKey(std::string_view key, std::string_view usual_value, std::string_view sentence)
-      : TypedKey(key, sentence), otherwise(usual_value) {}
-  constexpr TextKey with_default(std::string_view text) const {
-    return changed([text](TextKey& key) { key.otherwise = text; });
+  constexpr TextKey(std::string_view key, std::string_view sentence, const KeyTraits& own = {})
+      : TypedKey(key, sentence, own) {}
+  constexpr TextKey(std::string_view key, std::string_view usual, std::string_view sentence)
+      : TypedKey(key, sentence, {}), otherwise(usual) {}
+  constexpr TextKey with_default(std::string_view usual) const {
+    return changed([=](TextKey& key) { key.otherwise = usual; });
   }
 
   std::string read(const Settings& settings) const {
@@ -176,17 +164,9 @@ struct TextKey : TypedKey<TextKey> {
   operator Key() const;
 };
 
-struct TextsKey : TypedKey<TextsKey> {
-  constexpr TextsKey(std::string_view key, std::string_view sentence) : TypedKey(key, sentence) {}
-
-  std::vector<std::string> read(const Settings& settings) const { return settings.texts(name); }
-  operator Key() const;
-};
-
 // A word of a choice.
 struct Word {
   std::string_view name, what;
-
   constexpr Word(const char* word, const char* sentence = "") : name(word), what(sentence) {}
 };
 
@@ -197,12 +177,12 @@ struct ChoiceKey : TypedKey<ChoiceKey<count>> {
   std::optional<size_t> otherwise;
 
   constexpr ChoiceKey(std::string_view key, const Word (&all)[count], std::string_view sentence)
-      : TypedKey<ChoiceKey>(key, sentence), words(std::to_array(all)) {}
-  constexpr ChoiceKey(std::string_view key, const Word (&all)[count], size_t usual_word,
+      : TypedKey<ChoiceKey>(key, sentence, {}), words(std::to_array(all)) {}
+  constexpr ChoiceKey(std::string_view key, const Word (&all)[count], size_t usual,
                       std::string_view sentence)
-      : TypedKey<ChoiceKey>(key, sentence), words(std::to_array(all)), otherwise(usual_word) {}
-  constexpr ChoiceKey with_default(size_t word) const {
-    return this->changed([word](ChoiceKey& key) { key.otherwise = word; });
+      : TypedKey<ChoiceKey>(key, sentence, {}), words(std::to_array(all)), otherwise(usual) {}
+  constexpr ChoiceKey with_default(size_t usual) const {
+    return this->changed([=](ChoiceKey& key) { key.otherwise = usual; });
   }
 
   size_t read(const Settings& settings) const {
@@ -218,7 +198,7 @@ struct ChoiceKey : TypedKey<ChoiceKey<count>> {
       choices.push_back({std::string(words[i].name), std::string(words[i].what),
                          i < keys.size() ? keys[i] : std::vector<Key>{}});
     }
-    std::string key(this->name), sentence(this->what);
+    const std::string key(this->name), sentence(this->what);
     return this->declared(otherwise ? Key::choice_or(key, choices, *otherwise, sentence)
                                     : Key::choice(key, choices, sentence));
   }
@@ -229,36 +209,23 @@ struct ChoiceKey : TypedKey<ChoiceKey<count>> {
 struct Vec3Key : TypedKey<Vec3Key> {
   std::optional<std::array<double, 3>> otherwise;
 
-  constexpr Vec3Key(std::string_view key, std::string_view sentence) : TypedKey(key, sentence) {}
-  constexpr Vec3Key(std::string_view key, const std::array<double, 3>& otherwise_SI,
+  constexpr Vec3Key(std::string_view key, std::string_view sentence, const KeyTraits& own = {})
+      : TypedKey(key, sentence, own) {}
+  constexpr Vec3Key(std::string_view key, const std::array<double, 3>& usual,
                     std::string_view sentence)
-      : TypedKey(key, sentence), otherwise(otherwise_SI) {}
-
+      : TypedKey(key, sentence, {}), otherwise(usual) {}
   Vec3 read(const Settings& settings) const {
     return otherwise ? settings.vector3_or(name, Vec3(otherwise->data())) : settings.vector3(name);
   }
   operator Key() const;
 };
 
-// An array of three numbers each.
-struct Vec3sKey : TypedKey<Vec3sKey> {
-  constexpr Vec3sKey(std::string_view key, std::string_view sentence) : TypedKey(key, sentence) {}
-
-  std::vector<Vec3> read(const Settings& settings) const { return settings.vectors3(name); }
-  operator Key() const;
-};
-
-// An array of numbers.
 struct NumbersKey : TypedKey<NumbersKey> {
   Range range;
-  size_t size = 0;  // 0: any
 
-  constexpr NumbersKey(std::string_view key, Range admitted, std::string_view sentence)
-      : TypedKey(key, sentence), range(admitted) {}
-  constexpr NumbersKey of_size(size_t numbers) const {
-    return changed([numbers](NumbersKey& key) { key.size = numbers; });
-  }
-
+  constexpr NumbersKey(std::string_view key, Range admitted, std::string_view sentence,
+                       const KeyTraits& own = {})
+      : TypedKey(key, sentence, own), range(admitted) {}
   std::vector<double> read(const Settings& settings) const { return settings.numbers(name, range); }
   operator Key() const;
 };
@@ -267,25 +234,43 @@ struct NumbersKey : TypedKey<NumbersKey> {
 struct OtherKey : TypedKey<OtherKey> {
   unsigned forms;
 
-  constexpr OtherKey(std::string_view key, unsigned all, std::string_view sentence)
-      : TypedKey(key, sentence), forms(all) {}
-
+  constexpr OtherKey(std::string_view key, unsigned all, std::string_view sentence,
+                     const KeyTraits& own = {})
+      : TypedKey(key, sentence, own), forms(all) {}
   const SettingsNode& read(const Settings& settings) const { return settings.raw(name); }
   operator Key() const;
 };
 
-// A table below this one, declared with its keys.
-struct TableKey : TypedKey<TableKey> {
-  constexpr TableKey(std::string_view key, std::string_view sentence) : TypedKey(key, sentence) {}
+// Keys of which a name and a sentence are all.
+template <class Self>
+struct PlainKey : TypedKey<Self> {
+  constexpr PlainKey(std::string_view key, std::string_view sentence, const KeyTraits& own = {})
+      : TypedKey<Self>(key, sentence, own) {}
+};
 
+struct TextsKey : PlainKey<TextsKey> {
+  using PlainKey::PlainKey;
+  std::vector<std::string> read(const Settings& settings) const { return settings.texts(name); }
+  operator Key() const;
+};
+
+// An array of three numbers each.
+struct Vec3sKey : PlainKey<Vec3sKey> {
+  using PlainKey::PlainKey;
+  std::vector<Vec3> read(const Settings& settings) const { return settings.vectors3(name); }
+  operator Key() const;
+};
+
+// A table below this one, declared with its keys.
+struct TableKey : PlainKey<TableKey> {
+  using PlainKey::PlainKey;
   Settings read(const Settings& settings) const { return settings.table(name); }
   Key of(std::vector<Key> keys) const;
 };
 
 // An array of tables.
-struct TablesKey : TypedKey<TablesKey> {
-  constexpr TablesKey(std::string_view key, std::string_view sentence) : TypedKey(key, sentence) {}
-
+struct TablesKey : PlainKey<TablesKey> {
+  using PlainKey::PlainKey;
   std::vector<Settings> read(const Settings& settings) const { return settings.tables(name); }
   Key of(std::vector<Key> keys) const;
 };

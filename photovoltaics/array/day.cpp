@@ -10,53 +10,46 @@ namespace photorque {
 namespace {
 
 namespace day_key {
-
 constexpr double year_s = 366.0 * 86400.0;
 constexpr DaySettings usual;
 constexpr CellHeat usual_heat;
 constexpr Range efficiency{0.0, 1.0, true, false};
-constexpr NumberKey load{"load_W", usual.load_W, Range::not_negative(),
-                         "what is drawn all the time"};
-constexpr NumberKey duration{
-    "duration_s", usual.duration_s, {0.0, year_s, true, false}, "in steps of at most 30 s"};
-constexpr FlagKey lamps_on{"lamps_on", true, "false: the battery alone"};
-constexpr NumberKey battery{"battery_Wh", usual.battery.capacity_J, Range::positive(), "capacity"};
-constexpr NumberKey battery_charge{"battery_charge", usual.battery.charge, Range::fraction(),
-                                   "at the start"};
-constexpr NumberKey charge_efficiency{"charge_efficiency", usual.battery.charge_efficiency,
-                                      efficiency, "stored over delivered to it"};
-constexpr NumberKey discharge_efficiency{"discharge_efficiency", usual.battery.discharge_efficiency,
-                                         efficiency, "delivered over taken out of store"};
-constexpr NumberKey converter_efficiency{"converter_efficiency", usual.converter_efficiency,
+constexpr NumberKey load("load_W", usual.load_W, Range::not_negative(),
+                         "what is drawn all the time");
+constexpr NumberKey duration("duration_s", usual.duration_s, {0.0, year_s, true, false},
+                             "in steps of at most 30 s");
+constexpr FlagKey lamps_on("lamps_on", true, "false: the battery alone");
+constexpr NumberKey battery("battery_Wh", usual.battery.capacity_J, Range::positive(), "capacity");
+constexpr NumberKey battery_charge("battery_charge", usual.battery.charge, Range::fraction(),
+                                   "at the start");
+constexpr NumberKey charge_efficiency("charge_efficiency", usual.battery.charge_efficiency,
+                                      efficiency, "stored over delivered to it");
+constexpr NumberKey discharge_efficiency("discharge_efficiency", usual.battery.discharge_efficiency,
+                                         efficiency, "delivered over taken out of store");
+constexpr NumberKey converter_efficiency("converter_efficiency", usual.converter_efficiency,
                                          efficiency,
-                                         "between array and battery; not that of `[array.chain]`"};
-constexpr NumberKey droop_depth{"droop_depth",
-                                usual.droop.depth,
-                                {0.0, 1.0, false, true},
-                                "fraction of their light that lamps lose when warm"};
-constexpr NumberKey droop_time{"droop_time_s", usual.droop.time_constant_s, Range::positive(),
-                               "within this time constant"};
-constexpr NumberKey roll_off{
-    "roll_off_per_K",
-    usual.droop.roll_off_1_K,
-    {0.0, 0.1},
-    "fraction of their light that lamps lose per kelvin of their junctions (red "
-    "LEDs about 5e-3)"};
-constexpr NumberKey lamp_rise{
-    "lamp_rise_K", usual.droop.rise_K, {0.0, 300.0}, "how much warmer the junctions become"};
-constexpr NumberKey lamp_rise_time{"lamp_rise_time_s", usual.droop.rise_time_constant_s,
-                                   Range::positive(), "within this time constant"};
-constexpr FlagKey heat{"heat", true,
+                                         "between array and battery; not that of `[array.chain]`");
+constexpr NumberKey droop_depth("droop_depth", usual.droop.depth, {0.0, 1.0, false, true},
+                                "fraction of their light that lamps lose when warm");
+constexpr NumberKey droop_time("droop_time_s", usual.droop.time_constant_s, Range::positive(),
+                               "within this time constant");
+constexpr NumberKey roll_off(
+    "roll_off_per_K", usual.droop.roll_off_1_K, {0.0, 0.1},
+    "fraction of their light that lamps lose per kelvin of their junctions (red LEDs about 5e-3)");
+constexpr NumberKey lamp_rise("lamp_rise_K", usual.droop.rise_K, {0.0, 300.0},
+                              "how much warmer the junctions become");
+constexpr NumberKey lamp_rise_time("lamp_rise_time_s", usual.droop.rise_time_constant_s,
+                                   Range::positive(), "within this time constant");
+constexpr FlagKey heat("heat", true,
                        "cell temperature from the light, beginning at `air_K`; false: "
-                       "`array.temperature_K`, and the four keys below are unknown"};
-constexpr NumberKey air{"air_K", usual_heat.air_K, Range::positive(), "of the room"};
-constexpr NumberKey convection{"convection_W_m2_K", usual_heat.convection_W_m2_K, Range::positive(),
-                               "both faces and radiation, per area of the cells"};
-constexpr NumberKey absorptance{"absorptance", usual_heat.absorptance, Range::fraction(),
-                                "of the light on the cells; at least what they deliver"};
-constexpr NumberKey capacity{"capacity_J_m2_K", usual_heat.capacity_J_m2_K, Range::positive(),
-                             "about 1 mm of glass"};
-
+                       "`array.temperature_K`, and the four keys below are unknown");
+constexpr NumberKey air("air_K", usual_heat.air_K, Range::positive(), "of the room");
+constexpr NumberKey convection("convection_W_m2_K", usual_heat.convection_W_m2_K, Range::positive(),
+                               "both faces and radiation, per area of the cells");
+constexpr NumberKey absorptance("absorptance", usual_heat.absorptance, Range::fraction(),
+                                "of the light on the cells; at least what they deliver");
+constexpr NumberKey capacity("capacity_J_m2_K", usual_heat.capacity_J_m2_K, Range::positive(),
+                             "about 1 mm of glass");
 }  // namespace day_key
 
 // Power over temperature and light, on a small grid.

@@ -13,29 +13,23 @@ namespace photorque {
 namespace {
 
 namespace tracker_key {
-
 constexpr Tracker usual;
-constexpr auto kinds =
-    TextsKey{"kinds",
-             "of `\"perturb_and_observe\"`, `\"incremental_conductance\"`, "
-             "`\"global_scan\"`, `\"periodic_sweep\"`; the first counts in the losses"}
-        .usually("all four");
-constexpr NumberKey period{"period_s", usual.period_s, Range::positive(), "between decisions"};
-constexpr NumberKey step_fraction{"step_fraction",
-                                  usual.step_fraction,
-                                  {0.0, 0.5, true, false},
-                                  "step, of the range of voltages"};
-constexpr NumberKey start_fraction{"start_fraction",
-                                   usual.start_fraction,
-                                   {0.0, 1.0, true, false},
-                                   "where those begin that do not scan"};
-constexpr IntegerKey sweep_points{"sweep_points", usual.sweep_points, 2, 10000,
-                                  "of a sweep, one period each"};
-constexpr NumberKey sweep_every{"sweep_every_s", usual.sweep_every_s, Range::positive(),
-                                "of `periodic_sweep`"};
-constexpr NumberKey rescan_fraction{"rescan_fraction", usual.rescan_fraction, Range::positive(),
-                                    "of `global_scan`: change of power that starts a sweep"};
-
+constexpr TextsKey kinds(
+    "kinds",
+    "of `\"perturb_and_observe\"`, `\"incremental_conductance\"`, `\"global_scan\"`, "
+    "`\"periodic_sweep\"`; the first counts in the losses",
+    {.usually = "all four"});
+constexpr NumberKey period("period_s", usual.period_s, Range::positive(), "between decisions");
+constexpr NumberKey step_fraction("step_fraction", usual.step_fraction, {0.0, 0.5, true, false},
+                                  "step, of the range of voltages");
+constexpr NumberKey start_fraction("start_fraction", usual.start_fraction, {0.0, 1.0, true, false},
+                                   "where those begin that do not scan");
+constexpr IntegerKey sweep_points("sweep_points", usual.sweep_points, 2, 10000,
+                                  "of a sweep, one period each");
+constexpr NumberKey sweep_every("sweep_every_s", usual.sweep_every_s, Range::positive(),
+                                "of `periodic_sweep`");
+constexpr NumberKey rescan_fraction("rescan_fraction", usual.rescan_fraction, Range::positive(),
+                                    "of `global_scan`: change of power that starts a sweep");
 }  // namespace tracker_key
 
 constexpr const char* names[] = {"perturb_and_observe", "incremental_conductance", "global_scan",

@@ -10,29 +10,22 @@ namespace photorque {
 namespace {
 
 namespace cover_key {
-
-constexpr NumberKey refractive_index{
-    "refractive_index", CellFront{}.index, {1.0, 10.0}, "of the glass over the cells"};
-constexpr auto coating_index =
-    NumberKey{"coating_index",
-              {1.0, 10.0},
-              "of a film on it, for the mean wavelength of each band; with the next"}
-        .usually("no film");
-constexpr auto coating_thickness =
-    NumberKey{"coating_thickness_m", Range::positive(), "of that film"}.optional();
-constexpr auto angle =
-    NumbersKey{
-        "angle_deg", {0.0, 0.5 * pi}, "instead of these: angles of incidence, from 0, rising"}
-        .optional();
-constexpr auto transmittance =
-    NumbersKey{"transmittance", Range::fraction(), "T at each of them; only ratios count"}
-        .optional();
-constexpr FlagKey cosine_twice{
+constexpr NumberKey refractive_index("refractive_index", CellFront{}.index, {1.0, 10.0},
+                                     "of the glass over the cells");
+constexpr NumberKey coating_index(
+    "coating_index", {1.0, 10.0},
+    "of a film on it, for the mean wavelength of each band; with the next", {.usually = "no film"});
+constexpr NumberKey coating_thickness("coating_thickness_m", Range::positive(), "of that film",
+                                      {.optional = true});
+constexpr NumbersKey angle("angle_deg", {0.0, 0.5 * pi},
+                           "instead of these: angles of incidence, from 0, rising",
+                           {.optional = true});
+constexpr NumbersKey transmittance("transmittance", Range::fraction(),
+                                   "T at each of them; only ratios count", {.optional = true});
+constexpr FlagKey cosine_twice(
     "cosine_twice", false,
-    "instead of all these, T = cos θ: the light on the cells, which holds the cosine "
-    "already, counts with it once more; for the paper's figures "
-    "([paper.md](paper.md)), not for cells"};
-
+    "instead of all these, T = cos θ: the light on the cells, which holds the cosine already, "
+    "counts with it once more; for the paper's figures ([paper.md](paper.md)), not for cells");
 }  // namespace cover_key
 
 // Amplitudes reflected on the way from a medium of index n and cosine c into another.

@@ -18,9 +18,8 @@ namespace {
 constexpr double sum_tolerance = 1e-9;
 
 namespace surface_key {
-
 constexpr NumberKey fraction(std::string_view name, std::string_view what) {
-  return NumberKey{name, Range::fraction(), what}.one_or_several().optional();
+  return NumberKey(name, Range::fraction(), what, {.optional = true, .several = true});
 }
 constexpr NumberKey absorptance =
     fraction("absorptance", "fraction of the incident power; a number or one per band");
@@ -32,40 +31,33 @@ constexpr NumberKey transmittance =
              "to 1");
 constexpr NumberKey retroreflectance =
     fraction("retroreflectance", "a fifth fraction, back where it came from");
-constexpr auto roughness =
-    NumberKey{"roughness",
-              {0.0, 1.0, true},
-              "as in glTF: the specular fraction leaves by GGX microfacets of alpha = "
-              "roughness², Smith masking, with light reflected more than once given back, so "
-              "that `specular` stays the reflectance at every angle"}
-        .optional();
-constexpr auto slope_error =
-    NumberKey{"slope_error_mrad",
-              {1e-6, 0.2},
-              "instead: a mirror whose normal leans by Gaussian slopes of this standard "
-              "deviation along each axis; reflected rays stray by twice that"}
-        .optional();
-constexpr auto refractive_index =
-    NumberKey{"refractive_index",
-              {1.0, 10.0},
-              "glass in front, by Fresnel's law for unpolarised light; the fractions are those "
-              "behind it"}
-        .optional();
-constexpr auto brdf_file =
-    TextKey{"brdf_file", "instead of the fractions: measured scattering"}.optional();
-constexpr auto brdf_scale =
-    NumberKey{"brdf_scale", 1.0, Range::positive(), "a factor on it; a number or one per band"}
-        .one_or_several();
-constexpr auto back = TableKey{"back", "the same for the other side"}.usually("as the front");
-constexpr NumberKey reemitted{
+constexpr NumberKey roughness(
+    "roughness", {0.0, 1.0, true},
+    "as in glTF: the specular fraction leaves by GGX microfacets of alpha = roughness², "
+    "Smith masking, with light reflected more than once given back, so that `specular` "
+    "stays the reflectance at every angle",
+    {.optional = true});
+constexpr NumberKey slope_error(
+    "slope_error_mrad", {1e-6, 0.2},
+    "instead: a mirror whose normal leans by Gaussian slopes of this standard deviation "
+    "along each axis; reflected rays stray by twice that",
+    {.optional = true});
+constexpr NumberKey refractive_index(
+    "refractive_index", {1.0, 10.0},
+    "glass in front, by Fresnel's law for unpolarised light; the fractions are those behind it",
+    {.optional = true});
+constexpr TextKey brdf_file("brdf_file", "instead of the fractions: measured scattering",
+                            {.optional = true});
+constexpr NumberKey brdf_scale("brdf_scale", 1.0, Range::positive(),
+                               "a factor on it; a number or one per band", {.several = true});
+constexpr TableKey back("back", "the same for the other side", {.usually = "as the front"});
+constexpr NumberKey reemitted(
     "reemitted", 0.0, Range::fraction(),
-    "of the sheet: this fraction of the absorbed power leaves at once as heat, "
-    "by Lambert's law, from both sides in proportion to their emissivities. In "
-    "forces and torques only: the power stays booked as absorbed, and no part "
-    "is lit by another's heat"};
-constexpr NumberKey emissivity_front{"emissivity_front", 1.0, Range::fraction(), "of that heat"};
-constexpr NumberKey emissivity_back{"emissivity_back", 1.0, Range::fraction(), "of that heat"};
-
+    "of the sheet: this fraction of the absorbed power leaves at once as heat, by Lambert's law, "
+    "from both sides in proportion to their emissivities. In forces and torques only: the power "
+    "stays booked as absorbed, and no part is lit by another's heat");
+constexpr NumberKey emissivity_front("emissivity_front", 1.0, Range::fraction(), "of that heat");
+constexpr NumberKey emissivity_back("emissivity_back", 1.0, Range::fraction(), "of that heat");
 }  // namespace surface_key
 
 // One of the fractions: its key, and where it goes.

@@ -15,28 +15,24 @@ inline constexpr Range beam_half_angle{1e-12 * degree_rad, 0.5 * pi, false, fals
 inline constexpr double usual_led_width_m = 20e-9;  // spectral_fwhm_nm of LEDs
 
 namespace source_key {
-
-inline constexpr TextKey name{"name", "names results and messages"};  // the kind by default
-inline constexpr NumberKey power{"power_W", Range::positive(), "radiant power"};
+inline constexpr TextKey name("name", "names results and messages");  // the kind by default
+inline constexpr NumberKey power("power_W", Range::positive(), "radiant power");
 // Each kind says of what.
-inline constexpr Vec3Key position{"position_m", "of the lamp, lab axes"};
-inline constexpr auto direction =
-    Vec3Key{"direction", "where it looks, lab axes, any length; or `aim_m`"}.optional();
-inline constexpr auto aim =
-    Vec3Key{"aim_m", "instead of `direction`: the point that it looks at"}.optional();
-inline constexpr NumberKey wavelength{"wavelength_nm", {1e-8, 1e-3}, "middle of the spectrum"};
-inline constexpr NumberKey spectral_fwhm{
-    "spectral_fwhm_nm",
-    usual_led_width_m,
-    {0.0, 1e-3},
-    "full width at half maximum of the spectrum, a Gaussian; 0: a line"};
-inline constexpr NumberKey aperture_diameter{"aperture_diameter_m", opening_diameter,
-                                             "of the opening that light leaves"};
+inline constexpr Vec3Key position("position_m", "of the lamp, lab axes");
+inline constexpr Vec3Key direction("direction", "where it looks, lab axes, any length; or `aim_m`",
+                                   {.optional = true});
+inline constexpr Vec3Key aim("aim_m", "instead of `direction`: the point that it looks at",
+                             {.optional = true});
+inline constexpr NumberKey wavelength("wavelength_nm", {1e-8, 1e-3}, "middle of the spectrum");
+inline constexpr NumberKey spectral_fwhm(
+    "spectral_fwhm_nm", usual_led_width_m, {0.0, 1e-3},
+    "full width at half maximum of the spectrum, a Gaussian; 0: a line");
+inline constexpr NumberKey aperture_diameter("aperture_diameter_m", opening_diameter,
+                                             "of the opening that light leaves");
 
 // Where light travels that comes from nowhere near.
-inline constexpr Vec3Key light_direction{"direction",
-                                         "in which light travels, lab axes, any length"};
-
+inline constexpr Vec3Key light_direction("direction",
+                                         "in which light travels, lab axes, any length");
 }  // namespace source_key
 
 // read_sunlight().

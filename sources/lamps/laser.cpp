@@ -32,13 +32,11 @@ namespace {
 constexpr Range paraxial{0.0, 30.0 * degree_rad, false, false};
 
 namespace key {
-
-constexpr NumberKey waist_radius{"waist_radius_m", Range::positive(),
-                                 "1/e² radius of the irradiance"};
-constexpr auto divergence_half_angle =
-    NumberKey{"divergence_half_angle_deg", paraxial, "1/e² half angle of the far field"}.usually(
-        "diffraction");
-
+constexpr NumberKey waist_radius("waist_radius_m", Range::positive(),
+                                 "1/e² radius of the irradiance");
+constexpr NumberKey divergence_half_angle("divergence_half_angle_deg", paraxial,
+                                          "1/e² half angle of the far field",
+                                          {.usually = "diffraction"});
 }  // namespace key
 
 class GaussianBeam : public Emitter {

@@ -43,43 +43,37 @@ constexpr int64_t max_leds = 100000;
 enum class Layout : size_t { grid, ring, hexagonal, positions };
 
 namespace key {
-
-constexpr ChoiceKey layout{"layout",
+constexpr ChoiceKey layout("layout",
                            {{"grid", "columns and rows"},
                             {"ring", "evenly on a circle, from +x on"},
                             {"hexagonal", "close packed, the ring around the centre first"},
                             {"positions", "at given points"}},
-                           "how the LEDs stand"};
-constexpr auto grid_count =
-    NumbersKey{"count", {1.0, max_leds, false, false}, "of LEDs, [along x, along y]"}.of_size(2);
-constexpr auto grid_pitch =
-    NumberKey{"pitch_m", Range::positive(), "from one LED to the next; or [along x, along y]"}
-        .one_or_several();
-constexpr IntegerKey count{"count", 1, max_leds, "of LEDs"};
-constexpr NumberKey ring_radius{"ring_radius_m", Range::positive(), "of the circle"};
-constexpr NumberKey pitch{"pitch_m", Range::positive(), "from one LED to the next"};
-constexpr Vec3sKey positions{"positions_m", "of the LEDs, lab axes"};
-constexpr ChoiceKey aim{"aim",
+                           "how the LEDs stand");
+constexpr NumbersKey grid_count("count", {1.0, max_leds, false, false},
+                                "of LEDs, [along x, along y]", {.size = 2});
+constexpr NumberKey grid_pitch("pitch_m", Range::positive(),
+                               "from one LED to the next; or [along x, along y]",
+                               {.several = true});
+constexpr IntegerKey count("count", 1, max_leds, "of LEDs");
+constexpr NumberKey ring_radius("ring_radius_m", Range::positive(), "of the circle");
+constexpr NumberKey pitch("pitch_m", Range::positive(), "from one LED to the next");
+constexpr Vec3sKey positions("positions_m", "of the LEDs, lab axes");
+constexpr ChoiceKey aim("aim",
                         {{"parallel", "all along `direction`"}, {"converging", "all at one point"}},
-                        0,
-                        "where the LEDs look"};
-constexpr auto focus = NumberKey{"focus_m", Range::positive(),
-                                 "instead of `aim_m`: the point lies so far along `direction` "
-                                 "from the centre"}
-                           .optional();
-constexpr auto total_power =
-    NumberKey{"total_power_W", Range::positive(), "of all LEDs, instead of `power_W` of each"}
-        .optional();
-constexpr NumberKey power_spread{
-    "power_spread", 0.0, {0.0, 0.5}, "relative standard deviation of the LEDs' powers"};
-constexpr NumberKey aim_spread{
-    "aim_spread_deg",
-    0.0,
-    {0.0, 0.5},
-    "standard deviation of their axes, about each of two directions across"};
-constexpr IntegerKey spread_seed{"spread_seed", 1, 0, INT64_MAX,
-                                 "which panel of all that could be built so; 0: none differs"};
-
+                        0, "where the LEDs look");
+constexpr NumberKey focus(
+    "focus_m", Range::positive(),
+    "instead of `aim_m`: the point lies so far along `direction` from the centre",
+    {.optional = true});
+constexpr NumberKey total_power("total_power_W", Range::positive(),
+                                "of all LEDs, instead of `power_W` of each", {.optional = true});
+constexpr NumberKey power_spread("power_spread", 0.0, {0.0, 0.5},
+                                 "relative standard deviation of the LEDs' powers");
+constexpr NumberKey aim_spread(
+    "aim_spread_deg", 0.0, {0.0, 0.5},
+    "standard deviation of their axes, about each of two directions across");
+constexpr IntegerKey spread_seed("spread_seed", 1, 0, INT64_MAX,
+                                 "which panel of all that could be built so; 0: none differs");
 }  // namespace key
 
 std::vector<Vec3> grid(int columns, int rows, const Vec2& pitch_m) {

@@ -162,9 +162,7 @@ namespace photorque::kinds::ray_file {
 namespace {
 
 namespace key {
-
-constexpr TextKey file{"file", "IES TM-25, Zemax binary or LightTools text"};
-
+constexpr TextKey file("file", "IES TM-25, Zemax binary or LightTools text");
 }  // namespace key
 
 std::string sum_notice(const RaySet& set) {

@@ -14,60 +14,50 @@ namespace photorque {
 namespace {
 
 namespace lamp_key {
-
-constexpr NumberKey fwhm{"fwhm_deg", beam_width, "full width at half of the maximum intensity"};
-constexpr NumberKey order{
-    "order", {2.0, 100.0, false, false}, "2 is a Gaussian, 100 nearly a disc"};
-constexpr NumberKey half_angle{"half_angle_deg", beam_half_angle, "from axis to edge"};
-constexpr ChoiceKey pillbox_measure{
-    "pillbox_measure", {"angle", "solid_angle", "projected"}, "over what the flux is even"};
-constexpr NumberKey exponent{"exponent", {0.0, 1e9, false, false}, "m; 1 is Lambert's law"};
-constexpr ChoiceKey profile{
+constexpr NumberKey fwhm("fwhm_deg", beam_width, "full width at half of the maximum intensity");
+constexpr NumberKey order("order", {2.0, 100.0, false, false},
+                          "2 is a Gaussian, 100 nearly a disc");
+constexpr NumberKey half_angle("half_angle_deg", beam_half_angle, "from axis to edge");
+constexpr ChoiceKey pillbox_measure("pillbox_measure", {"angle", "solid_angle", "projected"},
+                                    "over what the flux is even");
+constexpr NumberKey exponent("exponent", {0.0, 1e9, false, false}, "m; 1 is Lambert's law");
+constexpr ChoiceKey profile(
     "profile",
     {{"gaussian", "exp(−4 ln 2 θ²/fwhm²)"},
      {"super_gaussian", "exp(−ln 2 (2θ/fwhm)^order)"},
      {"pillbox", "constant to the edge"},
      {"cosine_power", "cosᵐ θ"}},
-    "how the radiant intensity, per solid angle, falls with the angle θ from the axis"};
-constexpr auto halo_fraction =
-    NumberKey{"halo_fraction",
-              {0.0, 1.0, false, true},
-              "part of the flux in a wider Gaussian; with `halo_fwhm_deg`"}
-        .usually("no halo");
-constexpr auto halo_fwhm = NumberKey{"halo_fwhm_deg", beam_width, "of that Gaussian"}.optional();
-constexpr auto die_size =
-    NumberKey{"die_size_m", Range::positive(),
-              "edge of the square that emits: warns of a beam that no optics can make"}
-        .optional();
-constexpr auto die_diameter =
-    NumberKey{"die_diameter_m", Range::positive(), "the same of a round one"}.optional();
-constexpr NumberKey lens_index{
-    "lens_index", 1.0, {1.0, 5.0, false, false}, "refractive index around the die"};
-
+    "how the radiant intensity, per solid angle, falls with the angle θ from the axis");
+constexpr NumberKey halo_fraction("halo_fraction", {0.0, 1.0, false, true},
+                                  "part of the flux in a wider Gaussian; with `halo_fwhm_deg`",
+                                  {.usually = "no halo"});
+constexpr NumberKey halo_fwhm("halo_fwhm_deg", beam_width, "of that Gaussian", {.optional = true});
+constexpr NumberKey die_size(
+    "die_size_m", Range::positive(),
+    "edge of the square that emits: warns of a beam that no optics can make", {.optional = true});
+constexpr NumberKey die_diameter("die_diameter_m", Range::positive(), "the same of a round one",
+                                 {.optional = true});
+constexpr NumberKey lens_index("lens_index", 1.0, {1.0, 5.0, false, false},
+                               "refractive index around the die");
 }  // namespace lamp_key
 
 namespace place_key {
-
-constexpr auto positions =
-    Vec3sKey{"positions_m", "one lamp at each, instead of `position_m`"}.optional();
-constexpr NumberKey turn{"turn_deg", 0.0, {}, "about the beam, right-handed about its direction"};
-
+constexpr Vec3sKey positions("positions_m", "one lamp at each, instead of `position_m`",
+                             {.optional = true});
+constexpr NumberKey turn("turn_deg", 0.0, {}, "about the beam, right-handed about its direction");
 }  // namespace place_key
 
 namespace sunlight_key {
-
-constexpr ChoiceKey spectrum{"spectrum",
+constexpr ChoiceKey spectrum("spectrum",
                              {{"blackbody", "Planck's law"},
                               {"AM0", "above the atmosphere, ASTM G173-03, 280 to 4000 nm"},
                               {"AM1.5G", "on the ground, ASTM G173-03, 280 to 4000 nm"}},
-                             0,
-                             "what it shines with"};
-constexpr NumberKey temperature{
-    "temperature_K", solar_temperature_K, {100.0, 1e6, false, false}, "of the black body"};
-constexpr auto irradiance = NumberKey{"irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
-                                      "on a plane normal to the light"}
-                                .usually("1361; with `AM1.5G` 1000");
-
+                             0, "what it shines with");
+constexpr NumberKey temperature("temperature_K", solar_temperature_K, {100.0, 1e6, false, false},
+                                "of the black body");
+constexpr NumberKey irradiance("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
+                               "on a plane normal to the light",
+                               {.usually = "1361; with `AM1.5G` 1000"});
 }  // namespace sunlight_key
 
 AngularProfile read_core(const Settings& settings) {

@@ -31,19 +31,14 @@ namespace photorque::kinds::sun {
 namespace {
 
 namespace key {
-
-constexpr NumberKey angular_radius{"angular_radius_deg",
-                                   solar_angular_radius_rad,
+constexpr NumberKey angular_radius("angular_radius_deg", solar_angular_radius_rad,
                                    {0.0, 0.25 * pi, false, false},
-                                   "of the disc in the sky; 0 is parallel light"};
-constexpr auto limb_darkening =
-    NumbersKey{"limb_darkening",
-               {-1.0, 1.0},
-               "[u1, u2]: radiance 1 − u1 (1 − μ) − u2 (1 − μ)², μ = √(1 − r²) at r "
-               "radii from the middle; [0.47, 0.23] in visible light"}
-        .of_size(2)
-        .usually("none");
-
+                                   "of the disc in the sky; 0 is parallel light");
+constexpr NumbersKey limb_darkening(
+    "limb_darkening", {-1.0, 1.0},
+    "[u1, u2]: radiance 1 − u1 (1 − μ) − u2 (1 − μ)², μ = √(1 − r²) at r radii from the "
+    "middle; [0.47, 0.23] in visible light",
+    {.usually = "none", .size = 2});
 }  // namespace key
 
 // A disc in the sky that is brighter in its middle than at its edge, as stars are.

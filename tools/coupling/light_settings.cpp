@@ -8,36 +8,29 @@ namespace photorque {
 namespace {
 
 namespace light_key {
-
-constexpr ChoiceKey mode{"mode",
+constexpr ChoiceKey mode("mode",
                          {{"table", "traced once over the attitudes"},
                           {"trace", "traced at every exchange of the run"},
                           {"off", "light and array left out"}},
-                         0,
-                         "how light enters the run"};
-constexpr NumberKey tolerance{
-    "tolerance",
-    1e-3,
-    {1e-6, 0.1},
-    "error of the table, of torque, force, photocurrents and light on the cells, "
-    "each relative to its largest"};
-constexpr NumberKey step{"step_s", 1.0, {1e-3, 3600.0}, "between exchanges of motion and power"};
-constexpr auto rays =
-    IntegerKey{"rays", 256, int64_t{1} << 40, "per attitude"}.usually("`trace.rays`, at most 2^18");
-constexpr IntegerKey max_traces{"max_traces", 20000, 100, 10'000'000,
-                                "attitudes of a table, after which it is refined no further"};
-constexpr auto max_tilt =
-    NumberKey{"max_tilt_deg", {0.0, pi, true, false}, "the widest table"}.usually(
-        "the platform's stop, or 180");
-constexpr auto cache =
-    TextKey{"cache", "where tables are kept, relative to the experiment; `\"\"`: nowhere"}.usually(
-        "the user's cache folder");
-constexpr NumberKey time{"time_s", {}, "in order"};
-constexpr TextKey source{"source", "", "by name; none: all"};
-constexpr FlagKey on{"on", true, "false: off"};
-constexpr TablesKey switch_key{"switch", "lamps are switched"};
-constexpr TableKey light{"light", "light in a run of the motion"};
-
+                         0, "how light enters the run");
+constexpr NumberKey tolerance("tolerance", 1e-3, {1e-6, 0.1},
+                              "error of the table, of torque, force, photocurrents and light on "
+                              "the cells, each relative to its largest");
+constexpr NumberKey step("step_s", 1.0, {1e-3, 3600.0}, "between exchanges of motion and power");
+constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "per attitude",
+                          {.usually = "`trace.rays`, at most 2^18"});
+constexpr IntegerKey max_traces("max_traces", 20000, 100, 10'000'000,
+                                "attitudes of a table, after which it is refined no further");
+constexpr NumberKey max_tilt("max_tilt_deg", {0.0, pi, true, false}, "the widest table",
+                             {.usually = "the platform's stop, or 180"});
+constexpr TextKey cache("cache",
+                        "where tables are kept, relative to the experiment; `\"\"`: nowhere",
+                        {.usually = "the user's cache folder"});
+constexpr NumberKey time("time_s", {}, "in order");
+constexpr TextKey source("source", "", "by name; none: all");
+constexpr FlagKey on("on", true, "false: off");
+constexpr TablesKey switch_key("switch", "lamps are switched");
+constexpr TableKey light("light", "light in a run of the motion");
 }  // namespace light_key
 
 // Where programs keep what they can make again (freedesktop.org, XDG Base Directory Specification).

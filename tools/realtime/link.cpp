@@ -11,27 +11,24 @@ namespace photorque {
 namespace {
 
 namespace link_key {
-
 constexpr Range up_to_an_hour{0.0, 3600.0};
-constexpr NumberKey delay{"delay_s", 0.0, up_to_an_hour, "the least that a packet takes"};
-constexpr NumberKey jitter{"jitter_s", 0.0, up_to_an_hour, "beyond it, as `jitter` says"};
-constexpr ChoiceKey jitter_law{"jitter",
+constexpr NumberKey delay("delay_s", 0.0, up_to_an_hour, "the least that a packet takes");
+constexpr NumberKey jitter("jitter_s", 0.0, up_to_an_hour, "beyond it, as `jitter` says");
+constexpr ChoiceKey jitter_law("jitter",
                                {{"exponential", "of this mean"},
                                 {"uniform", "up to this"},
                                 {"gaussian", "the absolute value of one of this scale"}},
-                               0,
-                               "how the delay is spread"};
-constexpr NumberKey loss{"loss", 0.0, Range::fraction(), "fraction of packets, each by itself"};
-constexpr NumberKey burst_begin{
+                               0, "how the delay is spread");
+constexpr NumberKey loss("loss", 0.0, Range::fraction(), "fraction of packets, each by itself");
+constexpr NumberKey burst_begin(
     "burst_begin", 0.0, Range::fraction(),
-    "Gilbert and Elliott's two states: probability per packet that a burst begins"};
-constexpr NumberKey burst_end{"burst_end", 1.0, {0.0, 1.0, true, false}, "that it ends"};
-constexpr NumberKey burst_loss{"burst_loss", 1.0, Range::fraction(), "that a packet is lost in it"};
-constexpr FlagKey reorder{"reorder", true, "packets may overtake each other"};
-constexpr auto trace =
-    TextKey{"trace", "a CSV with `delay_s`, measured delays taken in turn instead (−1: lost)"}
-        .usually("none");
-
+    "Gilbert and Elliott's two states: probability per packet that a burst begins");
+constexpr NumberKey burst_end("burst_end", 1.0, {0.0, 1.0, true, false}, "that it ends");
+constexpr NumberKey burst_loss("burst_loss", 1.0, Range::fraction(), "that a packet is lost in it");
+constexpr FlagKey reorder("reorder", true, "packets may overtake each other");
+constexpr TextKey trace("trace",
+                        "a CSV with `delay_s`, measured delays taken in turn instead (−1: lost)",
+                        {.usually = "none"});
 }  // namespace link_key
 
 enum LinkDraw : uint64_t { lost_alone, burst_changes, lost_in_burst, jitter_u, jitter_v };

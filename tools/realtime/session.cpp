@@ -15,54 +15,44 @@ namespace photorque {
 namespace {
 
 namespace serve_key {
-
 constexpr ServeSettings usual;
-constexpr ChoiceKey mode{
-    "mode",
-    {{"paced", "by the clock"}, {"lockstep", "every tick waits for the client's answer"}},
-    0,
-    "what the ticks follow"};
-constexpr NumberKey rate{
-    "rate_Hz", usual.rate_Hz, {0.1, 1e5}, "ticks; also the rows of `recording.csv`"};
-constexpr TextKey address{"address", usual.address, "where UDP listens, IPv4"};
-constexpr IntegerKey port{"port", PHOTORQUE_PORT, 0, 65535,
-                          "of UDP; 0: any that is free, which the first line says"};
-constexpr FlagKey wait_for_client{"wait_for_client", true, "before the first tick"};
-constexpr NumberKey client_timeout{
-    "client_timeout_s",
-    usual.client_timeout_s,
-    {1e-3, 1e6},
-    "for the first hello and, in lockstep, for every answer; then the run ends "
-    "with status 3"};
-constexpr NumberKey max_torque{"max_torque_N_m", usual.max_torque_N_m, Range::positive(),
-                               "commands beyond are refused"};
-constexpr auto hold =
-    NumberKey{"hold_s", Range::positive(), "a command that is not renewed for so long becomes zero"}
-        .usually("never");
-constexpr auto deadline = NumberKey{"deadline_s", Range::positive(),
-                                    "a tick that is served later than this counts as missed"}
-                              .usually("a step");
-constexpr ChoiceKey on_miss{"on_miss",
+constexpr ChoiceKey mode("mode",
+                         {{"paced", "by the clock"},
+                          {"lockstep", "every tick waits for the client's answer"}},
+                         0, "what the ticks follow");
+constexpr NumberKey rate("rate_Hz", usual.rate_Hz, {0.1, 1e5},
+                         "ticks; also the rows of `recording.csv`");
+constexpr TextKey address("address", usual.address, "where UDP listens, IPv4");
+constexpr IntegerKey port("port", PHOTORQUE_PORT, 0, 65535,
+                          "of UDP; 0: any that is free, which the first line says");
+constexpr FlagKey wait_for_client("wait_for_client", true, "before the first tick");
+constexpr NumberKey client_timeout(
+    "client_timeout_s", usual.client_timeout_s, {1e-3, 1e6},
+    "for the first hello and, in lockstep, for every answer; then the run ends with status 3");
+constexpr NumberKey max_torque("max_torque_N_m", usual.max_torque_N_m, Range::positive(),
+                               "commands beyond are refused");
+constexpr NumberKey hold("hold_s", Range::positive(),
+                         "a command that is not renewed for so long becomes zero",
+                         {.usually = "never"});
+constexpr NumberKey deadline("deadline_s", Range::positive(),
+                             "a tick that is served later than this counts as missed",
+                             {.usually = "a step"});
+constexpr ChoiceKey on_miss("on_miss",
                             {{"catch_up", "the next ticks follow at once"},
                              {"slip", "the clock is set back"},
                              {"stop", "the run ends"}},
-                            0,
-                            "what follows a missed tick"};
-constexpr NumberKey spin{
-    "spin_s",
-    usual.spin_s,
-    {0.0, 1.0},
-    "before a tick it looks again and again instead of sleeping; costs processor "
-    "time, saves the time of waking up"};
-constexpr IntegerKey realtime_priority{
+                            0, "what follows a missed tick");
+constexpr NumberKey spin("spin_s", usual.spin_s, {0.0, 1.0},
+                         "before a tick it looks again and again instead of sleeping; costs "
+                         "processor time, saves the time of waking up");
+constexpr IntegerKey realtime_priority(
     "realtime_priority", 0, 0, 99,
-    "above 0: SCHED_FIFO and locked memory, where the system permits it"};
-constexpr FlagKey send_truth{"send_truth", false,
-                             "the true attitude and rate in every measurement"};
-constexpr TableKey to_client{"to_client", "a simulated link for measurements"};
-constexpr TableKey from_client{"from_client", "a simulated link for commands"};
-constexpr TableKey serve{"serve", "a run in real time"};
-
+    "above 0: SCHED_FIFO and locked memory, where the system permits it");
+constexpr FlagKey send_truth("send_truth", false,
+                             "the true attitude and rate in every measurement");
+constexpr TableKey to_client("to_client", "a simulated link for measurements");
+constexpr TableKey from_client("from_client", "a simulated link for commands");
+constexpr TableKey serve("serve", "a run in real time");
 }  // namespace serve_key
 
 }  // namespace

@@ -11,64 +11,51 @@ namespace {
 constexpr Range efficiency{0.0, 1.0, true, false};
 
 namespace chain_key {
-
-constexpr auto wall_plug =
-    NumberKey{"wall_plug_efficiency", efficiency, "light over mains"}.usually("left out");
-constexpr auto collimator =
-    NumberKey{"collimator_efficiency", efficiency, "of the lamps' optics"}.usually("left out");
-constexpr auto converter =
-    NumberKey{"converter_efficiency", efficiency, "after the array"}.usually("left out");
-
+constexpr NumberKey wall_plug("wall_plug_efficiency", efficiency, "light over mains",
+                              {.usually = "left out"});
+constexpr NumberKey collimator("collimator_efficiency", efficiency, "of the lamps' optics",
+                               {.usually = "left out"});
+constexpr NumberKey converter("converter_efficiency", efficiency, "after the array",
+                              {.usually = "left out"});
 }  // namespace chain_key
 
 namespace target_key {
-
-constexpr auto power = NumberKey{"power_W", Range::positive(), "what the array is to give"}.usually(
-    "`array_power_W` of `[[published]]` at zero tilt");
-constexpr auto cell_efficiency =
-    NumberKey{"efficiency", efficiency, "of light on the cells"}.usually(
-        "`array_efficiency` of `[[published]]`");
-
+constexpr NumberKey power("power_W", Range::positive(), "what the array is to give",
+                          {.usually = "`array_power_W` of `[[published]]` at zero tilt"});
+constexpr NumberKey cell_efficiency("efficiency", efficiency, "of light on the cells",
+                                    {.usually = "`array_efficiency` of `[[published]]`"});
 }  // namespace target_key
 
 namespace motion_key {
-
-constexpr auto time =
-    NumbersKey{"time_s", {}, "instants, rising, at least two"}.usually("none: for `propagate`");
-constexpr auto tilt =
-    NumbersKey{"tilt_deg", {-pi, pi}, "with `time_s`: one per instant"}.optional();
-constexpr auto heading =
-    NumbersKey{"heading_deg", {-2.0 * pi, 2.0 * pi}, "one per instant"}.usually("0");
-
+constexpr NumbersKey time("time_s", {}, "instants, rising, at least two",
+                          {.usually = "none: for `propagate`"});
+constexpr NumbersKey tilt("tilt_deg", {-pi, pi}, "with `time_s`: one per instant",
+                          {.optional = true});
+constexpr NumbersKey heading("heading_deg", {-2.0 * pi, 2.0 * pi}, "one per instant",
+                             {.usually = "0"});
 }  // namespace motion_key
 
 namespace report_key {
-
-constexpr auto receiver =
-    TextKey{"receiver", "the map whose light the cells take"}.usually("the first `flux_map`");
-constexpr TableKey chain{"chain", "stages before and after the array in the list of losses"};
-constexpr TableKey target{
+constexpr TextKey receiver("receiver", "the map whose light the cells take",
+                           {.usually = "the first `flux_map`"});
+constexpr TableKey chain("chain", "stages before and after the array in the list of losses");
+constexpr TableKey target(
     "target",
     "what these require: EQE · V_oc · FF, light on the cells, what each known cell reaches, how "
-    "the "
-    "power changes with light, temperature, resistances; and what the published powers at other "
-    "tilts need beyond the cosine"};
-constexpr TableKey tracker{
-    "tracker",
-    "four trackers on the exact curves while the platform moves through these "
-    "instants"};
-constexpr TableKey day{"day",
+    "the power changes with light, temperature, resistances; and what the published powers at "
+    "other tilts need beyond the cosine");
+constexpr TableKey tracker(
+    "tracker", "four trackers on the exact curves while the platform moves through these instants");
+constexpr TableKey day("day",
                        "array and battery over time; with the first tracker's efficiency if there "
-                       "is an `[array.tracker]`"};
-constexpr IntegerKey most_tried{"most_tried", 2000, 1, 10000000,
-                                "assignments of cells to strings: every one if there are "
-                                "few, else exchanges of pairs"};
-constexpr TableKey layout{
-    "layout",
-    "a better wiring for the attitudes of the motion, with the bound that none "
-    "exceeds. Not with `cross_tied`"};
-constexpr TableKey array{"array", "cells and wiring on a flux map"};
-
+                       "is an `[array.tracker]`");
+constexpr IntegerKey most_tried(
+    "most_tried", 2000, 1, 10000000,
+    "assignments of cells to strings: every one if there are few, else exchanges of pairs");
+constexpr TableKey layout("layout",
+                          "a better wiring for the attitudes of the motion, with the bound that "
+                          "none exceeds. Not with `cross_tied`");
+constexpr TableKey array("array", "cells and wiring on a flux map");
 }  // namespace report_key
 
 std::optional<double> published_upright(const std::vector<PublishedFigure>& figures,

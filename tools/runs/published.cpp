@@ -8,21 +8,19 @@ namespace photorque {
 namespace {
 
 namespace published_key {
-
-constexpr TextKey quantity{"quantity", "a name in `summary.json`"};
-constexpr NumberKey value{"value", {}, "in its unit"};
-constexpr NumberKey tilt{"tilt_deg", 0.0, {0.0, pi}, "at which it holds"};
-constexpr auto rounded_to =
-    NumberKey{"rounded_to", Range::positive(),
-              "one unit of its last printed digit (38 %: 0.01): ours is held against it, and "
-              "`published_misfit` of the summary is the sum of ((ours − `value`)/(½ "
-              "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees"}
-        .optional();
-constexpr TextKey source{"source", "who printed it"};
-constexpr TextKey why{"why", "", "ours differs"};
-constexpr TablesKey published{"published",
-                              "a figure that somebody printed, compared at the same tilt"};
-
+constexpr TextKey quantity("quantity", "a name in `summary.json`");
+constexpr NumberKey value("value", {}, "in its unit");
+constexpr NumberKey tilt("tilt_deg", 0.0, {0.0, pi}, "at which it holds");
+constexpr NumberKey rounded_to(
+    "rounded_to", Range::positive(),
+    "one unit of its last printed digit (38 %: 0.01): ours is held against it, and "
+    "`published_misfit` of the summary is the sum of ((ours − `value`)/(½ "
+    "`rounded_to`))²: for `optimise`, at most 1 for each figure that agrees",
+    {.optional = true});
+constexpr TextKey source("source", "who printed it");
+constexpr TextKey why("why", "", "ours differs");
+constexpr TablesKey published("published",
+                              "a figure that somebody printed, compared at the same tilt");
 }  // namespace published_key
 
 }  // namespace

@@ -11,18 +11,16 @@ namespace {
 constexpr Range conversion_range{0.0, 1.0, true, false};
 
 namespace beam_key {
-
-constexpr TextKey name{"name", "of the way"};
-constexpr TextKey experiment{"experiment",
-                             "beside this one; with `[scene]`, sources and `[array]`"};
-constexpr NumberKey lamp_efficiency{"lamp_efficiency", 0.5, conversion_range, "light over mains"};
-constexpr NumberKey converter_efficiency{"converter_efficiency", 0.97, conversion_range,
-                                         "after the array"};
-constexpr NumberKey array_mass{"array_mass_kg", 0.25, Range::not_negative(), "carried"};
-constexpr auto rays =
-    IntegerKey{"rays", 256, int64_t{1} << 40, "of the trace"}.usually("those of that experiment");
-constexpr TablesKey beam{"beam", "light on an array"};
-
+constexpr TextKey name("name", "of the way");
+constexpr TextKey experiment("experiment",
+                             "beside this one; with `[scene]`, sources and `[array]`");
+constexpr NumberKey lamp_efficiency("lamp_efficiency", 0.5, conversion_range, "light over mains");
+constexpr NumberKey converter_efficiency("converter_efficiency", 0.97, conversion_range,
+                                         "after the array");
+constexpr NumberKey array_mass("array_mass_kg", 0.25, Range::not_negative(), "carried");
+constexpr IntegerKey rays("rays", 256, int64_t{1} << 40, "of the trace",
+                          {.usually = "those of that experiment"});
+constexpr TablesKey beam("beam", "light on an array");
 }  // namespace beam_key
 
 RunOptions options_of_beam(const Settings& s, const RunOptions& options) {

@@ -14,18 +14,14 @@ namespace photorque {
 namespace {
 
 namespace supply_key {
-
-constexpr NumberKey load{"load_W", 25.0, Range::positive(), "what is delivered"};
-constexpr NumberKey duration{"duration_h", 86400.0, Range::positive(), "of the task"};
-constexpr auto tilt_max =
-    NumberKey{"tilt_max_deg", {0.0, 80.0 * degree_rad, true, false}, "the largest tilt"}.usually(
-        "the platform's stop, else 30");
-constexpr IntegerKey tilts{"tilts", 7, 2, 181, "from zero to it"};
-constexpr TableKey supply{
-    "supply_trade",
-    "the ways to feed a platform side by side: battery, cable and induction are compared always, "
-    "with the defaults where they have no table"};
-
+constexpr NumberKey load("load_W", 25.0, Range::positive(), "what is delivered");
+constexpr NumberKey duration("duration_h", 86400.0, Range::positive(), "of the task");
+constexpr NumberKey tilt_max("tilt_max_deg", {0.0, 80.0 * degree_rad, true, false},
+                             "the largest tilt", {.usually = "the platform's stop, else 30"});
+constexpr IntegerKey tilts("tilts", 7, 2, 181, "from zero to it");
+constexpr TableKey supply("supply_trade",
+                          "the ways to feed a platform side by side: battery, cable and induction "
+                          "are compared always, with the defaults where they have no table");
 }  // namespace supply_key
 
 }  // namespace

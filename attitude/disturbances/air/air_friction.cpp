@@ -10,8 +10,8 @@
 namespace photorque::kinds::air_friction {
 namespace {
 
-constexpr auto braking = ScalarKey{"coefficient", Range::not_negative(),
-                                   "k in T = −k |ω|^½ ω, N m s^1.5; *or* `[[disturbance.part]]`"}
+constexpr auto braking = ScalarKey("coefficient", Range::not_negative(),
+                                   "k in T = −k |ω|^½ ω, N m s^1.5; *or* `[[disturbance.part]]`")
                              .optional();
 
 struct AirFriction final : TorqueLaw<AirFriction> {

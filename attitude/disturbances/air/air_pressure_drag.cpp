@@ -11,8 +11,8 @@ namespace photorque::kinds::air_pressure_drag {
 namespace {
 
 constexpr auto braking =
-    ScalarKey{"coefficient_N_m_s2", Range::not_negative(),
-              "k in T = −k |ω| ω, or three, for body x, y and z; *or* `[[disturbance.part]]`"}
+    ScalarKey("coefficient_N_m_s2", Range::not_negative(),
+              "k in T = −k |ω| ω, or three, for body x, y and z; *or* `[[disturbance.part]]`")
         .optional();
 
 struct AirPressureDrag final : TorqueLaw<AirPressureDrag> {

@@ -8,20 +8,19 @@ namespace photorque {
 namespace {
 
 namespace part_key {
-
-constexpr NumberKey radius{"radius_m", Range::positive(), "of the disc"};
-constexpr NumberKey length{"length_m", Range::positive(), "along the flow"};
-constexpr NumberKey area{"area_m2", Range::positive(), "of a face"};
-constexpr NumberKey distance{"distance_m", Range::not_negative(), "of its centre from the axis"};
-constexpr NumberKey inner{"inner_m", 0.0, Range::not_negative(), "where it begins, from the axis"};
-constexpr auto outer =
-    NumberKey{"outer_m", Range::positive(), "where it ends, beyond `inner_m`"}.range_that_varies();
-constexpr IntegerKey faces{"faces", 2, 1, 2, "of it that are wetted"};
-constexpr NumberKey drag{"drag_coefficient", Range::not_negative(),
-                         "on the area that meets the flow"};
-constexpr NumberKey moment{"moment_coefficient", sphere_moment_howarth, Range::positive(),
-                           "3.27 is also quoted"};
-constexpr ChoiceKey shape{"shape",
+constexpr NumberKey radius("radius_m", Range::positive(), "of the disc");
+constexpr NumberKey length("length_m", Range::positive(), "along the flow");
+constexpr NumberKey area("area_m2", Range::positive(), "of a face");
+constexpr NumberKey distance("distance_m", Range::not_negative(), "of its centre from the axis");
+constexpr NumberKey inner("inner_m", 0.0, Range::not_negative(), "where it begins, from the axis");
+constexpr NumberKey outer("outer_m", Range::positive(), "where it ends, beyond `inner_m`",
+                          {.varies = true});
+constexpr IntegerKey faces("faces", 2, 1, 2, "of it that are wetted");
+constexpr NumberKey drag("drag_coefficient", Range::not_negative(),
+                         "on the area that meets the flow");
+constexpr NumberKey moment("moment_coefficient", sphere_moment_howarth, Range::positive(),
+                           "3.27 is also quoted");
+constexpr ChoiceKey shape("shape",
                           {{"disc", "friction: spins in its plane"},
                            {"plate", "friction: moves edgewise"},
                            {"swept_plate", "friction: a radial strip"},
@@ -29,11 +28,10 @@ constexpr ChoiceKey shape{"shape",
                            {"radial_cylinder", "pressure: its axis points outwards"},
                            {"upright_cylinder", "pressure"},
                            {"blunt_face", "pressure: a stiffener, a box"}},
-                          "what it is like; a shape that counts in the other law adds nothing"};
-constexpr auto name = TextKey{"name", "of the part"}.usually("the shape");
-constexpr NumberKey count{"count", 1.0, Range::not_negative(), "of such parts, fractions too"};
-constexpr TablesKey part{"part", "what stands in the air of `[environment]`"};
-
+                          "what it is like; a shape that counts in the other law adds nothing");
+constexpr TextKey name("name", "of the part", {.usually = "the shape"});
+constexpr NumberKey count("count", 1.0, Range::not_negative(), "of such parts, fractions too");
+constexpr TablesKey part("part", "what stands in the air of `[environment]`");
 }  // namespace part_key
 
 // Von Kármán's disc: the slope G'(0) = −0.6159 of the similarity solution at the wall (White,

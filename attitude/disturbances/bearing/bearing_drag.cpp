@@ -18,45 +18,40 @@ namespace {
 constexpr double min_sum_N_m_s = -1e-6;
 
 constexpr auto coefficient =
-    ScalarKey{"coefficient_N_m_s", Range::not_negative(), "c in T = −c ω, about every axis; *or*"}
+    ScalarKey("coefficient_N_m_s", Range::not_negative(), "c in T = −c ω, about every axis; *or*")
         .optional();
 constexpr auto about_axis =
-    ScalarKey{"axial_N_m_s", Range::not_negative(), "about the vertical; with the next"}.optional();
+    ScalarKey("axial_N_m_s", Range::not_negative(), "about the vertical; with the next").optional();
 constexpr auto across_axis =
-    ScalarKey{"transverse_N_m_s", Range::not_negative(), "across it; *or*", about_axis.end()}
+    ScalarKey("transverse_N_m_s", Range::not_negative(), "across it; *or*", about_axis.end())
         .optional();
 
 namespace key {
-
-constexpr NumberKey radius{"radius_m", Range::positive(), "of the ball"};
-constexpr NumberKey half_angle{
-    "half_angle_deg", {0.0, pi, true, false}, "polar angle of the socket's rim"};
-constexpr auto recess_half_angle = NumberKey{"recess_half_angle_deg",
-                                             0.0,
-                                             {0.0, pi, false, true},
-                                             "of the central recess, below `half_angle_deg`"}
-                                       .range_that_varies();
-constexpr NumberKey sheared_share{"sheared_share", 1.0, Range::fraction(),
-                                  "fraction of the film that is thin (grooves take from it)"};
-constexpr auto gap =
-    NumberKey{"gap_m", Range::positive(),
-              "of the film under the platform's weight, *or* with the next two at the rated load"}
-        .optional();
-constexpr auto rated_load = NumberKey{"rated_load_N", Range::positive(), "of a spring"}.optional();
-constexpr auto stiffness =
-    NumberKey{"stiffness_N_m", Range::positive(), "of a spring, newton per metre"}.optional();
-constexpr auto supply =
-    NumberKey{"supply_Pa", Range::positive(),
-              "instead of `gap_m`, absolute, above the ambient pressure: the gap follows from "
-              "supply and feeding holes; needs a recess"}
-        .range_that_varies()
-        .optional();
-constexpr auto hole_area =
-    NumberKey{"hole_area_mm2", Range::positive(), "of the feeding holes"}.optional();
-constexpr NumberKey discharge_coefficient{
-    "discharge_coefficient", 0.8, {0.0, 1.0, true, false}, "of the holes"};
-constexpr TableKey socket{"socket", "both from the film of the ball"};
-
+constexpr NumberKey radius("radius_m", Range::positive(), "of the ball");
+constexpr NumberKey half_angle("half_angle_deg", {0.0, pi, true, false},
+                               "polar angle of the socket's rim");
+constexpr NumberKey recess_half_angle("recess_half_angle_deg", 0.0, {0.0, pi, false, true},
+                                      "of the central recess, below `half_angle_deg`",
+                                      {.varies = true});
+constexpr NumberKey sheared_share("sheared_share", 1.0, Range::fraction(),
+                                  "fraction of the film that is thin (grooves take from it)");
+constexpr NumberKey gap(
+    "gap_m", Range::positive(),
+    "of the film under the platform's weight, *or* with the next two at the rated load",
+    {.optional = true});
+constexpr NumberKey rated_load("rated_load_N", Range::positive(), "of a spring",
+                               {.optional = true});
+constexpr NumberKey stiffness("stiffness_N_m", Range::positive(), "of a spring, newton per metre",
+                              {.optional = true});
+constexpr NumberKey supply("supply_Pa", Range::positive(),
+                           "instead of `gap_m`, absolute, above the ambient pressure: the "
+                           "gap follows from supply and feeding holes; needs a recess",
+                           {.optional = true, .varies = true});
+constexpr NumberKey hole_area("hole_area_mm2", Range::positive(), "of the feeding holes",
+                              {.optional = true});
+constexpr NumberKey discharge_coefficient("discharge_coefficient", 0.8, {0.0, 1.0, true, false},
+                                          "of the holes");
+constexpr TableKey socket("socket", "both from the film of the ball");
 }  // namespace key
 
 struct IsotropicDrag final : TorqueLaw<IsotropicDrag> {

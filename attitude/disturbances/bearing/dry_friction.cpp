@@ -8,13 +8,11 @@
 namespace photorque::kinds::dry_friction {
 namespace {
 
-constexpr ScalarKey friction{"torque_N_m", Range::not_negative(), "τ in T = −τ ω/√(ω² + creep²)"};
+constexpr ScalarKey friction("torque_N_m", Range::not_negative(), "τ in T = −τ ω/√(ω² + creep²)");
 
 namespace key {
-
-constexpr NumberKey creep_rate{"creep_rate_rad_s", 1e-6, Range::positive(),
-                               "below it the torque fades to zero"};
-
+constexpr NumberKey creep_rate("creep_rate_rad_s", 1e-6, Range::positive(),
+                               "below it the torque fades to zero");
 }  // namespace key
 
 class DryFriction final : public TorqueLaw<DryFriction> {

@@ -15,13 +15,11 @@
 namespace photorque::kinds::tether {
 namespace {
 
-constexpr ScalarKey stiffness{"stiffness_N_m_per_rad", Range::not_negative(),
-                              "k in T = −k φ; φ is the shortest way and jumps at half a turn"};
+constexpr ScalarKey stiffness("stiffness_N_m_per_rad", Range::not_negative(),
+                              "k in T = −k φ; φ is the shortest way and jumps at half a turn");
 
 namespace key {
-
-constexpr FlagKey winds_up{"winds_up", false, "true: whole turns about body z count, φ + 2π n z"};
-
+constexpr FlagKey winds_up("winds_up", false, "true: whole turns about body z count, φ + 2π n z");
 }  // namespace key
 // The angle about body z since the start; tells whole turns, so its accuracy hardly matters.
 constexpr StateKey twist{"tether_twist_rad"};

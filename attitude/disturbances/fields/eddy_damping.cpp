@@ -10,8 +10,8 @@
 namespace photorque::kinds::eddy_damping {
 namespace {
 
-constexpr ScalarKey damping{"coefficient_N_m_s_per_T2", Range::not_negative(),
-                            "k in T = k (ω × B) × B; a thin shell has (2π/3) σ R⁴ δ"};
+constexpr ScalarKey damping("coefficient_N_m_s_per_T2", Range::not_negative(),
+                            "k in T = k (ω × B) × B; a thin shell has (2π/3) σ R⁴ δ");
 
 struct EddyDamping final : TorqueLaw<EddyDamping> {
   template <class T>

@@ -13,15 +13,13 @@
 namespace photorque::kinds::lamp_pressure {
 namespace {
 
-constexpr VectorKey torque_lab{"torque_lab_N_m", "at that current, lab axes"};
+constexpr VectorKey torque_lab("torque_lab_N_m", "at that current, lab axes");
 
 namespace key {
-
-constexpr NumberKey led_current{"led_current_A", Range::positive(),
-                                "of the lamps, at which the torque is that"};
-
+constexpr NumberKey led_current("led_current_A", Range::positive(),
+                                "of the lamps, at which the torque is that");
 }  // namespace key
-constexpr ScalarKey led_current{"led_current_A", torque_lab.end()};
+constexpr ScalarKey led_current("led_current_A", torque_lab.end());
 
 struct LampPressure final : TorqueLaw<LampPressure> {
   template <class T>

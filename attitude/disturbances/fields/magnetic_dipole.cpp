@@ -9,16 +9,15 @@ namespace photorque::kinds::magnetic_dipole {
 namespace {
 
 constexpr auto moment =
-    VectorKey{"dipole_A_m2", "m in T = m × B, body axes; *or* the loops"}.optional();
+    VectorKey("dipole_A_m2", "m in T = m × B, body axes; *or* the loops").optional();
 
 namespace key {
-
-constexpr NumberKey current{"current_A", {}, "right-handed about the area"};
-constexpr NumberKey turns{"turns", 1.0, Range::positive(), "of the loop"};
-constexpr auto area = Vec3Key{"area_m2", "normal times area, body axes; or `corners_m`"}.optional();
-constexpr auto corners = Vec3sKey{"corners_m", "at least three, body axes"}.optional();
-constexpr TablesKey loop{"loop", "current loops, summed"};
-
+constexpr NumberKey current("current_A", {}, "right-handed about the area");
+constexpr NumberKey turns("turns", 1.0, Range::positive(), "of the loop");
+constexpr Vec3Key area("area_m2", "normal times area, body axes; or `corners_m`",
+                       {.optional = true});
+constexpr Vec3sKey corners("corners_m", "at least three, body axes", {.optional = true});
+constexpr TablesKey loop("loop", "current loops, summed");
 }  // namespace key
 
 struct MagneticDipole final : TorqueLaw<MagneticDipole> {

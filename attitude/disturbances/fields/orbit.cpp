@@ -21,23 +21,19 @@ namespace {
 constexpr double interval_s = 20.0;  // of the table of the field
 
 namespace key {
-
-constexpr NumberKey altitude{"altitude_m", Range::positive(), "above 6371.2 km"};
-constexpr NumberKey inclination{"inclination_deg", {}, "of the orbit"};
-constexpr NumberKey ascending_node{"ascending_node_deg", 0.0, {}, "of the orbit"};
-constexpr NumberKey phase{"phase_deg", 0.0, {}, "argument of latitude at t = 0"};
-constexpr NumberKey greenwich_angle{"greenwich_angle_deg", 0.0, {}, "at t = 0"};
-constexpr auto date_year =
-    NumberKey{"date_year", {1900.0, 2035.0, false, false}, "field by IGRF along the orbit"}.usually(
-        "the field of `[environment]`");
-constexpr NumberKey duration{"duration_s",
-                             86400.0,
-                             {0.0, 1e6 * interval_s, true, false},
-                             "with `date_year`: how long the field is known; its end is held"};
-constexpr auto sun_direction =
-    Vec3Key{"sun_direction", "towards the Sun, any length: shadow with penumbra"}.usually(
-        "always light");
-
+constexpr NumberKey altitude("altitude_m", Range::positive(), "above 6371.2 km");
+constexpr NumberKey inclination("inclination_deg", {}, "of the orbit");
+constexpr NumberKey ascending_node("ascending_node_deg", 0.0, {}, "of the orbit");
+constexpr NumberKey phase("phase_deg", 0.0, {}, "argument of latitude at t = 0");
+constexpr NumberKey greenwich_angle("greenwich_angle_deg", 0.0, {}, "at t = 0");
+constexpr NumberKey date_year("date_year", {1900.0, 2035.0, false, false},
+                              "field by IGRF along the orbit",
+                              {.usually = "the field of `[environment]`"});
+constexpr NumberKey duration("duration_s", 86400.0, {0.0, 1e6 * interval_s, true, false},
+                             "with `date_year`: how long the field is known; its end is held");
+constexpr Vec3Key sun_direction("sun_direction",
+                                "towards the Sun, any length: shadow with penumbra",
+                                {.usually = "always light"});
 }  // namespace key
 
 constexpr double mean_radius_m = 6371.2e3;

@@ -20,34 +20,31 @@ namespace photorque::kinds::planet_light {
 namespace {
 
 constexpr double mean_radius_of_planet_m = 6371.2e3;
-constexpr ScalarKey planet_factor{"scale", 1.0, {}, "factor"};
+constexpr ScalarKey planet_factor("scale", 1.0, {}, "factor");
 
 namespace key {
-
 constexpr PlanetSurface earth;
 
-constexpr TextKey table{"table",
+constexpr TextKey table("table",
                         "CSV of `torque-map` over the sphere (`elevation_deg`, `azimuth_deg`; "
-                        "`torque_x_N_m`, …), traced in sunlight"};
-constexpr auto infrared_table =
-    TextKey{"infrared_table", "the same in the planet's infrared"}.usually(
-        "`table`: surfaces meet infrared as they meet sunlight");
-constexpr NumberKey table_irradiance{"table_irradiance_W_m2", solar_irradiance_W_m2,
+                        "`torque_x_N_m`, …), traced in sunlight");
+constexpr TextKey infrared_table(
+    "infrared_table", "the same in the planet's infrared",
+    {.usually = "`table`: surfaces meet infrared as they meet sunlight"});
+constexpr NumberKey table_irradiance("table_irradiance_W_m2", solar_irradiance_W_m2,
                                      Range::positive(),
-                                     "of the light in which the tables were traced"};
-constexpr NumberKey irradiance{"irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
-                               "of sunlight at the planet"};
-constexpr auto sun_direction =
-    Vec3Key{"sun_direction", "towards the Sun, any length"}.usually("`propagate`: that of `orbit`");
-constexpr NumberKey albedo{"albedo", earth.albedo.mean, Range::fraction(), "mean over the planet"};
-constexpr NumberKey emissivity{"emissivity", earth.emissivity.mean, Range::fraction(),
-                               "likewise: of a quarter of the sunlight"};
-constexpr FlagKey zonal{
-    "zonal", true, "with the Earth's belts of latitude: albedo + 0.29 P₂, emissivity − 0.18 P₂"};
-constexpr auto date_year =
-    NumberKey{"date_year", {1900.0, 2100.0, false, false}, "and its seasons: ± 0.10 and ∓ 0.07 P₁"}
-        .usually("no season");
-
+                                     "of the light in which the tables were traced");
+constexpr NumberKey irradiance("irradiance_W_m2", solar_irradiance_W_m2, Range::positive(),
+                               "of sunlight at the planet");
+constexpr Vec3Key sun_direction("sun_direction", "towards the Sun, any length",
+                                {.usually = "`propagate`: that of `orbit`"});
+constexpr NumberKey albedo("albedo", earth.albedo.mean, Range::fraction(), "mean over the planet");
+constexpr NumberKey emissivity("emissivity", earth.emissivity.mean, Range::fraction(),
+                               "likewise: of a quarter of the sunlight");
+constexpr FlagKey zonal(
+    "zonal", true, "with the Earth's belts of latitude: albedo + 0.29 P₂, emissivity − 0.18 P₂");
+constexpr NumberKey date_year("date_year", {1900.0, 2100.0, false, false},
+                              "and its seasons: ± 0.10 and ∓ 0.07 P₁", {.usually = "no season"});
 }  // namespace key
 
 struct PlanetOptions {

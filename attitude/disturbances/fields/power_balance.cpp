@@ -17,25 +17,22 @@
 namespace photorque::kinds::power_balance {
 namespace {
 
-constexpr ScalarKey load{
+constexpr ScalarKey load(
     "load_W", Range::not_negative(),
-    "what is drawn: the battery gives (load − array)/`platform.battery_voltage_V`, "
-    "tapered when full or empty; nothing where a recording has the current"};
+    "what is drawn: the battery gives (load − array)/`platform.battery_voltage_V`, tapered when "
+    "full or empty; nothing where a recording has the current");
 
 namespace key {
-
-constexpr NumberKey array_power{"array_power_W", 0.0, Range::not_negative(),
-                                "at zero tilt, falls with its cosine; *or*"};
-constexpr auto tilt =
-    NumbersKey{
-        "tilt_deg", {0.0, pi, false, false}, "a table, rising, held beyond its end; with the next"}
-        .optional();
-constexpr auto power =
-    NumbersKey{"power_W", Range::not_negative(), "of the array at each tilt"}.optional();
-
+constexpr NumberKey array_power("array_power_W", 0.0, Range::not_negative(),
+                                "at zero tilt, falls with its cosine; *or*");
+constexpr NumbersKey tilt("tilt_deg", {0.0, pi, false, false},
+                          "a table, rising, held beyond its end; with the next",
+                          {.optional = true});
+constexpr NumbersKey power("power_W", Range::not_negative(), "of the array at each tilt",
+                           {.optional = true});
 }  // namespace key
-constexpr ScalarKey array_scale{"array_scale", 1.0, Range::not_negative(), "factor on either",
-                                load.end()};
+constexpr ScalarKey array_scale("array_scale", 1.0, Range::not_negative(), "factor on either",
+                                load.end());
 
 // A monotone cubic through points (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984)
 // 300): smooth, and without a maximum that the points do not have.

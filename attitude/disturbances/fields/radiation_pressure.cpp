@@ -22,7 +22,7 @@
 namespace photorque::kinds::radiation_pressure {
 namespace {
 
-constexpr ScalarKey factor{"scale", 1.0, {}, "factor"};
+constexpr ScalarKey factor("scale", 1.0, {}, "factor");
 
 class RadiationPressure final : public TorqueLaw<RadiationPressure> {
  public:
@@ -48,24 +48,21 @@ class RadiationPressure final : public TorqueLaw<RadiationPressure> {
   Vec3 sun_direction_lab_;
 };
 
-constexpr auto area_moment = VectorKey{"area_moment_m3",
+constexpr auto area_moment = VectorKey("area_moment_m3",
                                        "projected area times its place from the centre of mass, "
-                                       "body axes; needs `[environment.sun]`"}
+                                       "body axes; needs `[environment.sun]`")
                                  .optional();
 
 namespace key {
-
-constexpr auto table =
-    TextKey{"table",
-            "CSV of `torque-map` (`wrench_table_body.csv`): `tilt_deg`, `heading_deg` "
-            "or `elevation_deg`, `azimuth_deg`; `torque_x_N_m`, `…_y_…`, `…_z_…`. The "
-            "motion must stay within it; *or*"}
-        .optional();
-constexpr auto sun_direction_lab =
-    Vec3Key{"sun_direction_lab",
-            "towards the light, any length; only, and always, with elevation and azimuth"}
-        .optional();
-
+constexpr TextKey table("table",
+                        "CSV of `torque-map` (`wrench_table_body.csv`): `tilt_deg`, "
+                        "`heading_deg` or `elevation_deg`, `azimuth_deg`; `torque_x_N_m`, "
+                        "`…_y_…`, `…_z_…`. The motion must stay within it; *or*",
+                        {.optional = true});
+constexpr Vec3Key sun_direction_lab(
+    "sun_direction_lab",
+    "towards the light, any length; only, and always, with elevation and azimuth",
+    {.optional = true});
 }  // namespace key
 
 // With the time's derivatives, where it has any.

@@ -4,7 +4,7 @@
 namespace photorque::kinds::gyro_misalignment {
 namespace {
 
-constexpr VectorKey turn{"misalignment_rad", "rotation vector of the mounting"};
+constexpr VectorKey turn("misalignment_rad", "rotation vector of the mounting");
 
 // reading − ω = m × ω for a mounting rotation vector m of the body axes against the gyro's: first
 // order, good to |m|²/2.

@@ -4,7 +4,7 @@
 namespace photorque::kinds::gyro_scale {
 namespace {
 
-constexpr VectorKey scale{"scale", "three fractions: 0.01 reads 1 % too much"};
+constexpr VectorKey scale("scale", "three fractions: 0.01 reads 1 % too much");
 
 // reading − ω = s_i ω_i on each axis.
 struct GyroScale final : LawOf<GyroScale> {

@@ -11,19 +11,15 @@ constexpr const char* marker_key = "marker";
 constexpr const char* error_key = "error_m";
 
 namespace key {
-
-constexpr auto marker = IntegerKey{marker_key, 1, 1'000'000,
-                                   "which of `markers_m`, the first is 1; without it all, with "
-                                   "three numbers of `error_m` for each"}
-                            .range_that_varies()
-                            .optional();
-constexpr auto error = NumbersKey{error_key,
-                                  {-0.1, 0.1},
-                                  "where it is in truth, less where `markers_m` says, body axes; "
-                                  "[sensors.camera] `marker_error_m` says the same of a recording "
-                                  "that is made"}
-                           .with_error();
-
+constexpr IntegerKey marker(marker_key, 1, 1'000'000,
+                            "which of `markers_m`, the first is 1; without it all, with "
+                            "three numbers of `error_m` for each",
+                            {.optional = true, .varies = true});
+constexpr NumbersKey error(
+    error_key, {-0.1, 0.1},
+    "where it is in truth, less where `markers_m` says, body axes; [sensors.camera] "
+    "`marker_error_m` says the same of a recording that is made",
+    {.has_error = true});
 }  // namespace key
 
 // One marker as the law needs it.

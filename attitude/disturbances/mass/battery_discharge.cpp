@@ -12,25 +12,23 @@
 namespace photorque::kinds::battery_discharge {
 namespace {
 
-constexpr auto shift = VectorKey{"shift_m_per_Ah",
-                                 "of the centre of mass per charge drawn, body axes; *or* "
-                                 "the cells, from which it follows"}
-                           .optional();
+constexpr auto shift =
+    VectorKey(
+        "shift_m_per_Ah",
+        "of the centre of mass per charge drawn, body axes; *or* the cells, from which it follows")
+        .optional();
 
 namespace key {
-
-constexpr Vec3Key electrodes{"electrodes_m",
-                             "way of the lithium from charged to empty, body axes; half a "
-                             "cell's length is the upper bound, wound cells 1/100 of it"};
-constexpr NumberKey charge_share{"charge_share", 1.0, Range::fraction(),
-                                 "1 in series, 1/n of n in parallel"};
-constexpr TablesKey cell{"cell", "instead of `shift_m_per_Ah`: one table for every cell"};
-constexpr ChoiceKey lithium{
-    "lithium",
-    {{"exact", "Faraday's mass per charge"}, {"rounded", "the paper's 0.3 g/Ah"}},
-    0,
-    "with cells: how much lithium moves"};
-
+constexpr Vec3Key electrodes("electrodes_m",
+                             "way of the lithium from charged to empty, body axes; half a cell's "
+                             "length is the upper bound, wound cells 1/100 of it");
+constexpr NumberKey charge_share("charge_share", 1.0, Range::fraction(),
+                                 "1 in series, 1/n of n in parallel");
+constexpr TablesKey cell("cell", "instead of `shift_m_per_Ah`: one table for every cell");
+constexpr ChoiceKey lithium("lithium",
+                            {{"exact", "Faraday's mass per charge"},
+                             {"rounded", "the paper's 0.3 g/Ah"}},
+                            0, "with cells: how much lithium moves");
 }  // namespace key
 
 struct BatteryDischarge final : LawOf<BatteryDischarge> {

@@ -11,29 +11,27 @@
 namespace photorque::kinds::elastic_sag {
 namespace {
 
-constexpr VectorKey diagonal{"compliance_s2"};
+constexpr VectorKey diagonal("compliance_s2");
 constexpr MatrixKey compliance{diagonal.name};
 
 namespace key {
-
-constexpr auto compliance =
-    OtherKey{"compliance_s2", Key::an_array | Key::a_table,
-             "C in T = m C (g − g at zero tilt) × g, metres per m/s²: three numbers "
-             "(a diagonal; only these take ±) or a symmetric 3 × 3 matrix; *or*"}
-        .optional();
-constexpr Vec3Key axis{"axis", {1.0, 0.0, 0.0}, "of the arms, body axes"};
-constexpr NumberKey length{"length_m", Range::positive(), "of one arm"};
-constexpr NumberKey end_mass{"end_mass_kg", Range::not_negative(), "at its end"};
-constexpr NumberKey beam_mass{"beam_mass_kg", Range::not_negative(), "of one arm"};
-constexpr NumberKey bending_stiffness{"bending_stiffness_N_m2", Range::positive(), "EI"};
-constexpr TableKey dumbbell{"dumbbell", "two arms, from which C follows; *or*"};
-constexpr NumberKey tabletop_length{"length_m", Range::positive(), "of a beam"};
-constexpr NumberKey total_mass{"total_mass_kg", Range::not_negative(), "of all"};
-constexpr NumberKey tabletop_bending_stiffness{"bending_stiffness_N_m2", Range::positive(),
-                                               "EI of one"};
-constexpr IntegerKey count{"count", 1, 1000, "of beams"};
-constexpr TableKey tabletop{"tabletop", "beams along z, from which C follows"};
-
+constexpr OtherKey compliance(
+    "compliance_s2", Key::an_array | Key::a_table,
+    "C in T = m C (g − g at zero tilt) × g, metres per m/s²: three numbers (a diagonal; "
+    "only these take ±) or a symmetric 3 × 3 matrix; *or*",
+    {.optional = true});
+constexpr Vec3Key axis("axis", {1.0, 0.0, 0.0}, "of the arms, body axes");
+constexpr NumberKey length("length_m", Range::positive(), "of one arm");
+constexpr NumberKey end_mass("end_mass_kg", Range::not_negative(), "at its end");
+constexpr NumberKey beam_mass("beam_mass_kg", Range::not_negative(), "of one arm");
+constexpr NumberKey bending_stiffness("bending_stiffness_N_m2", Range::positive(), "EI");
+constexpr TableKey dumbbell("dumbbell", "two arms, from which C follows; *or*");
+constexpr NumberKey tabletop_length("length_m", Range::positive(), "of a beam");
+constexpr NumberKey total_mass("total_mass_kg", Range::not_negative(), "of all");
+constexpr NumberKey tabletop_bending_stiffness("bending_stiffness_N_m2", Range::positive(),
+                                               "EI of one");
+constexpr IntegerKey count("count", 1, 1000, "of beams");
+constexpr TableKey tabletop("tabletop", "beams along z, from which C follows");
 }  // namespace key
 
 template <class T>

@@ -13,23 +13,21 @@
 namespace photorque::kinds::flexible_mode {
 namespace {
 
-constexpr VectorKey direction{"axis", "of the mode, body axes, any length"};
-constexpr ScalarKey frequency{"frequency_Hz", Range::positive(), "with the body at rest",
-                              direction.end()};
-constexpr ScalarKey damping{"damping", Range::not_negative(), "fraction of critical damping",
-                            frequency.end()};
-constexpr ScalarKey inertia{
+constexpr VectorKey direction("axis", "of the mode, body axes, any length");
+constexpr ScalarKey frequency("frequency_Hz", Range::positive(), "with the body at rest",
+                              direction.end());
+constexpr ScalarKey damping("damping", Range::not_negative(), "fraction of critical damping",
+                            frequency.end());
+constexpr ScalarKey inertia(
     "inertia_kg_m2", Range::positive(),
-    "of the appendage about the axis, below the platform's, of which it is part", damping.end()};
+    "of the appendage about the axis, below the platform's, of which it is part", damping.end());
 
 namespace key {
-
-constexpr NumberKey initial_angle{
-    "initial_angle_deg", 0.0, {}, "beside the body at the start of a run"};
-constexpr auto initial_rate =
-    NumberKey{"initial_rate_rad_s", {}, "its own about the axis, at the start of a run"}.usually(
-        "the body's: it rests beside it");
-
+constexpr NumberKey initial_angle("initial_angle_deg", 0.0, {},
+                                  "beside the body at the start of a run");
+constexpr NumberKey initial_rate("initial_rate_rad_s", {},
+                                 "its own about the axis, at the start of a run",
+                                 {.usually = "the body's: it rests beside it"});
 }  // namespace key
 
 constexpr StateKey angle{"angle_rad", 0};

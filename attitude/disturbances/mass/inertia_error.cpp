@@ -10,14 +10,10 @@ namespace {
 constexpr KeyOf<6> delta{"delta_kg_m2"};
 
 namespace key {
-
-constexpr auto delta =
-    NumbersKey{"delta_kg_m2",
-               {},
-               "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the whole stays an inertia"}
-        .with_error()
-        .of_size(6);
-
+constexpr NumbersKey delta(
+    "delta_kg_m2", {},
+    "[xx, yy, zz, xy, xz, yz], about the centre of rotation; the whole stays an inertia",
+    {.has_error = true, .size = 6});
 }  // namespace key
 
 template <class T>

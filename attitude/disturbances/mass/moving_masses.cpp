@@ -65,15 +65,13 @@ BalanceCommand steps_that_remove(const Vec3& offset_body_m, const std::vector<Mo
 namespace {
 
 namespace moving_key {
-
-constexpr NumberKey moving_mass{"moving_mass_kg", Range::positive(), "of each mass"};
-constexpr NumberKey lead{"lead_m", Range::positive(), "travel per turn of its screw"};
-constexpr NumberKey step_angle{
-    "step_angle_deg", 1.8 * degree_rad, {0.0, 2.0 * pi, true, false}, "of the motor"};
-constexpr IntegerKey microsteps{"microsteps", 1, 1, 1024, "positions per step"};
-constexpr auto directions =
-    Vec3sKey{"directions", "of travel, body axes, one per mass"}.usually("eight: 2 x, 2 y, 4 z");
-
+constexpr NumberKey moving_mass("moving_mass_kg", Range::positive(), "of each mass");
+constexpr NumberKey lead("lead_m", Range::positive(), "travel per turn of its screw");
+constexpr NumberKey step_angle("step_angle_deg", 1.8 * degree_rad, {0.0, 2.0 * pi, true, false},
+                               "of the motor");
+constexpr IntegerKey microsteps("microsteps", 1, 1, 1024, "positions per step");
+constexpr Vec3sKey directions("directions", "of travel, body axes, one per mass",
+                              {.usually = "eight: 2 x, 2 y, 4 z"});
 }  // namespace moving_key
 
 }  // namespace

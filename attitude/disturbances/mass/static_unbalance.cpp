@@ -7,9 +7,9 @@
 namespace photorque::kinds::static_unbalance {
 namespace {
 
-constexpr VectorKey offset{"offset_m",
-                           "r in T = m r × g, from the centre of rotation, body "
-                           "axes; a platform that stands stable has a negative z"};
+constexpr VectorKey offset("offset_m",
+                           "r in T = m r × g, from the centre of rotation, body axes; a platform "
+                           "that stands stable has a negative z");
 
 struct StaticUnbalance final : LawOf<StaticUnbalance> {
   template <class T>

@@ -6,10 +6,9 @@
 namespace photorque::kinds::actuator_gain {
 namespace {
 
-constexpr ScalarKey common_gain{
-    "gain_error",
-    {},
-    "e: actuators give (1 + e) of the command; one number, or one for each body axis"};
+constexpr ScalarKey common_gain(
+    "gain_error", {},
+    "e: actuators give (1 + e) of the command; one number, or one for each body axis");
 constexpr VectorKey axis_gain{common_gain.name};
 
 struct CommonGain final : TorqueLaw<CommonGain> {

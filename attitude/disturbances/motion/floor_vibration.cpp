@@ -18,30 +18,27 @@ namespace {
 
 // Faster, and the phase loses its digits within a day: steps would see something slow.
 constexpr Range tone_Hz{0.0, 1e6};
-constexpr auto shaking =
-    VectorKey{"acceleration_m_s2",
-              "a of a sine in T = −m r × a, nothing without an offset of mass; "
-              "lab axes; with the next two; *or*"}
-        .optional();
+constexpr auto shaking = VectorKey("acceleration_m_s2",
+                                   "a of a sine in T = −m r × a, nothing without an offset of "
+                                   "mass; lab axes; with the next two; *or*")
+                             .optional();
 constexpr auto frequency =
-    ScalarKey{"frequency_Hz", tone_Hz, "of a sine", shaking.end()}.optional();
-constexpr ScalarKey phase{"phase", 0.0, {}, "of it at t = 0, rad; or `phase_deg`", frequency.end()};
-constexpr ScalarKey factor{"scale", 1.0, Range::not_negative(), "factor on the last two"};
+    ScalarKey("frequency_Hz", tone_Hz, "of a sine", shaking.end()).optional();
+constexpr ScalarKey phase("phase", 0.0, {}, "of it at t = 0, rad; or `phase_deg`", frequency.end());
+constexpr ScalarKey factor("scale", 1.0, Range::not_negative(), "factor on the last two");
 
 namespace key {
-
-constexpr auto phase = UncertainNumberKey{"phase_deg", {}, "instead of `phase`"}.optional();
-constexpr NumbersKey frequency{"frequency_Hz", Range::positive(), "at least two, rising"};
-constexpr NumbersKey density{"density_m2_s3", Range::not_negative(),
-                             "one-sided, the same along each axis"};
-constexpr IntegerKey tones{"tones", 32, 1, 10000, "of which it is made"};
-constexpr IntegerKey seed{"seed", 1, 0, INT64_MAX, "of their phases"};
-constexpr TableKey spectrum{"spectrum", "a random floor; *or*"};
-constexpr auto accelerogram_file =
-    TextKey{"accelerogram_file",
-            "CSV: `t_s`, `acceleration_x_m_s2`, `…_y_…`, `…_z_…`, lab axes, zero outside"}
-        .optional();
-
+constexpr UncertainNumberKey phase("phase_deg", {}, "instead of `phase`", {.optional = true});
+constexpr NumbersKey frequency("frequency_Hz", Range::positive(), "at least two, rising");
+constexpr NumbersKey density("density_m2_s3", Range::not_negative(),
+                             "one-sided, the same along each axis");
+constexpr IntegerKey tones("tones", 32, 1, 10000, "of which it is made");
+constexpr IntegerKey seed("seed", 1, 0, INT64_MAX, "of their phases");
+constexpr TableKey spectrum("spectrum", "a random floor; *or*");
+constexpr TextKey accelerogram_file(
+    "accelerogram_file",
+    "CSV: `t_s`, `acceleration_x_m_s2`, `…_y_…`, `…_z_…`, lab axes, zero outside",
+    {.optional = true});
 }  // namespace key
 
 template <class T>

@@ -10,14 +10,12 @@ namespace {
 
 // Faster, and the phase loses its digits within a day: steps would see something slow.
 constexpr Range tone_Hz{0.0, 1e6};
-constexpr VectorKey amplitude{"torque_N_m", "T₀ in T = T₀ sin(2π f t + φ), body axes"};
-constexpr ScalarKey frequency{"frequency_Hz", tone_Hz, "f", amplitude.end()};
-constexpr ScalarKey phase{"phase", 0.0, {}, "φ, rad; or `phase_deg`", frequency.end()};
+constexpr VectorKey amplitude("torque_N_m", "T₀ in T = T₀ sin(2π f t + φ), body axes");
+constexpr ScalarKey frequency("frequency_Hz", tone_Hz, "f", amplitude.end());
+constexpr ScalarKey phase("phase", 0.0, {}, "φ, rad; or `phase_deg`", frequency.end());
 
 namespace key {
-
-constexpr auto phase = UncertainNumberKey{"phase_deg", {}, "instead of `phase`"}.optional();
-
+constexpr UncertainNumberKey phase("phase_deg", {}, "instead of `phase`", {.optional = true});
 }  // namespace key
 
 struct PeriodicTorque final : TorqueLaw<PeriodicTorque> {

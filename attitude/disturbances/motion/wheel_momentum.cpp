@@ -8,11 +8,10 @@
 namespace photorque::kinds::wheel_momentum {
 namespace {
 
-constexpr ScalarKey common_inertia{
+constexpr ScalarKey common_inertia(
     "inertia_kg_m2", Range::not_negative(),
-    "J in T = −J (Ω′ + ω × Ω), Ω the measured speeds "
-    "(`wheel_x_rad_s` … in the recording), about a wheel's own axis: "
-    "one number for all, or three for those about body x, y and z"};
+    "J in T = −J (Ω′ + ω × Ω), Ω the measured speeds (`wheel_x_rad_s` … in the recording), about a "
+    "wheel's own axis: one number for all, or three for those about body x, y and z");
 constexpr VectorKey axis_inertia{common_inertia.name};
 
 struct AlikeWheels final : TorqueLaw<AlikeWheels> {

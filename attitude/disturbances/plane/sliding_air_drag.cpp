@@ -6,7 +6,7 @@
 namespace photorque::kinds::sliding_air_drag {
 namespace {
 
-constexpr ScalarKey coefficient{"coefficient_kg_m", Range::not_negative(), "k in F = −k |v| v"};
+constexpr ScalarKey coefficient("coefficient_kg_m", Range::not_negative(), "k in F = −k |v| v");
 
 struct SlidingAirDrag final : ForceLaw<SlidingAirDrag> {
   template <class T>

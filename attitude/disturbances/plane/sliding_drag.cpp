@@ -6,7 +6,7 @@
 namespace photorque::kinds::sliding_drag {
 namespace {
 
-constexpr ScalarKey coefficient{"coefficient_kg_s", Range::not_negative(), "c in F = −c v"};
+constexpr ScalarKey coefficient("coefficient_kg_s", Range::not_negative(), "c in F = −c v");
 
 struct SlidingDrag final : ForceLaw<SlidingDrag> {
   template <class T>

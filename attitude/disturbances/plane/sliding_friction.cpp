@@ -7,7 +7,7 @@
 namespace photorque::kinds::sliding_friction {
 namespace {
 
-constexpr ScalarKey coefficient{"coefficient", Range::not_negative(), "μ in F = −μ m g v/|v|"};
+constexpr ScalarKey coefficient("coefficient", Range::not_negative(), "μ in F = −μ m g v/|v|");
 
 struct SlidingFriction final : ForceLaw<SlidingFriction> {
   template <class T>

@@ -6,13 +6,11 @@
 namespace photorque::kinds::sliding_spring {
 namespace {
 
-constexpr ScalarKey stiffness{"stiffness_N_per_m", Range::not_negative(), "k in F = f − k r"};
+constexpr ScalarKey stiffness("stiffness_N_per_m", Range::not_negative(), "k in F = f − k r");
 
 namespace key {
-
-constexpr auto pull =
-    NumbersKey{"pull_N", {}, "f at the lab's origin; it pulls to f/k"}.of_size(2).with_error();
-
+constexpr NumbersKey pull("pull_N", {}, "f at the lab's origin; it pulls to f/k",
+                          {.has_error = true, .size = 2});
 }  // namespace key
 constexpr KeyOf<2> pull{"pull_N", stiffness.end()};
 

@@ -10,12 +10,8 @@ namespace {
 constexpr KeyOf<2> slope{"slope_rad"};
 
 namespace key {
-
-constexpr auto slope =
-    NumbersKey{"slope_rad", {}, "by which the table rises along lab x and y; small"}
-        .of_size(2)
-        .with_error();
-
+constexpr NumbersKey slope("slope_rad", {}, "by which the table rises along lab x and y; small",
+                           {.has_error = true, .size = 2});
 }  // namespace key
 
 struct TableSlope final : ForceLaw<TableSlope> {
