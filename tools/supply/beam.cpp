@@ -8,8 +8,6 @@
 namespace photorque {
 namespace {
 
-constexpr Range conversion_range{0.0, 1.0, true, false};
-
 namespace beam_key {
 constexpr TextKey name("name", "of the way");
 constexpr TextKey experiment("experiment",

@@ -13,8 +13,6 @@
 namespace photorque {
 namespace {
 
-constexpr Range conversion_range{0.0, 1.0, true, false};
-
 namespace coil_key {
 constexpr SpiralCoil usual{0.06, 0.10, 12, 3e-6, 1.5};
 

@@ -9,6 +9,9 @@
 
 namespace photorque {
 
+// Of an efficiency.
+inline constexpr Range conversion_range{0.0, 1.0, true, false};
+
 // [supply_trade.battery]: specific_energy_Wh_kg (150 ± 50, of the pack), usable_fraction (0.9),
 // electrodes_m (how far the lithium moves along body x, 3.2e-4).
 SupplyOption battery_option(const Settings& settings, const SupplyTask& task);
