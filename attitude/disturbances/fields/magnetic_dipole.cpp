@@ -11,14 +11,7 @@ namespace {
 constexpr auto moment =
     VectorKey("dipole_A_m2", "m in T = m × B, body axes; *or* the loops").optional();
 
-namespace key {
-constexpr NumberKey current("current_A", {}, "right-handed about the area");
-constexpr NumberKey turns("turns", 1.0, Range::positive(), "of the loop");
-constexpr Vec3Key area("area_m2", "normal times area, body axes; or `corners_m`",
-                       {.optional = true});
-constexpr Vec3sKey corners("corners_m", "at least three, body axes", {.optional = true});
-constexpr TablesKey loop("loop", "current loops, summed");
-}  // namespace key
+constexpr TablesKey loops("loop", "current loops, summed");
 
 struct MagneticDipole final : TorqueLaw<MagneticDipole> {
   template <class T>
@@ -28,8 +21,8 @@ struct MagneticDipole final : TorqueLaw<MagneticDipole> {
 };
 
 PlacedParameters dipole(const Settings& settings) {
-  if (!settings.has(key::loop)) return vector_parameter(settings, moment);
-  const Vec3 sum_A_m2 = dipole_A_m2(read_current_loops(settings.get(key::loop)));
+  if (!settings.has(loops)) return vector_parameter(settings, moment);
+  const Vec3 sum_A_m2 = dipole_A_m2(read_current_loops(settings.get(loops)));
   return fixed_parameter(moment.name, {sum_A_m2.data(), 3});
 }
 
@@ -48,7 +41,7 @@ DisturbanceKind kind() {
                    {{"a residual magnetic dipole of the platform turns towards the ambient field",
                      {EffectKey::vector(moment.name, 0.05)}}},
                .needs = Requirement::field},
-          .keys = {moment, key::loop.of({key::current, key::turns, key::area, key::corners})}};
+          .keys = {moment, loops.of(current_loop_keys())}};
 }
 
 }  // namespace photorque::kinds::magnetic_dipole
