@@ -4,7 +4,7 @@ namespace photorque {
 
 Key recording_table() {
   using namespace recording_key;
-  return recording.of({columns, angle_sequence, remove_outliers});
+  return recording_key::recording.of({columns, angle_sequence, recording_key::remove_outliers});
 }
 
 }  // namespace photorque
